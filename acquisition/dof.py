@@ -1,0 +1,50 @@
+"""Degrees of freedom: a node and a signed UFF direction code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+
+_LETTERS = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ", 0: "scalar"}
+
+
+@dataclass(frozen=True, order=True)
+class Dof:
+    """A degree of freedom of the test.
+
+    Parameters
+    ----------
+    node : int
+        Node number of the test geometry.
+    direction : int
+        UFF direction code: 1, 2, 3 for +x, +y, +z; 4, 5, 6 for rotations about them; negative when the
+        transducer points the other way; 0 for a scalar.
+    """
+
+    node: int
+    direction: int
+
+    @property
+    def sign(self) -> int:
+        """+1 or -1: which way along its axis the transducer points [-]."""
+        return -1 if self.direction < 0 else 1
+
+    @property
+    def axis(self) -> int:
+        """0, 1 or 2 for x, y, z; 3, 4, 5 for rotations about them; -1 for a scalar."""
+        return abs(self.direction) - 1
+
+    @property
+    def unit_vector(self) -> FloatArray:
+        """Signed direction of a translation, shape (3,) [-]; zero for rotations and scalars."""
+        vector = np.zeros(3)
+        if 0 <= self.axis < 3:
+            vector[self.axis] = self.sign
+        return vector
+
+    def __str__(self) -> str:
+        """Print as test engineers write it: ``12-Z``."""
+        return f"{self.node}{'-' if self.sign < 0 else '+'}{_LETTERS[abs(self.direction)]}"

@@ -1,0 +1,91 @@
+"""A plain record of modes, as files carry them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+
+from acquisition.arrays import ComplexArray, FloatArray, frozen_array
+from acquisition.dof import Dof
+from acquisition.errors import InputError
+from acquisition.geometry import Geometry
+
+
+@dataclass(frozen=True, eq=False)
+class ModalData:
+    """Frequencies, damping ratios and shapes with their standard deviations.
+
+    Parameters
+    ----------
+    frequency : (n_modes,) array
+        Undamped natural frequencies |lambda| / 2 pi [Hz].
+    frequency_sigma : (n_modes,) array
+        Their standard deviations [Hz]; nan where unknown.
+    damping, damping_sigma : (n_modes,) arrays, optional
+        Damping ratios and their standard deviations [-]; nan where unknown.
+    dofs : tuple of Dof, length n_dofs
+        Degrees of freedom of the shapes; signs of directions are already in the shapes (every direction is
+        positive).
+    shapes : (n_dofs, n_modes) complex array, optional
+        Mode shapes [kg^-1/2 where scaled, else -].
+    shape_sigma : (n_dofs, n_modes) array, optional
+        Standard deviation of each component [as ``shapes``].
+    scaled : bool
+        Whether the shapes are mass-normalised.
+    geometry : Geometry
+        Nodes of the test.
+
+    Raises
+    ------
+    InputError
+        If lengths disagree or a frequency is not positive.
+    """
+
+    frequency: FloatArray
+    frequency_sigma: FloatArray
+    damping: FloatArray | None = None
+    damping_sigma: FloatArray | None = None
+    dofs: tuple[Dof, ...] = ()
+    shapes: ComplexArray | None = None
+    shape_sigma: FloatArray | None = None
+    scaled: bool = False
+    geometry: Geometry = field(default_factory=Geometry.empty)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "frequency", frozen_array(self.frequency))
+        object.__setattr__(self, "dofs", tuple(self.dofs))
+        n_modes = len(self.frequency)
+        for name in ("frequency_sigma", "damping", "damping_sigma"):
+            value = getattr(self, name)
+            column = frozen_array(np.full(n_modes, np.nan) if value is None else value)
+            object.__setattr__(self, name, column)
+            if column.shape != (n_modes,):
+                raise InputError(f"{n_modes} frequencies but {name} has shape {column.shape}")
+        if not np.all(self.frequency > 0):
+            raise InputError(f"frequencies must be positive, found {self.frequency.min():g} Hz")
+        for name, dtype in (("shapes", np.complex128), ("shape_sigma", np.float64)):
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, frozen_array(value, dtype))
+                if value.shape != (len(self.dofs), n_modes):
+                    raise InputError(
+                        f"{name} has shape {value.shape}; {len(self.dofs)} DOFs and {n_modes} modes were given"
+                    )
+
+    def __len__(self) -> int:
+        """Return the number of modes."""
+        return len(self.frequency)
+
+    def table(self) -> pd.DataFrame:
+        """Return one row per mode: frequency [Hz], damping ratio [%], and their standard deviations."""
+        assert self.damping is not None
+        assert self.damping_sigma is not None
+        columns = {
+            "frequency [Hz]": self.frequency,
+            "sigma [Hz]": self.frequency_sigma,
+            "damping [%]": 100 * self.damping,
+            "sigma [%]": 100 * self.damping_sigma,
+        }
+        return pd.DataFrame(columns, index=pd.RangeIndex(1, len(self) + 1, name="mode"))
