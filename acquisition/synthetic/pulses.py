@@ -1,0 +1,44 @@
+"""Laplace transforms of the pulses a hammer makes, and the filter in front of the converter."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray
+
+
+def pulse_transform(laplace: ComplexArray, width: float, shape: Literal["haversine", "half-sine"]) -> ComplexArray:
+    """Return the Laplace transform of a pulse of unit height that starts at t = 0, shape as ``laplace`` [s].
+
+    Parameters
+    ----------
+    laplace : complex array
+        Where in the Laplace plane, right of the imaginary axis [rad/s].
+    width : float
+        Length of the pulse [s].
+    shape : {"haversine", "half-sine"}
+        (1 - cos(2 pi t / width)) / 2, or sin(pi t / width).
+    """
+    end = np.exp(-laplace * width)
+    if shape == "half-sine":
+        rate = np.pi / width
+        return np.asarray(rate * (1 + end) / (laplace**2 + rate**2), dtype=np.complex128)
+    rate = 2 * np.pi / width
+    return np.asarray(0.5 * (1 - end) * rate**2 / (laplace * (laplace**2 + rate**2)), dtype=np.complex128)
+
+
+def anti_alias(frequency: FloatArray, rate: float) -> FloatArray:
+    """Return the gain of the filter: 1 up to rate / 2.56, a smooth fall, 0 from the Nyquist frequency on [-].
+
+    Parameters
+    ----------
+    frequency : array
+        Frequencies [Hz].
+    rate : float
+        Sampling rate [Hz].
+    """
+    low, high = rate / 2.56, rate / 2
+    x = np.clip((frequency - low) / (high - low), 0.0, 1.0)
+    return np.asarray(1 - x**4 * (35 - 84 * x + 70 * x**2 - 20 * x**3), dtype=np.float64)

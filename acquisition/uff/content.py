@@ -1,0 +1,81 @@
+"""What was found in universal files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import pandas as pd
+
+from acquisition.frf import FrfSet
+from acquisition.geometry import Geometry
+from acquisition.hammer import HammerTest
+from acquisition.modal_data import ModalData
+
+
+@dataclass(frozen=True)
+class DatasetInfo:
+    """One data set of a file.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file.
+    number : int
+        Data set number.
+    kind : str
+        What it is, in words.
+    line : int
+        Line where it begins, from 1.
+    description : str
+        What it holds.
+    ok : bool
+        Whether it was read.
+    message : str
+        What is wrong with it or odd about it; empty if nothing.
+    """
+
+    file: str
+    number: int
+    kind: str
+    line: int
+    description: str
+    ok: bool = True
+    message: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class UffContent:
+    """Everything that one test's universal files hold, in SI units.
+
+    Parameters
+    ----------
+    tests : tuple of HammerTest
+        Raw time records, one entry for each combination of rate, length and quantity.
+    frfs : FrfSet, optional
+        FRFs with their coherence.
+    modal : ModalData, optional
+        Modes of data sets 55.
+    geometry : Geometry
+        Nodes of data sets 15 and 2411.
+    datasets : tuple of DatasetInfo
+        Every data set in the files, good or bad.
+    warnings : tuple of str
+        What had to be assumed or left out.
+    title : str
+        Title of the test.
+    """
+
+    tests: tuple[HammerTest, ...] = ()
+    frfs: FrfSet | None = None
+    modal: ModalData | None = None
+    geometry: Geometry = field(default_factory=Geometry.empty)
+    datasets: tuple[DatasetInfo, ...] = ()
+    warnings: tuple[str, ...] = ()
+    title: str = ""
+
+    def table(self) -> pd.DataFrame:
+        """Return one row per data set."""
+        return pd.DataFrame(
+            [[d.file, d.line, d.number, d.kind, d.description, d.ok, d.message] for d in self.datasets],
+            columns=["file", "line", "data set", "kind", "description", "ok", "message"],
+        )

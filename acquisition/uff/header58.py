@@ -1,0 +1,179 @@
+"""The eleven header lines of data set 58, read column by column and, where columns are off, word by word."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from acquisition.dof import Dof
+from acquisition.errors import InputError
+
+_NAME = re.compile(r"\W*(\d+)\W*?([+-]?)([XYZ])([+-]?)\W*$", re.IGNORECASE)
+_DECAY = re.compile(r"exponential window decay\s*[:=]?\s*([-+.\deE]+)", re.IGNORECASE)
+PRECISION = {2: (False, 4), 4: (False, 8), 5: (True, 4), 6: (True, 8)}
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What an axis of data set 58 carries: data type, exponents of length and force, and labels."""
+
+    kind: int
+    length: int
+    force: int
+    label: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Header58:
+    """The header of a function.
+
+    Parameters
+    ----------
+    title : tuple of str
+        The five ID lines.
+    function_type : int
+        1 time record, 4 FRF, 6 coherence, and so on.
+    response, reference : Dof
+        Degrees of freedom.
+    is_complex : bool
+        Whether values are complex.
+    item_size : int
+        Bytes of one real number, 4 or 8.
+    points : int
+        Number of values announced.
+    even : bool
+        Whether the abscissa is evenly spaced.
+    minimum, increment : float
+        First abscissa and its spacing, in the file's unit.
+    resolution : float
+        Half a unit in the last printed place of ``increment``.
+    abscissa, ordinate, denominator : Axis
+        Records 8, 9 and 10.
+    """
+
+    title: tuple[str, ...]
+    function_type: int
+    response: Dof
+    reference: Dof
+    is_complex: bool
+    item_size: int
+    points: int
+    even: bool
+    minimum: float
+    increment: float
+    resolution: float
+    abscissa: Axis
+    ordinate: Axis
+    denominator: Axis
+
+    @property
+    def decay(self) -> float:
+        """Decay of an exponential window that the ID lines speak of [1/s]."""
+        found = _DECAY.search(" ".join(self.title))
+        return float(found[1]) if found else 0.0
+
+    @property
+    def pair(self) -> tuple[Dof, Dof]:
+        """Response and reference."""
+        return self.response, self.reference
+
+
+def parse_header(raw: bytes) -> Header58:
+    """Read the eleven header lines.
+
+    Raises
+    ------
+    InputError
+        If there are fewer lines or a number cannot be read.
+    """
+    lines = [_text(line) for line in raw.splitlines()[:11]]
+    if len(lines) < 11:
+        raise InputError(f"the header has {len(lines)} lines instead of 11: the file is cut off here")
+    identity, form = lines[5], lines[6]
+    ordinate, points = _whole(form[:10]), _whole(form[10:20])
+    if ordinate not in PRECISION:
+        raise InputError(f"ordinate data type {ordinate} does not exist (2, 4, 5 or 6 are known)")
+    if points <= 0:
+        raise InputError(f"it announces {points} points")
+    even = _whole(form[20:30]) == 1
+    step = _real(form[43:56])
+    if even and step <= 0:
+        raise InputError(f"the abscissa has an increment of {step:g}")
+    axes = [_axis(line) for line in lines[7:10]]
+    return Header58(
+        title=tuple(line.strip() for line in lines[:5]),
+        function_type=_whole(identity[:5]),
+        response=_dof(identity[41:51], identity[51:55], identity[30:41]),
+        reference=_dof(identity[66:76], identity[76:80], identity[55:66]),
+        is_complex=PRECISION[ordinate][0],
+        item_size=PRECISION[ordinate][1],
+        points=points,
+        even=even,
+        minimum=_real(form[30:43]),
+        increment=step,
+        resolution=_resolution(form[43:56]),
+        abscissa=axes[0],
+        ordinate=axes[1],
+        denominator=axes[2],
+    )
+
+
+def _text(line: bytes) -> str:
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError:
+        return line.decode("latin-1")
+
+
+def _whole(field: str) -> int:
+    """Read a whole number; some programs write ``11.``, and blanks mean 0."""
+    value = _real(field)
+    if value != int(value):
+        raise InputError(f"{field.strip()!r} stands where a whole number is meant")
+    return int(value)
+
+
+def _real(field: str) -> float:
+    text = field.strip().replace("D", "E").replace("d", "e")
+    try:
+        value = float(text or "0")
+    except ValueError:
+        raise InputError(f"{field.strip()!r} stands in the header where a number is meant") from None
+    if value - value != 0:
+        raise InputError(f"{field.strip()!r} stands in the header where a finite number is meant")
+    return value
+
+
+def _resolution(field: str) -> float:
+    """Return half a unit in the last printed place."""
+    mantissa, _, exponent = field.strip().upper().replace("D", "E").partition("E")
+    decimals = len(mantissa.partition(".")[2])
+    return float(0.5 * 10.0 ** (int(exponent or 0) - decimals))
+
+
+def _dof(node: str, direction: str, name: str) -> Dof:
+    """Return the degree of freedom; entity names such as ``.1.Z-`` or ``7+X`` serve where the numbers are 0."""
+    number, code = _whole(node), _whole(direction)
+    found = _NAME.match(name)
+    if number == 0 and code == 0 and found:
+        sign = -1 if "-" in (found[2], found[4]) else 1
+        return Dof(int(found[1]), sign * ("XYZ".index(found[3].upper()) + 1))
+    if abs(code) > 6:
+        raise InputError(f"direction code {code} does not exist (-6 to 6 are known)")
+    return Dof(number, code)
+
+
+def _axis(line: str) -> Axis:
+    return Axis(
+        kind=_whole(line[:10]),
+        length=_whole(line[10:15]),
+        force=_whole(line[15:20]),
+        label=_label(line[26:46]),
+        unit=_label(line[46:]),
+    )
+
+
+def _label(text: str) -> str:
+    text = text.strip()
+    return "" if text.upper() == "NONE" else text

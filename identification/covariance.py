@@ -1,0 +1,53 @@
+"""Standard deviations of what is reported, with what the fit leaves taken into account."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.frf import FrfSet
+from identification.fitting import Fitted
+from identification.pruning import pole_covariance, residue_variance
+
+
+def misfit_factor(frfs: FrfSet, fitted: Fitted) -> FloatArray:
+    """Return by how much the misfit about each mode exceeds the noise, shape (n_modes,) [-], 1 or more.
+
+    Residual power over its variance, averaged with the weight each value has in the mode's residue. It
+    counts as excess only beyond three standard deviations of that average; then it is the square of
+    Birge's ratio.
+    """
+    fit = fitted.fit
+    density = 1.0 / np.abs(frfs.laplace[None, :] - fit.poles[:, None]) ** 2
+    share = np.abs(fit.linear.residues.T) ** 2
+    ratio = np.abs(fitted.residual) ** 2 / fitted.variance
+    free = np.broadcast_to(1.0 - fitted.absorbed, ratio.shape)
+    inverse = 1.0 / fitted.variance
+    over = np.einsum("rj,jk,rk->r", share, inverse * ratio, density, optimize=True)
+    under = np.einsum("rj,jk,rk->r", share, inverse * free, density, optimize=True)
+    spread = np.einsum("rj,jk,rk->r", share**2, inverse**2 * free, density**2, optimize=True)
+    excess = over / under
+    return np.asarray(np.where(excess > 1.0 + 3.0 * np.sqrt(spread) / under, excess, 1.0))
+
+
+def pole_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
+    """Return the covariance of (ln frequency, damping ratio) of every mode, shape (n_modes, 2, 2) [-].
+
+    First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|.
+    """
+    poles = fitted.fit.poles
+    full = pole_covariance(fitted.fit).reshape(len(poles), 2, len(poles), 2)
+    own = np.einsum("rarb->rab", full)
+    a, b, size = poles.real, poles.imag, np.abs(poles)
+    jacobian = np.stack(
+        [np.stack([a, b], axis=1) / size[:, None] ** 2, np.stack([-(b**2), a * b], axis=1) / size[:, None] ** 3],
+        axis=1,
+    )
+    covariance = np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian)
+    return np.asarray(covariance * misfit_factor(frfs, fitted)[:, None, None])
+
+
+def constant_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
+    """Return the standard deviation of each modal constant's parts, shape (n_frf, n_modes) [1/kg]."""
+    variance = residue_variance(fitted.fit) * misfit_factor(frfs, fitted)[None, :]
+    return np.asarray(2.0 * fitted.fit.poles.imag[None, :] * np.sqrt(variance))

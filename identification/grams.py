@@ -1,0 +1,91 @@
+"""Weighted normal equations of many FRFs at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Weights:
+    """Reciprocal noise variances of the FRF values.
+
+    Parameters
+    ----------
+    level : (n_frf,) array
+        Factor of each FRF [1 / unit of the FRFs squared].
+    lines : (n_frf or 1, n_lines) array
+        Factor of each line; one row if all FRFs share it [-].
+    """
+
+    level: FloatArray
+    lines: FloatArray
+
+    @property
+    def full(self) -> FloatArray:
+        """Weight of every value, shape (n_frf, n_lines)."""
+        return self.level[:, None] * self.lines
+
+
+@dataclass(frozen=True, eq=False)
+class Grams:
+    """Products of columns with columns and with data, real parts, weighted by line (not by FRF level).
+
+    Parameters
+    ----------
+    gram : (n_frf or 1, n_columns, n_columns) array
+        Re C^H W C.
+    cross : (n_frf, n_columns) array
+        Re C^H W y.
+    power : (n_frf,) array
+        y^H W y.
+    """
+
+    gram: FloatArray
+    cross: FloatArray
+    power: FloatArray
+
+
+def form(columns: ComplexArray, values: ComplexArray, weights: Weights) -> Grams:
+    """Form the normal equations.
+
+    Parameters
+    ----------
+    columns : (n_lines, n_columns) complex array
+        The basis.
+    values : (n_frf, n_lines) complex array
+        The data.
+    weights : Weights
+        One per value.
+    """
+    root = np.sqrt(weights.lines)
+    real = np.concatenate([columns.real, columns.imag], axis=0)
+    weighted = np.concatenate([(values * root).real, (values * root).imag], axis=1)
+    both = np.concatenate([root, root], axis=1)
+    power = np.einsum("jn,jn->j", weighted, weighted)
+    cross = (weighted * both) @ real
+    return Grams(_products(real, both), cross, power)
+
+
+def _products(real: FloatArray, root: FloatArray) -> FloatArray:
+    """Return one weighted Gram matrix per row of ``root``, in chunks that stay in cache."""
+    gram = np.empty((len(root), real.shape[1], real.shape[1]))
+    for j, row in enumerate(root):
+        scaled = real * row[:, None]
+        gram[j] = scaled.T @ scaled
+    return gram
+
+
+def solve(gram: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve a stack of normal equations, (n or 1, k, k) by (n, k, m), columns brought to unit length first."""
+    length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
+    unit = gram / (length[:, :, None] * length[:, None, :])
+    unit = unit + 1e-15 * np.eye(gram.shape[-1])
+    if len(gram) == 1:
+        flat = np.moveaxis(right / length[:, :, None], 0, 1)
+        solved = np.linalg.solve(unit[0], flat.reshape(len(flat), -1)).reshape(flat.shape)
+        return np.asarray(np.moveaxis(solved, 1, 0) / length[:, :, None])
+    return np.asarray(np.linalg.solve(unit, right / length[:, :, None]) / length[:, :, None])

@@ -1,0 +1,165 @@
+"""Fully automatic identification: from FRFs to a modal model."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray
+from acquisition.errors import EstimationError, InputError
+from acquisition.frf import FrfSet
+from acquisition.modal_data import ModalData
+from identification import covariance
+from identification.arrangement import arrange, signs, unsigned
+from identification.fitting import Fitted, fit_modes
+from identification.model import ModalModel
+from identification.poles import ESTIMATORS
+from identification.pruning import inside
+from identification.residues import Residues
+from identification.scaling import Shapes, mode_shapes
+from identification.selection import candidates
+from identification.stabilisation import StabilisationChart, stabilise
+
+_ORDER = 60
+_LEVELS = 25
+
+
+def identify(
+    frfs: FrfSet,
+    *,
+    band: tuple[float, float] | None = None,
+    order: int | None = None,
+    method: Literal["lsce", "lscf"] = "lscf",
+) -> ModalModel:
+    """Identify the modes of a band, without asking.
+
+    Poles are estimated at many orders, those that stay are fitted by maximum likelihood together with their
+    residues, and what the data do not bear out is struck off.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        FRFs of one or several references; one response with many references is a roving hammer.
+    band : tuple of float, optional
+        Lowest and highest frequency; default all lines [Hz].
+    order : int, optional
+        Largest number of poles tried; default 60, fewer if there are few lines [-].
+    method : {"lscf", "lsce"}
+        Pole estimator that supplies the candidates.
+
+    Returns
+    -------
+    ModalModel
+        Modes with their uncertainty.
+
+    Raises
+    ------
+    InputError
+        If the band is empty or the method unknown.
+    EstimationError
+        If no mode stands out.
+    """
+    if method not in ESTIMATORS:
+        raise InputError(f"unknown pole estimator {method!r}; use one of {', '.join(ESTIMATORS)}")
+    data, points_rejected = _usable(frfs, band)
+    limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
+    sets = ESTIMATORS[method](data, orders=order_list(data, order, method))
+    chart = stabilise(sets, band=limits)
+    start = candidates(chart)
+    if len(start) == 0:
+        raise EstimationError(
+            f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the order "
+            "rises; widen the band, raise the order or check the FRFs"
+        )
+    return _assemble(data, fit_modes(data, start, band=limits), chart, limits, points_rejected)
+
+
+def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tuple[str, ...]]:
+    """Cut to the band; leave out the line at s = 0 and FRFs that are zero."""
+    data = frfs if band is None else frfs.band(*band)
+    first = float(data.frequency[0])
+    if first < 1e-6 * data.df and len(data.frequency) > 2:
+        data = data.band(0.5 * data.df, float(data.frequency[-1]))
+    power = np.mean(np.abs(data.values) ** 2, axis=1)
+    dead = power <= 1e-24 * power.max()
+    if dead.all():
+        raise EstimationError(f"{frfs.source}: all FRFs are zero in the band; there is nothing to identify")
+    names = tuple(f"{data.responses[i]}/{data.references[i]}: the FRF is zero" for i in np.flatnonzero(dead))
+    return (data.select(np.flatnonzero(~dead)) if dead.any() else data), names
+
+
+def order_list(frfs: FrfSet, order: int | None, method: str) -> list[int]:
+    """Return the degrees to try: up to ``order`` poles, in some 25 steps, as far as the lines carry them.
+
+    Raises
+    ------
+    InputError
+        If the order is under 2.
+    """
+    columns = len(arrange(frfs).columns) if method == "lscf" else 1
+    wanted = _ORDER if order is None else order
+    if wanted < 2:
+        raise InputError(f"order {wanted} leaves no room for a mode; use 2 or more")
+    carried = max(2, len(frfs.frequency) // 3)
+    top = min(max(wanted // columns, min(wanted, 16)), carried)
+    bottom = max(1, min(top - 1, max(top // 6, 2)))
+    return sorted({int(n) for n in np.linspace(bottom, top, _LEVELS).round()})
+
+
+def _assemble(
+    data: FrfSet,
+    fitted: Fitted,
+    chart: StabilisationChart,
+    band: tuple[float, float],
+    points_rejected: tuple[str, ...],
+) -> ModalModel:
+    fit = fitted.fit
+    own = np.flatnonzero(inside(fit.poles, band, data.df))
+    rest = np.setdiff1d(np.arange(len(fit.poles)), own)
+    sign = signs(data)
+    poles: ComplexArray = fit.poles[own]
+    constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
+    sigma = covariance.constant_statistics(data, fitted)[:, own]
+    spread = covariance.pole_statistics(data, fitted)[own]
+    shapes = mode_shapes(data, constants, sigma)
+    terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
+    return ModalModel(
+        modal=_modal_data(data, poles, spread, shapes),
+        poles=poles,
+        pole_covariance=spread,
+        constants=constants,
+        constant_sigma=sigma,
+        responses=tuple(unsigned(d) for d in data.responses),
+        references=tuple(unsigned(d) for d in data.references),
+        lower=sign * terms[-2],
+        upper=sign * terms[0],
+        background=Residues(fit.linear.residues[:, rest], fit.linear.terms, fit.linear.powers),
+        background_poles=fit.poles[rest],
+        band=band,
+        frfs=data,
+        chart=chart,
+        warnings=shapes.warnings + _warnings(fitted),
+        points_rejected=points_rejected,
+    )
+
+
+def _modal_data(data: FrfSet, poles: ComplexArray, spread: np.ndarray, shapes: Shapes) -> ModalData:
+    frequency = np.abs(poles) / (2 * np.pi)
+    return ModalData(
+        frequency=frequency,
+        frequency_sigma=frequency * np.sqrt(spread[:, 0, 0]),
+        damping=-poles.real / np.abs(poles),
+        damping_sigma=np.sqrt(spread[:, 1, 1]),
+        dofs=shapes.dofs,
+        shapes=shapes.shapes,
+        shape_sigma=shapes.sigma,
+        scaled=shapes.scaled,
+        geometry=data.geometry,
+    )
+
+
+def _warnings(fitted: Fitted) -> tuple[str, ...]:
+    if fitted.fit.converged:
+        return ()
+    return ("the refinement of the poles did not come to rest; standard deviations may be too small",)

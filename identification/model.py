@@ -1,0 +1,117 @@
+"""A modal model: what identification hands on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from acquisition.arrays import ComplexArray, FloatArray, frozen_array
+from acquisition.dof import Dof
+from acquisition.frf import FrfSet
+from acquisition.modal_data import ModalData
+from identification.arrangement import signs
+from identification.residues import Residues, synthesise
+from identification.stabilisation import StabilisationChart
+
+
+@dataclass(frozen=True, eq=False)
+class ModalModel:
+    """Modes of a structure with their uncertainty, and the fit they come from.
+
+    The receptance between two degrees of freedom is
+    H(s) = sum_r A_r / (2 i w_r) [1/(s - p_r) - 1/(s - conj p_r)] with w_r = Im p_r if the modes are real;
+    in general A_r = 2 i w_r R_r with the residue R_r, so that A_r is real for real modes.
+
+    Parameters
+    ----------
+    modal : ModalData
+        Frequencies, damping ratios, shapes, and their standard deviations.
+    poles : (n_modes,) complex array
+        Poles of the structure, the decay of an exponential window removed, Im > 0 [rad/s].
+    pole_covariance : (n_modes, 2, 2) array
+        Covariance of (ln frequency, damping ratio) [-].
+    constants : (n_frf, n_modes) complex array
+        Modal constants A = phi_i phi_j, signs of the transducers' directions applied [1/kg].
+    constant_sigma : (n_frf, n_modes) array
+        Standard deviation of their real part, and of their imaginary part [1/kg].
+    responses, references : tuple of Dof, length n_frf
+        Degrees of freedom, directions positive.
+    lower, upper : (n_frf,) arrays
+        Residual terms lower / s^2 + upper of the receptance, signs applied [1/kg, m/N].
+    background : Residues
+        All that is not a mode of the band: residues of poles outside it and all residual terms, signs not applied.
+    background_poles : (n_background,) complex array
+        Those poles [rad/s].
+    band : tuple of float
+        The band identified in [Hz].
+    frfs : FrfSet
+        The data in the band.
+    chart : StabilisationChart
+        Where the candidates came from.
+    warnings : tuple of str
+        What the user ought to know.
+    points_rejected : tuple of str
+        Points whose FRFs were left out, with the reason.
+    """
+
+    modal: ModalData
+    poles: ComplexArray
+    pole_covariance: FloatArray
+    constants: ComplexArray
+    constant_sigma: FloatArray
+    responses: tuple[Dof, ...]
+    references: tuple[Dof, ...]
+    lower: FloatArray
+    upper: FloatArray
+    background: Residues
+    background_poles: ComplexArray
+    band: tuple[float, float]
+    frfs: FrfSet
+    chart: StabilisationChart
+    warnings: tuple[str, ...] = ()
+    points_rejected: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("poles", "constants", "background_poles"):
+            object.__setattr__(self, name, frozen_array(getattr(self, name), np.complex128))
+        for name in ("pole_covariance", "constant_sigma", "lower", "upper"):
+            object.__setattr__(self, name, frozen_array(getattr(self, name)))
+
+    def __len__(self) -> int:
+        """Return the number of modes."""
+        return len(self.poles)
+
+    def synthesise(self, frequency: FloatArray | None = None) -> FrfSet:
+        """Return the fitted FRFs in the form of the data, with the data's decay and direction signs.
+
+        Parameters
+        ----------
+        frequency : (n_lines,) array, optional
+            Where to evaluate; default the lines of the data [Hz].
+
+        Returns
+        -------
+        FrfSet
+            Same degrees of freedom and form as ``frfs``; at 0 Hz without a window the value next to it.
+        """
+        lines = self.frfs.frequency if frequency is None else np.asarray(frequency, dtype=float)
+        laplace = 2j * np.pi * lines + self.frfs.decay
+        laplace = np.where(laplace == 0, 2j * np.pi * 1e-3 * self.frfs.df, laplace)
+        residues = self.constants * signs(self.frfs)[:, None] / (2j * self.poles.imag)
+        linear = replace(self.background, residues=np.hstack([residues, self.background.residues]))
+        poles = np.concatenate([self.poles, self.background_poles])
+        values = synthesise(laplace, poles, linear, self.frfs.form)
+        return replace(
+            self.frfs, frequency=lines, values=values, coherence=None, variance=None, averages=None
+        )
+
+    def table(self) -> pd.DataFrame:
+        """Return one row per mode: frequency [Hz], damping ratio [%], their standard deviations, MPC [-]."""
+        from identification.mac import mpc
+
+        table = self.modal.table()
+        if self.modal.shapes is not None:
+            table["MPC"] = mpc(self.modal.shapes)
+        return table

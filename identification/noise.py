@@ -1,0 +1,147 @@
+"""How noisy the FRFs are: from their variance, their coherence, or what a fit leaves."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.frf import FrfSet
+from identification.grams import Weights
+
+_WINDOW = 48  # lines over which a local variance is averaged at the least
+_QUIET = 1e-6  # noise is never taken to be below this part of an FRF's r.m.s.
+_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / np.sqrt(70.0)
+
+
+def window_length(n_lines: int) -> int:
+    """Return over how many lines a local variance is averaged: a twelfth of the band, 48 at the least."""
+    return min(n_lines, max(_WINDOW, n_lines // 12))
+
+
+def quiet_floor(values: ComplexArray) -> FloatArray:
+    """Return the smallest variance worth believing, per FRF, shape (n_frf, 1) [unit squared]."""
+    power = np.mean(np.abs(values) ** 2, axis=1, keepdims=True)
+    return np.asarray(_QUIET**2 * np.maximum(power, 1e-12 * power.max()))
+
+
+def local_mean(power: FloatArray, window: int) -> FloatArray:
+    """Average along lines over ``window`` lines, mirrored at the ends, shape as ``power``."""
+    return np.asarray(ndimage.uniform_filter1d(power, window, axis=1, mode="reflect"))
+
+
+def scatter(residual: ComplexArray) -> FloatArray:
+    """Return the variance of the line-to-line scatter of residuals, per FRF, shape (n_frf,) [unit squared].
+
+    Fourth differences are blind to what is smooth from line to line, a mode left out or far away; a median
+    over stretches of lines is blind to a few peaks. So this is the noise, whatever the model still lacks.
+
+    Parameters
+    ----------
+    residual : (n_frf, n_lines) complex array
+        Data minus model [unit of the FRFs].
+    """
+    n_lines = residual.shape[1]
+    if n_lines < 3 * len(_DIFFERENCE):
+        return np.asarray(np.mean(np.abs(residual) ** 2, axis=1))
+    rough = ndimage.convolve1d(residual, _DIFFERENCE, axis=1, mode="reflect")[:, 2:-2]
+    pieces = np.array_split(np.abs(rough) ** 2, max(1, n_lines // 16), axis=1)
+    return np.asarray(np.median(np.stack([p.mean(axis=1) for p in pieces]), axis=0))
+
+
+def leverage(columns: ComplexArray, weights: Weights) -> FloatArray:
+    """Return which part of each line's power the linear unknowns absorb, shape (n_frf or 1, n_lines) [-]."""
+    root = np.sqrt(weights.lines)
+    result = np.empty(root.shape)
+    for j, row in enumerate(root):
+        scaled = np.concatenate([(columns.real * row[:, None]), (columns.imag * row[:, None])])
+        scaled = scaled / np.maximum(np.linalg.norm(scaled, axis=0), np.finfo(float).tiny)
+        q = np.linalg.qr(scaled)[0]
+        both = np.einsum("nk,nk->n", q, q)
+        result[j] = 0.5 * (both[: len(row)] + both[len(row) :])
+    return result
+
+
+def from_residual(residual: ComplexArray, absorbed: FloatArray, floor: FloatArray) -> tuple[Weights, FloatArray]:
+    """Return weights and variances from what a fit leaves.
+
+    The simplest law the residuals support is taken: white in each FRF; one colour common to all; or each
+    its own colour. Degrees of freedom the fit absorbed are given back line by line.
+
+    Parameters
+    ----------
+    residual : (n_frf, n_lines) complex array
+        Data minus model [unit of the FRFs].
+    absorbed : (n_frf or 1, n_lines) array
+        Part of each line's power the fit absorbs [-].
+    floor : (n_frf, 1) array
+        Smallest variance to believe [unit squared].
+
+    Returns
+    -------
+    Weights
+        Reciprocal variances.
+    variance : (n_frf, n_lines) array
+        Local variances of the law chosen [unit squared].
+    """
+    n_frf, n_lines = residual.shape
+    power = np.abs(residual) ** 2
+    free = np.broadcast_to(np.maximum(1.0 - absorbed, 0.02), power.shape)
+    level = np.maximum(power.sum(axis=1) / free.sum(axis=1), floor[:, 0])
+    window = window_length(n_lines)
+    local = np.maximum(local_mean(power, window) / local_mean(np.array(free), window), floor)
+    colour = np.log(local / level[:, None])
+    common = np.log(np.mean(local / level[:, None], axis=0, keepdims=True))
+    if n_lines < 2 * window or np.mean(colour**2) < 2.5 / window:
+        lines = np.ones((1, n_lines))
+    elif np.mean((colour - common) ** 2) < 2.5 / window:
+        lines = np.exp(-common)
+    else:
+        lines = np.exp(-colour)
+    weights = Weights(1.0 / level, lines)
+    return weights, 1.0 / weights.full
+
+
+def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
+    """Return variances from the set's own variance or coherence, shape (n_frf, n_lines), or None.
+
+    Few averages make a variance line by line a poor weight, so it is levelled locally by the law noise of
+    the response plus noise proportional to the FRF: variance = a + b |H|^2, with a and b from neighbouring
+    lines. A variance without a number of averages is taken as it stands. Coherence gives
+    |H|^2 (1 - gamma^2) / (gamma^2 n) (Bendat and Piersol, Random Data, 4th ed., Sec. 9.2.3).
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    model : (n_frf, n_lines) complex array
+        A fit to them, in place of |H| itself [unit of the FRFs].
+    """
+    if frfs.variance is not None:
+        raw = np.array(frfs.variance)
+        if frfs.averages is None:
+            return np.maximum(raw, quiet_floor(frfs.values))
+    elif frfs.coherence is not None:
+        squared = np.clip(frfs.coherence, 1e-6, 1.0)
+        count = np.ones(len(frfs.values)) if frfs.averages is None else np.maximum(1.0, frfs.averages)
+        raw = np.abs(frfs.values) ** 2 * (1.0 - squared) / squared / count[:, None]
+    else:
+        return None
+    return np.maximum(_levelled(raw, np.abs(model) ** 2), quiet_floor(frfs.values))
+
+
+def _levelled(raw: FloatArray, power: FloatArray) -> FloatArray:
+    """Fit raw = a + b power with a, b >= 0 over neighbouring lines, relative errors weighted alike."""
+    window = window_length(raw.shape[1])
+    guess = np.maximum(local_mean(raw, window), np.finfo(float).tiny)
+    for _ in range(3):
+        w = 1.0 / guess**2
+        s0, s1, s2 = (local_mean(w * m, window) for m in (np.ones_like(raw), power, power**2))
+        t0, t1 = local_mean(w * raw, window), local_mean(w * raw * power, window)
+        determinant = s0 * s2 - s1**2
+        safe = determinant > 1e-9 * s0 * s2
+        b = np.where(safe, (s0 * t1 - s1 * t0) / np.where(safe, determinant, 1.0), 0.0)
+        b = np.clip(b, 0.0, t1 / np.maximum(s2, np.finfo(float).tiny))
+        a = np.maximum((t0 - b * s1) / s0, 0.0)
+        guess = np.maximum(a + b * power, 1e-3 * np.maximum(local_mean(raw, window), np.finfo(float).tiny))
+    return np.asarray(guess)

@@ -1,0 +1,73 @@
+"""Which poles of a fit the data bear out."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import stats
+
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray
+from identification.refine import Fit
+
+_FALSE_ALARM = 1e-8
+
+
+def residue_variance(fit: Fit) -> FloatArray:
+    """Return the variance of the real (or imaginary) part of each residue, shape (n_frf, n_modes) [(m/(N s))^2].
+
+    Poles' uncertainty included; the mean over both parts, which for circular noise are alike.
+    """
+    n = len(fit.poles)
+    covariance = pole_covariance(fit)
+    by_poles = np.einsum("jka,ab,jkb->jk", fit.pole_gain[:, : 2 * n], covariance, fit.pole_gain[:, : 2 * n], optimize=True)
+    both = fit.linear_inverse[:, : 2 * n] + by_poles
+    return np.asarray(both.reshape(len(both), n, 2).mean(axis=2))
+
+
+def pole_covariance(fit: Fit) -> FloatArray:
+    """Return the covariance of (Re, Im) of the poles, interleaved, shape (2 n_modes, 2 n_modes) [rad^2/s^2]."""
+    length = np.sqrt(np.maximum(np.diag(fit.information), np.finfo(float).tiny))
+    unit = fit.information / np.outer(length, length)
+    return np.asarray(np.linalg.pinv(unit, hermitian=True, rcond=1e-13) / np.outer(length, length))
+
+
+def strength(fit: Fit) -> FloatArray:
+    """Return how far every mode stands out of the noise, sum |R|^2 / (variance of its parts), shape (n_modes,).
+
+    Without the mode it would be a chi-square of 2 n_frf degrees of freedom.
+    """
+    held = fit.linear_inverse[:, : 2 * len(fit.poles)].reshape(len(fit.linear_inverse), -1, 2).mean(axis=2)
+    return np.asarray(np.sum(np.abs(fit.linear.residues) ** 2 / held, axis=0))
+
+
+def threshold(n_frf: int, n_lines: int) -> float:
+    """Return the strength that noise does not reach, wherever on ``n_lines`` lines a pole is tried [-]."""
+    return float(stats.chi2.isf(_FALSE_ALARM / n_lines, 2 * n_frf + 2))
+
+
+def significant(fit: Fit, *, n_lines: int) -> BoolArray:
+    """Tell which modes are significant, shape (n_modes,)."""
+    return np.asarray(strength(fit) > threshold(len(fit.linear.residues), n_lines))
+
+
+def plausible(poles: ComplexArray, band: tuple[float, float]) -> BoolArray:
+    """Tell which poles can be modes or the flank of one, shape (n_modes,).
+
+    In reach: within one band width of the band, damping ratio above -0.1 and under 35 %.
+    """
+    width = band[1] - band[0]
+    frequency, size = np.abs(poles) / (2 * np.pi), np.abs(poles)
+    near = (frequency > band[0] - width) & (frequency < band[1] + width)
+    return np.asarray(near & (-poles.real < 0.35 * size) & (poles.real < 1e-3 * size))
+
+
+def inside(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArray:
+    """Tell which poles are modes of the band, shape (n_modes,).
+
+    Their damped frequency lies in it, they decay, their ratio is under 20 %, and their half-power band is
+    narrower than half the band: what is broader is a background.
+    """
+    frequency = poles.imag / (2 * np.pi)
+    width = -2 * poles.real / (2 * np.pi)
+    within = (frequency >= band[0] - 0.5 * df) & (frequency <= band[1] + 0.5 * df)
+    light = -poles.real < 0.2 * np.abs(poles)
+    return np.asarray(within & light & (width > 0) & (width < 0.5 * (band[1] - band[0])))

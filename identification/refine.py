@@ -1,0 +1,201 @@
+"""Maximum-likelihood refinement of poles and residues by variable projection, with its covariance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.frf import FrfSet
+from identification import basis, grams
+from identification.residues import Residues, unpack
+
+_ITERATIONS = 40
+_CONVERGED = 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A modal model fitted to FRFs.
+
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        Poles [rad/s].
+    linear : Residues
+        Residues and residual terms.
+    cost : float
+        Weighted sum of squared misfits [-].
+    information : (2 n_modes, 2 n_modes) array
+        Gauss-Newton information of (Re, Im) of the poles, interleaved, twice J^T J [s^2/rad^2].
+    pole_gain : (n_frf, 2 n_modes + n_terms, 2 n_modes) array
+        Change of each FRF's linear unknowns per change of the poles.
+    linear_inverse : (n_frf, 2 n_modes + n_terms) array
+        Variance of each linear unknown with the poles held, for weights that are reciprocal variances.
+    converged : bool
+        Whether the iteration came to rest.
+    """
+
+    poles: ComplexArray
+    linear: Residues
+    cost: float
+    information: FloatArray
+    pole_gain: FloatArray
+    linear_inverse: FloatArray
+    converged: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Step:
+    """Everything at one set of poles that the next step needs."""
+
+    cost: float
+    solution: FloatArray
+    normal: FloatArray
+    gradient: FloatArray
+
+
+def refine(
+    frfs: FrfSet,
+    poles: ComplexArray,
+    weights: grams.Weights,
+    *,
+    powers: tuple[int, ...] = basis.BASIC_TERMS,
+    iterations: int = _ITERATIONS,
+) -> Fit:
+    """Minimise the weighted misfit over poles, residues and residual terms.
+
+    The linear unknowns are projected out (Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432, with
+    Kaufman's simplification), so each step solves for the poles alone; steps are damped by
+    Levenberg-Marquardt. With weights that are reciprocal noise variances this is maximum likelihood for
+    circular Gaussian noise.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs, without a line at s = 0.
+    poles : (n_modes,) complex array
+        Starting poles [rad/s].
+    weights : Weights
+        Reciprocal variances E|dH|^2 [1 / unit of the FRFs squared].
+    powers : tuple of int
+        Powers of s of the residual terms of the receptance [-].
+    iterations : int
+        Upper limit of steps [-].
+
+    Returns
+    -------
+    Fit
+        The refined model.
+    """
+    state, damping, converged = _evaluate(frfs, poles, weights, powers), 1e-3, False
+    for _ in range(iterations):
+        trial_poles = poles + _solve_step(state, damping)
+        trial_poles = _inside(trial_poles, poles, frfs.decay)
+        trial = _evaluate(frfs, trial_poles, weights, powers)
+        if trial.cost <= state.cost:
+            gain = (state.cost - trial.cost) / max(state.cost, np.finfo(float).tiny)
+            poles, state, damping = trial_poles, trial, max(0.1 * damping, 1e-12)
+            if gain < _CONVERGED:
+                converged = True
+                break
+        else:
+            damping *= 10.0
+            if damping > 1e8:
+                converged = True
+                break
+    return _finish(frfs, poles, weights, powers, converged)
+
+
+def _solve_step(state: _Step, damping: float) -> ComplexArray:
+    diagonal = np.maximum(np.diag(state.normal), np.finfo(float).tiny)
+    length = np.sqrt(diagonal)
+    unit = state.normal / np.outer(length, length) + damping * np.eye(len(length))
+    step = np.linalg.solve(unit, state.gradient / length) / length
+    return np.asarray(step[0::2] + 1j * step[1::2])
+
+
+def _inside(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexArray:
+    """Keep trial poles on the decaying side of the lines and Im > 0; go half-way to a border that is crossed."""
+    real = np.where(trial.real < decay, trial.real, 0.5 * (poles.real + decay))
+    imag = np.where(trial.imag > 0.5 * poles.imag, trial.imag, 0.75 * poles.imag)
+    return np.asarray(real + 1j * imag)
+
+
+def _pieces(
+    frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
+) -> tuple[basis.Basis, grams.Grams, FloatArray, FloatArray]:
+    """Return the basis, its products, the linear solution and how the linear unknowns follow the slopes."""
+    columns = basis.build(frfs.laplace, poles, frfs.form, powers)
+    products = grams.form(np.hstack([columns.linear, columns.slopes]), frfs.values, weights)
+    k = columns.linear.shape[1]
+    solution = grams.solve(products.gram[:, :k, :k], products.cross[:, :k, None])[:, :, 0]
+    follow = grams.solve(products.gram[:, :k, :k], products.gram[:, :k, k:])
+    return columns, products, solution, follow
+
+
+def _turns(solution: FloatArray, n_modes: int) -> FloatArray:
+    """Return the 2 x 2 blocks that turn (Re, Im) of a pole's step into weights of its two slope columns.
+
+    The slope columns are derivatives by Re p; those by Im p are the same two crosswise, because the columns
+    are analytic in p. Shape (n_frf, n_modes, slope, Re or Im).
+    """
+    a = solution[:, 0 : 2 * n_modes : 2]
+    b = solution[:, 1 : 2 * n_modes : 2]
+    return np.stack([np.stack([a, -b], axis=2), np.stack([b, a], axis=2)], axis=2)
+
+
+def _evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]) -> _Step:
+    n = len(poles)
+    _, products, solution, follow = _pieces(frfs, poles, weights, powers)
+    k = solution.shape[1]
+    cost = float(weights.level @ (products.power - np.einsum("jk,jk->j", products.cross[:, :k], solution)))
+    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
+    slope_cross = products.cross[:, k:] - np.einsum("jk,jkm->jm", solution, products.gram[:, :k, k:] + 0.0)
+    turns = _turns(solution, n)
+    gradient = np.einsum("j,jni,jnia->na", weights.level, slope_cross.reshape(-1, n, 2), turns)
+    normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, weights.level)
+    return _Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
+
+
+def _contract(projected: FloatArray, turns: FloatArray, level: FloatArray) -> FloatArray:
+    """Return sum_j level_j T_j^T S_j T_j, shape (2 n_modes, 2 n_modes)."""
+    n = turns.shape[1]
+    if len(projected) == 1:
+        pairs = np.einsum("j,jnia,jmkb->niamkb", level, turns, turns, optimize=True)
+        normal = np.einsum("nimk,niamkb->namb", projected[0], pairs)
+    else:
+        half = np.einsum("jnimk,jmkb->jnimb", projected, turns)
+        normal = np.einsum("j,jnia,jnimb->namb", level, turns, half, optimize=True)
+    return np.asarray(normal.reshape(2 * n, 2 * n))
+
+
+def _finish(
+    frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...], converged: bool
+) -> Fit:
+    order = np.argsort(np.abs(poles))
+    poles = poles[order]
+    n = len(poles)
+    columns, products, solution, follow = _pieces(frfs, poles, weights, powers)
+    state = _evaluate(frfs, poles, weights, powers)
+    k = solution.shape[1]
+    turns = _turns(solution, n)
+    blocks = follow.reshape(len(follow), k, n, 2)
+    gain = -np.einsum("jkni,jnia->jkna", np.broadcast_to(blocks, (len(solution), k, n, 2)), turns)
+    inverse = _inverse_diagonal(products.gram[:, :k, :k])
+    held = np.broadcast_to(inverse, solution.shape) / (2.0 * weights.level[:, None])
+    return Fit(
+        poles,
+        unpack(solution, n, columns.term_scale, powers),
+        state.cost,
+        2.0 * state.normal,
+        gain.reshape(len(solution), k, 2 * n),
+        held,
+        converged,
+    )
+
+
+def _inverse_diagonal(gram: FloatArray) -> FloatArray:
+    identity = np.broadcast_to(np.eye(gram.shape[-1]), gram.shape)
+    return np.asarray(np.einsum("jkk->jk", grams.solve(gram, identity)))

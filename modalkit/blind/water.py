@@ -1,0 +1,116 @@
+"""Added mass of water on a beam that moves across its width, by doublets on its surface.
+
+The beam is a flat strip in an unbounded ideal fluid. Its surface carries doublet panels of constant strength;
+the normal velocity of a rectangular panel in its own plane has a closed form (a vortex ring of four straight
+sides; Katz and Plotkin, Low-Speed Aerodynamics, 2nd ed., section 10.4.5). Panels and collocation points are
+cosine-spaced across and along, which takes care of the square-root edges. The finite thickness enters as the
+ratio of the two-dimensional added mass of a rectangle to that of a flat strip.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import scipy.optimize
+
+from acquisition.arrays import FloatArray
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(80)
+
+
+@lru_cache(maxsize=256)
+def thickness_factor(ratio: float) -> float:
+    """Return how much a finite thickness raises the two-dimensional added mass of a strip.
+
+    The outside of a rectangle is the image of the outside of the unit circle under a map with
+    dz/dzeta = sqrt(1 - 2 cos(2 a) zeta^-2 + zeta^-4); its Laurent coefficients give the added mass
+    rho (2 pi (1 + cos 2a) - area), in units where the map's scale is one (Newman, Marine Hydrodynamics, 1977,
+    section 4.17).
+
+    Parameters
+    ----------
+    ratio : float
+        Thickness over width [-].
+
+    Returns
+    -------
+    float
+        Factor on rho pi width^2 / 4 [-].
+    """
+    if ratio < 1e-9:
+        return 1.0
+    angle = float(scipy.optimize.brentq(lambda a: _side(a) - ratio * _side(np.pi / 2 - a), 1e-8, np.pi / 2 - 1e-3))
+    thickness, width = _side(angle), _side(np.pi / 2 - angle)
+    return float((2 * np.pi * (1 + np.cos(2 * angle)) - thickness * width) / (np.pi / 4 * width**2))
+
+
+def _side(angle: float) -> float:
+    """Return the side of the rectangle seen under twice an angle: 4 int_0^a sqrt(sin^2 a - sin^2 t) dt.
+
+    With sin t = sin a sin u the integrand is smooth.
+    """
+    u = 0.25 * np.pi * (1 + _NODES)
+    s = np.sin(angle)
+    values = s**2 * np.cos(u) ** 2 / np.sqrt(1 - s**2 * np.sin(u) ** 2)
+    return float(4 * 0.25 * np.pi * np.sum(_WEIGHTS * values))
+
+
+def _corner(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Return sqrt(x^2 + y^2) / (x y), the contribution of one corner of a panel [1/m]."""
+    corner: FloatArray = np.hypot(x, y) / (x * y)
+    return corner
+
+
+@lru_cache(maxsize=64)
+def _flat_plate(aspect: float, along: int, across: int) -> tuple[FloatArray, FloatArray]:
+    """Solve a plate of unit width: stations along it, and added mass between them for unit density."""
+    edge_x, x = _cosine(aspect, along)
+    edge_y, y = _cosine(1.0, across)
+    dx = x[:, None] - edge_x[None, :]
+    dy = y[:, None] - edge_y[None, :]
+    grid = _corner(dx[:, None, :, None], dy[None, :, None, :])
+    velocity = (grid[..., 1:, 1:] - grid[..., :-1, 1:] - grid[..., 1:, :-1] + grid[..., :-1, :-1]) / (4 * np.pi)
+    influence = velocity.reshape(along * across, along * across)
+    spread = np.repeat(np.eye(along), across, axis=0)
+    strength = np.linalg.solve(influence, spread)
+    area = np.outer(np.diff(edge_x), np.diff(edge_y)).ravel()
+    matrix = spread.T @ (area[:, None] * strength)
+    return x, 0.5 * (matrix + matrix.T)
+
+
+def _cosine(length: float, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return ``count + 1`` edges and ``count`` collocation points, spaced evenly in the angle [m].
+
+    The midpoints in the angle are those that make the two-dimensional strip exact (Lan, J. Aircraft 11 (1974)
+    518).
+    """
+    step = np.pi / count
+    edges = 0.5 * length * (1 - np.cos(step * np.arange(count + 1)))
+    centres = 0.5 * length * (1 - np.cos(step * (np.arange(count) + 0.5)))
+    return edges, centres
+
+
+def added_mass(
+    length: float, width: float, thickness: float, *, density: float, along: int = 40, across: int = 10
+) -> tuple[FloatArray, FloatArray]:
+    """Return the added mass of a strip, as a matrix between stations along it.
+
+    Parameters
+    ----------
+    length, width, thickness : float
+        Of the strip [m].
+    density : float
+        Of the fluid [kg/m3].
+    along, across : int
+        Panels [-].
+
+    Returns
+    -------
+    stations : (along,) array
+        Positions from the start [m].
+    matrix : (along, along) array
+        Symmetric; ``velocity @ matrix @ velocity / 2`` is the kinetic energy of the fluid [kg].
+    """
+    x, matrix = _flat_plate(round(length / width, 6), along, across)
+    return x * width, density * width**3 * thickness_factor(thickness / width) * matrix

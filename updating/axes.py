@@ -1,0 +1,48 @@
+"""The model's axes in the coordinates of the test."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
+
+
+@dataclass(frozen=True)
+class Axes:
+    """Where the model's origin lies in test coordinates and which way its x and y point.
+
+    Parameters
+    ----------
+    origin : tuple of 3 floats
+        Model origin in test coordinates [m].
+    x, y : tuple of 3 floats
+        Directions of the model's x and y axes in test coordinates [-]; z completes them right-handed.
+
+    Raises
+    ------
+    StudyError
+        If x and y are not perpendicular.
+    """
+
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    x: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    y: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+    def __post_init__(self) -> None:
+        lengths = np.linalg.norm(self.x), np.linalg.norm(self.y)
+        if min(lengths) == 0 or abs(np.dot(self.x, self.y)) > 1e-3 * lengths[0] * lengths[1]:
+            raise StudyError(f"axes: x = {list(self.x)} and y = {list(self.y)} are not perpendicular")
+
+    @property
+    def rotation(self) -> FloatArray:
+        """Rows are the model's x, y and z in test coordinates, shape (3, 3) [-]."""
+        x = np.asarray(self.x, dtype=float) / np.linalg.norm(self.x)
+        y = np.asarray(self.y, dtype=float) / np.linalg.norm(self.y)
+        return np.stack([x, y, np.cross(x, y)])
+
+    def to_model(self, points: FloatArray) -> FloatArray:
+        """Take test coordinates (n, 3) to model coordinates (n, 3) [m]."""
+        return np.asarray((points - np.asarray(self.origin)) @ self.rotation.T)

@@ -1,0 +1,71 @@
+"""Correction of a model by a test of the same specimen before the effect was there.
+
+The modes that the baseline measured take its frequencies and damping; their shapes stay the model's. What the
+baseline did not reach is scaled like what it did. The correction is a matrix in modal coordinates, so every
+effect acts on top of it, the coupling of modes included.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import IntArray
+from acquisition.errors import EstimationError
+from updating.matching import match
+from updating.measured import Measured
+from updating.models.state import State
+from updating.prediction import Predictor
+
+
+def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
+    """Return what makes a model reproduce a baseline's frequencies and damping.
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The model, bare, looked at from the points of the baseline.
+    baseline : Measured
+        The baseline's modes, each with a partner.
+    order : (n_modes,) int array
+        Rank of each mode's partner, for data without shapes.
+
+    Returns
+    -------
+    State
+
+    Raises
+    ------
+    EstimationError
+        If two measured modes claim one of the model's.
+    """
+    prediction = predictor.predict(count=predictor.reduced.ranks[frozenset()] - predictor.reduced.structure.rigid_modes)
+    partner = match(baseline, prediction, order)
+    if len(set(partner.tolist())) < len(partner):
+        raise EstimationError(
+            "baseline: two measured modes belong to one of the model's; check the points and the axes"
+        )
+    factor = baseline.frequency / prediction.frequency[partner]
+    known = np.argsort(prediction.frequency[partner])
+    at = np.log(prediction.frequency[partner][known])
+    ratio = np.interp(np.log(prediction.frequency), at, factor[known])
+    ratio[partner] = factor
+    _, mass = predictor.reduced.matrices(State())
+    momenta = mass @ prediction.vectors
+    eigenvalues = (2 * np.pi * prediction.frequency) ** 2
+    stiffness = (momenta * (eigenvalues * (ratio**2 - 1))) @ momenta.T
+    size = predictor.reduced.basis.shape[1]
+    changes = {"stiffness": (_padded(stiffness, size),)}
+    finite = np.isfinite(baseline.damping)
+    if finite.any():
+        ratios = np.full(len(prediction.frequency), float(np.median(baseline.damping[finite])))
+        ratios[partner[finite]] = baseline.damping[finite]
+        omega = 2 * np.pi * prediction.frequency * ratio
+        changes["damping"] = (_padded((momenta * (2 * ratios * omega)) @ momenta.T, size),)
+    return State(**changes)
+
+
+def _padded(matrix: np.ndarray, size: int) -> np.ndarray:
+    """Extend a matrix of the clamped basis to the columns that releases add."""
+    full = np.zeros((size, size))
+    full[: len(matrix), : len(matrix)] = matrix
+    return full

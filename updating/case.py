@@ -1,0 +1,42 @@
+"""One specimen, its test, and its model: what every command above the rooms hands down."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from updating.diagnosis.problem import Tolerances
+from updating.environment import Environment
+from updating.measured import Measured
+from updating.models import Spec
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A test beside a model.
+
+    Parameters
+    ----------
+    title : str
+        For messages.
+    spec : Spec
+        The nominal model.
+    measured : Measured
+        The test.
+    baseline : Measured, optional
+        The same specimen tested before the effect was there.
+    tolerances : Tolerances
+        The modeller's doubts.
+    environment : Environment
+        What is said of the surroundings.
+    accepted : tuple of (name, values)
+        Effects put into the model beforehand.
+    """
+
+    title: str
+    spec: Spec
+    measured: Measured
+    baseline: Measured | None = None
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    environment: Environment = field(default_factory=Environment)
+    accepted: tuple[tuple[str, Mapping[str, float]], ...] = ()

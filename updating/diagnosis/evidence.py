@@ -1,0 +1,157 @@
+"""Evidence of a candidate: the marginal likelihood integrated over the prior of its parameters.
+
+The integral is taken by importance sampling from a mixture: a widened t-distribution about every peak, cut
+off where the prior ends, and the prior itself. So it is right for a peak at the edge of the prior, for
+several peaks, and for a parameter the data do not see, where a Laplace approximation is not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import qmc
+from scipy.stats import t as student
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.fit import Peak, Point, climb, evaluate
+from updating.diagnosis.problem import Problem
+
+PRIOR_SHARE = 0.25
+"""Share of the samples drawn from the prior itself."""
+
+FREEDOM = 5
+"""Degrees of freedom of the t-distributions."""
+
+CLIMBS = 3
+"""How many of the starting places are climbed from."""
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """A candidate after looking at the data.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The effects.
+    log_evidence : float
+        Logarithm of the evidence [-].
+    best : Point
+        Most probable parameters.
+    samples : (m, k) array
+        Posterior samples as prior quantiles [-].
+    weights : (m,) array
+        Their weights, summing to 1 [-].
+    """
+
+    candidate: Candidate
+    log_evidence: float
+    best: Point
+    samples: FloatArray
+    weights: FloatArray
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return self.candidate.names
+
+
+def explain(
+    problem: Problem, candidate: Candidate, *, starts: list[FloatArray] | None = None
+) -> Explanation:
+    """Weigh a candidate.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    candidate : Candidate
+        Effects.
+    starts : list of (k,) arrays, optional
+        Prior quantiles to start from; left out, the effects' own.
+
+    Returns
+    -------
+    Explanation
+    """
+    places = candidate.starts(problem.predictor) if starts is None else starts
+    if len(places[0]) == 0:
+        point = evaluate(problem, candidate, np.zeros(0))
+        return Explanation(
+            candidate, point.marginal.log_likelihood, point, np.zeros((1, 0)), np.ones(1)
+        )
+    peaks = _peaks(problem, candidate, places)
+    samples, proposal = _draw(peaks, 16 * 2 ** len(places[0]))
+    points = [evaluate(problem, candidate, u) for u in samples]
+    log_likelihood = np.array([p.marginal.log_likelihood for p in points])
+    log_weight = log_likelihood - proposal
+    total = float(logsumexp(log_weight)) - np.log(len(samples))
+    weights = np.exp(log_weight - logsumexp(log_weight))
+    best = max([*points, *(p.point for p in peaks)], key=lambda p: p.marginal.log_likelihood)
+    return Explanation(candidate, total, best, samples, weights)
+
+
+def _peaks(problem: Problem, candidate: Candidate, places: list[FloatArray]) -> list[Peak]:
+    if len(places) > CLIMBS:
+        looks = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
+        places = [places[i] for i in np.argsort(looks)[::-1][:CLIMBS]]
+    found = [climb(problem, candidate, place) for place in places]
+    found.sort(key=lambda p: -p.point.marginal.log_likelihood)
+    kept: list[Peak] = []
+    for peak in found:
+        near = any(np.abs(peak.point.coordinates - k.point.coordinates).max() < 0.02 for k in kept)
+        behind = found[0].point.marginal.log_likelihood - peak.point.marginal.log_likelihood
+        if not near and behind < 12:
+            kept.append(peak)
+    return kept
+
+
+def _draw(peaks: list[Peak], count: int) -> tuple[FloatArray, FloatArray]:
+    """Return samples inside the unit cube and the logarithm of the density they were drawn with.
+
+    The density counts the samples that fell outside, whose likelihood is zero.
+    """
+    k = len(peaks[0].point.coordinates)
+    cube = qmc.Sobol(k, seed=1).random(count)
+    uniform = round(PRIOR_SHARE * count)
+    each = (count - uniform) // len(peaks)
+    scales = [_scale(peak) for peak in peaks]
+    drawn = [cube[:uniform]]
+    for i, (peak, scale) in enumerate(zip(peaks, scales, strict=True)):
+        part = cube[uniform + i * each : uniform + (i + 1) * each]
+        lower = np.linalg.cholesky(scale)
+        normal = student.ppf(np.clip(part, 1e-6, 1 - 1e-6), FREEDOM)
+        drawn.append(peak.point.coordinates + normal @ lower.T)
+    samples = np.concatenate(drawn)
+    shares = [uniform / len(samples)] + [each / len(samples)] * len(peaks)
+    inside = np.all((samples >= 0) & (samples <= 1), axis=1)
+    parts = [np.full(int(inside.sum()), np.log(max(shares[0], 1e-12)))]
+    for peak, scale, share in zip(peaks, scales, shares[1:], strict=True):
+        parts.append(np.log(share) + _log_density(samples[inside], peak, scale))
+    density = logsumexp(np.stack(parts), axis=0) + np.log(len(samples) / inside.sum())
+    return samples[inside], np.asarray(density)
+
+
+def _log_density(samples: FloatArray, peak: Peak, scale: FloatArray) -> FloatArray:
+    """Return the density of independent t-variates taken through the Cholesky factor of ``scale``."""
+    lower = np.linalg.cholesky(scale)
+    standard = np.linalg.solve(lower, (samples - peak.point.coordinates).T)
+    return np.asarray(student.logpdf(standard, FREEDOM).sum(axis=0) - np.log(np.diag(lower)).sum())
+
+
+def _scale(peak: Peak) -> FloatArray:
+    """Return the covariance to draw with: a little wider than the peak, no wider than its slope at an edge."""
+    k = len(peak.gradient)
+    precision = peak.normal + np.diag(peak.gradient**2 * _at_edge(peak)) + 4.0 * np.eye(k)
+    return np.asarray(1.4 * np.linalg.inv(precision))
+
+
+def _at_edge(peak: Peak) -> FloatArray:
+    u = peak.point.coordinates
+    return np.asarray((u <= 0) | (u >= 1), dtype=float)
+
+
+__all__ = ["Explanation", "explain"]

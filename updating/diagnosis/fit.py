@@ -1,0 +1,145 @@
+"""The most probable parameters of a candidate: Gauss-Newton in the unit cube of prior quantiles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import BoolArray, FloatArray
+from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.gaussian import Marginal, marginal, whiten
+from updating.diagnosis.problem import Comparison, Problem
+
+STEP = 1e-3
+"""Finite-difference step in prior quantiles."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A candidate at one place of its parameter space.
+
+    Parameters
+    ----------
+    coordinates : (k,) array
+        Prior quantiles [-].
+    comparison : Comparison
+        Data against prediction there.
+    marginal : Marginal
+        Its marginal likelihood.
+    """
+
+    coordinates: FloatArray
+    comparison: Comparison
+    marginal: Marginal
+
+    @property
+    def left_over(self) -> FloatArray:
+        """Residual after the most probable nuisances, shape (n,) [-]."""
+        return self.comparison.residual - self.comparison.nuisance @ self.marginal.shift
+
+
+@dataclass(frozen=True, eq=False)
+class Peak:
+    """A local maximum and the curvature there.
+
+    Parameters
+    ----------
+    point : Point
+        Where it is.
+    normal : (k, k) array
+        Fisher information of the prior quantiles, the nuisances integrated out [-].
+    gradient : (k,) array
+        Slope of the log-likelihood, not zero where the prior ends [-].
+    """
+
+    point: Point
+    normal: FloatArray
+    gradient: FloatArray
+
+
+def evaluate(
+    problem: Problem, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
+) -> Point:
+    """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide."""
+    state = candidate.state(problem.predictor, coordinates.tolist())
+    comparison = problem.compare(state, fidelity=candidate.fidelity)
+    result = marginal(comparison, keep)
+    for _ in range(2 if problem.wide else 0):
+        shift = result.shift[: len(problem.names)]
+        comparison = problem.compare(state, shift, fidelity=candidate.fidelity)
+        result = marginal(comparison, keep)
+    return Point(coordinates, comparison, result)
+
+
+def sensitivities(problem: Problem, candidate: Candidate, point: Point) -> FloatArray:
+    """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
+    shift = point.marginal.shift[: len(problem.names)] if problem.wide else None
+    columns = []
+    for i, u in enumerate(point.coordinates):
+        step = STEP if u < 0.5 else -STEP
+        moved = point.coordinates.copy()
+        moved[i] += step
+        state = candidate.state(problem.predictor, moved.tolist())
+        there = problem.compare(state, shift, fidelity=candidate.fidelity)
+        columns.append((point.comparison.residual - there.residual) / step)
+    return np.stack(columns, axis=1) if columns else np.zeros((len(point.comparison.residual), 0))
+
+
+def climb(
+    problem: Problem,
+    candidate: Candidate,
+    start: FloatArray,
+    *,
+    keep: BoolArray | None = None,
+    rounds: int = 12,
+) -> Peak:
+    """Climb to the nearest maximum of the marginal likelihood within the prior's range.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    candidate : Candidate
+        Effects.
+    start : (k,) array
+        Prior quantiles to start from.
+    keep : (n,) bool array, optional
+        Data to use; left out, all.
+    rounds : int
+        Most steps taken.
+    """
+    point = evaluate(problem, candidate, start, keep=keep)
+    damping = 1e-3
+    normal, gradient = _curvature(problem, candidate, point, keep)
+    for _ in range(rounds if len(start) else 0):
+        free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
+        if not free.any():
+            break
+        step = _step(normal, gradient, free, damping)
+        there = np.clip(point.coordinates + step, 0.0, 1.0)
+        trial = evaluate(problem, candidate, there, keep=keep)
+        gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
+        if gain > 0:
+            point, damping = trial, damping / 5
+            normal, gradient = _curvature(problem, candidate, point, keep)
+        else:
+            damping *= 10
+        if abs(gain) < 1e-3 or damping > 1e6:
+            break
+    return Peak(point, normal, gradient)
+
+
+def _step(normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: float) -> FloatArray:
+    step = np.zeros_like(gradient)
+    inner = normal[np.ix_(free, free)]
+    ridge = np.diag(damping * np.diag(inner) + 1e-6)
+    step[free] = np.linalg.solve(inner + ridge, gradient[free])
+    return np.asarray(step * min(1.0, 0.3 / max(np.abs(step).max(), 1e-12)))
+
+
+def _curvature(
+    problem: Problem, candidate: Candidate, point: Point, keep: BoolArray | None
+) -> tuple[FloatArray, FloatArray]:
+    columns = sensitivities(problem, candidate, point)
+    return whiten(point.comparison, columns, keep)

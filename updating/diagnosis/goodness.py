@@ -1,0 +1,62 @@
+"""Does an explanation explain? Chi-squared over all data and over each channel, corrected for asking often."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import chi2
+
+from updating.diagnosis.fit import Point
+from updating.diagnosis.gaussian import marginal
+
+CHANNELS = ("frequency", "damping", "frf")
+
+
+def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
+    """Return the p-value of each channel and of all data together.
+
+    Parameters
+    ----------
+    point : Point
+        A candidate at its best parameters.
+    fitted : int
+        Number of parameters fitted, taken off the degrees of freedom of all data.
+
+    Returns
+    -------
+    dict
+        ``frequency``, ``damping``, ``frf`` where there are such data, and ``all``.
+    """
+    channel = point.comparison.channel
+    total = point.marginal
+    values = {"all": float(chi2.sf(total.chi2, max(total.count - fitted, 1)))}
+    for i, name in enumerate(CHANNELS):
+        keep = channel == i
+        if keep.any():
+            part = marginal(point.comparison, keep)
+            values[name] = float(chi2.sf(part.chi2, part.count))
+    return values
+
+
+def p_value(point: Point, fitted: int = 0) -> float:
+    """Return one p-value: the smallest of :func:`p_values`, Bonferroni-corrected."""
+    values = p_values(point, fitted)
+    return float(min(1.0, len(values) * min(values.values())))
+
+
+def carrier(point: Point) -> str:
+    """Return the channel that carries the gap: the one whose chi-squared is the least likely."""
+    channel = point.comparison.channel
+    surprise = {}
+    for i, name in enumerate(CHANNELS):
+        keep = channel == i
+        if keep.any():
+            part = marginal(point.comparison, keep)
+            surprise[name] = float(chi2.logsf(part.chi2, part.count))
+    return min(surprise, key=lambda n: surprise[n]) if surprise else "frequency"
+
+
+def relative_error(point: Point, *, after: bool, channel: str) -> np.ndarray:
+    """Return the relative errors of a channel, before or after the most probable nuisances [-]."""
+    rows = point.comparison.channel == CHANNELS.index(channel)
+    values = point.left_over if after else point.comparison.residual
+    return np.asarray(values[rows])

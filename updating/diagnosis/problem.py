@@ -1,0 +1,288 @@
+"""The comparison of one test with one state of the model: residuals, nuisances and noise.
+
+Every doubt that is not an effect is a *nuisance*: a column of sensitivities with a standard normal prior.
+They are the modeller's tolerances, the calibration, the common level of damping, and where each point was
+really hit. What is left is independent noise: the identification's covariance, re-mounting scatter, the
+scatter of damping from mode to mode, and how far an effect's own idealisation may be off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.matching import match
+from updating.measured import Measured
+from updating.models.state import NOMINAL, State
+from updating.models.structure import FACTORS
+from updating.prediction import Prediction, Predictor
+
+SHAPE_FLOOR = 0.005
+"""Error of a modal constant that no coherence shows (cross-talk, direction), relative to the mode's r.m.s."""
+
+UNKNOWN_LEVEL = 0.2
+"""A calibration worse than this is found by least squares before anything is linearised."""
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """The modeller's own doubts, relative standard deviations [-].
+
+    Parameters
+    ----------
+    factors : mapping of str to float
+        Tolerances of E, density, thickness, length, width.
+    damping : float
+        Doubt in the expected damping: of its level, and again of each mode.
+    """
+
+    factors: Mapping[str, float] = field(default_factory=dict)
+    damping: float = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Measured minus predicted data at one state, with what may explain it.
+
+    Parameters
+    ----------
+    residual : (n,) array
+        ln f, then ln damping ratio, then modal constants over their r.m.s. per mode [-].
+    nuisance : (n, p) array
+        Change of the prediction per standard deviation of each nuisance [-].
+    variance : (n,) array
+        Variance of the independent noise [-].
+    channel : (n,) int array
+        0 frequency, 1 damping, 2 shape and level.
+    mode : (n,) int array
+        Measured mode each datum belongs to.
+    prediction : Prediction
+        The predicted modes, in the order of the measured ones.
+    """
+
+    residual: FloatArray
+    nuisance: FloatArray
+    variance: FloatArray
+    channel: IntArray
+    mode: IntArray
+    prediction: Prediction
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A test, a model, and all that is doubted about either.
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The model as seen from the test's points, a baseline's correction included.
+    measured : Measured
+        The test, with the modes that have a partner.
+    tolerances : Tolerances
+        The modeller's doubts.
+    order : (n_modes,) int array
+        Rank of the model mode of each measured mode, for data without shapes.
+    baseline : Measured, optional
+        Modes of the same specimen before the effect; its correction is in the predictor.
+    """
+
+    predictor: Predictor
+    measured: Measured
+    tolerances: Tolerances
+    order: IntArray
+    baseline: Measured | None = None
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Factors with a tolerance."""
+        return tuple(n for n in FACTORS if self.tolerances.factors.get(n, 0.0) > 0)
+
+    @cached_property
+    def sigmas(self) -> FloatArray:
+        """Their standard deviations [-]."""
+        return np.array([self.tolerances.factors[n] for n in self.names])
+
+    @cached_property
+    def scale(self) -> FloatArray:
+        """R.m.s. of the measured constants of each mode [1/kg]."""
+        if not len(self.measured.seen):
+            return np.ones(len(self.measured.frequency))
+        return np.sqrt(np.mean(self.measured.constants**2, axis=0))
+
+    @cached_property
+    def damping_known(self) -> FloatArray:
+        """Rows of modes whose damping is measured and expected."""
+        finite = np.isfinite(self.measured.damping) & (self.measured.damping > 0)
+        return np.flatnonzero(finite if self.predictor.expects_damping else np.zeros_like(finite))
+
+    @cached_property
+    def nominal(self) -> Prediction:
+        """The nominal prediction of the matched modes."""
+        prediction = self.predictor.predict(factors=self.names)
+        return prediction.select(match(self.measured, prediction, self.order))
+
+    @property
+    def wide(self) -> bool:
+        """Whether tolerances are too wide for one linearisation."""
+        return bool(len(self.sigmas)) and float(self.sigmas.max()) > 0.04
+
+    def compare(self, state: State, shift: FloatArray | None = None, *, fidelity: float = 0.0) -> Comparison:
+        """Compare the test with a state of the model.
+
+        Parameters
+        ----------
+        state : State
+            Departure from the nominal model.
+        shift : (n_names,) array, optional
+            Tolerance nuisances applied to the model before it is linearised [standard deviations].
+        fidelity : float
+            How far the state's idealisation may be off, relative to the shift it makes [-].
+        """
+        shift = np.zeros(len(self.names)) if shift is None else shift
+        moved = State(factors=dict(zip(self.names, np.exp(shift * self.sigmas), strict=True)))
+        prediction = self.predictor.predict(state.plus(moved), factors=self.names)
+        prediction = prediction.select(match(self.measured, prediction, self.order))
+        reference = self.nominal if fidelity else None
+        blocks = [self._frequencies(prediction, reference, fidelity), self._dampings(prediction)]
+        if self.measured.has_shapes:
+            blocks.append(self._shapes(prediction, reference, fidelity))
+        return self._assemble(blocks, shift, prediction)
+
+    def _assemble(
+        self, blocks: list[_Block], shift: FloatArray, prediction: Prediction
+    ) -> Comparison:
+        columns = sum(b.own.shape[1] for b in blocks) + len(self.names)
+        rows = sum(len(b.residual) for b in blocks)
+        nuisance = np.zeros((rows, columns))
+        row, column = 0, len(self.names)
+        for block in blocks:
+            end, right = row + len(block.residual), column + block.own.shape[1]
+            nuisance[row:end, : len(self.names)] = block.factors * self.sigmas
+            nuisance[row:end, column:right] = block.own
+            row, column = end, right
+        residual = np.concatenate([b.residual for b in blocks])
+        residual = residual + nuisance[:, : len(self.names)] @ shift
+        channel = np.concatenate([np.full(len(b.residual), i) for i, b in enumerate(blocks)])
+        return Comparison(
+            residual,
+            nuisance,
+            np.concatenate([b.variance for b in blocks]),
+            channel,
+            np.concatenate([b.mode for b in blocks]),
+            prediction,
+        )
+
+    def _frequencies(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:
+        test = self.measured
+        variance = (test.frequency_sigma / test.frequency) ** 2 + test.repeatability**2
+        by = now.log_frequency_by
+        if self.baseline is not None:
+            variance = variance + self._baseline_variance
+            by = by - self._baseline_sensitivity(now)
+        if reference is not None:
+            variance = variance + (fidelity * np.log(now.frequency / reference.frequency)) ** 2
+        n = len(test.frequency)
+        return _Block(np.log(test.frequency / now.frequency), by, np.zeros((n, 0)), variance, np.arange(n))
+
+    @cached_property
+    def _baseline_variance(self) -> FloatArray:
+        assert self.baseline is not None
+        base = self.baseline
+        relative = (base.frequency_sigma / base.frequency) ** 2 + base.repeatability**2
+        nearest = np.argmin(np.abs(np.log(self.nominal.frequency[:, None] / base.frequency)), axis=1)
+        return np.asarray(relative[nearest])
+
+    def _baseline_sensitivity(self, now: Prediction) -> FloatArray:
+        """What the baseline has already said of the tolerances, carried over by the overlap of the modes."""
+        before = self._before
+        n = min(now.vectors.shape[0], before.vectors.shape[0])
+        overlap = (before.vectors[:n].T @ self._mass[:n, :n] @ now.vectors[:n]) ** 2
+        share = overlap / np.maximum(overlap.sum(axis=0), 1e-12)
+        return np.asarray(share.T @ before.log_frequency_by)
+
+    @cached_property
+    def _before(self) -> Prediction:
+        return self.predictor.predict(factors=self.names, count=25)
+
+    @cached_property
+    def _mass(self) -> FloatArray:
+        return self.predictor.reduced.matrices(NOMINAL)[1]
+
+    def _dampings(self, now: Prediction) -> _Block:
+        rows = self.damping_known
+        test = self.measured
+        relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=0.05)
+        expected = np.maximum(now.damping[rows], 1e-7)
+        tolerance = self.tolerances.damping
+        variance = relative**2 + tolerance**2
+        return _Block(
+            np.log(test.damping[rows] / expected),
+            np.zeros((len(rows), len(self.names))),
+            np.full((len(rows), 1 if len(rows) else 0), tolerance),
+            variance,
+            rows,
+        )
+
+    def _shapes(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:
+        test, scale = self.measured, self.scale
+        predicted, by = now.constants / scale, now.constants_by / scale[:, None]
+        along = now.along / scale
+        level = 1.0
+        if not test.absolute:
+            share = _projection(test.constants / scale, predicted, axis=0)
+            predicted, by, along = predicted * share, by * share[:, None], along * share
+        elif test.calibration > UNKNOWN_LEVEL:
+            level = float(_projection(test.constants / scale, predicted, axis=None))
+            predicted, by, along = predicted * level, by * level, along * level
+        variance = (test.constants_sigma / scale) ** 2 + SHAPE_FLOOR**2
+        if reference is not None:
+            # the part of the change that is not a mere change of the mode's level
+            before = reference.constants / scale
+            before = before * _projection(predicted, before, axis=0)
+            variance = variance + (fidelity * (predicted - before)) ** 2
+        own = [self._level_columns(predicted), self._position_columns(along)]
+        modes = np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel()
+        return _Block(
+            (test.constants / scale - predicted).ravel(),
+            by.reshape(-1, len(self.names)),
+            np.hstack(own),
+            variance.ravel(),
+            modes,
+        )
+
+    def _level_columns(self, predicted: FloatArray) -> FloatArray:
+        """Return the gain of the whole test, or of each mode where only shapes are known."""
+        if self.measured.absolute:
+            return (self.measured.calibration * predicted).reshape(-1, 1)
+        n = predicted.shape[1]
+        return np.asarray((3.0 * predicted[:, :, None] * np.eye(n)).reshape(-1, n))
+
+    def _position_columns(self, along: FloatArray) -> FloatArray:
+        """Return one column per point hit and direction: the effect of having hit beside it."""
+        place = np.where(self.measured.hit < 0, self.measured.seen, self.measured.hit)
+        points = np.unique(place)
+        columns = [
+            (self.measured.position_sigma * np.where((place == p)[:, None], slope, 0.0)).ravel()
+            for p in points
+            for slope in along
+        ]
+        return np.stack(columns, axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Block:
+    residual: FloatArray
+    factors: FloatArray
+    own: FloatArray
+    variance: FloatArray
+    mode: IntArray
+
+
+def _projection(data: FloatArray, model: FloatArray, *, axis: int | None) -> FloatArray:
+    """Return the factor on the model that fits the data best, per column or over all."""
+    power = np.maximum(np.sum(model**2, axis=axis), 1e-300)
+    return np.asarray(np.sum(data * model, axis=axis) / power)

@@ -1,0 +1,163 @@
+"""Which candidates are weighed: singles first, pairs when no single explains the data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from scipy.special import logsumexp
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.evidence import Explanation, explain
+from updating.diagnosis.fit import sensitivities
+from updating.diagnosis.gaussian import whiten
+from updating.diagnosis.goodness import p_value
+from updating.diagnosis.problem import Problem
+from updating.effects import Effect
+
+REJECTED = 0.01
+"""An explanation that fits worse than this is rejected."""
+
+PAIRS = 8
+"""How many pairs are weighed, those a linear look finds the most promising."""
+
+PAIR_PRIOR = 0.05
+"""Prior weight of a pair against a single effect."""
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """An explanation with its share of the probability and how well it fits."""
+
+    explanation: Explanation
+    probability: float
+    p_value: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return self.explanation.names
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """All that was weighed.
+
+    Parameters
+    ----------
+    nothing : Explanation
+        The nominal model with its tolerances.
+    weighed : tuple of Weighed
+        All sets of effects, most probable first; the empty set is among them.
+    not_examined : dict
+        Effects left out, and why.
+    """
+
+    nothing: Explanation
+    weighed: tuple[Weighed, ...]
+    not_examined: dict[str, str]
+
+
+def examine(problem: Problem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
+    """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
+    obstacles = {effect.name: effect.obstacle(problem.predictor) for effect in library}
+    possible = [effect for effect in library if obstacles[effect.name] is None]
+    return possible, {name: why for name, why in obstacles.items() if why is not None}
+
+
+def search(problem: Problem, library: Sequence[Effect]) -> Search:
+    """Weigh nothing, every single effect, and pairs if no single one fits.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    library : sequence of Effect
+        Effects to consider.
+    """
+    effects, obstacles = examine(problem, library)
+    nothing = explain(problem, Candidate())
+    singles = [_single(problem, effect, _twin(problem, effects)) for effect in effects]
+    found = [nothing, *singles]
+    if max(_fit(e) for e in found) < REJECTED:
+        found += _pairs(problem, singles)
+    return Search(nothing, _weigh(found), obstacles)
+
+
+def _fit(explanation: Explanation) -> float:
+    return p_value(explanation.best, explanation.samples.shape[1])
+
+
+def _weigh(found: list[Explanation]) -> tuple[Weighed, ...]:
+    prior = np.array([PAIR_PRIOR if len(e.names) > 1 else 1.0 for e in found])
+    score = np.array([e.log_evidence for e in found]) + np.log(prior)
+    probability = np.exp(score - logsumexp(score))
+    rows = [Weighed(e, float(p), _fit(e)) for e, p in zip(found, probability, strict=True)]
+    return tuple(sorted(rows, key=lambda row: -row.probability))
+
+
+def _twin(problem: Problem, effects: list[Effect]) -> bool:
+    """Tell whether the beam theory falls short by more than the noise, so that every effect needs the better one."""
+    shear = [effect for effect in effects if effect.name == "shear"]
+    if not shear:
+        return False
+    better = problem.predictor.under("timoshenko").predict(count=len(problem.nominal.frequency) + 5)
+    ordered = problem.predictor.predict(count=len(problem.nominal.frequency) + 5).frequency
+    n = int(np.sum(ordered <= problem.nominal.frequency.max() * 1.001))
+    shift = np.abs(np.log(better.frequency[:n] / ordered[:n]))
+    noise = np.sqrt(problem.measured.repeatability**2 + np.min(problem.measured.frequency_sigma / problem.measured.frequency) ** 2)
+    return bool(shift.max() > 0.3 * noise)
+
+
+def _single(problem: Problem, effect: Effect, twin: bool) -> Explanation:
+    """Weigh one effect; where the theory falls short, on either theory and half the evidence of each."""
+    plain = explain(problem, Candidate((effect,)))
+    if not twin or effect.name == "shear":
+        return plain
+    better = explain(problem, Candidate((effect,), theory="timoshenko"))
+    total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
+    chosen = max(plain, better, key=lambda e: e.log_evidence)
+    return Explanation(chosen.candidate, total, chosen.best, chosen.samples, chosen.weights)
+
+
+def _pairs(problem: Problem, singles: list[Explanation]) -> list[Explanation]:
+    """Weigh the pairs that a linear look at every pair finds the most promising."""
+    looks = []
+    for first, second in combinations(singles, 2):
+        gain, starts = _linear_look(problem, first, second)
+        looks.append((gain, first, second, starts))
+    looks.sort(key=lambda look: -look[0])
+    return [
+        explain(problem, _joined(first, second), starts=starts) for _, first, second, starts in looks[:PAIRS]
+    ]
+
+
+def _joined(first: Explanation, second: Explanation) -> Candidate:
+    theory = first.candidate.theory or second.candidate.theory
+    return Candidate(first.candidate.effects + second.candidate.effects, theory=theory)
+
+
+def _linear_look(
+    problem: Problem, first: Explanation, second: Explanation
+) -> tuple[float, list[FloatArray]]:
+    """Return the log-likelihood that a linear step from either single's best would reach, and where to start."""
+    reached, starts = [], []
+    for leader, other in ((first, second), (second, first)):
+        columns = [sensitivities(problem, leader.candidate, leader.best), _increment(problem, other)]
+        normal, load = whiten(leader.best.comparison, np.hstack(columns))
+        step = np.linalg.lstsq(normal, load, rcond=1e-10)[0]
+        reached.append(leader.best.marginal.log_likelihood + 0.5 * float(load @ step))
+    middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]
+    a, b = first.best.coordinates, second.best.coordinates
+    starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
+    return max(reached), starts
+
+
+def _increment(problem: Problem, explanation: Explanation) -> FloatArray:
+    """Return what an effect at its best adds to the nominal prediction, and its sensitivities there."""
+    plain = problem.compare(Candidate().state(problem.predictor, ()))
+    whole = (plain.residual - explanation.best.comparison.residual)[:, None]
+    return np.hstack([whole, sensitivities(problem, explanation.candidate, explanation.best)])

@@ -1,0 +1,121 @@
+"""How far the gap shrinks, on the data that were fitted and on modes held out in turn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.evidence import Explanation
+from updating.diagnosis.fit import climb, evaluate
+from updating.diagnosis.goodness import CHANNELS, carrier
+from updating.diagnosis.problem import Problem
+from updating.diagnosis.result import Closed, Shrink
+
+
+def shrinkage(
+    problem: Problem,
+    nothing: Explanation,
+    best: Explanation,
+    runner_up: Explanation | None,
+    rng: np.random.Generator,
+) -> Shrink:
+    """Compare the gap before and after.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    nothing, best, runner_up : Explanation
+        The nominal model with its tolerances, the best explanation, and the one behind it.
+    rng : Generator
+        For the bootstrap over modes.
+    """
+    metric = carrier(nothing.best)
+    rows = nothing.best.comparison.channel == CHANNELS.index(metric)
+    mode = nothing.best.comparison.mode[rows]
+    raw = _raw(problem, metric)
+    fitted = best.best.left_over[rows]
+    floor = _rms(np.sqrt(_noise(problem, metric)))
+    held = held_out(problem, best, metric)
+    other = None if runner_up is None else held_out(problem, runner_up, metric)
+    alone = held_out(problem, Explanation(Candidate(), 0.0, nothing.best, nothing.samples, nothing.weights), metric)
+    return Shrink(
+        metric,  # type: ignore[arg-type]
+        100 * _rms(raw),
+        100 * _rms(fitted),
+        100 * _rms(raw),
+        100 * _rms(held),
+        None if other is None else 100 * _rms(other),
+        100 * _rms(alone),
+        100 * floor,
+        _closed(raw, held, mode, floor, rng),
+    )
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0
+
+
+def _raw(problem: Problem, metric: str) -> FloatArray:
+    """Return the errors of the nominal model as it stands, no tolerance moved."""
+    comparison = evaluate(problem, Candidate(), np.zeros(0)).comparison
+    plain = problem.compare(Candidate().state(problem.predictor, ()))
+    return np.asarray(plain.residual[comparison.channel == CHANNELS.index(metric)])
+
+
+def _noise(problem: Problem, metric: str) -> FloatArray:
+    """Return the variance that repeating the test alone would give, per datum of a channel."""
+    plain = problem.compare(Candidate().state(problem.predictor, ()))
+    rows = plain.channel == CHANNELS.index(metric)
+    variance = plain.variance[rows]
+    if metric == "damping":
+        variance = variance - problem.tolerances.damping**2
+    return np.asarray(np.maximum(variance, 0.0))
+
+
+def held_out(problem: Problem, explanation: Explanation, metric: str) -> FloatArray:
+    """Predict each mode from all others, and return the errors of the prediction [-].
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    explanation : Explanation
+        What is refitted without each mode in turn, starting from its best parameters.
+    metric : str
+        Channel whose errors are returned.
+    """
+    mode = explanation.best.comparison.mode
+    channel = explanation.best.comparison.channel == CHANNELS.index(metric)
+    errors = np.zeros(len(mode))
+    for left_out in np.unique(mode):
+        keep = mode != left_out
+        if not keep.any():
+            continue
+        start = explanation.best.coordinates
+        point = climb(problem, explanation.candidate, start, keep=keep, rounds=4).point
+        errors[~keep] = point.left_over[~keep]
+    return np.asarray(errors[channel])
+
+
+def _closed(
+    before: FloatArray, after: FloatArray, mode: np.ndarray, floor: float, rng: np.random.Generator
+) -> Closed | None:
+    """Return the share of the closable gap that closes, with a bootstrap over the modes."""
+    if _rms(before) < 1.5 * floor:
+        return None
+
+    def share(b: FloatArray, a: FloatArray) -> float:
+        closable = np.mean(b**2) - floor**2
+        return float(100 * (1 - (np.mean(a**2) - floor**2) / closable)) if closable > 0 else np.nan
+
+    modes = np.unique(mode)
+    draws = []
+    for _ in range(400):
+        drawn = np.concatenate([np.flatnonzero(mode == m) for m in rng.choice(modes, len(modes))])
+        noise = floor * rng.standard_normal((2, len(drawn)))
+        draws.append(share(before[drawn] + noise[0], after[drawn] + noise[1]))
+    low, high = np.nanpercentile(draws, [2.5, 97.5])
+    value = min(share(before, after), 100.0)
+    return Closed(value, float(min(low, value)), float(max(min(high, 100.0), value)))

@@ -1,0 +1,124 @@
+"""What every effect tells: its parameters, what it does to the model, where it sits, what it resembles."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from updating.models.spec import Spec
+from updating.models.state import State
+from updating.prediction import Predictor
+
+Channel = Literal["stiffness", "mass", "damping", "measurement"]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of an effect and its prior: uniform, or uniform in the logarithm, over a range.
+
+    Parameters
+    ----------
+    name : str
+        Name within the effect.
+    unit : str
+        Its unit; ``-`` for a ratio.
+    low, high : float
+        Range of the prior [unit].
+    why : str
+        Why this range.
+    log : bool
+        Whether the prior is uniform in the logarithm.
+    """
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    why: str
+    log: bool = False
+
+    def value(self, coordinate: float) -> float:
+        """Take a prior quantile in [0, 1] to the parameter's value [unit]."""
+        if self.log:
+            return float(self.low * (self.high / self.low) ** coordinate)
+        return float(self.low + (self.high - self.low) * coordinate)
+
+    def coordinate(self, value: float) -> float:
+        """Take a value to its prior quantile, clipped to [0, 1]."""
+        if self.log:
+            u = np.log(max(value, 1e-300) / self.low) / np.log(self.high / self.low)
+        else:
+            u = (value - self.low) / (self.high - self.low)
+        return float(np.clip(u, 0.0, 1.0))
+
+
+Values = Mapping[str, float]
+
+
+class Effect(ABC):
+    """A physical cause of a gap that the nominal model does not hold.
+
+    A subclass states the class variables and implements :meth:`parameters` and :meth:`state`; the rest has
+    defaults. Register an instance with :func:`updating.effects.register`.
+    """
+
+    name: ClassVar[str]
+    """Name in the report and the JSON."""
+    channel: ClassVar[Channel]
+    """Where it acts."""
+    summary: ClassVar[str]
+    """One sentence for the report."""
+    footprint: ClassVar[str]
+    """What it does to the data."""
+    equivalent_to: ClassVar[tuple[str, ...]] = ()
+    """Effects that some data cannot tell from it."""
+    separated_by: ClassVar[str]
+    """The test that would separate it from these."""
+    fidelity: ClassVar[float] = 0.0
+    """How far, relative to the shift the effect makes, its own idealisation may be off (1 sigma) [-]."""
+
+    @abstractmethod
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the parameters with their priors for this specimen."""
+
+    @abstractmethod
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the departure from the nominal model at given values."""
+
+    def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
+        """Take prior quantiles, one per parameter, to values of the parameters."""
+        parameters = self.parameters(predictor)
+        return {p.name: p.value(u) for p, u in zip(parameters, coordinates, strict=True)}
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Return why the effect cannot be examined on this specimen and test, or None."""
+        return None
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Return prior quantiles from which the search for the best values starts."""
+        count = len(self.parameters(predictor))
+        return tuple(tuple([u] * count) for u in (0.3, 0.7)) if count else ((),)
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
+        """Return where the effect sits in model axes, empty for one that is everywhere [m]."""
+        return ()
+
+    def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
+        """Return quantities that follow from the parameters, as name: (value, unit)."""
+        return {}
+
+
+def bending_stiffness(spec: Spec) -> float:
+    """Return E I of a beam [N m^2] or E t^3 / 12 (1 - nu^2) of a plate [N m]."""
+    if spec.kind == "beam":
+        return spec.material.E * spec.width * spec.thickness**3 / 12
+    return spec.material.E * spec.thickness**3 / (12 * (1 - spec.material.poisson**2))
+
+
+def total_mass(spec: Spec) -> float:
+    """Return the mass of the bare structure [kg]."""
+    return spec.material.density * spec.length * spec.width * spec.thickness

@@ -1,0 +1,39 @@
+"""Masses that the model forgot."""
+
+from __future__ import annotations
+
+from updating.effects.base import Effect, Parameter, Values, total_mass
+from updating.models.state import State
+from updating.prediction import Predictor
+
+
+class SensorMass(Effect):
+    """Each mounted sensor loads the structure with its mass."""
+
+    name = "sensor_mass"
+    channel = "mass"
+    summary = "The mounted sensor (each of them) loads the structure and is not in the model."
+    footprint = "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
+    equivalent_to = ("lumped_mass",)
+    separated_by = "weigh the sensor, or add a second known mass beside it"
+    fidelity = 0.01
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the mass of one sensor."""
+        high = min(0.1, total_mass(predictor.spec))
+        why = "from the lightest accelerometer with its wax to an impedance head"
+        return (Parameter("mass", "kg", min(2e-4, 1e-2 * high), high, why, log=True),)
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need to know where the sensors sit."""
+        return None if predictor.measured.sensors else "the data do not say where a sensor sits"
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the structure with the mass at every sensor."""
+        rows = predictor.nominal_rows["w"][list(predictor.measured.sensors)]
+        return State(mass=(values["mass"] * rows.T @ rows,))
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
+        """Return the sensors."""
+        points = predictor.measured.points[list(predictor.measured.sensors)]
+        return tuple((float(p[0]), float(p[1]) if len(p) > 1 else 0.0, 0.0) for p in points)

@@ -1,0 +1,70 @@
+"""The Galerkin matrix of the flow around the plate, and the factor of its energy."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import LinAlgError, cholesky, inv
+
+from acquisition.arrays import FloatArray, IntArray
+from acquisition.errors import InputError
+
+from .axis import JumpAxis
+from .domain import FluidDomain
+from .spectra import spectra
+
+BLOCK = 2_000_000
+"""Pairs of wavenumbers worked on at a time."""
+
+
+def energy_factor(along: JumpAxis, across: JumpAxis, domain: FluidDomain, thickness: float) -> FloatArray:
+    """Assemble A from the spectra of both axes and factorise its inverse less the plate's own volume.
+
+    Parameters
+    ----------
+    along, across : JumpAxis
+        Functions along x and y.
+    domain : FluidDomain
+        What bounds the fluid above and below.
+    thickness : float
+        Thickness t of the plate. [m]
+
+    Returns
+    -------
+    FloatArray
+        Lower triangle F with F F^T = A^-1 - t G^-1, shape (n, n).
+
+    Notes
+    -----
+    The Gram matrices are summed over the same wavenumbers as A: the stiffness is below 1/t at each of them,
+    so the difference stays positive definite whatever the quadrature leaves out.
+    """
+    k, left = spectra(along)
+    across_k, right = spectra(across)
+    p, q = np.tril_indices(along.terms), np.tril_indices(across.terms)
+    left_pairs, right_pairs = left[:, *p], right[:, *q]
+    half = np.zeros((left_pairs.shape[1], right_pairs.shape[1]))
+    step = max(1, BLOCK // across_k.size)
+    for start in range(0, k.size, step):
+        block = slice(start, start + step)
+        stiffness = domain.stiffness(np.hypot(k[block, None], across_k), thickness)
+        half += left_pairs[block].T @ (stiffness @ right_pairs)
+    try:
+        matrix = inv(_unfold(half, p, q), assume_a="pos")
+        if thickness > 0.0:
+            matrix = matrix - thickness * np.kron(inv(left.sum(axis=0)), inv(right.sum(axis=0)))
+        return np.asarray(cholesky(0.5 * (matrix + matrix.T), lower=True), dtype=np.float64)
+    except LinAlgError as error:
+        raise InputError(
+            f"added mass: {along.terms} x {across.terms} functions cannot be told apart in this domain; "
+            "ask for fewer terms"
+        ) from error
+
+
+def _unfold(half: FloatArray, p: tuple[IntArray, IntArray], q: tuple[IntArray, IntArray]) -> FloatArray:
+    """Matrix A, (n, n), from its values at the lower triangles of pairs along x and across y."""
+    along, across = int(p[0][-1]) + 1, int(q[0][-1]) + 1
+    matrix = np.empty((along, along, across, across))
+    for first, second in (p, p[::-1]):
+        for third, fourth in (q, q[::-1]):
+            matrix[first[:, None], second[:, None], third, fourth] = half
+    return matrix.transpose(0, 2, 1, 3).reshape(along * across, along * across)

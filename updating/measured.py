@@ -1,0 +1,215 @@
+"""What a test says, in the coordinates of the model: the data side of every comparison."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from acquisition import Dof, Geometry, ModalData
+from acquisition.arrays import BoolArray, FloatArray, IntArray
+from acquisition.errors import StudyError
+from identification import ModalModel
+from updating.axes import Axes
+from updating.models import Spec
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Modes of one test as a model can predict them.
+
+    The *constants* are the modal constants phi_response * phi_reference of each FRF: with absolute level for
+    a calibrated FRF, up to a factor per mode where only shapes are known.
+
+    Parameters
+    ----------
+    frequency, frequency_sigma : (n_modes,) arrays
+        Natural frequencies and the standard deviations the identification gives them [Hz].
+    damping, damping_sigma : (n_modes,) arrays
+        Damping ratios and their standard deviations, nan where unknown [-].
+    points : (n_points, dim) array
+        Test points in model axes [m].
+    nodes : tuple of int
+        Their node numbers.
+    seen, hit : (n_frf,) int arrays
+        Point of the response and of the force of each FRF; ``hit`` is -1 where only a shape is known.
+    constants, constants_sigma : (n_frf, n_modes) arrays
+        Modal constants and standard deviations, positive along the model's z [1/kg, or - per mode].
+    absolute : bool
+        Whether the constants carry absolute level.
+    calibration : float
+        Relative 1-sigma uncertainty of the level [-].
+    repeatability : float
+        Relative 1-sigma scatter of the frequencies by re-mounting [-].
+    position_sigma : float
+        1-sigma uncertainty of the points hit [m].
+    title, warnings : str, tuple of str
+        For messages.
+    """
+
+    frequency: FloatArray
+    frequency_sigma: FloatArray
+    damping: FloatArray
+    damping_sigma: FloatArray
+    points: FloatArray
+    nodes: tuple[int, ...]
+    seen: IntArray
+    hit: IntArray
+    constants: FloatArray
+    constants_sigma: FloatArray
+    absolute: bool
+    calibration: float = 0.02
+    repeatability: float = 0.0005
+    position_sigma: float = 0.001
+    title: str = ""
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def has_shapes(self) -> bool:
+        """Whether there are at least two components a shape can be compared in."""
+        return len(self.seen) >= 2
+
+    @property
+    def sensors(self) -> tuple[int, ...]:
+        """Points that carry a response transducer; empty where only shapes are known."""
+        return tuple(sorted(set(self.seen.tolist()))) if self.absolute else ()
+
+    def modes(self, keep: BoolArray | IntArray) -> Measured:
+        """Return the same test with some of its modes."""
+        columns = {n: getattr(self, n)[:, keep] for n in ("constants", "constants_sigma")}
+        rows = ("frequency", "frequency_sigma", "damping", "damping_sigma")
+        return replace(self, **{n: getattr(self, n)[keep] for n in rows}, **columns)
+
+
+def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: float | str) -> Measured:
+    """Take plain modal data to the model's axes.
+
+    Parameters
+    ----------
+    modes : ModalData
+        Frequencies, and where known damping and shapes.
+    axes : Axes
+        The model's axes in test coordinates.
+    spec : Spec
+        The model, whose outline the points must meet.
+    **options
+        Calibration, repeatability, position_sigma, title of :class:`Measured`.
+
+    Returns
+    -------
+    Measured
+        Shapes are compared up to a factor per mode, even where they are called mass-normalised.
+    """
+    placed = _place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
+    rows = placed.rows
+    shapes = np.zeros((0, len(modes))) if modes.shapes is None else modes.shapes.real[rows] * placed.signs[:, None]
+    if modes.shape_sigma is None:
+        sigma = 0.02 * np.sqrt(np.mean(shapes**2, axis=0, keepdims=True)) * np.ones_like(shapes)
+    else:
+        sigma = modes.shape_sigma[rows]
+    return Measured(
+        modes.frequency,
+        np.where(np.isfinite(modes.frequency_sigma), modes.frequency_sigma, 0.0),
+        _column(modes.damping, len(modes)),
+        _column(modes.damping_sigma, len(modes)),
+        placed.points,
+        placed.nodes,
+        placed.index,
+        np.full(len(rows), -1),
+        shapes,
+        sigma,
+        absolute=False,
+        warnings=placed.warnings,
+        **options,  # type: ignore[arg-type]
+    )
+
+
+def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **options: float | str) -> Measured:
+    """Take an identified modal model to the model's axes, with absolute level.
+
+    Parameters
+    ----------
+    model : ModalModel
+        Identified from FRFs.
+    axes, spec, **options
+        As in :func:`measured_from_modes`.
+    """
+    geometry = model.modal.geometry
+    responses = _place(model.responses, geometry, axes, spec)
+    references = _place(model.references, geometry, axes, spec)
+    both = np.intersect1d(responses.rows, references.rows)
+    if len(both) == 0:
+        raise StudyError(
+            f"{options.get('title', 'test')}: no FRF is measured and hit along the model's z; check axes in [test]"
+        )
+    at_response = {row: i for i, row in enumerate(responses.rows.tolist())}
+    at_reference = {row: i for i, row in enumerate(references.rows.tolist())}
+    left = np.array([at_response[row] for row in both.tolist()])
+    right = np.array([at_reference[row] for row in both.tolist()])
+    nodes = tuple(dict.fromkeys(responses.nodes + references.nodes))
+    where = {node: i for i, node in enumerate(nodes)}
+    points = np.stack([_point(node, responses, references) for node in nodes])
+    signs = responses.signs[left] * references.signs[right]
+    return Measured(
+        model.modal.frequency,
+        model.modal.frequency_sigma,
+        _column(model.modal.damping, len(model.modal)),
+        _column(model.modal.damping_sigma, len(model.modal)),
+        points,
+        nodes,
+        np.array([where[model.responses[row].node] for row in both.tolist()]),
+        np.array([where[model.references[row].node] for row in both.tolist()]),
+        model.constants.real[both] * signs[:, None],
+        model.constant_sigma[both],
+        absolute=True,
+        warnings=tuple(dict.fromkeys(responses.warnings + references.warnings)),
+        **options,  # type: ignore[arg-type]
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    rows: IntArray
+    index: IntArray
+    nodes: tuple[int, ...]
+    points: FloatArray
+    signs: FloatArray
+    warnings: tuple[str, ...]
+
+
+def _place(dofs: tuple[Dof, ...], geometry: Geometry, axes: Axes, spec: Spec) -> _Placed:
+    """Find the DOFs that move along the model's z, and their points on the model."""
+    dim = 1 if spec.kind == "beam" else 2
+    along = np.array([d.unit_vector @ axes.rotation[2] for d in dofs]).reshape(-1)
+    rows = np.flatnonzero(np.abs(along) > 0.9)
+    warnings = []
+    if len(rows) < len(dofs):
+        others = ", ".join(sorted({str(d) for i, d in enumerate(dofs) if i not in set(rows.tolist())})[:5])
+        warnings.append(f"left out: not along the model's z: {others}")
+    nodes = tuple(dict.fromkeys(dofs[i].node for i in rows))
+    points = axes.to_model(geometry.at(nodes))[:, :dim] if nodes else np.zeros((0, dim))
+    _check_on(points, nodes, spec)
+    where = {node: i for i, node in enumerate(nodes)}
+    index = np.array([where[dofs[i].node] for i in rows], dtype=int)
+    return _Placed(rows, index, nodes, points, np.sign(along[rows]), tuple(warnings))
+
+
+def _check_on(points: FloatArray, nodes: tuple[int, ...], spec: Spec) -> None:
+    size = np.array([spec.length, spec.width][: points.shape[1]])
+    slack = 0.02 * spec.length
+    off = ((points < -slack) | (points > size + slack)).any(axis=1)
+    if off.any():
+        first = int(np.flatnonzero(off)[0])
+        raise StudyError(
+            f"test point {nodes[first]} lies at {np.round(points[first], 4).tolist()} m in model axes, off the "
+            f"{spec.kind} of {size.tolist()} m; check axes in [test], the units of the file, and the dimensions"
+        )
+
+
+def _point(node: int, responses: _Placed, references: _Placed) -> FloatArray:
+    placed = responses if node in responses.nodes else references
+    return np.asarray(placed.points[placed.nodes.index(node)])
+
+
+def _column(values: FloatArray | None, count: int) -> FloatArray:
+    return np.full(count, np.nan) if values is None else values

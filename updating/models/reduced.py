@@ -1,0 +1,245 @@
+"""Re-analysis on a small basis that keeps every change a State can express.
+
+The basis holds the lowest modes of the nominal model, the static answers to softening each region and to
+loading each test point, and, behind them, what a clamp sets free when it is released. Matrices of any state
+are sums of small precomputed ones, so a prediction costs one dense eigenproblem of some fifty unknowns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import linalg as dense
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from acquisition.arrays import FloatArray
+from updating.models.fields import Sparse
+from updating.models.state import State
+from updating.models.structure import FACTORS, Structure
+
+SMALL = 90
+"""Up to so many unknowns a model is its own reduced basis."""
+
+RELEASES = ("rotation", "translation")
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """A structure on a reduced basis.
+
+    Parameters
+    ----------
+    structure : Structure
+        The full model.
+    basis : (n_dofs, r) array
+        Columns orthonormal in the nominal mass: clamped ones first, then what the releases add [kg^-1/2].
+    ranks : mapping of frozenset to int
+        For each set of releases, how many leading columns belong to it.
+    """
+
+    structure: Structure
+    basis: FloatArray
+    ranks: Mapping[frozenset[str], int]
+
+    @cached_property
+    def sampled(self) -> dict[str, FloatArray]:
+        """Fields of the basis at the quadrature points, each (n_points, r)."""
+        return {n: np.asarray(m @ self.basis) for n, m in self.structure.fields.sampled.items()}
+
+    @cached_property
+    def parts(self) -> tuple[FloatArray, ...]:
+        """Matrix of every term and region, each term (n_regions + 1, r, r) [SI]; the last is no region."""
+        count = len(self.structure.spec.regions)
+        region = self.structure.region_of
+        masks = [np.flatnonzero(region == (i if i < count else -1)) for i in range(count + 1)]
+        return tuple(np.stack([self._product(t, rows) for rows in masks]) for t in self.structure.terms)
+
+    def _product(self, term: object, rows: FloatArray, weights: FloatArray | None = None) -> FloatArray:
+        left, right = self.sampled[term.left][rows], self.sampled[term.right][rows]  # type: ignore[attr-defined]
+        coefficient = term.coefficient[rows]  # type: ignore[attr-defined]
+        if weights is not None:
+            coefficient = coefficient * weights
+        part = left.T @ (coefficient[:, None] * right)
+        return np.asarray((part + part.T) / 2)
+
+    def weighted(self, kind: str, weights: FloatArray, factors: Mapping[str, float] | None = None) -> FloatArray:
+        """Return the stiffness or mass matrix of the structure under weights at the quadrature points.
+
+        Parameters
+        ----------
+        kind : {"stiffness", "mass"}
+            Which matrix.
+        weights : (n_points,) array
+            Factor at every quadrature point; only where it is not zero is anything computed [-].
+        factors : mapping, optional
+            Factors of the state on top of which it comes [-].
+
+        Returns
+        -------
+        (r, r) array [SI]
+        """
+        rows = np.flatnonzero(weights)
+        total = np.zeros((self.basis.shape[1],) * 2)
+        for term in self.structure.terms:
+            if term.kind == kind:
+                total += self._product(term, rows, weights[rows]) * term.scale(factors or {})
+        return total
+
+    @cached_property
+    def point_masses(self) -> FloatArray:
+        """Matrix of the masses the modeller knows of, shape (r, r) [kg in w]."""
+        full = self.structure._point_masses()
+        return np.asarray(self.basis.T @ (full @ self.basis))
+
+    def matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
+        """Return stiffness and mass of a state on the columns its releases admit [SI]."""
+        n = self.ranks[state.released]
+        total = {"stiffness": np.zeros((n, n)), "mass": self.point_masses[:n, :n].copy()}
+        for term, parts in zip(self.structure.terms, self._totals(state), strict=True):
+            total[term.kind] += parts[:n, :n] * term.scale(state.factors)
+        for kind, added in (("stiffness", state.stiffness), ("mass", state.mass)):
+            for matrix in added:
+                total[kind] += matrix[:n, :n]
+        return total["stiffness"], total["mass"]
+
+    @cached_property
+    def sums(self) -> tuple[FloatArray, ...]:
+        """Matrix of every term over all regions, each (r, r) [SI]."""
+        return tuple(p.sum(axis=0) for p in self.parts)
+
+    def _totals(self, state: State) -> list[FloatArray]:
+        totals = list(self.sums)
+        for (region, factor), value in state.regional.items():
+            for i, term in enumerate(self.structure.terms):
+                power = term.powers.get(factor, 0.0)
+                if power:
+                    totals[i] = totals[i] + (value**power - 1) * self.parts[i][region]
+        return totals
+
+    def log_sensitivity(self, state: State, factor: str) -> tuple[FloatArray, FloatArray]:
+        """Return dK and dM per unit of the logarithm of a factor, at a state [SI]."""
+        n = self.ranks[state.released]
+        change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
+        for term, parts in zip(self.structure.terms, self._totals(state), strict=True):
+            power = term.powers.get(factor, 0.0)
+            if power:
+                change[term.kind] += power * term.scale(state.factors) * parts[:n, :n]
+        return change["stiffness"], change["mass"]
+
+    def rows(self, points: FloatArray) -> dict[str, FloatArray]:
+        """Return displacement and slopes of the basis at points (n_points, dim) [m], each (n_points, r)."""
+        return {n: np.asarray(m @ self.basis) for n, m in self.structure.fields.at(points).items()}
+
+    def eigen(self, state: State) -> tuple[FloatArray, FloatArray]:
+        """Return all eigenvalues [rad^2/s^2] and mass-normalised vectors of a state in the reduced basis."""
+        stiffness, mass = self.matrices(state)
+        values, vectors = dense.eigh(stiffness, mass)
+        return values, vectors
+
+
+def reduce_structure(structure: Structure, points: FloatArray, *, modes: int = 30) -> Reduced:
+    """Build the reduced basis of a structure.
+
+    Parameters
+    ----------
+    structure : Structure
+        The full model.
+    points : (n_points, dim) array
+        Test points, whose static answers join the basis [m].
+    modes : int
+        Number of nominal modes kept beside the rigid-body modes.
+
+    Returns
+    -------
+    Reduced
+    """
+    mass = structure.matrix("mass")
+    stiffness = structure.matrix("stiffness")
+    unknowns = len(structure.free())
+    count = unknowns if unknowns <= SMALL else min(modes + structure.rigid_modes, unknowns)
+    values, vectors = structure.eigen(count)
+    clamped = vectors if count == unknowns else _extend(vectors, _static_answers(structure, stiffness, mass, values, vectors, points), mass)
+    ranks = {frozenset[str](): clamped.shape[1]}
+    basis = clamped
+    if structure.fixed:
+        for released in (frozenset({"rotation"}), frozenset({"rotation", "translation"})):
+            basis = _extend(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
+            ranks[released] = basis.shape[1]
+        ranks[frozenset({"translation"})] = basis.shape[1]
+    return Reduced(structure, basis, ranks)
+
+
+def _extend(basis: FloatArray, extra: FloatArray, mass: Sparse, *, tolerance: float = 1e-9) -> FloatArray:
+    """Append the directions of ``extra`` that ``basis`` lacks, orthonormal in the mass."""
+    for _ in range(2):
+        extra = extra - basis @ (basis.T @ (mass @ extra))
+    gram = extra.T @ (mass @ extra)
+    scale = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
+    keep = values > tolerance * max(values.max(), 1e-300)
+    new = (extra / scale) @ (vectors[:, keep] / np.sqrt(values[keep]))
+    new = new - basis @ (basis.T @ (mass @ new))
+    return np.hstack([basis, new])
+
+
+def _static_answers(
+    structure: Structure,
+    stiffness: Sparse,
+    mass: Sparse,
+    values: FloatArray,
+    vectors: FloatArray,
+    points: FloatArray,
+) -> FloatArray:
+    """Solve for the static answers to softening each region in the low modes and to a force at each point."""
+    free = structure.free()
+    elastic = vectors[:, structure.rigid_modes :]
+    shift = 1e-3 * values[structure.rigid_modes] if structure.rigid_modes else 0.0
+    solve = splu((stiffness + shift * mass)[free][:, free].tocsc())
+    loads = [structure.fields.at(points)["w"].toarray().T, _softenings(structure, elastic)]
+    load = np.hstack(loads)[free]
+    answer = np.zeros((structure.fields.n_dofs, load.shape[1]))
+    answer[free] = solve.solve(load)
+    lengths = np.sqrt(np.einsum("ij,ij->j", answer, mass @ answer))
+    left, size, _ = np.linalg.svd(_remove(answer / lengths, vectors, mass), full_matrices=False)
+    return left[:, (size > 1e-8 * size.max()).nonzero()[0]]
+
+
+def _softenings(structure: Structure, elastic: FloatArray) -> FloatArray:
+    """Return the loads that a softened place feels: moments per element of a beam, modal forces per region."""
+    if structure.fields.dim == 1:
+        bending, n = structure.terms[0], structure.fields.n_dofs
+        elements = structure.fields.components[0].basis.nelems
+        field = (structure.fields.sampled[bending.left].T @ sparse.diags_array(bending.coefficient)).toarray()
+        slope = np.tile(structure.fields.components[0].basis.X[0] - 0.5, elements)
+        loads = [(field * shape).reshape(n, elements, -1).sum(axis=2) for shape in (1.0, slope)]
+        return np.hstack(loads)
+    low = elastic[:, : min(4, elastic.shape[1])]
+    regions = range(len(structure.spec.regions))
+    masks = [(structure.region_of == index).astype(float) for index in regions]
+    return np.hstack([structure.matrix("stiffness", mask) @ low for mask in masks])
+
+
+def _remove(answer: FloatArray, vectors: FloatArray, mass: Sparse) -> FloatArray:
+    return np.asarray(answer - vectors @ (vectors.T @ (mass @ answer)))
+
+
+def _released_shapes(
+    structure: Structure, stiffness: Sparse, mass: Sparse, released: frozenset[str], modes: int
+) -> FloatArray:
+    """Return modes of the structure on springs of middling and low stiffness where its clamps were."""
+    freed = np.concatenate([structure.fixed[kind] for kind in sorted(released)])
+    count = min(12, modes)
+    shapes = []
+    for ratio in (1e-1, 1e-4):
+        spring = np.zeros(structure.fields.n_dofs)
+        spring[freed] = ratio * np.abs(stiffness.diagonal()[freed])
+        held = Sparse(stiffness + sparse.diags_array(spring))
+        shapes.append(structure.eigen(count, stiffness=held, released=released)[1])
+    return np.hstack(shapes)
+
+
+__all__ = ["FACTORS", "RELEASES", "Reduced", "reduce_structure"]

@@ -1,0 +1,182 @@
+"""What a modeller says of a beam or a plate, before any matrix exists."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+from acquisition.errors import StudyError
+
+Kind = Literal["beam", "plate"]
+Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko", "kirchhoff"]
+
+
+@dataclass(frozen=True)
+class Material:
+    """An isotropic elastic material.
+
+    Parameters
+    ----------
+    E : float
+        Modulus of elasticity [Pa].
+    density : float
+        Mass density [kg/m^3].
+    poisson : float
+        Poisson's ratio [-].
+    """
+
+    E: float
+    density: float
+    poisson: float = 0.3
+
+
+@dataclass(frozen=True)
+class Region:
+    """A macro-element: a stretch of the beam or a rectangle of the plate with properties of its own.
+
+    Parameters
+    ----------
+    name : str
+        Name used in parameters such as ``root.E``.
+    x, y : tuple of float
+        Lower and upper limit [m]; ``y`` is None for a beam or for the whole width.
+    E, density, thickness, area, inertia : float, optional
+        Own values, in place of the model's [Pa, kg/m^3, m, m^2, m^4]; area and inertia for beams only.
+    alpha, beta, loss_factor : float, optional
+        Own damping: C = alpha M + beta K [1/s, s], structural loss factor [-].
+    """
+
+    name: str
+    x: tuple[float, float]
+    y: tuple[float, float] | None = None
+    E: float | None = None
+    density: float | None = None
+    thickness: float | None = None
+    area: float | None = None
+    inertia: float | None = None
+    alpha: float | None = None
+    beta: float | None = None
+    loss_factor: float | None = None
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A mass the modeller knows of.
+
+    Parameters
+    ----------
+    at : tuple of float
+        Position (x,) or (x, y) [m].
+    mass : float
+        Mass [kg].
+    inertia : float
+        Rotary inertia about the in-plane axes [kg m^2].
+    """
+
+    at: tuple[float, ...]
+    mass: float
+    inertia: float = 0.0
+
+
+@dataclass(frozen=True)
+class Damping:
+    """What the modeller expects of the damping; all None is 'unknown'.
+
+    Parameters
+    ----------
+    alpha, beta : float, optional
+        C = alpha M + beta K [1/s, s].
+    loss_factor : float, optional
+        Structural loss factor [-].
+    ratios : tuple of float, optional
+        Damping ratio of each mode [-].
+    """
+
+    alpha: float | None = None
+    beta: float | None = None
+    loss_factor: float | None = None
+    ratios: tuple[float, ...] | None = None
+
+    @property
+    def known(self) -> bool:
+        """Whether anything is expected at all."""
+        return any(v is not None for v in (self.alpha, self.beta, self.loss_factor, self.ratios))
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A beam or a rectangular plate: x from 0 to length, y from 0 to width, hit along z.
+
+    Parameters
+    ----------
+    kind : {"beam", "plate"}
+        What it is.
+    length, width, thickness : float
+        Dimensions along x, y and z [m].
+    elements : tuple of int
+        Number of elements along x, and along y for a plate.
+    clamped : tuple of str
+        Clamped edges, of x0, x1 and for plates y0, y1; empty is free.
+    theory : str
+        euler-bernoulli, rayleigh (with rotary inertia) or timoshenko for beams, kirchhoff for plates.
+    material : Material
+        Material of everything that no region overrides.
+    regions : tuple of Region
+        Macro-elements; empty means ten along x for a beam, 5 x 3 for a plate.
+    masses : tuple of PointMass
+        Masses the modeller knows of.
+    damping : Damping
+        What the modeller expects.
+
+    Raises
+    ------
+    StudyError
+        If a dimension is not positive, or an edge or a theory does not exist for this kind.
+    """
+
+    kind: Kind
+    length: float
+    width: float
+    thickness: float
+    elements: tuple[int, ...]
+    clamped: tuple[str, ...]
+    theory: Theory
+    material: Material
+    regions: tuple[Region, ...] = ()
+    masses: tuple[PointMass, ...] = ()
+    damping: Damping = field(default_factory=Damping)
+
+    def __post_init__(self) -> None:
+        for name in ("length", "width", "thickness"):
+            if not getattr(self, name) > 0:
+                raise StudyError(f"model: {name} must be positive, found {getattr(self, name)}")
+        edges = {"beam": {"x0", "x1"}, "plate": {"x0", "x1", "y0", "y1"}}[self.kind]
+        if unknown := set(self.clamped) - edges:
+            raise StudyError(f"model: a {self.kind} has no edge {sorted(unknown)}; use {sorted(edges)}")
+        theories = {"beam": {"euler-bernoulli", "rayleigh", "timoshenko"}, "plate": {"kirchhoff"}}[self.kind]
+        if self.theory not in theories:
+            raise StudyError(f"model: no theory {self.theory!r} for a {self.kind}; use {sorted(theories)}")
+        if len(self.elements) != (1 if self.kind == "beam" else 2) or min(self.elements) < 1:
+            raise StudyError(f"model: elements = {list(self.elements)} does not fit a {self.kind}")
+        if not self.regions:
+            object.__setattr__(self, "regions", _default_regions(self))
+
+    def with_theory(self, theory: Theory) -> Spec:
+        """Return the same specimen under another theory."""
+        return replace(self, theory=theory)
+
+    def with_elements(self, *elements: int) -> Spec:
+        """Return the same specimen with another mesh."""
+        return replace(self, elements=elements)
+
+
+def _default_regions(spec: Spec) -> tuple[Region, ...]:
+    n_x, n_y = (10, 1) if spec.kind == "beam" else (5, 3)
+    dx, dy = spec.length / n_x, spec.width / n_y
+    if spec.kind == "beam":
+        return tuple(Region(f"zone{i + 1}", (i * dx, (i + 1) * dx)) for i in range(n_x))
+    return tuple(
+        Region(f"zone{i + 1}{'abc'[j]}", (i * dx, (i + 1) * dx), (j * dy, (j + 1) * dy))
+        for i in range(n_x)
+        for j in range(n_y)
+    )

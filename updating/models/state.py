@@ -1,0 +1,75 @@
+"""A departure from the nominal model: the one language in which tolerances, effects and updates speak."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import reduce
+from types import MappingProxyType
+
+from acquisition.arrays import FloatArray
+
+
+def _nothing() -> Mapping[str, float]:
+    return MappingProxyType({})
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """What differs from the nominal model and the nominal measurement.
+
+    Parameters
+    ----------
+    factors : mapping of str to float
+        Factors on E, density, thickness, width and length of the whole structure [-].
+    regional : mapping of (region index, factor name) to float
+        Factors on one region [-].
+    stiffness, mass, damping : tuple of (r, r) arrays
+        Matrices added in the coordinates of the reduced basis [SI].
+    released : frozenset of str
+        Parts of the clamps that no longer hold by themselves: ``rotation``, ``translation``.
+    theory : str, optional
+        Theory in place of the nominal one.
+    gain : float
+        Factor of the measured level over the true one [-].
+    decay : float
+        Decay rate that the measurement adds to every mode [1/s].
+    """
+
+    factors: Mapping[str, float] = field(default_factory=_nothing)
+    regional: Mapping[tuple[int, str], float] = field(default_factory=lambda: MappingProxyType({}))
+    stiffness: tuple[FloatArray, ...] = ()
+    mass: tuple[FloatArray, ...] = ()
+    damping: tuple[FloatArray, ...] = ()
+    released: frozenset[str] = frozenset()
+    theory: str | None = None
+    gain: float = 1.0
+    decay: float = 0.0
+
+    def plus(self, other: State) -> State:
+        """Return both departures together: factors multiply, matrices add."""
+        factors = dict(self.factors)
+        for name, value in other.factors.items():
+            factors[name] = factors.get(name, 1.0) * value
+        regional = dict(self.regional)
+        for key, value in other.regional.items():
+            regional[key] = regional.get(key, 1.0) * value
+        return State(
+            MappingProxyType(factors),
+            MappingProxyType(regional),
+            self.stiffness + other.stiffness,
+            self.mass + other.mass,
+            self.damping + other.damping,
+            self.released | other.released,
+            other.theory or self.theory,
+            self.gain * other.gain,
+            self.decay + other.decay,
+        )
+
+
+NOMINAL = State()
+
+
+def combine(states: Iterable[State]) -> State:
+    """Return all departures together."""
+    return reduce(State.plus, states, NOMINAL)

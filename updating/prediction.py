@@ -1,0 +1,289 @@
+"""What a model predicts for the points of a test, with its sensitivities.
+
+Eigenvalue sensitivities are paper A's Eqs. 16 and 17; eigenvector sensitivities are the modal expansion over
+all modes of the reduced basis (Fox and Kapoor 1968).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.environment import Environment
+from updating.measured import Measured
+from updating.models.reduced import Reduced, reduce_structure
+from updating.models.spec import Spec, Theory
+from updating.models.state import NOMINAL, State, combine
+from updating.models.structure import build_structure
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Modes of a model at the points of a test.
+
+    Parameters
+    ----------
+    frequency : (n_modes,) array
+        Natural frequencies [Hz].
+    damping : (n_modes,) array
+        Damping ratios, nan where nothing is expected [-].
+    constants : (n_frf, n_modes) array
+        Modal constants phi_response * phi_reference, the gain included [1/kg].
+    along : (dim, n_frf, n_modes) array
+        Derivatives of the constants by the position of the hit [1/(kg m)].
+    log_frequency_by : (n_modes, n_factors) array
+        Derivatives of ln f by the logarithms of the factors asked for [-].
+    constants_by : (n_frf, n_modes, n_factors) array
+        Derivatives of the constants by the same [1/kg].
+    vectors : (r, n_modes) array
+        Mode shapes in the coordinates of the reduced basis [kg^-1/2].
+    """
+
+    frequency: FloatArray
+    damping: FloatArray
+    constants: FloatArray
+    along: FloatArray
+    log_frequency_by: FloatArray
+    constants_by: FloatArray
+    vectors: FloatArray
+
+    def select(self, modes: IntArray) -> Prediction:
+        """Return some of the modes, in the order given."""
+        return Prediction(
+            self.frequency[modes],
+            self.damping[modes],
+            self.constants[:, modes],
+            self.along[:, :, modes],
+            self.log_frequency_by[modes],
+            self.constants_by[:, modes],
+            self.vectors[:, modes],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Predictor:
+    """A specimen's model, looked at from the points of a test.
+
+    Parameters
+    ----------
+    spec : Spec
+        The nominal model.
+    measured : Measured
+        The test whose points and FRFs are predicted.
+    environment : Environment
+        What the study says of the surroundings.
+    additions : tuple of callables
+        What is put into the model beforehand, each a function of the predictor that returns a State:
+        accepted effects, the correction by a baseline test.
+    """
+
+    spec: Spec
+    measured: Measured
+    environment: Environment = field(default_factory=Environment)
+    additions: tuple[Callable[[Predictor], State], ...] = ()
+
+    @cached_property
+    def base(self) -> State:
+        """What the additions put into the model, on this predictor's basis."""
+        return combine(addition(self.bare) for addition in self.additions)
+
+    @cached_property
+    def bare(self) -> Predictor:
+        """The same predictor on the same basis without any addition."""
+        if not self.additions:
+            return self
+        plain = replace(self, additions=())
+        plain.__dict__["reduced"] = self.reduced
+        return plain
+
+    @cached_property
+    def reduced(self) -> Reduced:
+        """The nominal model on its reduced basis."""
+        points = self.measured.points if len(self.measured.points) else np.zeros((1, len(self.spec.elements)))
+        modes = 30 if self.spec.kind == "beam" else 40
+        return reduce_structure(build_structure(self.spec), points, modes=modes)
+
+    def once(self, name: str, build: Callable[[], FloatArray]) -> FloatArray:
+        """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""
+        if name not in self._kept:
+            self._kept[name] = build()
+        return self._kept[name]
+
+    @cached_property
+    def _kept(self) -> dict[str, FloatArray]:
+        return {}
+
+    @property
+    def expects_damping(self) -> bool:
+        """Whether the model, a region, or a baseline test says what damping to expect."""
+        own = any(r.alpha or r.beta or r.loss_factor for r in self.spec.regions)
+        return self.spec.damping.known or own or bool(self.base.damping)
+
+    def under(self, theory: Theory) -> Predictor:
+        """Return the predictor of the same specimen under another theory, kept for the next call."""
+        if theory == self.spec.theory:
+            return self
+        if theory not in self._others:
+            self._others[theory] = replace(self, spec=self.spec.with_theory(theory))
+        return self._others[theory]
+
+    @cached_property
+    def _others(self) -> dict[str, Predictor]:
+        return {}
+
+    def predict(
+        self, state: State = NOMINAL, *, factors: Sequence[str] = (), count: int | None = None
+    ) -> Prediction:
+        """Predict the lowest elastic modes of a state.
+
+        Parameters
+        ----------
+        state : State
+            Departure from the nominal model, on top of ``base``.
+        factors : sequence of str
+            Factors to differentiate by.
+        count : int, optional
+            Number of modes; left out, those up to 1.6 times the highest measured frequency and three more.
+
+        Returns
+        -------
+        Prediction
+        """
+        total = self.base.plus(state)
+        if total.theory is not None and total.theory != self.spec.theory:
+            return self.under(total.theory).predict(replace(state, theory=None), factors=factors, count=count)
+        reduced = self.reduced
+        values, vectors = reduced.eigen(total)
+        first = reduced.structure.rigid_modes
+        if count is None:
+            top = (2 * np.pi * 1.6 * self.measured.frequency.max()) ** 2
+            count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3)
+        chosen = np.arange(first, min(first + count, len(values)))
+        rows = self._rows(total)
+        shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
+        by = [self._by_factor(total, values, vectors, chosen, name, rows) for name in factors]
+        frequency = np.sqrt(np.maximum(values[chosen], 1e-12)) / (2 * np.pi)
+        return Prediction(
+            frequency,
+            self._damping(total, values[chosen], vectors[:, chosen]),
+            total.gain * self._product(shapes["w"], shapes["w"]),
+            total.gain * self._slopes(shapes),
+            np.stack([b[0] for b in by], axis=-1) if by else np.zeros((len(chosen), 0)),
+            total.gain * np.stack([self._change(shapes["w"], b[1]) for b in by], axis=-1)
+            if by
+            else np.zeros((len(self.measured.seen), len(chosen), 0)),
+            vectors[:, chosen],
+        )
+
+    @cached_property
+    def nominal_rows(self) -> dict[str, FloatArray]:
+        """Displacement and slopes of the basis at the test points, each (n_points, r)."""
+        return self.reduced.rows(self.measured.points)
+
+    def _rows(self, state: State) -> dict[str, FloatArray]:
+        stretch = state.factors.get("length", 1.0)
+        if stretch == 1.0:
+            return self.nominal_rows
+        points = np.array(self.measured.points)
+        points[:, 0] = (points[:, 0] + self.growth * (stretch - 1)) / stretch
+        rows = self.reduced.rows(points)
+        return {n: m / stretch if n == "wx" else m for n, m in rows.items()}
+
+    @property
+    def growth(self) -> float:
+        """How far x = 0 moves per unit of stretch so that points keep their distance from the free end [m]."""
+        clamped = {edge for edge in self.spec.clamped if edge[0] == "x"}
+        share = {frozenset({"x0"}): 1.0, frozenset({"x1"}): 0.0}.get(frozenset(clamped), 0.5)
+        return share * self.spec.length
+
+    def _product(self, seen: FloatArray, hit: FloatArray) -> FloatArray:
+        """Multiply the shape at the responses with the shape at the references; 1 where there is none."""
+        left = seen[self.measured.seen]
+        right = np.where(self.measured.hit[:, None] < 0, 1.0, hit[self.measured.hit])
+        return np.asarray(left * right)
+
+    def _change(self, shape: FloatArray, change: FloatArray) -> FloatArray:
+        left, right = shape[self.measured.seen], shape[self.measured.hit]
+        d_left, d_right = change[self.measured.seen], change[self.measured.hit]
+        bare = self.measured.hit[:, None] < 0
+        return np.asarray(np.where(bare, d_left, d_left * right + left * d_right))
+
+    def _slopes(self, shapes: dict[str, FloatArray]) -> FloatArray:
+        names = ("wx", "wy")[: self.measured.points.shape[1]]
+        bare = self.measured.hit[:, None] < 0
+        seen = shapes["w"][self.measured.seen]
+        slopes = [
+            np.where(bare, shapes[n][self.measured.seen], seen * shapes[n][self.measured.hit]) for n in names
+        ]
+        return np.stack(slopes)
+
+    def _by_factor(
+        self,
+        state: State,
+        values: FloatArray,
+        vectors: FloatArray,
+        chosen: IntArray,
+        name: str,
+        rows: dict[str, FloatArray],
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return derivatives of ln f and of the shapes at the points by the logarithm of a factor."""
+        stiffness, mass = self.reduced.log_sensitivity(state, name)
+        k = vectors.T @ stiffness @ vectors[:, chosen]
+        m = vectors.T @ mass @ vectors[:, chosen]
+        lam = values[chosen]
+        by_value = k[chosen, np.arange(len(chosen))] - lam * m[chosen, np.arange(len(chosen))]
+        gap = lam[None, :] - values[:, None]
+        near = np.abs(gap) < 1e-9 * np.abs(lam).max()
+        weights = np.where(near, 0.0, (k - lam * m) / np.where(near, 1.0, gap))
+        weights[chosen, np.arange(len(chosen))] = -0.5 * m[chosen, np.arange(len(chosen))]
+        n = vectors.shape[0]
+        change = rows["w"][:, :n] @ (vectors @ weights)
+        if name == "length":
+            shift = (self.growth - self.measured.points[:, :1]) * np.ones((1, n))
+            change = change + (shift * rows["wx"][:, :n]) @ vectors[:, chosen]
+        return by_value / (2 * np.maximum(lam, 1e-12)), change
+
+    def _damping(self, state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
+        """Return modal damping ratios: what is expected of the specimen, plus what the state adds."""
+        omega = np.sqrt(np.maximum(values, 1e-12))
+        expected = self.spec.damping
+        n = vectors.shape[0]
+        quadratic = np.zeros(len(values))
+        for matrix in state.damping:
+            quadratic += np.einsum("ir,ij,jr->r", vectors, matrix[:n, :n], vectors)
+        if not expected.known or state.damping:
+            base = np.full(len(values), 0.0 if state.damping else np.nan)
+        elif expected.ratios is not None:
+            given = np.asarray(expected.ratios, dtype=float)
+            base = given[np.minimum(np.arange(len(values)), len(given) - 1)]
+        else:
+            base = self._proportional(state, omega, vectors)
+        if any(region.alpha or region.beta or region.loss_factor for region in self.spec.regions):
+            base = np.nan_to_num(base) + self._regional(omega, vectors)
+        return base + quadratic / (2 * omega) + state.decay / omega
+
+    def _proportional(self, state: State, omega: FloatArray, vectors: FloatArray) -> FloatArray:
+        bare = replace(state, stiffness=(), mass=())
+        stiffness, mass = self.reduced.matrices(bare)
+        k = np.einsum("ir,ij,jr->r", vectors, stiffness, vectors)
+        m = np.einsum("ir,ij,jr->r", vectors, mass, vectors)
+        expected = self.spec.damping
+        alpha, beta, loss = (v or 0.0 for v in (expected.alpha, expected.beta, expected.loss_factor))
+        return np.asarray((alpha * m + beta * k) / (2 * omega) + loss * k / (2 * omega**2))
+
+    def _regional(self, omega: FloatArray, vectors: FloatArray) -> FloatArray:
+        """Add the damping of regions with coefficients of their own, paper B Eq. 3."""
+        n = vectors.shape[0]
+        total = np.zeros(len(omega))
+        for i, region in enumerate(self.spec.regions):
+            quadratic = {"stiffness": np.zeros(len(omega)), "mass": np.zeros(len(omega))}
+            for term, parts in zip(self.reduced.structure.terms, self.reduced.parts, strict=True):
+                quadratic[term.kind] += np.einsum("ir,ij,jr->r", vectors, parts[i, :n, :n], vectors)
+            k, m = quadratic["stiffness"], quadratic["mass"]
+            viscous = (region.alpha or 0.0) * m + (region.beta or 0.0) * k
+            total += viscous / (2 * omega) + (region.loss_factor or 0.0) * k / (2 * omega**2)
+        return total
