@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -112,7 +112,7 @@ class FrfSet:
     @property
     def laplace(self) -> ComplexArray:
         """Where in the Laplace plane the lines lie, i omega + decay, shape (n_lines,) [1/s]."""
-        return 2j * np.pi * self.frequency + self.decay
+        return np.asarray(2j * np.pi * self.frequency + self.decay, dtype=np.complex128)
 
     def band(self, low: float, high: float) -> FrfSet:
         """Return the lines with low <= f <= high [Hz].
@@ -131,7 +131,7 @@ class FrfSet:
         return self._lines(keep)
 
     def _lines(self, keep: BoolArray) -> FrfSet:
-        cut = {
+        cut: dict[str, Any] = {
             name: None if getattr(self, name) is None else getattr(self, name)[:, keep]
             for name in ("values", "coherence", "variance")
         }
@@ -140,7 +140,7 @@ class FrfSet:
     def select(self, index: list[int] | IntArray) -> FrfSet:
         """Return some of the FRFs, by their row numbers."""
         rows = [int(i) for i in index]
-        cut = {
+        cut: dict[str, Any] = {
             name: None if getattr(self, name) is None else getattr(self, name)[rows]
             for name in ("values", "coherence", "variance", "averages")
         }

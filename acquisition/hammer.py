@@ -46,8 +46,8 @@ class Hits:
         expected = (self.force.shape[0], len(self.responses), self.force.shape[-1])
         if self.force.ndim != 2 or self.motion.shape != expected:
             raise InputError(
-                f"hits at {self.reference}: force has shape {self.force.shape} and motion {self.motion.shape}; "
-                f"expected motion of shape {expected}"
+                f"hits at {self.reference}: force has shape {self.force.shape} and motion "
+                f"{self.motion.shape}; expected motion of shape {expected}"
             )
 
     @property

@@ -71,7 +71,7 @@ class ModalData:
                 object.__setattr__(self, name, frozen_array(value, dtype))
                 if value.shape != (len(self.dofs), n_modes):
                     raise InputError(
-                        f"{name} has shape {value.shape}; {len(self.dofs)} DOFs and {n_modes} modes were given"
+                        f"{name} has shape {value.shape}; there are {len(self.dofs)} DOFs and {n_modes} modes"
                     )
 
     def __len__(self) -> int:

@@ -13,7 +13,7 @@ _DAMPING = 0.004
 
 
 def trial_poles(band: tuple[float, float]) -> ComplexArray:
-    """Return lightly damped poles at growing distances outside the band, those of positive frequency [rad/s]."""
+    """Return lightly damped poles at growing distances outside the band [rad/s]."""
     width = band[1] - band[0]
     frequency = np.concatenate([band[0] - width * _STEPS, band[1] + width * _STEPS])
     frequency = frequency[frequency > 0.02 * band[1]]

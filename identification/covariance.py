@@ -40,7 +40,10 @@ def pole_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
     own = np.einsum("rarb->rab", full)
     a, b, size = poles.real, poles.imag, np.abs(poles)
     jacobian = np.stack(
-        [np.stack([a, b], axis=1) / size[:, None] ** 2, np.stack([-(b**2), a * b], axis=1) / size[:, None] ** 3],
+        [
+            np.stack([a, b], axis=1) / size[:, None] ** 2,
+            np.stack([-(b**2), a * b], axis=1) / size[:, None] ** 3,
+        ],
         axis=1,
     )
     covariance = np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian)

@@ -1,24 +1,27 @@
-"""From candidate poles to the fit the data bear out: refine, prune, complete the background, weigh, repeat."""
+"""From candidate poles to the fit the data bear out: refine, prune, complete, weigh."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
 
-from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.errors import EstimationError
 from acquisition.frf import FrfSet
-from identification import background, basis, noise
+from identification import background, basis, leftover, noise
 from identification.grams import Weights
 from identification.pruning import inside, plausible, significant, threshold
-from identification.refine import Fit, refine
+from identification.refine import Fit, evaluate, refine
 from identification.residues import synthesise, uniform_weights
 
 _ROUNDS = 12
 _EXTRA_POLES = 4
-_SHORT = 12
+_SHORT, _LONG = 12, 40
+_COARSE, _FINE = 1e-6, 1e-10
+_REJECTIONS = 3
+_BROAD = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,22 +79,127 @@ def fit_modes(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float]) -
         If no candidate is a mode of the band.
     """
     ladder = background.term_ladder(band)
-    rung, left = 0, _EXTRA_POLES
-    fit = refine(frfs, start, uniform_weights(frfs), powers=ladder[0], iterations=_SHORT)
-    fit = _pruned(frfs, fit, _search_weights(frfs, fit), band, iterations=_SHORT)
+    fit = refine(frfs, start, uniform_weights(frfs), powers=ladder[0], iterations=_SHORT, tolerance=_COARSE)
+    weights = _search_weights(frfs, fit)
+    fit = refine(frfs, fit.poles, weights, powers=ladder[0], iterations=_SHORT, tolerance=_COARSE)
+    fit = _pruned(frfs, fit, weights, band, iterations=_SHORT, tolerance=_COARSE)
+    fit = _completed(frfs, fit, band, ladder)
+    return _weighted(frfs, _without_broad(frfs, fit, band, ladder), band)
+
+
+def _completed(frfs: FrfSet, fit: Fit, band: tuple[float, float], ladder: tuple[tuple[int, ...], ...]) -> Fit:
+    """Add poles and residual terms as long as they explain more than noise can."""
+    search = _Search()
     for _ in range(_ROUNDS):
-        weights = _search_weights(frfs, fit)
-        pole, climb = _extension(frfs, fit, weights, band, ladder, rung, allow_pole=left > 0)
-        if pole is None and not climb:
+        if not _room(frfs, fit):
             break
-        poles = fit.poles if pole is None else np.append(fit.poles, pole)
-        trial = refine(frfs, poles, weights, powers=ladder[rung + climb], iterations=_SHORT)
-        trial = _pruned(frfs, trial, weights, band, iterations=_SHORT)
-        if inside(trial.poles, band, frfs.df).sum() > inside(fit.poles, band, frfs.df).sum():
-            left = 0  # it went into the band to mend the misfit of a mode: not a mode of its own
+        weights, powers = _search_weights(frfs, fit), fit.linear.powers
+        pole, gain = _best_pole(frfs, fit, weights, band, search)
+        higher, gain_up = _higher(frfs, fit, weights, ladder)
+        if max(gain, gain_up) <= 0.0:
+            break
+        poles = np.append(fit.poles, pole) if gain > gain_up else fit.poles
+        powers = powers if gain > gain_up else higher
+        trial = refine(frfs, poles, weights, powers=powers, iterations=_SHORT, tolerance=_COARSE)
+        trial = _pruned(frfs, trial, weights, band, iterations=_SHORT, tolerance=_COARSE)
+        if gain_up >= gain:
+            fit = trial
             continue
-        fit, rung, left = trial, rung + climb, left - (pole is not None)
-    return _weighted(frfs, fit, band)
+        accepted = _acceptable(frfs, fit, trial, pole, band)
+        fit = trial if accepted else fit
+        search = search.after(pole, band, frfs.df, accepted=accepted)
+    return fit
+
+
+def _without_broad(
+    frfs: FrfSet, fit: Fit, band: tuple[float, float], ladder: tuple[tuple[int, ...], ...]
+) -> Fit:
+    """Do without poles whose half-power band is a tenth of the band, if a background explains as much."""
+    limit = float(stats.chi2.isf(1e-6, 2 * len(frfs.values)))
+    for pole in fit.poles[_broad(fit.poles, band, frfs.df)]:
+        rest = fit.poles[np.abs(fit.poles - pole) > 1e-9 * abs(pole)]
+        if len(rest) == 0 or len(rest) == len(fit.poles):
+            continue
+        weights = _search_weights(frfs, fit)
+        powers = fit.linear.powers
+        plain = refine(frfs, rest, weights, powers=powers, iterations=_SHORT, tolerance=_COARSE)
+        plain = _completed(frfs, plain, band, ladder)
+        again = refine(
+            frfs, plain.poles, weights, powers=plain.linear.powers, iterations=_SHORT, tolerance=_COARSE
+        )
+        fewer = inside(again.poles, band, frfs.df).sum() < inside(fit.poles, band, frfs.df).sum()
+        if fewer and 2.0 * (again.cost - fit.cost) < limit:
+            fit = again
+    return fit
+
+
+def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArray:
+    width = -poles.real / np.pi
+    return np.asarray(inside(poles, band, df) & (width > _BROAD * (band[1] - band[0])))
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Where a search for further poles still looks: how many beyond the edges, what stretches no more."""
+
+    beyond: int = _EXTRA_POLES
+    blocked: tuple[tuple[float, float], ...] = ()
+
+    def after(self, pole: complex, band: tuple[float, float], df: float, *, accepted: bool) -> _Search:
+        """Return what is left to search once a pole was tried."""
+        frequency = pole.imag / (2 * np.pi)
+        if not band[0] <= frequency <= band[1]:
+            return replace(self, beyond=self.beyond - 1 if accepted else 0)
+        if accepted:
+            return self
+        reach = 5 * df + 3 * abs(pole.real) / (2 * np.pi)
+        return replace(self, blocked=(*self.blocked, (frequency - reach, frequency + reach)))
+
+
+def _room(frfs: FrfSet, fit: Fit) -> bool:
+    return len(frfs.frequency) > 4 * len(fit.poles) + 20
+
+
+def _best_pole(
+    frfs: FrfSet, fit: Fit, weights: Weights, band: tuple[float, float], search: _Search
+) -> tuple[complex, float]:
+    """Return the pole, in the band or beyond, that explains most, and by how much more than noise."""
+    inner = np.zeros(0, complex)
+    if len(search.blocked) < _REJECTIONS:
+        inner = leftover.trial_poles(frfs, _residual(frfs, fit), weights.level, search.blocked)
+    outer = background.trial_poles(band) if search.beyond > 0 else np.zeros(0, complex)
+    trials = np.concatenate([inner, outer])
+    if len(trials) == 0:
+        return 0j, 0.0
+    gain = 2.0 * background.gains(frfs, fit.poles, fit.linear.powers, weights, trials)
+    best = int(gain.argmax())
+    return complex(trials[best]), float(gain[best]) - threshold(*frfs.values.shape)
+
+
+def _acceptable(frfs: FrfSet, fit: Fit, trial: Fit, pole: complex, band: tuple[float, float]) -> bool:
+    """Tell whether a pole that was added stands for a mode of its own."""
+    if len(trial.poles) <= len(fit.poles):
+        return False
+    grown = int(inside(trial.poles, band, frfs.df).sum()) > int(inside(fit.poles, band, frfs.df).sum())
+    if not grown:
+        return True
+    if not band[0] <= pole.imag / (2 * np.pi) <= band[1]:
+        return False
+    moved = np.abs(trial.poles[:, None] - fit.poles[None, :]).min(axis=1)
+    return not leftover.mends_a_mode(trial.poles, trial.linear.residues, int(moved.argmax()))
+
+
+def _higher(
+    frfs: FrfSet, fit: Fit, weights: Weights, ladder: tuple[tuple[int, ...], ...]
+) -> tuple[tuple[int, ...], float]:
+    """Return the next set of residual terms, and by how much more than noise it explains."""
+    rung = ladder.index(fit.linear.powers)
+    if rung + 1 == len(ladder):
+        return fit.linear.powers, 0.0
+    extra = (len(ladder[rung + 1]) - len(ladder[rung])) * len(frfs.values)
+    here = evaluate(frfs, fit.poles, weights, fit.linear.powers).cost
+    there = evaluate(frfs, fit.poles, weights, ladder[rung + 1]).cost
+    return ladder[rung + 1], 2.0 * (here - there) - float(stats.chi2.isf(1e-6, extra))
 
 
 def _residual(frfs: FrfSet, fit: Fit) -> ComplexArray:
@@ -105,49 +213,23 @@ def _search_weights(frfs: FrfSet, fit: Fit) -> Weights:
 
 
 def _pruned(
-    frfs: FrfSet, fit: Fit, weights: Weights, band: tuple[float, float], *, iterations: int
+    frfs: FrfSet, fit: Fit, weights: Weights, band: tuple[float, float], *, iterations: int, tolerance: float
 ) -> Fit:
-    """Strike off what is implausible or insignificant, refine, and look again."""
+    """Strike off what is implausible or insignificant, refine the rest, and look again."""
     powers = fit.linear.powers
-    fit = refine(frfs, fit.poles, weights, powers=powers, iterations=iterations)
     for _ in range(_ROUNDS):
         keep = plausible(fit.poles, band) & significant(fit, n_lines=len(frfs.frequency))
         if keep.all():
             break
         if not (keep & inside(fit.poles, band, frfs.df)).any():
             raise EstimationError(
-                f"{frfs.source}: no mode stands out of the noise between {band[0]:g} and {band[1]:g} Hz; widen "
-                "the band, raise the order or check the FRFs"
+                f"{frfs.source}: no mode stands out of the noise between {band[0]:g} and {band[1]:g} Hz; "
+                "widen the band, raise the order or check the FRFs"
             )
-        fit = refine(frfs, fit.poles[keep], weights, powers=powers, iterations=iterations)
+        fit = refine(
+            frfs, fit.poles[keep], weights, powers=powers, iterations=iterations, tolerance=tolerance
+        )
     return fit
-
-
-def _extension(
-    frfs: FrfSet,
-    fit: Fit,
-    weights: Weights,
-    band: tuple[float, float],
-    ladder: tuple[tuple[int, ...], ...],
-    rung: int,
-    *,
-    allow_pole: bool,
-) -> tuple[complex | None, bool]:
-    """Return the pole beyond the edges, or the step up the ladder, that explains more than noise can."""
-    n_frf, n_lines = frfs.values.shape
-    best, pole = 0.0, None
-    if allow_pole and n_lines > 4 * len(fit.poles) + 20:
-        trials = background.trial_poles(band)
-        gain = 2.0 * background.gains(frfs, fit.poles, fit.linear.powers, weights, trials)
-        best = float(gain.max() - threshold(n_frf, n_lines))
-        pole = complex(trials[gain.argmax()])
-    climb = False
-    if rung + 1 < len(ladder) and n_lines > 4 * len(fit.poles) + 20:
-        extra = len(ladder[rung + 1]) - len(ladder[rung])
-        higher = refine(frfs, fit.poles, weights, powers=ladder[rung + 1], iterations=2)
-        gain_up = 2.0 * (fit.cost - higher.cost) - float(stats.chi2.isf(1e-6, extra * n_frf))
-        climb = gain_up > max(best, 0.0)
-    return (pole if best > 0 and not climb else None), climb
 
 
 def _weighted(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fitted:
@@ -156,7 +238,8 @@ def _weighted(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fitted:
     for _ in range(3):
         residual, absorbed = _residual(frfs, fit), _absorbed(frfs, fit, weights)
         weights, variance, measured = _noise(frfs, fit, residual, absorbed)
-        fit = _pruned(frfs, fit, weights, band, iterations=40)
+        fit = refine(frfs, fit.poles, weights, powers=fit.linear.powers)
+        fit = _pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=_FINE)
     return Fitted(fit, weights, variance, _residual(frfs, fit), _absorbed(frfs, fit, weights), measured)
 
 

@@ -80,7 +80,7 @@ def _products(real: FloatArray, root: FloatArray) -> FloatArray:
 
 
 def solve(gram: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve a stack of normal equations, (n or 1, k, k) by (n, k, m), columns brought to unit length first."""
+    """Solve stacked normal equations, (n or 1, k, k) by (n, k, m), with columns of unit length."""
     length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
     unit = gram / (length[:, :, None] * length[:, None, :])
     unit = unit + 1e-15 * np.eye(gram.shape[-1])

@@ -69,8 +69,8 @@ def identify(
     start = candidates(chart)
     if len(start) == 0:
         raise EstimationError(
-            f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the order "
-            "rises; widen the band, raise the order or check the FRFs"
+            f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
+            "order rises; widen the band, raise the order or check the FRFs"
         )
     return _assemble(data, fit_modes(data, start, band=limits), chart, limits, points_rejected)
 

@@ -18,7 +18,8 @@ def _pair(a: AnyArray, b: AnyArray) -> tuple[ComplexArray, ComplexArray]:
     first, second = (x[:, None] if x.ndim == 1 else x for x in (first, second))
     if first.ndim != 2 or second.ndim != 2 or first.shape[0] != second.shape[0]:
         raise InputError(
-            f"shapes of {first.shape} and {second.shape}: both need one row for each of the same degrees of freedom"
+            f"shapes of {first.shape} and {second.shape}: both need one row for each of the same "
+            "degrees of freedom"
         )
     return first, second
 
@@ -179,8 +180,8 @@ def _unit(shapes: ComplexArray) -> ComplexArray:
 def mpc(a: AnyArray) -> FloatArray:
     """Modal phase collinearity: 1 for a shape whose components lie on one line of the complex plane.
 
-    ((S_xx - S_yy)^2 + 4 S_xy^2) / (S_xx + S_yy)^2 with real and imaginary parts about zero (Pappa, Elliott and
-    Schenk, J. Guid. Control Dyn. 16 (1993) 832-838, without subtracting the mean, for a shape with one
+    ((S_xx - S_yy)^2 + 4 S_xy^2) / (S_xx + S_yy)^2 with real and imaginary parts about zero (Pappa, Elliott
+    and Schenk, J. Guid. Control Dyn. 16 (1993) 832-838, without subtracting the mean, for a shape with one
     component has none).
 
     Parameters

@@ -41,7 +41,8 @@ class ModalModel:
     lower, upper : (n_frf,) arrays
         Residual terms lower / s^2 + upper of the receptance, signs applied [1/kg, m/N].
     background : Residues
-        All that is not a mode of the band: residues of poles outside it and all residual terms, signs not applied.
+        All that is not a mode of the band: residues of poles outside it and all residual terms, signs
+        not applied.
     background_poles : (n_background,) complex array
         Those poles [rad/s].
     band : tuple of float
@@ -74,6 +75,7 @@ class ModalModel:
     points_rejected: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        """Freeze the arrays."""
         for name in ("poles", "constants", "background_poles"):
             object.__setattr__(self, name, frozen_array(getattr(self, name), np.complex128))
         for name in ("pole_covariance", "constant_sigma", "lower", "upper"):
@@ -97,8 +99,8 @@ class ModalModel:
             Same degrees of freedom and form as ``frfs``; at 0 Hz without a window the value next to it.
         """
         lines = self.frfs.frequency if frequency is None else np.asarray(frequency, dtype=float)
-        laplace = 2j * np.pi * lines + self.frfs.decay
-        laplace = np.where(laplace == 0, 2j * np.pi * 1e-3 * self.frfs.df, laplace)
+        moved = np.where((lines == 0) & (self.frfs.decay == 0), 1e-3 * self.frfs.df, lines)
+        laplace: ComplexArray = np.asarray(2j * np.pi * moved + self.frfs.decay, complex)
         residues = self.constants * signs(self.frfs)[:, None] / (2j * self.poles.imag)
         linear = replace(self.background, residues=np.hstack([residues, self.background.residues]))
         poles = np.concatenate([self.poles, self.background_poles])

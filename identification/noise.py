@@ -62,7 +62,9 @@ def leverage(columns: ComplexArray, weights: Weights) -> FloatArray:
     return result
 
 
-def from_residual(residual: ComplexArray, absorbed: FloatArray, floor: FloatArray) -> tuple[Weights, FloatArray]:
+def from_residual(
+    residual: ComplexArray, absorbed: FloatArray, floor: FloatArray
+) -> tuple[Weights, FloatArray]:
     """Return weights and variances from what a fit leaves.
 
     The simplest law the residuals support is taken: white in each FRF; one colour common to all; or each
@@ -84,7 +86,7 @@ def from_residual(residual: ComplexArray, absorbed: FloatArray, floor: FloatArra
     variance : (n_frf, n_lines) array
         Local variances of the law chosen [unit squared].
     """
-    n_frf, n_lines = residual.shape
+    n_lines = residual.shape[1]
     power = np.abs(residual) ** 2
     free = np.broadcast_to(np.maximum(1.0 - absorbed, 0.02), power.shape)
     level = np.maximum(power.sum(axis=1) / free.sum(axis=1), floor[:, 0])

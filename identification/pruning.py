@@ -12,26 +12,28 @@ _FALSE_ALARM = 1e-8
 
 
 def residue_variance(fit: Fit) -> FloatArray:
-    """Return the variance of the real (or imaginary) part of each residue, shape (n_frf, n_modes) [(m/(N s))^2].
+    """Return the variance of either part of each residue, shape (n_frf, n_modes) [(m/(N s))^2].
 
     Poles' uncertainty included; the mean over both parts, which for circular noise are alike.
     """
     n = len(fit.poles)
     covariance = pole_covariance(fit)
-    by_poles = np.einsum("jka,ab,jkb->jk", fit.pole_gain[:, : 2 * n], covariance, fit.pole_gain[:, : 2 * n], optimize=True)
+    by_poles = np.einsum(
+        "jka,ab,jkb->jk", fit.pole_gain[:, : 2 * n], covariance, fit.pole_gain[:, : 2 * n], optimize=True
+    )
     both = fit.linear_inverse[:, : 2 * n] + by_poles
     return np.asarray(both.reshape(len(both), n, 2).mean(axis=2))
 
 
 def pole_covariance(fit: Fit) -> FloatArray:
-    """Return the covariance of (Re, Im) of the poles, interleaved, shape (2 n_modes, 2 n_modes) [rad^2/s^2]."""
+    """Return the covariance of (Re, Im) of the poles, interleaved, (2 n_modes, 2 n_modes) [rad^2/s^2]."""
     length = np.sqrt(np.maximum(np.diag(fit.information), np.finfo(float).tiny))
     unit = fit.information / np.outer(length, length)
     return np.asarray(np.linalg.pinv(unit, hermitian=True, rcond=1e-13) / np.outer(length, length))
 
 
 def strength(fit: Fit) -> FloatArray:
-    """Return how far every mode stands out of the noise, sum |R|^2 / (variance of its parts), shape (n_modes,).
+    """Return how far every mode stands out: sum |R|^2 / (variance of its parts), shape (n_modes,) [-].
 
     Without the mode it would be a chi-square of 2 n_frf degrees of freedom.
     """

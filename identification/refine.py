@@ -47,8 +47,20 @@ class Fit:
 
 
 @dataclass(frozen=True, eq=False)
-class _Step:
-    """Everything at one set of poles that the next step needs."""
+class Step:
+    """Everything at one set of poles that the next step needs.
+
+    Parameters
+    ----------
+    cost : float
+        Weighted sum of squared misfits with the best linear unknowns [-].
+    solution : (n_frf, 2 n_modes + n_terms) array
+        Those unknowns.
+    normal : (2 n_modes, 2 n_modes) array
+        J^T J of (Re, Im) of the poles, interleaved [s^2/rad^2].
+    gradient : (2 n_modes,) array
+        J^T r [s/rad].
+    """
 
     cost: float
     solution: FloatArray
@@ -63,6 +75,7 @@ def refine(
     *,
     powers: tuple[int, ...] = basis.BASIC_TERMS,
     iterations: int = _ITERATIONS,
+    tolerance: float = _CONVERGED,
 ) -> Fit:
     """Minimise the weighted misfit over poles, residues and residual terms.
 
@@ -83,21 +96,23 @@ def refine(
         Powers of s of the residual terms of the receptance [-].
     iterations : int
         Upper limit of steps [-].
+    tolerance : float
+        Relative gain of a step at which the iteration rests [-].
 
     Returns
     -------
     Fit
         The refined model.
     """
-    state, damping, converged = _evaluate(frfs, poles, weights, powers), 1e-3, False
+    state, damping, converged = evaluate(frfs, poles, weights, powers), 1e-3, False
     for _ in range(iterations):
         trial_poles = poles + _solve_step(state, damping)
         trial_poles = _inside(trial_poles, poles, frfs.decay)
-        trial = _evaluate(frfs, trial_poles, weights, powers)
+        trial = evaluate(frfs, trial_poles, weights, powers)
         if trial.cost <= state.cost:
             gain = (state.cost - trial.cost) / max(state.cost, np.finfo(float).tiny)
             poles, state, damping = trial_poles, trial, max(0.1 * damping, 1e-12)
-            if gain < _CONVERGED:
+            if gain < tolerance:
                 converged = True
                 break
         else:
@@ -108,16 +123,16 @@ def refine(
     return _finish(frfs, poles, weights, powers, converged)
 
 
-def _solve_step(state: _Step, damping: float) -> ComplexArray:
-    diagonal = np.maximum(np.diag(state.normal), np.finfo(float).tiny)
-    length = np.sqrt(diagonal)
+def _solve_step(state: Step, damping: float) -> ComplexArray:
+    diagonal = np.diag(state.normal)
+    length = np.sqrt(np.maximum(diagonal, 1e-24 * diagonal.max() + 1e-200))
     unit = state.normal / np.outer(length, length) + damping * np.eye(len(length))
     step = np.linalg.solve(unit, state.gradient / length) / length
     return np.asarray(step[0::2] + 1j * step[1::2])
 
 
 def _inside(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexArray:
-    """Keep trial poles on the decaying side of the lines and Im > 0; go half-way to a border that is crossed."""
+    """Keep trial poles decaying and Im > 0; go half-way to a border that would be crossed."""
     real = np.where(trial.real < decay, trial.real, 0.5 * (poles.real + decay))
     imag = np.where(trial.imag > 0.5 * poles.imag, trial.imag, 0.75 * poles.imag)
     return np.asarray(real + 1j * imag)
@@ -146,7 +161,8 @@ def _turns(solution: FloatArray, n_modes: int) -> FloatArray:
     return np.stack([np.stack([a, -b], axis=2), np.stack([b, a], axis=2)], axis=2)
 
 
-def _evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]) -> _Step:
+def evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]) -> Step:
+    """Project the linear unknowns out at given poles; parameters as for :func:`refine`."""
     n = len(poles)
     _, products, solution, follow = _pieces(frfs, poles, weights, powers)
     k = solution.shape[1]
@@ -156,7 +172,7 @@ def _evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers:
     turns = _turns(solution, n)
     gradient = np.einsum("j,jni,jnia->na", weights.level, slope_cross.reshape(-1, n, 2), turns)
     normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, weights.level)
-    return _Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
+    return Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
 
 
 def _contract(projected: FloatArray, turns: FloatArray, level: FloatArray) -> FloatArray:
@@ -178,7 +194,7 @@ def _finish(
     poles = poles[order]
     n = len(poles)
     columns, products, solution, follow = _pieces(frfs, poles, weights, powers)
-    state = _evaluate(frfs, poles, weights, powers)
+    state = evaluate(frfs, poles, weights, powers)
     k = solution.shape[1]
     turns = _turns(solution, n)
     blocks = follow.reshape(len(follow), k, n, 2)
@@ -197,5 +213,9 @@ def _finish(
 
 
 def _inverse_diagonal(gram: FloatArray) -> FloatArray:
-    identity = np.broadcast_to(np.eye(gram.shape[-1]), gram.shape)
-    return np.asarray(np.einsum("jkk->jk", grams.solve(gram, identity)))
+    """Return the diagonal of each inverse; directions the data do not see count as seen to rounding."""
+    length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(gram / (length[:, :, None] * length[:, None, :]))
+    floor = np.finfo(float).eps * gram.shape[-1]
+    inverse = np.einsum("jkm,jm->jk", vectors**2, 1.0 / np.maximum(values, floor))
+    return np.asarray(inverse / length**2)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.frf import FrfSet
+from acquisition.frf import Form, FrfSet
 from identification import basis, grams
 
 
@@ -76,7 +76,7 @@ def unpack(solution: FloatArray, n_modes: int, term_scale: FloatArray, powers: t
     return Residues(parts[:, :, 0] + 1j * parts[:, :, 1], solution[:, 2 * n_modes :] * term_scale, powers)
 
 
-def synthesise(laplace: ComplexArray, poles: ComplexArray, linear: Residues, form: basis.Form) -> ComplexArray:
+def synthesise(laplace: ComplexArray, poles: ComplexArray, linear: Residues, form: Form) -> ComplexArray:
     """Return the FRFs of a modal model, shape (n_frf, n_lines) [by ``form``]."""
     columns = basis.build(laplace, poles, form, linear.powers)
     parts = np.stack([linear.residues.real, linear.residues.imag], axis=2).reshape(len(linear.residues), -1)

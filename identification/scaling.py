@@ -69,8 +69,8 @@ def mode_shapes(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> Sha
     if len(drive) == 0:
         turned, _ = _turned(long)
         note = (
-            f"no drive point: none of {len(plan.rows)} points was both hit and measured at one node and axis, so the "
-            "mode shapes are not mass-normalised; measure one drive point to scale them"
+            f"no drive point: none of {len(plan.rows)} points was both hit and measured at one node and "
+            "axis, so the mode shapes are not mass-normalised; measure one drive point to scale them"
         )
         return Shapes(plan.rows, turned, np.sqrt(long_variance), False, (note,))
     return _scaled(plan, (long, short, long_variance), (constants, sigma), drive)
@@ -144,7 +144,9 @@ def _drive_notes(
     names = ", ".join(str(plan.rows[i]) for i in drive[:, 0])
     weak = np.flatnonzero(certainty < 5.0) + 1
     if len(weak):
-        notes.append(f"mode(s) {_listed(weak)} hardly move at the drive point {names}: their scale is uncertain")
+        notes.append(
+            f"mode(s) {_listed(weak)} hardly move at the drive point {names}: their scale is uncertain"
+        )
     wrong = np.flatnonzero((values.real < -5.0 * spread).any(axis=0) & (certainty >= 5.0)) + 1
     if len(wrong):
         notes.append(

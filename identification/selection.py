@@ -36,7 +36,9 @@ def _merged(chart: StabilisationChart, tracks: list[IntArray]) -> list[IntArray]
     groups: list[IntArray] = []
     for track in sorted(tracks, key=len, reverse=True):
         for i, group in enumerate(groups):
-            if np.intersect1d(chart.level[group], chart.level[track]).size == 0 and _same(chart, group, track):
+            if np.intersect1d(chart.level[group], chart.level[track]).size == 0 and _same(
+                chart, group, track
+            ):
                 groups[i] = np.concatenate([group, track])
                 break
         else:

@@ -44,6 +44,7 @@ class StabilisationChart:
     band: tuple[float, float]
 
     def __post_init__(self) -> None:
+        """Freeze the arrays."""
         for name, dtype in (("orders", np.int64), ("level", np.int64), ("track", np.int64)):
             object.__setattr__(self, name, frozen_array(getattr(self, name), dtype))
         for name in ("poles", "participation"):
@@ -110,7 +111,9 @@ def stabilise(sets: PoleSets, *, band: tuple[float, float]) -> StabilisationChar
         here = np.arange(starts[i], starts[i + 1])
         for back in (1, 2):
             if i >= back:
-                _continue(all_poles, all_parts, track, here, np.arange(starts[i - back], starts[i - back + 1]))
+                _continue(
+                    all_poles, all_parts, track, here, np.arange(starts[i - back], starts[i - back + 1])
+                )
         fresh = here[track[here] < 0]
         track[fresh] = n_tracks + np.arange(len(fresh))
         n_tracks += len(fresh)
@@ -145,7 +148,9 @@ def separation(p: ComplexArray, u: ComplexArray, q: ComplexArray, v: ComplexArra
     size = 0.5 * (np.abs(p)[:, None] + np.abs(q)[None, :])
     damping_p, damping_q = np.abs(p.real)[:, None], np.abs(q.real)[None, :]
     width = 0.5 * (damping_p + damping_q)
-    in_frequency = np.abs(np.abs(p)[:, None] - np.abs(q)[None, :]) / np.maximum(_FREQUENCY * size, 0.3 * width)
+    in_frequency = np.abs(np.abs(p)[:, None] - np.abs(q)[None, :]) / np.maximum(
+        _FREQUENCY * size, 0.3 * width
+    )
     in_damping = np.abs(damping_p - damping_q) / (_DAMPING * np.maximum(width, 1e-4 * size))
     mac = np.abs(u.conj() @ v.T) ** 2
     return np.asarray(np.sqrt(in_frequency**2 + in_damping**2 + ((1 - mac) / _PARTICIPATION) ** 2))

@@ -1,0 +1,66 @@
+"""modalkit: from hammer hits to modes, to an updated model, to the cause of the gap between them."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+_ROOMS = ("acquisition", "identification", "updating")
+
+
+def _check_rooms() -> None:
+    """Refuse to start when Python finds somebody else's module under the name of one of our rooms."""
+    home = Path(__file__).resolve().parent.parent
+    for room in _ROOMS:
+        spec = importlib.util.find_spec(room)
+        found = Path(spec.origin).resolve() if spec is not None and spec.origin else None
+        if found is None or found.parent != home / room:
+            raise ImportError(
+                f"modalkit needs its own package {room!r} but Python finds {found}; "
+                "rename that file or run from another folder"
+            )
+
+
+_check_rooms()
+
+from acquisition import (  # noqa: E402
+    FrfSet,
+    Geometry,
+    HammerTest,
+    InputError,
+    ModalData,
+    ModalkitError,
+    StudyError,
+    read_uff,
+    write_uff,
+)
+from identification import ModalModel, identify  # noqa: E402
+from modalkit.process import Processed, Session, open_study, read  # noqa: E402
+from modalkit.study import Study, read_study  # noqa: E402
+from updating import Case, Diagnosis, diagnose, register  # noqa: E402
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Case",
+    "Diagnosis",
+    "FrfSet",
+    "Geometry",
+    "HammerTest",
+    "InputError",
+    "ModalData",
+    "ModalModel",
+    "ModalkitError",
+    "Processed",
+    "Session",
+    "Study",
+    "StudyError",
+    "diagnose",
+    "identify",
+    "open_study",
+    "read",
+    "read_study",
+    "read_uff",
+    "register",
+    "write_uff",
+]

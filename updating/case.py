@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from updating.diagnosis.problem import Tolerances
+from updating.tolerances import Tolerances
 from updating.environment import Environment
 from updating.measured import Measured
 from updating.models import Spec

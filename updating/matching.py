@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import FloatArray, IntArray
+from acquisition.errors import EstimationError
+from identification import pair
 from updating.measured import Measured
 from updating.prediction import Prediction
 
@@ -43,3 +47,76 @@ def match(measured: Measured, prediction: Prediction, order: IntArray) -> IntArr
     ratio = np.abs(np.log(measured.frequency[:, None] / prediction.frequency[None, :]))
     cost = 1 - mac_of_constants(measured, prediction) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
     return np.asarray(linear_sum_assignment(cost)[1])
+
+
+LOWEST_MAC = 0.4
+"""Below this MAC a measured mode has no partner."""
+
+
+@dataclass(frozen=True, eq=False)
+class Paired:
+    """Measured modes that have a partner in the model.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test with these modes only.
+    order : (n_modes,) int array
+        Rank of each one's partner among the model's modes.
+    warnings : tuple of str
+        Which modes have none.
+    """
+
+    measured: Measured
+    order: IntArray
+    warnings: tuple[str, ...]
+
+
+def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
+    """Find the partner of every measured mode, and leave out those without one.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test.
+    prediction : Prediction
+        The nominal model's modes, in order of frequency.
+
+    Raises
+    ------
+    EstimationError
+        If no mode has a partner.
+    """
+    if not measured.has_shapes:
+        return _pair_by_order(measured, prediction)
+    if len(measured.frequency) > len(prediction.frequency):
+        raise EstimationError(
+            f"the test has {len(measured.frequency)} modes and the model {len(prediction.frequency)} in its band; "
+            "narrow the band of the test"
+        )
+    order = match(measured, prediction, np.arange(len(measured.frequency)))
+    mac = mac_of_constants(measured, prediction)[np.arange(len(order)), order]
+    keep = mac >= LOWEST_MAC
+    if not keep.any():
+        raise EstimationError(
+            f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
+            "check axes, points and boundary conditions"
+        )
+    lost = [
+        f"mode at {f:.2f} Hz has no partner in the model (MAC {m:.2f}) and is left out"
+        for f, m in zip(measured.frequency[~keep], mac[~keep], strict=True)
+    ]
+    return Paired(measured.modes(keep), order[keep], tuple(lost))
+
+
+def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
+    """Pair by rank, letting model modes be skipped where the ratio of frequencies is then smoother."""
+    pairs = pair(measured.frequency, prediction.frequency, None)
+    rows = np.array([p.test for p in pairs if p.model is not None and p.test is not None], dtype=int)
+    order = np.array([p.model for p in pairs if p.model is not None and p.test is not None], dtype=int)
+    if not len(rows):
+        raise EstimationError(f"{measured.title or 'test'}: no measured frequency has a partner in the model")
+    keep = np.zeros(len(measured.frequency), dtype=bool)
+    keep[rows] = True
+    lost = [f"mode at {f:.2f} Hz has no partner in the model" for f in measured.frequency[~keep]]
+    return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))

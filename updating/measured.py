@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acquisition import Dof, Geometry, ModalData
-from acquisition.arrays import BoolArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import StudyError
 from identification import ModalModel
 from updating.axes import Axes
@@ -37,6 +37,8 @@ class Measured:
         Modal constants and standard deviations, positive along the model's z [1/kg, or - per mode].
     absolute : bool
         Whether the constants carry absolute level.
+    repeated : bool
+        Whether the scatter of the constants is known from repeated hits.
     calibration : float
         Relative 1-sigma uncertainty of the level [-].
     repeatability : float
@@ -58,6 +60,7 @@ class Measured:
     constants: FloatArray
     constants_sigma: FloatArray
     absolute: bool
+    repeated: bool = True
     calibration: float = 0.02
     repeatability: float = 0.0005
     position_sigma: float = 0.001
@@ -103,7 +106,9 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
     placed = _place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
     rows = placed.rows
     shapes = np.zeros((0, len(modes))) if modes.shapes is None else modes.shapes.real[rows] * placed.signs[:, None]
-    if modes.shape_sigma is None:
+    if modes.shape_sigma is None and len(rows) == 0:
+        sigma = np.zeros_like(shapes)
+    elif modes.shape_sigma is None:
         sigma = 0.02 * np.sqrt(np.mean(shapes**2, axis=0, keepdims=True)) * np.ones_like(shapes)
     else:
         sigma = modes.shape_sigma[rows]
@@ -119,6 +124,7 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
         shapes,
         sigma,
         absolute=False,
+        repeated=False,
         warnings=placed.warnings,
         **options,  # type: ignore[arg-type]
     )
@@ -160,11 +166,24 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         np.array([where[model.responses[row].node] for row in both.tolist()]),
         np.array([where[model.references[row].node] for row in both.tolist()]),
         model.constants.real[both] * signs[:, None],
-        model.constant_sigma[both],
+        _with_complexity(model.constants[both], model.constant_sigma[both]),
         absolute=True,
+        repeated=model.frfs.variance is not None,
         warnings=tuple(dict.fromkeys(responses.warnings + references.warnings)),
         **options,  # type: ignore[arg-type]
     )
+
+
+def _with_complexity(constants: ComplexArray, sigma: FloatArray) -> FloatArray:
+    """Widen sigma to what the imaginary parts show.
+
+    The constants of real modes are real; what disturbs an FRF turns them as much as it stretches them, so the
+    scatter of the imaginary parts of a mode measures the error of its real parts.
+    """
+    turned = np.angle(np.sum(constants**2, axis=0)) / 2
+    across = (constants * np.exp(-1j * turned)).imag
+    excess = np.mean(across**2, axis=0) - np.mean(sigma**2, axis=0)
+    return np.asarray(np.sqrt(sigma**2 + np.maximum(excess, 0.0)))
 
 
 @dataclass(frozen=True, eq=False)

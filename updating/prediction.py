@@ -94,11 +94,13 @@ class Predictor:
     @cached_property
     def bare(self) -> Predictor:
         """The same predictor on the same basis without any addition."""
-        if not self.additions:
-            return self
-        plain = replace(self, additions=())
-        plain.__dict__["reduced"] = self.reduced
-        return plain
+        return self.looking(self.measured, ()) if self.additions else self
+
+    def looking(self, measured: Measured, additions: tuple[Callable[[Predictor], State], ...] | None = None) -> Predictor:
+        """Return a predictor for another test or with other additions, on the same reduced basis."""
+        other = replace(self, measured=measured, additions=self.additions if additions is None else additions)
+        other.__dict__["reduced"] = self.reduced
+        return other
 
     @cached_property
     def reduced(self) -> Reduced:

@@ -97,13 +97,17 @@ class HammerPlan:
         positive = ("rate", "samples", "hits", "peak", "width", "headroom")
         wrong = [name for name in positive if not getattr(self, name) > 0]
         not_negative = ("level_scatter", "width_scatter", "pre_trigger", "jitter", "force_noise", "decay")
-        wrong += [name for name in (*not_negative, "response_noise", "position_sigma") if getattr(self, name) < 0]
+        wrong += [
+            name for name in (*not_negative, "response_noise", "position_sigma") if getattr(self, name) < 0
+        ]
         if wrong:
             raise InputError(f"hammer plan: {wrong[0]} = {getattr(self, wrong[0])} makes no sense")
         if self.form not in FORMS or self.pulse not in ("haversine", "half-sine"):
             raise InputError(f"hammer plan: unknown form {self.form!r} or pulse {self.pulse!r}")
         unknown = set(self.bad.values()) - set(BAD_HITS)
         if unknown:
-            raise InputError(f"hammer plan: unknown kind of bad hit {unknown}; use one of {', '.join(BAD_HITS)}")
+            raise InputError(
+                f"hammer plan: unknown kind of bad hit {unknown}; use one of {', '.join(BAD_HITS)}"
+            )
         if self.pre_trigger + self.width >= self.samples / self.rate:
             raise InputError("hammer plan: the record ends before the pulse; take more samples")

@@ -9,7 +9,9 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray
 
 
-def pulse_transform(laplace: ComplexArray, width: float, shape: Literal["haversine", "half-sine"]) -> ComplexArray:
+def pulse_transform(
+    laplace: ComplexArray, width: float, shape: Literal["haversine", "half-sine"]
+) -> ComplexArray:
     """Return the Laplace transform of a pulse of unit height that starts at t = 0, shape as ``laplace`` [s].
 
     Parameters

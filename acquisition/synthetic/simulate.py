@@ -49,7 +49,7 @@ def hammer_test(
     force = np.empty((len(first.points), plan.hits, plan.samples))
     motion = np.empty((len(first.points), plan.hits, len(first.responses), plan.samples))
     for point, hit in np.ndindex(len(first.points), plan.hits):
-        records = _one_hit(at_level, plan, contour, point, hit, rng)
+        records = _one_hit(at_level, plan, contour, (point, hit), rng)
         force[point, hit], motion[point, hit] = records
     force, motion = _converted(force, motion, plan)
     points = tuple(
@@ -80,9 +80,9 @@ class _Contour:
     def over(cls, plan: HammerPlan) -> _Contour:
         length = scipy.fft.next_fast_len(2 * plan.samples, real=True)
         shift = 30.0 * plan.rate / length
-        frequency = np.fft.rfftfreq(length, 1 / plan.rate)
+        frequency = np.asarray(np.fft.rfftfreq(length, 1 / plan.rate), dtype=np.float64)
         return cls(
-            laplace=shift + 2j * np.pi * frequency,
+            laplace=np.asarray(shift + 2j * np.pi * frequency, dtype=np.complex128),
             gain=anti_alias(frequency, plan.rate),
             growth=np.exp(shift * np.arange(plan.samples) / plan.rate),
             length=length,
@@ -99,12 +99,11 @@ def _one_hit(
     at_level: Callable[[float], ModalSystem],
     plan: HammerPlan,
     contour: _Contour,
-    point: int,
-    hit: int,
+    place: tuple[int, int],
     rng: np.random.Generator,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the force record and the response records of one hit, noise included."""
-    kind = plan.bad.get((point, hit))
+    kind = plan.bad.get(place)
     scatter = rng.standard_normal(5)
     level = plan.peak * np.exp(plan.level_scatter * scatter[0]) * (0.03 if kind == "weak" else 1.0)
     width = plan.width * np.exp(plan.width_scatter * scatter[1])
@@ -114,7 +113,7 @@ def _one_hit(
     second = rng.uniform((0.15, 4 * plan.width), (0.5, 4 * plan.width + 0.015))
     if kind == "double":
         push = push * (1 + second[0] * np.exp(-s * second[1]))
-    receptance = at_level(float(level)).receptance(s, point, plan.position_sigma * scatter[3:])
+    receptance = at_level(float(level)).receptance(s, place[0], plan.position_sigma * scatter[3:])
     transducer = plan.gain * s ** FORMS.index(plan.form) * np.exp(-s * plan.delay)
     force, motion = contour.samples(push), contour.samples(receptance * (transducer * push))
     largest = np.abs(motion).max(axis=-1, keepdims=True)

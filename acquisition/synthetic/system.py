@@ -53,8 +53,8 @@ class ModalSystem:
         expected = (len(self.responses), len(self.points), len(self.poles))
         if self.residues.shape != expected:
             raise InputError(
-                f"residues have shape {self.residues.shape}; {expected[0]} responses, {expected[1]} points and "
-                f"{expected[2]} poles ask for {expected}"
+                f"residues have shape {self.residues.shape}; {expected[0]} responses, {expected[1]} points "
+                f"and {expected[2]} poles ask for {expected}"
             )
         if self.gradients is not None:
             object.__setattr__(self, "gradients", frozen_array(self.gradients, np.complex128))
@@ -64,7 +64,7 @@ class ModalSystem:
             raise InputError("a pole has a positive real part: the structure would be unstable")
 
     def receptance(self, laplace: ComplexArray, point: int, offset: FloatArray | None = None) -> ComplexArray:
-        """Return the receptances of all responses to a force at one point, shape (n_responses, n_lines) [m/N].
+        """Return the receptances at all responses, shape (n_responses, n_lines) [m/N].
 
         Parameters
         ----------
@@ -83,7 +83,9 @@ class ModalSystem:
         residues = self.residues[:, point]
         if offset is not None and np.any(offset):
             if self.gradients is None:
-                raise InputError("position scatter needs the gradients of the residues; give ModalSystem.gradients")
+                raise InputError(
+                    "position scatter needs the gradients of the residues; give ModalSystem.gradients"
+                )
             residues = residues + np.tensordot(offset, self.gradients[:, :, point], axes=1)
         upper = 1.0 / (laplace - self.poles[:, None])
         lower = 1.0 / (laplace - self.poles.conj()[:, None])

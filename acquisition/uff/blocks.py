@@ -10,7 +10,10 @@ from mmap import mmap
 _DELIMITER = re.compile(rb"^[ \t]{0,6}-1[ \t]*\r?$", re.MULTILINE)
 _IDENTITY = re.compile(rb"[ \t]{0,6}(\d{1,6})(b?)([ \t\d]*)\r?\n")
 _CLOSING = re.compile(rb"[ \t\r\n]*-1[ \t\x00\x1a]*(?:\r?\n|\Z)")
-_BINARY_END = re.compile(rb"    -1[ \t]*(?:\r?\n[ \t]*-1|[ \t\r\n\x00\x1a]*\Z)")
+_HERE = re.compile(rb"[ \t]*-1[ \t]*\r?(?=\n)")
+_BINARY_END = re.compile(
+    rb"    -1[ \t]*(?:\r?\n[ \t]*-1|[ \t\r\n\x00\x1a]*\Z|(\r?\n[ \t]{0,5}\d{1,5}b?[ \t\d]*\r?\n))"
+)
 HEADER_LINES = 11
 
 
@@ -82,11 +85,11 @@ def _end_of_body(data: bytes | mmap, start: int, fields: tuple[int, ...] | None)
         return payload + fields[3], True
     # the announced number of bytes is wrong: the next delimiter in the bytes decides
     end = _BINARY_END.search(data, payload)
-    return (len(data), False) if end is None else (end.start(), True)
+    return (len(data), False) if end is None else (end.start(), end[1] is None)
 
 
 def _next_opening(data: bytes | mmap, stop: int, closed: bool) -> re.Match[bytes] | None:
     if not closed:
-        return _DELIMITER.search(data, stop)
+        return _HERE.match(data, stop) or _DELIMITER.search(data, stop)
     closing = _CLOSING.match(data, stop)
     return _DELIMITER.search(data, stop if closing is None else closing.end())

@@ -9,6 +9,7 @@ from acquisition.dof import Dof
 from acquisition.errors import InputError
 
 _NAME = re.compile(r"\W*(\d+)\W*?([+-]?)([XYZ])([+-]?)\W*$", re.IGNORECASE)
+_AVERAGES = re.compile(r"averages\s*[:=]?\s*(\d+)", re.IGNORECASE)
 _DECAY = re.compile(r"exponential window decay\s*[:=]?\s*([-+.\deE]+)", re.IGNORECASE)
 PRECISION = {2: (False, 4), 4: (False, 8), 5: (True, 4), 6: (True, 8)}
 
@@ -72,6 +73,12 @@ class Header58:
         """Decay of an exponential window that the ID lines speak of [1/s]."""
         found = _DECAY.search(" ".join(self.title))
         return float(found[1]) if found else 0.0
+
+    @property
+    def averages(self) -> int:
+        """Number of averages that the ID lines speak of, 0 if they do not."""
+        found = _AVERAGES.search(" ".join(self.title))
+        return int(found[1]) if found else 0
 
     @property
     def pair(self) -> tuple[Dof, Dof]:
@@ -153,7 +160,7 @@ def _resolution(field: str) -> float:
 
 
 def _dof(node: str, direction: str, name: str) -> Dof:
-    """Return the degree of freedom; entity names such as ``.1.Z-`` or ``7+X`` serve where the numbers are 0."""
+    """Return the degree of freedom; names such as ``.1.Z-`` or ``7+X`` serve where the numbers are 0."""
     number, code = _whole(node), _whole(direction)
     found = _NAME.match(name)
     if number == 0 and code == 0 and found:

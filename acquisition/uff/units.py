@@ -65,8 +65,12 @@ def units_of(code: int, length: float, force: float) -> tuple[Units, str]:
     """
     if length > 0 and force > 0:
         named = _SYSTEMS.get(code)
-        agrees = named is None or abs(length / named[0] - 1) < 1e-2 and abs(force / named[1] - 1) < 1e-2
-        remark = "" if agrees else f"units code {code} and the factors {length:g}, {force:g} differ; the factors are used"
+        agrees = named is None or (abs(length / named[0] - 1) < 1e-2 and abs(force / named[1] - 1) < 1e-2)
+        remark = (
+            ""
+            if agrees
+            else f"units code {code} and the factors {length:g}, {force:g} differ; the factors are used"
+        )
         return Units(length, force, True), remark
     if code in _SYSTEMS:
         return Units(*_SYSTEMS[code], known=True), f"no factors, those of units code {code} are used"
@@ -95,7 +99,11 @@ def to_si(axis: Axis, units: Units, *, rotation: bool = False) -> tuple[Quantity
     if rotation and quantity != "other":
         length, force = (1, 1) if quantity == "force" else (0, 0)
     agrees = stated is not None and stated[0] == quantity
-    if stated is not None and agrees and (stated[1] == GRAVITY and quantity == "accelerance" or not units.known):
+    if (
+        stated is not None
+        and agrees
+        and ((stated[1] == GRAVITY and quantity == "accelerance") or not units.known)
+    ):
         return quantity, stated[1]
     return quantity, units.length**-length * units.force**-force
 

@@ -51,7 +51,9 @@ def read_function(data: bytes | mmap, block: Block) -> Function58:
     body = header_end(data, block.start)
     header = parse_header(data[block.start : min(body, block.stop)])
     notes: list[str] = []
-    numbers = _binary(data, block, body, header, notes) if block.binary else _text(data, block, body, header, notes)
+    numbers = (
+        _binary(data, block, body, header, notes) if block.binary else _text(data, block, body, header, notes)
+    )
     abscissa, values = numbers
     if not header.even and len(abscissa) > 1 and np.any(np.diff(abscissa) <= 0):
         notes.append("its abscissa does not rise from point to point")
@@ -66,8 +68,8 @@ def _binary(
     order, number_format = (*(block.binary or ()), 0, 0)[:2]
     if number_format != 2 or order not in (1, 2):
         raise InputError(
-            f"binary number format {number_format}, byte order {order}; only IEEE 754 (2) in little (1) or big (2) "
-            "endian order can be read: export it again as text"
+            f"binary number format {number_format}, byte order {order}; only IEEE 754 (2), little (1) "
+            "or big (2) endian, can be read: export it again as text"
         )
     mark = "<" if order == 1 else ">"
     columns = 2 if header.is_complex else 1
@@ -75,7 +77,12 @@ def _binary(
     layout = np.dtype([*fields, ("y", f"{mark}f{header.item_size}", (columns,))])
     _enough((block.stop - body) // layout.itemsize, header.points)
     surplus = block.stop - body - header.points * layout.itemsize
+    announced = (*(block.binary or ()), 0, 0, 0, 0)[3]
     if surplus and np.frombuffer(data[block.stop - surplus : block.stop], np.uint8).any():
+        if body + announced != block.stop:
+            raise InputError(
+                f"it announces {announced} bytes and holds {block.stop - body}: bytes are missing or lost"
+            )
         notes.append(f"{surplus} bytes after its {header.points} points are left out")
     table = np.frombuffer(data, layout, count=header.points, offset=body)
     values = np.ascontiguousarray(table["y"]).astype(np.float64)
@@ -104,7 +111,7 @@ def _numbers(text: bytes) -> FloatArray:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            return np.asarray(np.fromstring(text, dtype=np.float64, sep=" "))  # type: ignore[call-overload]
+            return np.asarray(np.fromstring(text, dtype=np.float64, sep=" "))
     except (DeprecationWarning, ValueError):
         raise InputError(f"{_first_bad(text)!r} stands among its values and is no number") from None
 
@@ -120,13 +127,15 @@ def _first_bad(text: bytes) -> str:
 
 def _enough(found: int, announced: int) -> None:
     if found < announced:
-        raise InputError(f"it announces {announced} points and holds {found}: the file is cut off or wrong here")
+        raise InputError(
+            f"it announces {announced} points and holds {found}: the file is cut off or wrong here"
+        )
 
 
 def _abscissa(header: Header58, column: AnyArray | None) -> FloatArray:
     if column is not None:
         return np.asarray(column, dtype=np.float64)
-    return header.minimum + header.increment * np.arange(header.points)
+    return np.asarray(header.minimum + header.increment * np.arange(header.points), dtype=np.float64)
 
 
 def _ordinate(table: FloatArray, header: Header58) -> AnyArray:

@@ -20,10 +20,10 @@ def lsce(frfs: FrfSet, *, orders: Sequence[int]) -> PoleSets:
     """Find poles by linear prediction of the band's complex impulse responses.
 
     The band is shifted to the baseband and transformed back as it stands, so the coefficients are complex
-    and no band is privileged (Brown, Allemang, Zimmerman and Mergeay, SAE 790221, 1979, for the real case). Cutting
-    the band off leaks around t = 0 and, the transform being circular, before the end: the edges are faded
-    and those samples left out. What wraps around because it has not decayed stays an exponential and does
-    no harm.
+    and no band is privileged (Brown, Allemang, Zimmerman and Mergeay, SAE 790221, 1979, for the real case).
+    Cutting the band off leaks around t = 0 and, the transform being circular, before the end: the edges
+    are faded and those samples left out. What wraps around because it has not decayed stays an exponential
+    and does no harm.
 
     Parameters
     ----------
@@ -46,7 +46,8 @@ def lsce(frfs: FrfSet, *, orders: Sequence[int]) -> PoleSets:
     skip = _skip(n_lines)
     if n_lines - 2 * skip < 2 * order:
         raise EstimationError(
-            f"{frfs.source}: {n_lines} lines cannot carry LSCE of order {order}; lower the order or widen the band"
+            f"{frfs.source}: {n_lines} lines cannot carry LSCE of order {order}; lower the order or "
+            "widen the band"
         )
     responses = _impulse_responses(frfs)
     normal = prediction_normal(responses[:, skip : n_lines - skip], order)

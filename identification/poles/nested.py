@@ -86,4 +86,4 @@ def roots(coefficients: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     stable = np.abs(inverse) > 1.0
     tail = vectors[:, stable]
     length: FloatArray = np.maximum(np.linalg.norm(tail, axis=0), np.finfo(float).tiny)
-    return 1.0 / inverse[stable], (tail / length).T
+    return np.asarray(1.0 / inverse[stable], complex), np.asarray((tail / length).T, complex)

@@ -13,59 +13,12 @@ import numpy as np
 import scipy.linalg
 
 from acquisition.arrays import FloatArray
-from modalkit.blind.element import GAUSS, ORDER, element_nodes, gauss_places, gauss_rows, readers
+from modalkit.blind.element import GAUSS, NODES, ORDER, element_nodes, gauss_places, gauss_rows, readers
 from modalkit.blind.mesh import graded_mesh
+from modalkit.blind.parts import Attached, Notch
 from modalkit.blind.water import added_mass
 
 _STIFF = 1e5
-
-
-@dataclass(frozen=True)
-class Attached:
-    """Something fixed to the beam at one place.
-
-    Parameters
-    ----------
-    x : float
-        Position [m].
-    mass, inertia : float
-        Mass [kg] and rotary inertia [kg m2].
-    stiffness, damping : float
-        Spring [N/m] and dashpot [N s/m] to the ground.
-    """
-
-    x: float
-    mass: float = 0.0
-    inertia: float = 0.0
-    stiffness: float = 0.0
-    damping: float = 0.0
-
-
-@dataclass(frozen=True)
-class Notch:
-    """A smooth local loss of bending stiffness, EI (1 - loss cos^2(pi (x - centre) / extent)).
-
-    Parameters
-    ----------
-    x, extent : float
-        Centre and whole width [m].
-    loss : float
-        Loss at the centre [-].
-    """
-
-    x: float
-    extent: float
-    loss: float
-
-    def factor(self, x: FloatArray) -> FloatArray:
-        """Return the factor on the bending stiffness at ``x`` [-]."""
-        u = (x - self.x) / self.extent
-        return np.where(np.abs(u) < 0.5, 1.0 - self.loss * np.cos(np.pi * u) ** 2, 1.0)
-
-    @property
-    def compliance(self) -> float:
-        """Integral of EI0/EI - 1 over the notch [m]; closed form of the cosine-squared dip."""
-        return self.extent * (1.0 / np.sqrt(1.0 - self.loss) - 1.0)
 
 
 @dataclass(frozen=True)
@@ -116,7 +69,7 @@ class Beam:
     attached: tuple[Attached, ...] = ()
     alpha: float = 0.0
     beta: float = 0.0
-    elements: int = 32
+    elements: int = 14
 
     @property
     def length(self) -> float:
@@ -244,7 +197,7 @@ class Beam:
         size = np.diff(self.edges)[element]
         local = readers((x - self.edges[element]) / size, size)[quantity]
         out = np.zeros((len(x), 2 * len(self.nodes)))
-        np.put_along_axis(out, 2 * ORDER * element[:, None] + np.arange(2 * (ORDER + 1)), local, axis=1)
+        np.put_along_axis(out, 2 * ORDER * element[:, None] + np.arange(2 * NODES), local, axis=1)
         return out
 
     def _row(self, x: float, quantity: str) -> FloatArray:
@@ -274,9 +227,9 @@ class Beam:
 
         Notes
         -----
-        With stiffness F^T F and mass L L^T the frequencies are the singular values of F L^-T, whose rounding is
-        that of the highest frequency; the eigenvalues of the products would lose the lowest modes of slender
-        beams (Golub and Van Loan, Matrix Computations, 4th ed., section 8.7).
+        With stiffness F^T F and mass L L^T the frequencies are the singular values of F L^-T, whose rounding
+        is that of the highest frequency; the eigenvalues of the products would lose the lowest modes of
+        slender beams (Golub and Van Loan, Matrix Computations, 4th ed., section 8.7).
         """
         keep = self._kept
         factor = scipy.linalg.cholesky(self._whole_mass()[keep, keep], lower=True)

@@ -39,12 +39,14 @@ class ComplexModes:
         return -self.poles.real / np.abs(self.poles)
 
     def residues(self, sensor: int) -> ComplexArray:
-        """Return receptance residues between a sensor and every point, shape (1, n_points, n_modes) [m/(N s)]."""
-        return (self.points[sensor] * self.points)[None]
+        """Return receptance residues between a sensor and each point, (1, n_points, n_modes) [m/(N s)]."""
+        products: ComplexArray = (self.points[sensor] * self.points)[None]
+        return products
 
     def gradients(self, sensor: int) -> ComplexArray:
         """Return how residues change when the hammer strays along the beam, as ``residues`` [1/(N s)]."""
-        return (self.points[sensor] * self.slopes)[None]
+        products: ComplexArray = (self.points[sensor] * self.slopes)[None]
+        return products
 
 
 def complex_modes(beam: Beam, places: FloatArray, *, count: int, scatter: FloatArray) -> ComplexModes:

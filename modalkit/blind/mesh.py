@@ -21,7 +21,7 @@ def graded_mesh(
     elements : int
         Number of elements before refinement [-].
     windows : tuple of (low, high)
-        Stretches that get six elements of their own, or more where the mesh is finer [m].
+        Stretches that get three elements of their own, or more where the mesh is finer [m].
 
     Returns
     -------
@@ -33,9 +33,9 @@ def graded_mesh(
     jitter = np.mod(np.arange(elements + 1) * _GOLDEN, 1.0) - 0.5
     spacing = np.minimum(np.diff(graded, prepend=graded[0]), np.diff(graded, append=graded[-1]))
     nodes = start + (end - start) * (graded + 0.4 * jitter * spacing)
-    for low, high in windows:
-        low, high = max(low, start), min(high, end)
-        pieces = max(6, int(np.ceil(1.5 * (high - low) / np.diff(nodes).mean())))
+    for window in windows:
+        low, high = max(window[0], start), min(window[1], end)
+        pieces = max(3, int(np.ceil(1.5 * (high - low) / np.diff(nodes).mean())))
         gap = (high - low) / pieces
         outside = (nodes < low - 0.5 * gap) | (nodes > high + 0.5 * gap)
         nodes = np.concatenate([nodes[outside], np.linspace(low, high, pieces + 1)])

@@ -10,8 +10,8 @@ import numpy as np
 from acquisition.dof import Dof
 from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest
-from acquisition.uff import write_uff
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test
+from acquisition.uff import write_uff
 from modalkit.blind.complex_modes import ComplexModes
 from modalkit.blind.scene import Scene
 from modalkit.blind.setup import Setup
@@ -42,9 +42,7 @@ def remounted(modes: ComplexModes, repeatability: float, rng: np.random.Generato
     """
     factor = 1.0 + repeatability * rng.standard_normal(len(modes.poles))
     root = np.sqrt(factor)
-    return replace(
-        modes, poles=modes.poles * factor, points=modes.points / root, slopes=modes.slopes / root
-    )
+    return replace(modes, poles=modes.poles * factor, points=modes.points / root, slopes=modes.slopes / root)
 
 
 def modal_system(modes: ComplexModes, setup: Setup) -> ModalSystem:
@@ -142,9 +140,9 @@ def record(scene: Scene, path: Path, *, rng: np.random.Generator) -> None:
     scene : Scene
         What is on the rig.
     path : Path
-        The UFF file to write.
+        The UFF file to write; single precision holds what 24 bits of a converter hold.
     rng : numpy.random.Generator
         Source of all scatter and noise.
     """
     test = measure(scene, rng=rng)
-    write_uff(path, tests=[test], geometry=test.geometry, title=scene.setup.title)
+    write_uff(path, tests=[test], geometry=test.geometry, title=scene.setup.title, precision="single")

@@ -73,7 +73,7 @@ def holds_truth(answer: Answer, truth: Truth) -> bool:
 
 
 def is_right(answer: Answer, truth: Truth) -> bool:
-    """Tell whether the answer is true: the effect named or in the class, none for none, unknown for unknown."""
+    """Tell whether the answer is true: effect named or in the class, none for none, unknown for withheld."""
     if truth.effect == "none":
         return answer.verdict == "none"
     if not truth.in_library:
@@ -103,8 +103,8 @@ def severity_table(result: BlindResult) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``true``, ``value``, ``low95``, ``high95`` [SI], ``covered`` and ``error`` relative to the true value. Of a
-        local loss of stiffness only the compliance is scored, which is what data determine.
+        ``true``, ``value``, ``low95``, ``high95`` [SI], ``covered`` and ``error`` relative to the true value.
+        Of a local loss of stiffness only the compliance is scored, which is what data determine.
     """
     columns = ["trial", "parameter", "true", "value", "low95", "high95", "covered", "error"]
     rows = []
@@ -134,8 +134,8 @@ def place_table(result: BlindResult) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``true`` and nearest stated place ``said`` [m], ``error`` over the length of the beam [-], and how many
-        ``places`` were offered. Effects that the library does not have are included.
+        ``true`` and nearest stated place ``said`` [m], ``error`` over the length of the beam [-], and how
+        many ``places`` were offered. Effects that the library does not have are included.
     """
     columns = ["trial", "effect", "true", "said", "places", "error"]
     rows = []

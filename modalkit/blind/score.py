@@ -31,7 +31,8 @@ class Score:
     confusion : pandas.DataFrame
         Hidden effect against what was answered.
     effects : pandas.DataFrame
-        By hidden effect: how often right, named, held by a class, unknown, none, failed; mean size of the answer.
+        By hidden effect: how often right, named, held by a class, unknown, none, failed; mean number of
+        sets in an answer.
     severity, places : pandas.DataFrame
         Errors of parameters and of places.
     seals : pandas.DataFrame
@@ -153,7 +154,9 @@ def _rates(trials: pd.DataFrame, severity: pd.DataFrame) -> pd.DataFrame:
         count, total = int((hit & among).sum()), int(among.sum())
         low, high = wilson(count, total)
         rows[question] = (count, total, count / total if total else math.nan, low, high)
-    table = pd.DataFrame.from_dict(rows, orient="index", columns=["count", "total", "rate", "low95", "high95"])
+    table = pd.DataFrame.from_dict(
+        rows, orient="index", columns=["count", "total", "rate", "low95", "high95"]
+    )
     table.index.name = "question"
     return table
 

@@ -107,7 +107,7 @@ class Setup:
 
     @property
     def sensor_inertia(self) -> float:
-        """Rotary inertia of the known sensor about the beam's axis, its centre 4 mm off the surface [kg m2]."""
+        """Rotary inertia of the known sensor about the beam's axis, 4 mm off the surface [kg m2]."""
         return self.sensor_mass * (0.004 + self.thickness / 2) ** 2
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,45 +14,39 @@ _FREQUENCY_SIGMA = 2e-4
 _SHAPE_SIGMA = 0.02
 _DAMPING_SIGMA = 0.05
 _STEP = 1e-3
+_ELEMENTS = 6
 _TOLERANCES = ("E", "density", "thickness", "length", "width")
 
 
-def features(scene: Scene) -> FloatArray:
-    """Return the data vector: ln f, ln decay, and the level of each residue over its mode's largest.
+@dataclass(frozen=True, eq=False)
+class _Reading:
+    """Frequency [rad/s], decay [1/s] and phi_i phi_sensor [1/kg] of the modes the band was chosen for."""
 
-    Parameters
-    ----------
-    scene : Scene
-        What is on the rig.
+    frequency: FloatArray
+    decay: FloatArray
+    level: FloatArray
 
-    Returns
-    -------
-    (modes * (n_points + 2),) array
-        For the modes the band was chosen for; residues with the scale of the mode's largest one [-].
-    """
-    setup = scene.setup
-    frequency, decay, level = _read(scene)
-    scale = np.abs(_read(nominal_scene(setup))[2]).max(axis=0)
-    return np.concatenate([np.log(frequency), np.log(decay), (level / scale).ravel()])
+    def vector(self, scale: FloatArray) -> FloatArray:
+        """Return ln f, ln decay, and the levels over their modes' ``scale``, in one row."""
+        return np.concatenate([np.log(self.frequency), np.log(self.decay), (self.level / scale).ravel()])
 
 
-def _read(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return frequency [rad/s], decay [1/s] and modal participations phi_i phi_sensor [1/kg] of the band's modes."""
+def _read(scene: Scene) -> _Reading:
     setup = scene.setup
     skip = 0 if setup.clamped else 2
     wanted = slice(skip, skip + setup.modes)
-    modes = scene.modes()
+    modes = scene.with_beam(elements=_ELEMENTS).modes()
     poles = modes.poles[wanted]
     level = (modes.residues(setup.sensor)[0][:, wanted] * 2j * poles.imag).real
-    return np.abs(poles), scene.window - poles.real, scene.gain * level
+    return _Reading(np.abs(poles), scene.window - poles.real, scene.gain * level)
 
 
 def visibility(scene: Scene, before: Scene) -> float:
     """Return how many standard deviations an effect moves the data off what tolerances allow.
 
     The data are taken as Gaussian with rough figures for identification (frequency 0.02 %, decay 5 %,
-    residues 2 % of each mode's largest), plus the stated repeatability, calibration and tolerances, whose effect
-    is linearised on the rig's own model. With a baseline, tolerances and calibration cancel.
+    residues 2 % of each mode's largest), plus the stated repeatability, calibration and tolerances, whose
+    effect is linearised on the rig's own model. With a baseline, tolerances and calibration cancel.
 
     Parameters
     ----------
@@ -65,7 +59,9 @@ def visibility(scene: Scene, before: Scene) -> float:
         Mahalanobis length of the change [-].
     """
     setup = scene.setup
-    change = features(scene) - features(before)
+    nominal = _read(nominal_scene(setup))
+    scale = np.abs(nominal.level).max(axis=0)
+    change = _read(scene).vector(scale) - _read(before).vector(scale)
     n = setup.modes
     sigma = np.concatenate(
         [
@@ -76,27 +72,25 @@ def visibility(scene: Scene, before: Scene) -> float:
     )
     covariance = np.diag(sigma**2) * (2.0 if setup.baseline else 1.0)
     if not setup.baseline:
-        columns = _tolerance_columns(setup)
+        columns = _tolerance_columns(setup, nominal, scale)
         covariance = covariance + columns @ columns.T
     return float(np.sqrt(change @ np.linalg.solve(covariance, change)))
 
 
-def _tolerance_columns(setup: Setup) -> FloatArray:
-    """Return the change of the data per standard deviation of each tolerance, one column each."""
+def _tolerance_columns(setup: Setup, nominal: _Reading, scale: FloatArray) -> FloatArray:
+    """Return the change of the data per standard deviation of each doubt, one column each."""
     base = nominal_scene(setup)
-    start = features(base)
+    start = nominal.vector(scale)
     columns = []
     for name in _TOLERANCES:
         if name == "length":
             moved = base.with_beam(start=base.beam.start - _STEP * base.beam.length)
         else:
             moved = base.with_beam(**{name: getattr(base.beam, name) * (1 + _STEP)})
-        columns.append((features(moved) - start) / _STEP * getattr(setup.tolerances, name))
-    columns.append((features(replace(base, gain=1 + _STEP)) - start) / _STEP * setup.calibration)
+        columns.append((_read(moved).vector(scale) - start) / _STEP * getattr(setup.tolerances, name))
     n = setup.modes
-    for mode in range(n):
-        scatter = base.scatter.copy()
-        scatter[mode + (0 if setup.clamped else 2)] *= 1 + _STEP
-        moved = replace(base, scatter=scatter)
-        columns.append((features(moved) - start) / _STEP * setup.tolerances.damping)
-    return np.column_stack(columns)
+    gain = np.concatenate([np.zeros(2 * n), (nominal.level / scale).ravel()])
+    damping = np.zeros((len(start), n))
+    share = (nominal.decay - setup.window) / nominal.decay
+    damping[n + np.arange(n), np.arange(n)] = setup.tolerances.damping * share
+    return np.column_stack([*columns, setup.calibration * gain, damping])

@@ -40,7 +40,9 @@ def thickness_factor(ratio: float) -> float:
     """
     if ratio < 1e-9:
         return 1.0
-    angle = float(scipy.optimize.brentq(lambda a: _side(a) - ratio * _side(np.pi / 2 - a), 1e-8, np.pi / 2 - 1e-3))
+    angle = float(
+        scipy.optimize.brentq(lambda a: _side(a) - ratio * _side(np.pi / 2 - a), 1e-8, np.pi / 2 - 1e-3)
+    )
     thickness, width = _side(angle), _side(np.pi / 2 - angle)
     return float((2 * np.pi * (1 + np.cos(2 * angle)) - thickness * width) / (np.pi / 4 * width**2))
 
@@ -70,7 +72,9 @@ def _flat_plate(aspect: float, along: int, across: int) -> tuple[FloatArray, Flo
     dx = x[:, None] - edge_x[None, :]
     dy = y[:, None] - edge_y[None, :]
     grid = _corner(dx[:, None, :, None], dy[None, :, None, :])
-    velocity = (grid[..., 1:, 1:] - grid[..., :-1, 1:] - grid[..., 1:, :-1] + grid[..., :-1, :-1]) / (4 * np.pi)
+    velocity = (grid[..., 1:, 1:] - grid[..., :-1, 1:] - grid[..., 1:, :-1] + grid[..., :-1, :-1]) / (
+        4 * np.pi
+    )
     influence = velocity.reshape(along * across, along * across)
     spread = np.repeat(np.eye(along), across, axis=0)
     strength = np.linalg.solve(influence, spread)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from modalkit.blind.water import added_mass, thickness_factor
 
 
 # DNV-RP-C205, appendix D, rectangular plates moving across their plane: share of rho pi/4 a^2 b
 @pytest.mark.parametrize(
-    ("aspect", "coefficient"), [(1.0, 0.579), (1.5, 0.690), (2.0, 0.757), (3.0, 0.830), (5.0, 0.897), (10.0, 0.947)]
+    ("aspect", "coefficient"),
+    [(1.0, 0.579), (1.5, 0.690), (2.0, 0.757), (3.0, 0.830), (5.0, 0.897), (10.0, 0.947)],
 )
 def test_rigid_plate(aspect: float, coefficient: float) -> None:
     _, matrix = added_mass(0.1 * aspect, 0.1, 1e-12, density=1000.0)

@@ -14,6 +14,9 @@ from updating.diagnosis.problem import Comparison, Problem
 STEP = 1e-3
 """Finite-difference step in prior quantiles."""
 
+FARTHEST = 6.0
+"""Tolerances are followed so far from nominal, in standard deviations."""
+
 
 @dataclass(frozen=True, eq=False)
 class Point:
@@ -66,7 +69,7 @@ def evaluate(
     comparison = problem.compare(state, fidelity=candidate.fidelity)
     result = marginal(comparison, keep)
     for _ in range(2 if problem.wide else 0):
-        shift = result.shift[: len(problem.names)]
+        shift = np.clip(result.shift[: len(problem.names)], -FARTHEST, FARTHEST)
         comparison = problem.compare(state, shift, fidelity=candidate.fidelity)
         result = marginal(comparison, keep)
     return Point(coordinates, comparison, result)
@@ -74,7 +77,7 @@ def evaluate(
 
 def sensitivities(problem: Problem, candidate: Candidate, point: Point) -> FloatArray:
     """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
-    shift = point.marginal.shift[: len(problem.names)] if problem.wide else None
+    shift = np.clip(point.marginal.shift[: len(problem.names)], -FARTHEST, FARTHEST) if problem.wide else None
     columns = []
     for i, u in enumerate(point.coordinates):
         step = STEP if u < 0.5 else -STEP
@@ -142,4 +145,4 @@ def _curvature(
     problem: Problem, candidate: Candidate, point: Point, keep: BoolArray | None
 ) -> tuple[FloatArray, FloatArray]:
     columns = sensitivities(problem, candidate, point)
-    return whiten(point.comparison, columns, keep)
+    return whiten(point.comparison, columns, point.marginal.scale, keep)

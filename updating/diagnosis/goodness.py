@@ -6,13 +6,17 @@ import numpy as np
 from scipy.stats import chi2
 
 from updating.diagnosis.fit import Point
-from updating.diagnosis.gaussian import marginal
+from updating.diagnosis.gaussian import gaussian, marginal
+from updating.diagnosis.problem import SCALES
 
 CHANNELS = ("frequency", "damping", "frf")
 
 
 def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     """Return the p-value of each channel and of all data together.
+
+    Shapes may be worse than thought: for each scale of their noise the p-value is the smaller of that of the
+    residual and the prior chance of noise that bad, and the best of these counts.
 
     Parameters
     ----------
@@ -26,14 +30,20 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     dict
         ``frequency``, ``damping``, ``frf`` where there are such data, and ``all``.
     """
-    channel = point.comparison.channel
-    total = point.marginal
-    values = {"all": float(chi2.sf(total.chi2, max(total.count - fitted, 1)))}
-    for i, name in enumerate(CHANNELS):
-        keep = channel == i
-        if keep.any():
-            part = marginal(point.comparison, keep)
-            values[name] = float(chi2.sf(part.chi2, part.count))
+    comparison = point.comparison
+    if not np.isfinite(point.marginal.log_likelihood):
+        return {"all": 0.0}
+    tails = np.cumsum(comparison.scale_prior[::-1])[::-1]
+    values = {}
+    for name in ("all", *CHANNELS):
+        keep = np.ones(len(comparison.channel), bool) if name == "all" else comparison.channel == CHANNELS.index(name)
+        if not keep.any():
+            continue
+        shapes = bool((comparison.channel[keep] == 2).any())
+        tried = list(zip(SCALES, tails, strict=True)) if shapes else [(1.0, 1.0)]
+        parts = [(gaussian(comparison, scale, keep), tail) for scale, tail in tried]
+        freedom = max(int(keep.sum()) - (fitted if name == "all" else 0), 1)
+        values[name] = max(min(float(chi2.sf(part.chi2, freedom)), float(tail)) for part, tail in parts)
     return values
 
 

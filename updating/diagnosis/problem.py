@@ -8,8 +8,7 @@ scatter of damping from mode to mode, and how far an effect's own idealisation m
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -20,28 +19,20 @@ from updating.measured import Measured
 from updating.models.state import NOMINAL, State
 from updating.models.structure import FACTORS
 from updating.prediction import Prediction, Predictor
+from updating.tolerances import Tolerances
 
 SHAPE_FLOOR = 0.005
 """Error of a modal constant that no coherence shows (cross-talk, direction), relative to the mode's r.m.s."""
 
+SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
+"""How many times worse than thought the shapes may be."""
+
+KNOWN_SCATTER = (0.85, 0.12, 0.025, 0.004, 0.001)
+UNKNOWN_SCATTER = (0.3, 0.25, 0.2, 0.15, 0.1)
+"""Prior of each scale, where repeated hits show the scatter and where nothing does."""
+
 UNKNOWN_LEVEL = 0.2
 """A calibration worse than this is found by least squares before anything is linearised."""
-
-
-@dataclass(frozen=True)
-class Tolerances:
-    """The modeller's own doubts, relative standard deviations [-].
-
-    Parameters
-    ----------
-    factors : mapping of str to float
-        Tolerances of E, density, thickness, length, width.
-    damping : float
-        Doubt in the expected damping: of its level, and again of each mode.
-    """
-
-    factors: Mapping[str, float] = field(default_factory=dict)
-    damping: float = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +53,8 @@ class Comparison:
         Measured mode each datum belongs to.
     prediction : Prediction
         The predicted modes, in the order of the measured ones.
+    scale_prior : tuple of float
+        Prior of each of ``SCALES`` on the noise of the shapes [-].
     """
 
     residual: FloatArray
@@ -70,6 +63,11 @@ class Comparison:
     channel: IntArray
     mode: IntArray
     prediction: Prediction
+    scale_prior: tuple[float, ...] = KNOWN_SCATTER
+
+    def noise(self, scale: float) -> FloatArray:
+        """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
+        return np.where(self.channel == 2, scale**2, 1.0) * self.variance
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,6 +172,7 @@ class Problem:
             channel,
             np.concatenate([b.mode for b in blocks]),
             prediction,
+            KNOWN_SCATTER if self.measured.repeated else UNKNOWN_SCATTER,
         )
 
     def _frequencies(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:

@@ -80,7 +80,8 @@ def search(problem: Problem, library: Sequence[Effect]) -> Search:
     """
     effects, obstacles = examine(problem, library)
     nothing = explain(problem, Candidate())
-    singles = [_single(problem, effect, _twin(problem, effects)) for effect in effects]
+    twin = _falls_short(problem, effects)
+    singles = [_single(problem, effect, twin=twin) for effect in effects]
     found = [nothing, *singles]
     if max(_fit(e) for e in found) < REJECTED:
         found += _pairs(problem, singles)
@@ -99,20 +100,24 @@ def _weigh(found: list[Explanation]) -> tuple[Weighed, ...]:
     return tuple(sorted(rows, key=lambda row: -row.probability))
 
 
-def _twin(problem: Problem, effects: list[Effect]) -> bool:
-    """Tell whether the beam theory falls short by more than the noise, so that every effect needs the better one."""
-    shear = [effect for effect in effects if effect.name == "shear"]
-    if not shear:
+def _falls_short(problem: Problem, effects: list[Effect]) -> bool:
+    """Tell whether every effect must also be weighed on the better beam theory.
+
+    It must where the theory shifts frequencies by more than a part of the noise, unless the better theory alone
+    explains the data: then nothing else is needed beside it.
+    """
+    shear = next((effect for effect in effects if effect.name == "shear"), None)
+    if shear is None or _fit(explain(problem, Candidate((shear,)))) >= REJECTED:
         return False
-    better = problem.predictor.under("timoshenko").predict(count=len(problem.nominal.frequency) + 5)
-    ordered = problem.predictor.predict(count=len(problem.nominal.frequency) + 5).frequency
-    n = int(np.sum(ordered <= problem.nominal.frequency.max() * 1.001))
-    shift = np.abs(np.log(better.frequency[:n] / ordered[:n]))
-    noise = np.sqrt(problem.measured.repeatability**2 + np.min(problem.measured.frequency_sigma / problem.measured.frequency) ** 2)
-    return bool(shift.max() > 0.3 * noise)
+    count = len(problem.nominal.frequency) + 5
+    here = problem.predictor.predict(count=count).frequency
+    there = problem.predictor.under("timoshenko").predict(count=count).frequency
+    within = here <= 1.001 * problem.nominal.frequency.max()
+    noise = np.hypot(problem.measured.repeatability, np.min(problem.measured.frequency_sigma / problem.measured.frequency))
+    return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
 
 
-def _single(problem: Problem, effect: Effect, twin: bool) -> Explanation:
+def _single(problem: Problem, effect: Effect, *, twin: bool) -> Explanation:
     """Weigh one effect; where the theory falls short, on either theory and half the evidence of each."""
     plain = explain(problem, Candidate((effect,)))
     if not twin or effect.name == "shear":
@@ -147,7 +152,7 @@ def _linear_look(
     reached, starts = [], []
     for leader, other in ((first, second), (second, first)):
         columns = [sensitivities(problem, leader.candidate, leader.best), _increment(problem, other)]
-        normal, load = whiten(leader.best.comparison, np.hstack(columns))
+        normal, load = whiten(leader.best.comparison, np.hstack(columns), leader.best.marginal.scale)
         step = np.linalg.lstsq(normal, load, rcond=1e-10)[0]
         reached.append(leader.best.marginal.log_likelihood + 0.5 * float(load @ step))
     middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]

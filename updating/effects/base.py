@@ -74,6 +74,8 @@ class Effect(ABC):
     """One sentence for the report."""
     footprint: ClassVar[str]
     """What it does to the data."""
+    models: ClassVar[tuple[str, ...]] = ("beam", "plate")
+    """Kinds of model it applies to."""
     equivalent_to: ClassVar[tuple[str, ...]] = ()
     """Effects that some data cannot tell from it."""
     separated_by: ClassVar[str]

@@ -12,6 +12,7 @@ class Shear(Effect):
     channel = "stiffness"
     summary = "The beam theory leaves out shear deformation and rotary inertia."
     footprint = "Frequencies fall, in proportion to the square of the thickness over the wavelength."
+    models = ("beam",)
     separated_by = "a Timoshenko model; nothing has to be measured"
     fidelity = 0.05
 

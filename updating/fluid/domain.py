@@ -23,7 +23,8 @@ class FluidDomain:
         Depth of the rigid bottom below the lower face, towards -z. [m]
     walls : tuple of four floats or None
         Rigid upright walls x0, x1, y0, y1 in the model's axes, where a plate occupies x in [0, length] and
-        y in [0, width]; a beam's centre line is y = 0. A wall that is not there is ``-inf`` or ``inf``. [m]
+        y in [0, width]; a beam's centre line is y = 0. A wall that is not there is ``-inf`` or ``inf``; one
+        at an edge lets no fluid round it, as at the root of a plate that is clamped in the wall. [m]
 
     Raises
     ------

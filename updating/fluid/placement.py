@@ -43,7 +43,7 @@ def place(
         If the plate reaches beyond a wall or fills the tank.
     """
     x0, x1, y0, y1 = walls or (-math.inf, math.inf, -math.inf, math.inf)
-    reach = _reach(length, width)
+    reach = _reach(_mirrored(length, x0, x1), _mirrored(width, y0, y1))
     along = _axis("x", length, (x0, x1), reach, terms[0])
     across = _axis("y", width, (y0, y1), reach, terms[1])
     if along.spans and across.spans:
@@ -61,6 +61,11 @@ def term_counts(length: float, width: float) -> tuple[int, int]:
         return 14 + min(14, round(4.0 * math.sqrt(max(side / other, 1.0))))
 
     return count(length, width), count(width, length)
+
+
+def _mirrored(side: float, low: float, high: float) -> float:
+    """Side of the plate together with its image, where it touches a wall. [m]"""
+    return side if min(-low, high - side) > TOUCHING * side else 2.0 * side
 
 
 def _reach(length: float, width: float) -> float:

@@ -52,9 +52,9 @@ def added_mass(
     x, y : FloatArray
         Grid lines within [0, length] and [0, width], shapes (nx,) and (ny,); see ``quadrature_grid``. [m]
     length, width : float
-        Sides of the wetted plate. [m]
+        Sides of the wetted plate; what sits inside a clamp does not count. [m]
     thickness : float
-        Thickness of its edges; zero is the thin plate. [m]
+        Thickness of the plate; zero is the thin plate. [m]
     domain : FluidDomain or None
         What bounds the fluid; unbounded when left out.
 

@@ -46,7 +46,7 @@ def heave_coefficient(ratio: float) -> float:
 
     References
     ----------
-    Newman, Marine Hydrodynamics (1977), section 4.15 (added mass from the map's coefficients); Wendel (1956).
+    Newman, Marine Hydrodynamics (1977), chapter 4 (added mass from the map's coefficients); Wendel (1956).
     """
     if not 0.0 <= ratio <= 100.0:
         raise InputError(f"section: thickness over breadth is {ratio}; it must lie between 0 and 100")

@@ -51,6 +51,8 @@ class Component:
 
     def at(self, points: FloatArray, n_dofs: int) -> dict[str, Sparse]:
         """Return the fields at any points (n_points, dim) [m], each (n_points, n_dofs)."""
+        if len(points) == 0:
+            return {name: Sparse((0, n_dofs)) for name in self.names}
         mesh, mapping = self.basis.mesh, self.basis.mapping
         low, high = mesh.p.min(axis=1), mesh.p.max(axis=1)
         inside = np.clip(points, low, high).T
@@ -65,7 +67,8 @@ class Component:
         self, values: list[Any], derivative: tuple[int, ...], cells: IntArray, n_dofs: int
     ) -> Sparse:
         order = ("value", "grad", "hess")[len(derivative)]
-        data = np.stack([np.asarray(getattr(v, order))[derivative].ravel() for v in values])
+        arrays = [np.asarray(v if order == "value" else getattr(v, order)) for v in values]
+        data = np.stack([array[derivative].ravel() for array in arrays])
         rows = np.broadcast_to(np.arange(data.shape[1]), data.shape)
         columns = self.basis.element_dofs[:, cells] + self.offset
         matrix = sparse.coo_array((data.ravel(), (rows.ravel(), columns.ravel())), (data.shape[1], n_dofs))

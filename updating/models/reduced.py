@@ -113,11 +113,12 @@ class Reduced:
 
     def _totals(self, state: State) -> list[FloatArray]:
         totals = list(self.sums)
-        for (region, factor), value in state.regional.items():
+        for region in {index for index, _ in state.regional}:
+            own = {factor: value for (index, factor), value in state.regional.items() if index == region}
             for i, term in enumerate(self.structure.terms):
-                power = term.powers.get(factor, 0.0)
-                if power:
-                    totals[i] = totals[i] + (value**power - 1) * self.parts[i][region]
+                scale = term.scale(own)
+                if scale != 1.0:
+                    totals[i] = totals[i] + (scale - 1.0) * self.parts[i][region]
         return totals
 
     def log_sensitivity(self, state: State, factor: str) -> tuple[FloatArray, FloatArray]:
@@ -204,6 +205,8 @@ def _static_answers(
     answer = np.zeros((structure.fields.n_dofs, load.shape[1]))
     answer[free] = solve.solve(load)
     lengths = np.sqrt(np.einsum("ij,ij->j", answer, mass @ answer))
+    moves = lengths > 0  # a force on a clamped edge moves nothing
+    answer, lengths = answer[:, moves], lengths[moves]
     left, size, _ = np.linalg.svd(_remove(answer / lengths, vectors, mass), full_matrices=False)
     return left[:, (size > 1e-8 * size.max()).nonzero()[0]]
 

@@ -1,0 +1,8 @@
+"""Universal files: data sets 15, 55, 58, 151, 164 and 2411 in and out."""
+
+from acquisition.uff.content import DatasetInfo, UffContent
+from acquisition.uff.read import read_functions, read_uff
+from acquisition.uff.values58 import Function58
+from acquisition.uff.write import write_uff
+
+__all__ = ["DatasetInfo", "Function58", "UffContent", "read_functions", "read_uff", "write_uff"]

@@ -1,0 +1,118 @@
+"""From single FRFs and coherences to a set."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.dof import Dof
+from acquisition.errors import InputError
+from acquisition.frf import FrfSet
+from acquisition.geometry import Geometry
+from acquisition.uff.measurements import Measurement
+
+
+def assemble_frfs(
+    records: Sequence[Measurement], geometry: Geometry, source: str
+) -> tuple[FrfSet | None, list[str]]:
+    """Return the FRFs on one frequency axis with their coherence, and what had to be left out.
+
+    Where FRFs differ in axis, form or window, the largest group that agrees is taken.
+    """
+    warnings: list[str] = []
+    groups: dict[tuple[object, ...], list[Measurement]] = defaultdict(list)
+    for record in records:
+        if record.function_type == 4 and record.values is not None:
+            groups[(*_axis(record), record.quantity, record.decay)].append(record)
+    refused = [key for key in groups if key[3] not in ("receptance", "mobility", "accelerance")]
+    for key in refused:
+        warnings.append(f"{groups.pop(key)[0].place}: a ratio that is no motion per force; left out")
+    if not groups:
+        return None, warnings
+    chosen = max(groups.values(), key=len)
+    for other in groups.values():
+        if other is not chosen:
+            warnings.append(
+                f"{other[0].place}: {len(other)} FRFs differ from {len(chosen)} others in axis, form or "
+                "window; left out, put them in a file of their own"
+            )
+    pairs = [(m.response, m.reference) for m in chosen]
+    if len(set(pairs)) < len(pairs):
+        warnings.append(f"{source}: some FRFs have the same response and reference; all are kept")
+    try:
+        return _set(chosen, records, geometry, source, warnings), warnings
+    except InputError as error:
+        return None, [*warnings, f"{error}: no FRFs are used"]
+
+
+def _axis(record: Measurement) -> tuple[object, ...]:
+    length = 0 if record.values is None else len(record.values)
+    return float(f"{record.minimum:.6g}"), float(f"{record.step:.6g}"), length
+
+
+def _set(
+    chosen: Sequence[Measurement],
+    records: Sequence[Measurement],
+    geometry: Geometry,
+    source: str,
+    warnings: list[str],
+) -> FrfSet:
+    values = np.stack([np.asarray(m.values, dtype=np.complex128) for m in chosen])
+    coherence = _coherence(chosen, records, source, warnings)
+    frequency = chosen[0].minimum + chosen[0].step * np.arange(values.shape[1])
+    first = 0
+    if not np.isfinite(values[:, 0]).all():
+        warnings.append(
+            f"{source}: values at {frequency[0]:g} Hz are not finite; this line is left out of all FRFs"
+        )
+        first = 1
+    form = chosen[0].quantity
+    averages = np.array([m.averages for m in chosen])
+    assert form in ("receptance", "mobility", "accelerance")
+    return FrfSet(
+        frequency=np.asarray(frequency[first:], dtype=np.float64),
+        values=values[:, first:],
+        responses=tuple(m.response for m in chosen),
+        references=tuple(m.reference for m in chosen),
+        form=form,
+        coherence=None if coherence is None else coherence[:, first:],
+        variance=_variance(values[:, first:], None if coherence is None else coherence[:, first:], averages),
+        averages=averages if averages.all() else None,
+        decay=chosen[0].decay,
+        geometry=geometry,
+        source=source,
+    )
+
+
+def _coherence(
+    chosen: Sequence[Measurement], records: Sequence[Measurement], source: str, warnings: list[str]
+) -> FloatArray | None:
+    """Return the coherences in the order of the FRFs, if there is one for each."""
+    found: dict[tuple[Dof, Dof], list[FloatArray]] = defaultdict(list)
+    for record in records:
+        if record.function_type == 6 and record.values is not None and _axis(record) == _axis(chosen[0]):
+            found[record.response, record.reference].append(np.asarray(record.values.real, dtype=np.float64))
+    if not found:
+        return None
+    rows = []
+    for frf in chosen:
+        column = found[frf.response, frf.reference]
+        if not column:
+            warnings.append(
+                f"{source}: not every FRF has a coherence on the same axis; coherences are left out"
+            )
+            return None
+        rows.append(column.pop(0) if len(column) > 1 else column[0])
+    return np.nan_to_num(np.stack(rows), nan=0.0)
+
+
+def _variance(values: ComplexArray, coherence: FloatArray | None, averages: IntArray) -> FloatArray | None:
+    """Return E|dH|^2 = |H|^2 (1 - coherence) / (coherence (n - 1)) where n averages were taken."""
+    if coherence is None or averages.min() < 2:
+        return None
+    safe = np.clip(coherence, 1e-12, 1.0)
+    spread = (1 - safe) / (safe * (averages[:, None] - 1))
+    return np.asarray(np.abs(values) ** 2 * spread, dtype=np.float64)

@@ -1,0 +1,80 @@
+"""Modes the stabilisation chart missed: where in the band a fit leaves more than noise."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.frf import FrfSet
+from identification.mac import mpc
+from identification.noise import local_mean
+
+_WIDTHS = (1, 3, 9, 27, 81)
+_EXCESS = 6.0
+_REAL = 0.7
+_FEW = 4
+
+
+def trial_poles(
+    frfs: FrfSet, residual: ComplexArray, level: FloatArray, blocked: tuple[tuple[float, float], ...]
+) -> ComplexArray:
+    """Return poles about the most conspicuous peak of a residual, none if there is no peak [rad/s].
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    residual : (n_frf, n_lines) complex array
+        Data minus model [unit of the FRFs].
+    level : (n_frf,) array
+        Reciprocal noise variance of each FRF [1 / unit squared].
+    blocked : tuple of (float, float)
+        Stretches of the band not to look at again [Hz].
+    """
+    n_frf, n_lines = residual.shape
+    power = (level @ np.abs(residual) ** 2)[None, :]
+    free = np.ones(n_lines, dtype=bool)
+    for low, high in blocked:
+        free &= (frfs.frequency < low) | (frfs.frequency > high)
+    widths = [w for w in _WIDTHS if w <= max(1, n_lines // 8)]
+    excess = np.concatenate([(local_mean(power, w) - n_frf) * np.sqrt(w / n_frf) for w in widths])
+    edge = np.minimum(np.arange(n_lines), np.arange(n_lines)[::-1])
+    central = edge[None, :] > np.array(widths)[:, None]  # a rise towards an edge is a flank, not a peak
+    excess = np.where(free[None, :] & central, excess, -np.inf)
+    row, line = np.unravel_index(int(excess.argmax()), excess.shape)
+    if not excess[row, line] > _EXCESS:
+        return np.zeros(0, complex)
+    spread = widths[int(row)] * frfs.df
+    centre = float(frfs.frequency[line])
+    offset, width = np.meshgrid(np.array([-1.0, -0.5, 0.0, 0.5, 1.0]), np.array([0.1, 0.25, 0.5, 1.0, 2.0]))
+    damped = 2j * np.pi * (centre + offset * spread) - np.pi * width * spread
+    damped = damped.ravel()
+    low, high = 2 * np.pi * frfs.frequency[0], 2 * np.pi * frfs.frequency[-1]
+    return np.asarray(damped[(damped.imag >= low) & (damped.imag <= high)])
+
+
+def mends_a_mode(poles: ComplexArray, residues: ComplexArray, new: int) -> bool:
+    """Tell whether an added pole only mends the misfit of the mode beside it.
+
+    FRFs measured one after the other do not agree to the last digit on a frequency; a second pole within
+    three half-power half-widths then fits the difference. Two true modes have shapes whose components lie
+    on a line; the halves of one mode do not. Fewer than four FRFs cannot tell, and the doubt goes against the
+    new pole.
+
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        Poles of the fit [rad/s].
+    residues : (n_frf, n_modes) complex array
+        Residues [m/(N s)].
+    new : int
+        Which of the poles was added.
+    """
+    distance = np.abs(poles - poles[new])
+    distance[new] = np.inf
+    other = int(distance.argmin())
+    if distance[other] > 3.0 * max(abs(poles[new].real), abs(poles[other].real)):
+        return False
+    if len(residues) < _FEW:
+        return True
+    return bool(mpc(residues[:, [new, other]]).min() < _REAL)

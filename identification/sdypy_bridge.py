@@ -1,0 +1,167 @@
+"""The one place that knows sdypy-EMA: models to it and from it, and its poles as a second opinion."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.errors import EstimationError, InputError
+from acquisition.frf import FrfSet
+from acquisition.modal_data import ModalData
+from identification.arrangement import arrange, signs
+from identification.model import ModalModel
+
+_FREQUENCY = 1e-3
+_DAMPING = 0.05
+
+
+def to_sdypy(model: ModalModel) -> Any:
+    """Return a modal model as an sdypy-EMA ``Model`` with poles, constants and reconstructed FRFs filled in.
+
+    Its ``A`` are receptance residues [m/(N s)], its ``LR`` and ``UR`` the residual terms; signs of the
+    directions are not applied, as its FRFs are the data as measured. Where the shapes are scaled ``phi``
+    holds them.
+
+    Parameters
+    ----------
+    model : ModalModel
+        The model to hand over.
+
+    Returns
+    -------
+    sdypy.EMA.Model
+        A new model.
+    """
+    other = _empty(model.frfs, order=max(1, len(model)))
+    sign = signs(model.frfs)
+    other.all_poles, other.n_bands, other.len_band = [np.array(model.poles)], 1, len(other.freq)
+    other.pole_freq = [np.array(model.modal.frequency)]
+    other.pole_xi = [np.array(model.modal.damping)]
+    other.pole_ind = np.column_stack([np.zeros(len(model), dtype=int), np.arange(len(model))])
+    other.nat_freq, other.nat_xi = np.array(model.modal.frequency), np.array(model.modal.damping)
+    other.A = sign[:, None] * model.constants / (2j * model.poles.imag)
+    other.LR, other.UR = (sign * model.lower).astype(complex), (sign * model.upper).astype(complex)
+    other.H = np.array(model.synthesise(other.freq).values)
+    if model.modal.scaled:
+        other.phi = np.array(model.modal.shapes)
+    return other
+
+
+def from_sdypy(model: Any, frfs: FrfSet) -> ModalData:
+    """Return the modes an sdypy-EMA ``Model`` has selected as plain modal data.
+
+    Parameters
+    ----------
+    model : sdypy.EMA.Model
+        A model whose poles were selected and whose constants were computed.
+    frfs : FrfSet
+        The FRFs it was made of, for the degrees of freedom; one reference.
+
+    Returns
+    -------
+    ModalData
+        Its modes, rising in frequency; standard deviations unknown; shapes not mass-normalised, for its
+        ``phi`` are residues over the root of a residue.
+
+    Raises
+    ------
+    InputError
+        If poles or constants are missing, or the FRFs do not match.
+    """
+    if not hasattr(model, "nat_freq") or not hasattr(model, "A"):
+        raise InputError(
+            "the sdypy-EMA model holds no selected poles with constants; call get_constants first"
+        )
+    plan = arrange(frfs)
+    if len(model.A) != len(frfs.values) or len(plan.columns) != 1:
+        raise InputError(
+            f"the sdypy-EMA model has {len(model.A)} constants per mode, the FRFs are {len(plan.rows)} by "
+            f"{len(plan.columns)}; give the FRFs it was made of, one reference at a time"
+        )
+    order = np.argsort(model.nat_freq)
+    frequency = np.asarray(model.nat_freq, dtype=float)[order]
+    constants = (
+        np.asarray(model.A, dtype=complex)[:, order] * (2j * 2 * np.pi * frequency) * signs(frfs)[:, None]
+    )
+    return ModalData(
+        frequency=frequency,
+        frequency_sigma=np.full(len(frequency), np.nan),
+        damping=np.asarray(model.nat_xi, dtype=float)[order],
+        dofs=plan.rows,
+        shapes=constants[plan.index[:, 0]],
+        geometry=frfs.geometry,
+    )
+
+
+def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) -> pd.DataFrame:
+    """Return the poles sdypy-EMA's LSCF finds stable at the end of its chart.
+
+    A pole of the highest order counts if the order below has one within 0.1 % in frequency and 5 % in
+    damping. Its LSCF loses modes on bands far from zero, so it is given everything from 1 % of the upper
+    limit on, and what lies outside the band is left out afterwards.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    band : tuple of float
+        Lowest and highest frequency [Hz].
+    order : int
+        Highest polynomial order of its chart [-].
+
+    Returns
+    -------
+    DataFrame
+        One row per pole: frequency [Hz], damping [%].
+
+    Raises
+    ------
+    EstimationError
+        If its linear algebra fails.
+    """
+    lowest = max(float(frfs.frequency[0]), frfs.df)
+    data = frfs.band(min(lowest, band[0]), band[1])
+    model = _empty(data, order=max(1, order // 2), lower=min(band[0], max(0.01 * band[1], data.df)))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            model.get_poles(method="lscf", show_progress=False)
+    except np.linalg.LinAlgError as error:
+        raise EstimationError(f"{frfs.source}: sdypy-EMA could not solve for poles ({error})") from error
+    stable = _stable(np.asarray(model.all_poles[-1]), np.asarray(model.all_poles[-2])) + data.decay
+    stable = stable[np.argsort(np.abs(stable))]
+    frequency = np.abs(stable) / (2 * np.pi)
+    keep = (frequency >= band[0]) & (frequency <= band[1])
+    damping = -100 * stable.real / np.abs(stable)
+    table = pd.DataFrame({"frequency [Hz]": frequency[keep], "damping [%]": damping[keep]})
+    return table.set_index(pd.RangeIndex(1, len(table) + 1, name="pole"))
+
+
+def _empty(frfs: FrfSet, *, order: int, lower: float | None = None) -> Any:
+    """Return an sdypy-EMA model that holds the FRFs; it leaves out the last line."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        from sdypy import EMA
+
+        return EMA.Model(
+            frf=np.array(frfs.values),
+            freq=np.array(frfs.frequency),
+            lower=float(frfs.frequency[0]) if lower is None else lower,
+            upper=float(frfs.frequency[-1]),
+            pol_order_high=order,
+            frf_form=frfs.form,
+        )
+
+
+def _stable(last: ComplexArray, before: ComplexArray) -> ComplexArray:
+    """Return the poles of the highest order that stand where one of the order below stands."""
+    poles = last[(last.imag > 0) & (last.real < 0)]
+    distance_f: FloatArray = np.abs(np.abs(poles)[:, None] / np.abs(before)[None, :] - 1.0)
+    damping = -before.real / np.maximum(np.abs(before), np.finfo(float).tiny)
+    own = -poles.real / np.abs(poles)
+    distance_d = np.abs(own[:, None] - damping[None, :]) / own[:, None]
+    return np.asarray(poles[((distance_f < _FREQUENCY) & (distance_d < _DAMPING)).any(axis=1)])

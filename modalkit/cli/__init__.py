@@ -1,0 +1,51 @@
+"""The command line."""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+from rich.console import Console
+
+from acquisition.errors import ModalkitError
+from modalkit.cli import blinding, compare, demonstrate, diagnosing, look
+
+app = typer.Typer(
+    help="From hammer hits to modes, to an updated model, to the cause of the gap between test and model.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+for module in (look, compare, diagnosing, blinding, demonstrate):
+    module.add_commands(app)
+
+_Usage = typer.BadParameter.__mro__[1]
+"""The error of wrong arguments, whichever click typer brings along."""
+
+
+def main() -> None:
+    """Run the command line; an error on purpose is one line and exit code 2."""
+    arguments = [a for a in sys.argv[1:] if a != "--debug"]
+    debug = len(arguments) < len(sys.argv) - 1
+    try:
+        code = app(args=arguments, prog_name="modalkit", standalone_mode=False)
+    except ModalkitError as error:
+        if debug:
+            raise
+        _fail(str(error))
+    except _Usage as error:
+        if type(error).__name__ == "NoArgsIsHelpError":
+            sys.stdout.write(error.format_message() + "\n")
+            sys.exit(0)
+        _fail(error.format_message())
+    except (typer.Abort, KeyboardInterrupt):
+        _fail("interrupted; nothing was written")
+    else:
+        sys.exit(code if isinstance(code, int) else 0)
+
+
+def _fail(message: str) -> None:
+    Console(stderr=True, soft_wrap=True, highlight=False).print(
+        f"modalkit: {message}", markup=False, style="bold red"
+    )
+    sys.exit(2)

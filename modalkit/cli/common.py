@@ -1,0 +1,69 @@
+"""What every command shares: printing, progress, tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from rich.console import Console
+from rich.table import Table
+
+out = Console(highlight=False, soft_wrap=True)
+progress = Console(stderr=True)
+
+
+def is_study(path: Path) -> bool:
+    """Tell a study file from a data file, by its ending."""
+    return path.suffix.lower() == ".toml"
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Show that something is going on, on stderr and only in a terminal."""
+    with progress.status(what):
+        yield
+
+
+def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] | None = None) -> None:
+    """Print a table; columns of numbers to the right, with as many decimals as told."""
+    table = Table(title=title or None, title_justify="left", box=None, pad_edge=False, header_style="bold")
+    named = frame.index.name is not None
+    if named:
+        table.add_column(str(frame.index.name), justify="right")
+    for column in frame.columns:
+        numeric = pd.api.types.is_numeric_dtype(frame[column])
+        table.add_column(str(column), justify="right" if numeric else "left")
+    for index, row in zip(frame.index, frame.itertuples(index=False), strict=True):
+        cells = [_cell(value, (digits or {}).get(str(c))) for c, value in zip(frame.columns, row, strict=True)]
+        table.add_row(*([str(index)] if named else []), *cells)
+    out.print(table)
+    out.print()
+
+
+def _cell(value: Any, digits: int | None) -> str:
+    if isinstance(value, float):
+        if math.isnan(value):
+            return "-"
+        return f"{value:.{digits}f}" if digits is not None else f"{value:.4g}"
+    return str(value)
+
+
+def show_warnings(warnings: Sequence[str]) -> None:
+    """Print warnings, each on a line of its own."""
+    for warning in dict.fromkeys(warnings):
+        out.print(f"warning: {warning}", style="yellow", markup=False)
+
+
+def show_figures(folder: Path | None, build: Callable[[], dict[str, Any]]) -> None:
+    """Draw and save figures if a folder is given, and say where they are."""
+    if folder is None:
+        return
+    from modalkit.figures import save_figures
+
+    with working("drawing"):
+        for path in save_figures(build(), folder):
+            out.print(f"figure: {path}", markup=False)

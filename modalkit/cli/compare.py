@@ -1,0 +1,9 @@
+"""Commands that bring test and model together: correlate, update, tables."""
+
+from __future__ import annotations
+
+import typer
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Add the commands of this module."""

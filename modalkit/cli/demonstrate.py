@@ -1,0 +1,53 @@
+"""The demonstration on shipped data."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from acquisition.errors import InputError
+from modalkit.cli.common import out, show_figures, show_table, working
+from modalkit.cli.diagnosing import diagnosis_figures, show_diagnosis
+from modalkit.process import open_study
+from modalkit.study import read_study
+from updating import diagnose as examine
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(demo)
+
+
+def sample(name: str) -> Path:
+    """Return the study file of a shipped sample.
+
+    Raises
+    ------
+    InputError
+        If the samples were not installed with the package.
+    """
+    home = Path(__file__).resolve().parents[1]
+    for folder in (home / "_sample_data", home.parent / "sample_data"):
+        if (folder / name / "study.toml").exists():
+            return folder / name / "study.toml"
+    raise InputError(f"the sample study {name!r} is not installed; clone the repository and run it there")
+
+
+def demo(
+    figures: Annotated[Path | None, typer.Option("--figures", help="folder for the figures")] = None,
+) -> None:
+    """Run the main job on shipped data: hits to modes to the cause of the gap."""
+    study = read_study(sample("beam_wet"))
+    out.print(f"Study: {study.name}\n", style="bold", markup=False)
+    with working("hits to FRFs to modes"):
+        session = open_study(study)
+    if session.processed is not None and session.identified is not None:
+        hits = session.processed.hits
+        out.print(f"{len(hits)} hits read, {sum(not h.used for h in hits)} left out. Modes identified:")
+        show_table(session.identified.table())
+    with working("weighing the effects"):
+        diagnosis = examine(session.case)
+    show_diagnosis(diagnosis, session)
+    show_figures(figures, lambda: diagnosis_figures(diagnosis, session))

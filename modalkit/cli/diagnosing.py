@@ -1,0 +1,96 @@
+"""Commands of the diagnosis: diagnose, effects."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import pandas as pd
+import typer
+
+from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
+from modalkit.cli.look import Figures
+from modalkit.letter import letter
+from modalkit.process import Session, open_study
+from modalkit.records import diagnosis_record, effects_record
+from modalkit.study import read_study
+from modalkit.write import write_json
+from updating import Diagnosis
+from updating import diagnose as examine
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(diagnose)
+    app.command()(effects)
+
+
+def diagnose(
+    study: Annotated[Path, typer.Argument(help="study file")],
+    json: Annotated[Path | None, typer.Option("--json", help="file for the diagnosis as JSON")] = None,
+    figures: Figures = None,
+) -> None:
+    """Say where the gap between test and model lies, what causes it, and how far it closes."""
+    with working("reading and identifying"):
+        session = open_study(read_study(study))
+    with working("weighing the effects"):
+        diagnosis = examine(session.case)
+    show_diagnosis(diagnosis, session)
+    if json is not None:
+        write_json(json, diagnosis_record(diagnosis, session.warnings))
+        out.print(f"written: {json}", markup=False)
+    show_figures(figures, lambda: diagnosis_figures(diagnosis, session))
+
+
+def show_diagnosis(diagnosis: Diagnosis, session: Session) -> None:
+    """Print a diagnosis: five lines, then the tables."""
+    out.print(diagnosis.title, style="bold", markup=False)
+    for line in letter(diagnosis):
+        out.print(line, markup=False)
+    out.print()
+    digits = {"test [Hz]": 3, "model [Hz]": 3, "error [%]": 3, "sigma [%]": 3, "MAC": 3}
+    gap = diagnosis.gap
+    show_table(gap.modes, f"Gap: {gap.rms_percent:.3g} % r.m.s. over {len(gap.modes)} modes", digits=digits)
+    show_table(diagnosis.table().head(10), "Explanations, most probable first", digits={"probability": 4})
+    if diagnosis.next_test:
+        rows = [
+            {"measure next": t.measure, "separates": " / ".join(t.separates), "sigma": t.expected_sigma}
+            for t in diagnosis.next_test
+        ]
+        show_table(pd.DataFrame(rows), "What to measure next")
+    if diagnosis.not_examined:
+        out.print("Not examined: " + "; ".join(f"{n} ({why})" for n, why in diagnosis.not_examined.items()))
+    show_warnings([*diagnosis.warnings, *session.warnings])
+
+
+def diagnosis_figures(diagnosis: Diagnosis, session: Session) -> dict[str, Any]:
+    """Draw a diagnosis, and the test it rests on."""
+    from modalkit.figures import diagnosis_figure, frf_figure
+
+    figures = {"diagnosis": diagnosis_figure(diagnosis, session.case)}
+    if session.identified is not None:
+        figures["frf"] = frf_figure(session.identified.frfs, session.identified)
+    return figures
+
+
+def effects(
+    json: Annotated[Path | None, typer.Option("--json", help="file for the library as JSON")] = None,
+) -> None:
+    """List the effects that can be named, with priors, footprints and what separates them."""
+    record = effects_record()
+    if json is not None:
+        write_json(json, record)
+        out.print(f"written: {json}", markup=False)
+        return
+    for effect in record["effects"]:
+        out.print(f"{effect['name']} ({effect['channel']}; {', '.join(effect['models'])})", style="bold")
+        out.print(f"  {effect['summary']}", markup=False)
+        out.print(f"  seen as: {effect['footprint']}", markup=False)
+        for p in effect["parameters"]:
+            scale = "log-uniform" if p["log"] else "uniform"
+            unit = "" if p["unit"] == "-" else f" {p['unit']}"
+            out.print(f"  {p['name']}: {p['low']:.4g} to {p['high']:.4g}{unit}, {scale}: {p['why']}", markup=False)
+        if effect["equivalent_to"]:
+            out.print(f"  mistaken for: {', '.join(effect['equivalent_to'])}", markup=False)
+        out.print(f"  separated by: {effect['separated_by']}", markup=False)
+    out.print("\nPriors that scale with the specimen are shown for a steel cantilever of 376 x 30.5 x 4.7625 mm.")

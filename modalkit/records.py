@@ -1,0 +1,190 @@
+"""Results as the plain records of the JSON files, whose keys are a contract."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from acquisition import HitVerdict
+from identification import ModalModel, mpc
+from updating import LIBRARY, Diagnosis
+from updating.diagnosis.result import Ranked
+
+
+def modes_record(model: ModalModel, hits: Sequence[HitVerdict], warnings: Sequence[str]) -> dict[str, Any]:
+    """Return an identification as ``modalkit.modes/1``."""
+    modal = model.modal
+    assert modal.shapes is not None
+    assert modal.damping is not None
+    assert modal.damping_sigma is not None
+    purity = mpc(modal.shapes)
+    modes = []
+    for r in range(len(modal)):
+        shape = [
+            {
+                "node": dof.node,
+                "direction": dof.direction,
+                "re": modal.shapes[i, r].real,
+                "im": modal.shapes[i, r].imag,
+                "sigma": None if modal.shape_sigma is None else modal.shape_sigma[i, r],
+            }
+            for i, dof in enumerate(modal.dofs)
+        ]
+        modes.append(
+            {
+                "frequency_hz": modal.frequency[r],
+                "frequency_sigma_hz": modal.frequency_sigma[r],
+                "damping_ratio": modal.damping[r],
+                "damping_sigma": modal.damping_sigma[r],
+                "shape": shape,
+                "mpc": purity[r],
+                "scaled": modal.scaled,
+            }
+        )
+    return {
+        "schema": "modalkit.modes/1",
+        "modes": modes,
+        "points_rejected": list(model.points_rejected),
+        "hits": [hit_record(h) for h in hits],
+        "window_decay_removed": model.frfs.decay,
+        "warnings": list(warnings),
+    }
+
+
+def hit_record(hit: HitVerdict) -> dict[str, Any]:
+    """Return the verdict on one hit."""
+    return {"point": str(hit.point), "hit": hit.hit, "used": hit.used, "reasons": list(hit.reasons)}
+
+
+def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict[str, Any]:
+    """Return a diagnosis as ``modalkit.diagnosis/1``."""
+    where, shrink = diagnosis.where, diagnosis.shrink
+    return {
+        "schema": "modalkit.diagnosis/1",
+        "title": diagnosis.title,
+        "significant": diagnosis.significant,
+        "p_value": diagnosis.p_value,
+        "gap": _gap_record(diagnosis),
+        "where": {
+            "channel": where.channel,
+            "channels": where.channels,
+            "location": where.location,
+            "locations": where.locations,
+            "points": where.points,
+            "zones": [{"name": z.name, "center": z.center, "probability": z.probability} for z in where.zones],
+        },
+        "cause": {
+            "verdict": diagnosis.verdict,
+            "effects": diagnosis.effects,
+            "sets": diagnosis.sets,
+            "ranking": [_ranked_record(r) for r in diagnosis.ranking],
+        },
+        "shrink": {
+            "metric": shrink.metric,
+            "before_percent": shrink.before,
+            "after_percent": shrink.after,
+            "held_out": {
+                "before_percent": shrink.held_before,
+                "after_percent": shrink.held_after,
+                "runner_up_percent": shrink.held_runner_up,
+                "nuisance_only_percent": shrink.held_nuisance,
+                "noise_floor_percent": shrink.floor,
+            },
+            "closed_percent": None
+            if shrink.closed is None
+            else {
+                "value": shrink.closed.value,
+                "low95": shrink.closed.low95,
+                "high95": shrink.closed.high95,
+            },
+        },
+        "next_test": [
+            {"measure": t.measure, "separates": t.separates, "expected_sigma": t.expected_sigma}
+            for t in diagnosis.next_test
+        ],
+        "not_examined": diagnosis.not_examined,
+        "warnings": [*diagnosis.warnings, *warnings],
+    }
+
+
+def _gap_record(diagnosis: Diagnosis) -> dict[str, Any]:
+    gap = diagnosis.gap
+    modes = [
+        {
+            "study": diagnosis.title,
+            "test_hz": row["test [Hz]"],
+            "model_hz": row["model [Hz]"],
+            "error_percent": row["error [%]"],
+            "sigma_percent": row["sigma [%]"],
+            "mac": row["MAC"],
+            "test_damping": row["test damping"],
+            "model_damping": row["model damping"],
+        }
+        for _, row in gap.modes.iterrows()
+    ]
+    return {
+        "frequency_rms_percent": gap.rms_percent,
+        "noise_floor_percent": gap.floor_percent,
+        "modes": modes,
+        "frac": gap.frac,
+    }
+
+
+def _ranked_record(row: Ranked) -> dict[str, Any]:
+    return {
+        "effects": row.effects,
+        "probability": row.probability,
+        "equivalents": row.equivalents,
+        "parameters": {
+            name: {
+                "value": e.value,
+                "unit": e.unit,
+                "low95": e.low95,
+                "high95": e.high95,
+                "at_bound": e.at_bound,
+            }
+            for name, e in row.parameters.items()
+        },
+        "plausible": row.plausible,
+        "fit_p_value": row.p_value,
+    }
+
+
+def effects_record() -> dict[str, Any]:
+    """Return the library of effects as ``modalkit.effects/1``."""
+    return {
+        "schema": "modalkit.effects/1",
+        "effects": [
+            {
+                "name": effect.name,
+                "channel": effect.channel,
+                "summary": effect.summary,
+                "footprint": effect.footprint,
+                "models": list(effect.models),
+                "equivalent_to": list(effect.equivalent_to),
+                "separated_by": effect.separated_by,
+                "parameters": [
+                    {"name": p.name, "unit": p.unit, "low": p.low, "high": p.high, "log": p.log, "why": p.why}
+                    for p in effect.parameters(example)
+                ],
+            }
+            for effect in LIBRARY.values()
+            for example in [_example()]
+        ],
+    }
+
+
+def _example() -> Any:
+    """Return a predictor of the beam whose priors the list shows: 376 x 30.5 x 4.7625 mm steel, clamped."""
+    import numpy as np
+
+    from updating import Material, Measured, Predictor, Spec
+
+    steel = Material(210e9, 7850.0)
+    spec = Spec("beam", 0.376, 0.0305, 0.0047625, (10,), ("x0",), "euler-bernoulli", steel)
+    one = np.ones(1)
+    index = np.zeros(1, dtype=int)
+    measured = Measured(
+        28 * one, one, one, one, np.array([[0.376]]), (1,), index, index, np.ones((1, 1)), np.ones((1, 1)), True
+    )
+    return Predictor(spec, measured)

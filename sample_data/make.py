@@ -1,0 +1,217 @@
+"""Make all sample data anew: ``python sample_data/make.py [FOLDER]``.
+
+Every test here is synthetic. The structure behind it is not the model that the study files fit to it: it has
+another mesh, for the beams another theory, and the causes that the published frequencies speak for (the
+structure bends 18.2 mm inside its clamp; an accelerometer of 10.9 g). Its poles are then moved to the published
+frequencies, so that what is identified *is* what was published. Damping and noise are invented.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from modes import PUBLISHED
+
+from acquisition import (
+    Dof,
+    FrfSet,
+    Geometry,
+    HammerPlan,
+    HammerTest,
+    ModalSystem,
+    estimate_frfs,
+    hammer_test,
+    judge_hits,
+    write_uff,
+)
+from acquisition.arrays import FloatArray
+from updating import Environment, Material, Measured, Prediction, Predictor, Spec
+from updating.effects import LIBRARY
+from updating.models.state import State, combine
+
+LENGTH, PLATE_WIDTH = 0.376, 0.200
+STEEL = Material(E=210e9, density=7850.0, poisson=0.3)
+PENETRATION = 0.0182
+"""How far the structure goes on bending inside its clamp [m]."""
+SENSOR = 0.0109
+"""Mass of the accelerometer [kg]."""
+WATER = 998.0
+"""Density of the water [kg/m^3]."""
+BEYOND = 6
+"""Modes above the published ones that still sound in the FRFs."""
+
+
+@dataclass(frozen=True)
+class Rig:
+    """One synthetic test.
+
+    Parameters
+    ----------
+    name : str
+        Folder and file.
+    spec : Spec
+        Mesh and theory of the structure behind it.
+    points : (n, dim) array
+        Where the hammer hits, in model axes [m]; the last point carries the accelerometer.
+    environment : Environment
+        The tank.
+    wet : bool
+        Whether there is water in it.
+    band : float
+        Upper end of the band [Hz].
+    samples : int
+        Samples per record.
+    decay : float
+        Decay rate of the exponential window applied by the analyser [1/s].
+    peak : float
+        Median peak force [N].
+    raw : bool
+        Whether the file carries the raw hits; else averaged FRFs with their coherence.
+    seed : int
+        Seed of all scatter and noise.
+    """
+
+    name: str
+    spec: Spec
+    points: FloatArray
+    environment: Environment
+    wet: bool
+    band: float
+    samples: int
+    decay: float
+    peak: float
+    raw: bool
+    seed: int
+
+
+def rigs() -> tuple[Rig, ...]:
+    """Return the four tests of the submerged-structures paper."""
+    along = LENGTH * np.arange(1, 6) / 5
+    grid = np.array([(x, y) for x in along for y in PLATE_WIDTH * np.arange(5) / 4])
+    beam = Spec("beam", LENGTH, 0.0305, 0.0047625, (53,), ("x0",), "timoshenko", STEEL)
+    plate = Spec("plate", LENGTH, PLATE_WIDTH, 0.003175, (26, 14), ("x0",), "kirchhoff", STEEL)
+    tank = {"free_surface": 0.18, "bottom": 0.19}
+    around_beam = Environment(WATER, **tank, walls=(0.0, 0.55, 0.01525 - 0.225, 0.01525 + 0.225))
+    around_plate = Environment(WATER, **tank, walls=(0.0, 0.55, 0.1 - 0.225, 0.1 + 0.225))
+    common = {"samples": 1024, "decay": 8.0, "peak": 60.0, "raw": True, "band": 500.0}
+    broad = {"samples": 4096, "decay": 4.0, "peak": 60.0, "raw": False, "band": 1000.0}
+    return (
+        Rig("beam_dry", beam, along[:, None], around_beam, wet=False, seed=101, **common),
+        Rig("beam_wet", beam, along[:, None], around_beam, wet=True, seed=102, **common),
+        Rig("plate_dry", plate, grid, around_plate, wet=False, seed=103, **broad),
+        Rig("plate_wet", plate, grid, around_plate, wet=True, seed=104, **broad),
+    )
+
+
+def structure_behind(rig: Rig) -> Prediction:
+    """Solve for the modes of the structure behind a test, at the points of the test."""
+    published = np.array(PUBLISHED[rig.name])
+    predictor = Predictor(rig.spec, _seen_from(rig, published), rig.environment)
+    added = {"length": {"extension": PENETRATION}, "sensor_mass": {"mass": SENSOR}}
+    if rig.wet:
+        added["fluid_added_mass"] = {"fluid_density": WATER}
+    state: State = combine(LIBRARY[name].state(predictor, values) for name, values in added.items())
+    return predictor.predict(state, count=len(published) + BEYOND)
+
+
+def _seen_from(rig: Rig, frequency: FloatArray) -> Measured:
+    """Return a test without data, which only says where it is hit and where it is measured."""
+    n, m = len(rig.points), len(frequency)
+    nothing = np.full(m, np.nan)
+    return Measured(
+        frequency=frequency, frequency_sigma=nothing, damping=nothing, damping_sigma=nothing,
+        points=rig.points, nodes=tuple(range(1, n + 1)), seen=np.full(n, n - 1), hit=np.arange(n),
+        constants=np.ones((n, m)), constants_sigma=np.ones((n, m)), absolute=True,
+    )  # fmt: skip
+
+
+def damping_ratios(rig: Rig, frequency: FloatArray) -> FloatArray:
+    """Return damping ratios, invented: some per mille of steel and clamp, more at low frequency and in water [-]."""
+    rng = np.random.default_rng(rig.seed)
+    level = 0.004 if rig.wet else 0.002
+    return np.asarray((level + 0.04 / frequency) * np.exp(0.25 * rng.standard_normal(len(frequency))))
+
+
+def system(rig: Rig) -> ModalSystem:
+    """Return the structure behind a test with its poles at the published frequencies."""
+    truth = structure_behind(rig)
+    published = np.array(PUBLISHED[rig.name])
+    beyond = truth.frequency[len(published) :] * np.mean(published[-3:] / truth.frequency[len(published) - 3 : len(published)])  # fmt: skip
+    frequency = np.concatenate([published, beyond])
+    zeta = damping_ratios(rig, frequency)
+    omega = 2 * np.pi * frequency
+    damped = omega * np.sqrt(1 - zeta**2)
+    along = np.zeros((2, 1, *truth.constants.shape))
+    along[: len(truth.along), 0] = truth.along
+    nodes = [Dof(i + 1, 3) for i in range(len(rig.points))]
+    return ModalSystem(
+        poles=-zeta * omega + 1j * damped,
+        residues=truth.constants[None] / (2j * damped),
+        responses=(nodes[-1],),
+        points=tuple(nodes),
+        gradients=along / (2j * damped),
+    )
+
+
+def plan(rig: Rig) -> HammerPlan:
+    """Return how the structure is hit: 15 times at every point."""
+    return HammerPlan(
+        rate=2.56 * rig.band,
+        samples=rig.samples,
+        hits=15,
+        peak=rig.peak,
+        width=1.2 / rig.band,
+        pre_trigger=0.02 * rig.samples / (2.56 * rig.band),
+        force_noise=2e-4 * rig.peak,
+        response_noise=1e-3 if rig.wet else 3e-4,
+        position_sigma=5e-4,
+        decay=rig.decay,
+        adc_bits=20,
+    )
+
+
+def geometry(rig: Rig) -> Geometry:
+    """Return the points of a test in its own axes, which are the model's."""
+    flat = np.zeros((len(rig.points), 3))
+    flat[:, : rig.points.shape[1]] = rig.points
+    return Geometry(tuple(range(1, len(flat) + 1)), flat)
+
+
+def record(rig: Rig) -> HammerTest:
+    """Carry the synthetic test out."""
+    return hammer_test(system(rig), plan(rig), rng=np.random.default_rng(rig.seed), geometry=geometry(rig))
+
+
+def averaged(rig: Rig, test: HammerTest) -> FrfSet:
+    """Average the hits to FRFs, as the program itself does, and keep the band."""
+    frfs = estimate_frfs(test, verdicts=judge_hits(test)).band(0.0, rig.band)
+    return replace(frfs, variance=None)
+
+
+def make(rig: Rig, folder: Path) -> Path:
+    """Write the universal file of one test, and return where it is."""
+    target = folder / rig.name / f"{rig.name}.uff"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    test = record(rig)
+    title = f"synthetic hammer test, {rig.name}: published frequencies, invented damping"
+    if rig.raw:
+        write_uff(target, tests=test, title=title, precision="single")
+    else:
+        write_uff(target, frfs=averaged(rig, test), title=title, precision="single")
+    return target
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Make all files below a folder; left out, the one this script lies in."""
+    folder = Path(arguments[0]) if arguments else Path(__file__).resolve().parent
+    for rig in rigs():
+        path = make(rig, folder)
+        print(f"{path}: {path.stat().st_size / 1e6:.2f} MB")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

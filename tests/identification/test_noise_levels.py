@@ -1,0 +1,59 @@
+"""Noise levels from differences, from residuals, and from coherence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from identification_cases import column, lines, structure
+
+from identification import identify, noise
+
+
+def dirt(rng, shape):
+    return (rng.standard_normal(shape) + 1j * rng.standard_normal(shape)) / np.sqrt(2)
+
+
+def test_scatter_is_blind_to_what_is_smooth(rng):
+    x = np.linspace(0, 1, 2000)
+    values = 0.3 * dirt(rng, (5, 2000)) + 50 * np.exp(3j * x)
+    np.testing.assert_allclose(noise.scatter(values), 0.09, rtol=0.2)
+
+
+def test_white_noise_gives_one_weight_per_frf(rng):
+    level = np.array([[1.0], [4.0], [0.1]])
+    weights, variance = noise.from_residual(
+        level * dirt(rng, (3, 3000)), np.zeros((1, 3000)), np.zeros((3, 1))
+    )
+    assert weights.lines.shape == (1, 3000)
+    assert np.ptp(weights.lines) == 0
+    np.testing.assert_allclose(variance[:, 0], level[:, 0] ** 2, rtol=0.08)
+
+
+def test_a_colour_in_common_is_found(rng):
+    colour = np.linspace(0.2, 3.0, 3000)
+    weights, variance = noise.from_residual(
+        colour * dirt(rng, (8, 3000)), np.zeros((1, 3000)), np.zeros((8, 1))
+    )
+    assert weights.lines.shape == (1, 3000)
+    middle = slice(300, 2700)
+    np.testing.assert_allclose(variance[:, middle].mean(axis=0), (colour**2)[middle], rtol=0.25)
+
+
+def test_colours_of_their_own_are_found(rng):
+    colour = np.stack([np.linspace(0.2, 3.0, 3000), np.linspace(3.0, 0.2, 3000)])
+    weights, _ = noise.from_residual(colour * dirt(rng, (2, 3000)), np.zeros((1, 3000)), np.zeros((2, 1)))
+    assert weights.lines.shape == (2, 3000)
+
+
+def test_coherence_alone_is_a_relative_weight(rng):
+    truth = structure((50.0, 90.0), (0.01, 0.01), 5, seed=10)
+    clean = truth.frfs(lines(high=150.0), column(5))
+    spread = 0.02 * np.sqrt(np.mean(np.abs(clean.values) ** 2)) * np.where(clean.frequency > 70, 5.0, 1.0)
+    values = clean.values + spread * dirt(rng, clean.values.shape)
+    power = np.abs(clean.values) ** 2
+    coherence = power / (power + spread**2)
+    model = identify(replace(clean, values=values, coherence=coherence))
+    plain = identify(replace(clean, values=values))
+    assert np.abs((model.modal.frequency - truth.hertz) / model.modal.frequency_sigma).max() < 4
+    np.testing.assert_allclose(model.modal.frequency_sigma, plain.modal.frequency_sigma, rtol=0.25)

@@ -1,0 +1,73 @@
+"""One body for every pole estimator: it recovers the poles it was given, on any band."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from identification_cases import bench, column, lines, structure
+
+from acquisition.errors import EstimationError
+from identification.poles import ESTIMATORS, lsce, lscf
+from identification.poles.lsce import prediction_normal
+
+
+def nearest_error(found, wanted):
+    return (np.abs(found[:, None] - wanted[None, :]).min(axis=0) / np.abs(wanted)).max()
+
+
+@pytest.mark.parametrize("name", sorted(ESTIMATORS))
+@pytest.mark.parametrize("low", [0.5, 10.0, 100.0, 300.0, 550.0])
+def test_recovers_clean_poles(name, low):
+    truth = bench()
+    frfs = truth.frfs(lines(low=low), column())
+    sets = ESTIMATORS[name](frfs, orders=[40, 60])
+    wanted = truth.poles[truth.within(low, 1000)]
+    for poles in sets.poles:
+        assert nearest_error(poles, wanted) < 5e-5
+
+
+@pytest.mark.parametrize("name", sorted(ESTIMATORS))
+@pytest.mark.parametrize("form", ["receptance", "mobility", "accelerance"])
+def test_form_and_decay_leave_the_poles_alone(name, form):
+    truth = bench()
+    frfs = truth.frfs(lines(low=250.0), column(), form=form, decay=6.0)
+    (poles,) = ESTIMATORS[name](frfs, orders=[50]).poles
+    assert nearest_error(poles, truth.poles[truth.within(250, 1000)]) < 5e-5
+
+
+@pytest.mark.parametrize("name", sorted(ESTIMATORS))
+def test_mathematical_poles_are_unstable(name, rng):
+    truth = bench()
+    frfs = truth.frfs(lines(low=10.0), column(), noise=0.01, rng=rng)
+    (poles,) = ESTIMATORS[name](frfs, orders=[60]).poles
+    hertz, ratio = np.abs(poles) / (2 * np.pi), -poles.real / np.abs(poles)
+    lightly = (hertz > 10) & (hertz < 1000) & (ratio < 0.1)
+    assert 12 <= lightly.sum() <= 14
+    assert nearest_error(poles, truth.poles[truth.within(10, 1000)]) < 2e-3
+
+
+def test_several_references_part_modes_of_almost_one_frequency(rng):
+    truth = structure((200.0, 200.4, 260.0), (0.005, 0.005, 0.004), 10, seed=3)
+    pairs = [(i, j) for j in (1, 4, 7) for i in range(1, 11)]
+    frfs = truth.frfs(lines(low=150.0, high=300.0, df=0.25), pairs, noise=0.001, rng=rng)
+    sets = lscf(frfs, orders=[6, 10])
+    assert nearest_error(sets.poles[-1], truth.poles) < 1e-4
+    row = np.abs(sets.poles[-1][:, None] - truth.poles[None, :]).argmin(axis=0)
+    for found, mode in zip(sets.participation[-1][row], range(3), strict=True):
+        wanted = truth.shapes[[0, 3, 6], mode]
+        cosine = abs(found.conj() @ wanted) / np.linalg.norm(wanted)
+        assert cosine > 0.999
+
+
+def test_prediction_normal_equals_the_product_of_its_windows(rng):
+    signals = rng.standard_normal((3, 50)) + 1j * rng.standard_normal((3, 50))
+    windows = np.concatenate([np.stack([s[k : k + 40] for k in range(11)], axis=1) for s in signals])
+    np.testing.assert_allclose(
+        prediction_normal(signals, 10), windows.conj().T @ windows, rtol=1e-12, atol=1e-12
+    )
+
+
+def test_lsce_says_when_there_are_too_few_lines():
+    frfs = bench().frfs(lines(low=390.0, high=420.0), column())
+    with pytest.raises(EstimationError, match="61 lines cannot carry LSCE of order 40"):
+        lsce(frfs, orders=[40])

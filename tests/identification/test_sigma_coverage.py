@@ -1,0 +1,46 @@
+"""Do 95 % intervals hold the truth 95 times in a hundred?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from identification_cases import bench, column, lines
+
+from identification import identify
+
+
+def scores(seeds, *, above, low=0.0, colour=None, n_points=25, noise=0.01):
+    """Errors over sigmas of ln f, damping and the real part of the constants, pooled."""
+    frequency, damping, constants = [], [], []
+    for seed in seeds:
+        truth = bench(seed=seed, above=above, n_points=n_points)
+        frfs = truth.frfs(
+            lines(), column(n_points), noise=noise, rng=np.random.default_rng(7000 + seed), colour=colour
+        )
+        model = identify(frfs, band=(low, 1000.0))
+        wanted = truth.within(low, 1000.0)
+        assert len(model) == wanted.sum()
+        sigma = np.sqrt(model.pole_covariance[:, [0, 1], [0, 1]])
+        frequency.append(np.log(model.modal.frequency / truth.hertz[wanted]) / sigma[:, 0])
+        damping.append((model.modal.damping - truth.damping[wanted]) / sigma[:, 1])
+        exact = truth.shapes[:, wanted] * truth.shapes[3, wanted]
+        constants.append(((model.constants.real - exact) / model.constant_sigma).ravel())
+    return [np.concatenate(x) for x in (frequency, damping, constants)]
+
+
+@pytest.mark.parametrize("above", [True, False])
+def test_sigmas_are_neither_too_small_nor_too_large(above):
+    for score in scores(range(8), above=above):
+        assert 0.85 < np.sqrt(np.mean(score**2)) < 1.17
+        assert 0.88 < np.mean(np.abs(score) < 1.96) < 0.995
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("colour", ["white", "rising", "falling"])
+@pytest.mark.parametrize("above", [True, False])
+@pytest.mark.parametrize("low", [0.0, 300.0])
+def test_pooled_coverage_over_sixty_seeds(low, above, colour):
+    x = lines() / 1000.0
+    law = {"white": None, "rising": 0.3 + 2.0 * x**2, "falling": 1.5 - 1.3 * x}[colour]
+    for score in scores(range(60), above=above, low=low, colour=law):
+        assert 0.93 < np.mean(np.abs(score) < 1.96) < 0.97

@@ -1,0 +1,111 @@
+"""Poles and residues of the rig: exactness, damping, and the record made from them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from modalkit.blind.beam import Beam
+from modalkit.blind.complex_modes import complex_modes
+from modalkit.blind.parts import Attached
+from modalkit.blind.record import hammer_plan, measure, modal_system, remounted
+from modalkit.blind.scene import nominal_scene
+from modalkit.blind.trial import draw_trial
+
+BEAM = Beam(0.0, 0.5, 0.03, 0.005, 210e9, 7850.0, alpha=3.0, beta=1e-6)
+PLACES = np.array([0.1, 0.27, 0.5])
+
+
+def test_rayleigh_damping() -> None:
+    modes = complex_modes(BEAM, PLACES, count=6, scatter=np.ones(6))
+    omega, shapes = BEAM.real_modes(6)
+    np.testing.assert_allclose(np.abs(modes.poles), omega, rtol=1e-9)
+    np.testing.assert_allclose(modes.damping, 0.5 * (3.0 / omega + 1e-6 * omega), rtol=1e-8)
+    real = BEAM.rows(PLACES, "w") @ shapes
+    damped = np.abs(modes.poles.imag)
+    expected = real[1] * real / (2j * damped)
+    np.testing.assert_allclose(modes.residues(1)[0], expected, rtol=1e-6, atol=1e-12)
+
+
+def test_dashpot_gives_the_response_of_the_full_equations() -> None:
+    damped = replace(BEAM, attached=(Attached(0.27, mass=0.02, damping=15.0),))
+    count = 40
+    modes = complex_modes(damped, PLACES, count=count, scatter=np.ones(count))
+    assert np.abs(np.angle(modes.points[0] ** 2 * 1j)).max() > 0.01  # truly complex shapes
+    omega, shapes = damped.real_modes(count)
+    material, dashpots = damped.modal_damping(shapes)
+    real = damped.rows(PLACES, "w") @ shapes
+    for s in (2j * np.pi * 40.0, 2j * np.pi * 333.0, -3.0 + 2j * np.pi * 90.0):
+        dynamic = np.diag(omega**2 + s**2) + s * (material + dashpots)
+        direct = real[0] @ np.linalg.solve(dynamic, real.T)
+        pairs = modes.residues(0)[0] / (s - modes.poles) + np.conj(modes.residues(0)[0]) / (
+            s - modes.poles.conj()
+        )
+        np.testing.assert_allclose(pairs.sum(axis=1), direct, rtol=1e-6)
+
+
+def test_gradients_are_derivatives_of_residues() -> None:
+    step = 1e-6
+    at, ahead = (
+        complex_modes(BEAM, np.append(PLACES[:2] + d, 0.5), count=5, scatter=np.ones(5)) for d in (0.0, step)
+    )
+    numeric = (np.abs(ahead.residues(2)[0, :2]) - np.abs(at.residues(2)[0, :2])) / step
+    sign = np.sign((at.residues(2)[0, :2] * 1j).real)
+    np.testing.assert_allclose((at.gradients(2)[0, :2] * 1j).real * sign, numeric, rtol=1e-3)
+
+
+def test_remounting_scatters_frequencies_and_nothing_else() -> None:
+    modes = complex_modes(BEAM, PLACES, count=200 // 40, scatter=np.ones(5))
+    rng = np.random.default_rng(3)
+    drawn = np.array([remounted(modes, 0.001, rng).frequency / modes.frequency - 1 for _ in range(400)])
+    assert drawn.std(axis=0) == pytest.approx(0.001, rel=0.15)
+    again = remounted(modes, 0.01, rng)
+    np.testing.assert_allclose(again.damping, modes.damping)
+    level = again.residues(0) * again.poles.imag
+    np.testing.assert_allclose(level, modes.residues(0) * modes.poles.imag)
+
+
+@pytest.mark.parametrize("effect", ["none", "exponential_window"])
+def test_records_hold_the_rigs_own_frf(effect: str) -> None:
+    trial = draw_trial(11, 2, effects=[effect])
+    setup = replace(
+        trial.scene.setup, noise=1e-9, bits=24, repeatability=0.0, position_sigma=0.0, sensor_sign=-1
+    )
+    scene = replace(trial.scene, setup=setup, gain=1.3)
+    test = measure(scene, rng=np.random.default_rng(5))
+    modes = scene.modes()
+    assert test.decay == setup.window
+    inside = (modes.frequency > setup.band[0]) & (modes.frequency < setup.band[1])
+    assert inside.sum() >= setup.modes
+    line = np.fft.rfftfreq(test.samples, 1 / test.rate)
+    near = np.unique(np.searchsorted(line, np.outer(modes.frequency[inside], [0.998, 1.0, 1.002]).ravel()))
+    s = 2j * np.pi * line[near] + scene.window
+    system = modal_system(modes, setup)
+    for row, hits in enumerate(test.points):
+        force, motion = np.fft.rfft(hits.force)[:, near], np.fft.rfft(hits.motion[:, 0])[:, near]
+        estimate = (motion * force.conj()).sum(axis=0) / (np.abs(force) ** 2).sum(axis=0)
+        exact = 1.3 * s**2 * system.receptance(s, row)[0]
+        assert np.abs(estimate - exact).max() < 0.01 * np.abs(exact).max()
+
+
+def test_records_are_long_enough() -> None:
+    for index in range(6):
+        scene = draw_trial(21, index).scene
+        modes = scene.modes()
+        plan = hammer_plan(scene, modes)
+        inside = (modes.frequency > scene.setup.band[0]) & (modes.frequency < scene.setup.band[1])
+        left = np.exp(-(scene.window - modes.poles.real[inside]).min() * plan.samples / plan.rate)
+        assert left < 0.05
+        assert plan.rate > 2.56 * scene.setup.band[1]
+
+
+def test_nominal_scene_is_what_the_study_states() -> None:
+    setup = draw_trial(4, 1, effects=["none"]).scene.setup
+    modes = nominal_scene(setup).modes()
+    bare = np.array(setup.nominal_hz[: setup.modes])
+    skip = 0 if setup.clamped else 2
+    heavier = modes.frequency[skip : skip + setup.modes]
+    assert np.all(heavier <= bare * (1 + 1e-3))
+    assert np.all(heavier > 0.96 * bare)

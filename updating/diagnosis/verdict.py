@@ -1,0 +1,116 @@
+"""From probabilities to an answer: named, a class, unknown, or none."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.evidence import Explanation
+from updating.diagnosis.problem import Problem
+from updating.diagnosis.result import ParameterEstimate, Ranked, Verdict
+from updating.diagnosis.search import REJECTED, Search, Weighed
+
+CERTAIN = 0.95
+"""Probability that the sets of an answer hold together."""
+
+SIGNIFICANT = 0.005
+"""A gap is one when chance alone makes it less often than this."""
+
+CLOSE = 4.0
+"""Chi-squared difference of 2 sigma: below it two explanations are equivalent."""
+
+
+def is_significant(found: Search, p_value: float) -> bool:
+    """Tell whether the tolerances and the noise fail to explain the data, and something else does better."""
+    beaten = any(row.names and row.explanation.log_evidence > found.nothing.log_evidence for row in found.weighed)
+    return p_value < SIGNIFICANT and (beaten or p_value < SIGNIFICANT**2)
+
+
+def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
+    """Return the verdict and the sets of effects it rests on.
+
+    Parameters
+    ----------
+    found : Search
+        What was weighed, most probable first.
+    significant : bool
+        Whether there is a gap.
+    """
+    if not significant:
+        return "none", ()
+    rows = [row for row in found.weighed if row.names]
+    fitting = [row for row in rows if row.p_value >= REJECTED]
+    if not fitting:
+        return "unknown", ()
+    sets = _credible(fitting)
+    return ("named" if len(sets) == 1 else "class"), sets
+
+
+def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:
+    """Return the fewest rows that hold the certainty asked for, among those that fit."""
+    total = sum(row.probability for row in rows)
+    sets, held = [], 0.0
+    for row in rows:
+        sets.append(row.names)
+        held += row.probability / max(total, 1e-300)
+        if held >= CERTAIN:
+            break
+    return tuple(sets)
+
+
+def rank(problem: Problem, found: Search) -> tuple[Ranked, ...]:
+    """Turn what was weighed into rows of the ranking, the empty set left out."""
+    rows = [row for row in found.weighed if row.names]
+    total = sum(row.probability for row in found.weighed)
+    return tuple(
+        Ranked(
+            row.names,
+            row.probability / total,
+            tuple(o.names for o in rows if o is not row and _close(row, o)),
+            estimates(problem, row.explanation),
+            _plausible(problem, row.explanation),
+            row.p_value,
+        )
+        for row in rows
+    )
+
+
+def _close(a: Weighed, b: Weighed) -> bool:
+    return abs(a.explanation.best.marginal.chi2 - b.explanation.best.marginal.chi2) < CLOSE
+
+
+def _plausible(problem: Problem, explanation: Explanation) -> bool:
+    """Tell whether no parameter is driven to the end of its prior."""
+    return not any(e.at_bound for e in estimates(problem, explanation).values())
+
+
+def estimates(problem: Problem, explanation: Explanation) -> dict[str, ParameterEstimate]:
+    """Return posterior mean and 95 % interval of every parameter and derived quantity."""
+    candidate, predictor = explanation.candidate, problem.predictor
+    stage = candidate.stage(predictor)
+    parameters = candidate.parameters(stage)
+    if not parameters:
+        return {}
+    keep = np.argsort(explanation.weights)[::-1][:300]
+    weights = explanation.weights[keep] / explanation.weights[keep].sum()
+    drawn = [candidate.values(predictor, explanation.samples[i].tolist()) for i in keep]
+    result = {}
+    for i, (name, parameter) in enumerate(parameters):
+        values = np.array([d[name] for d in drawn])
+        low, high = _interval(values, weights)
+        best = candidate.values(predictor, explanation.best.coordinates.tolist())[name]
+        at_bound = bool(min(explanation.best.coordinates[i], 1 - explanation.best.coordinates[i]) < 1e-3)
+        result[name] = ParameterEstimate(best, parameter.unit, low, high, at_bound)
+    derived = [candidate.derived(predictor, explanation.samples[i].tolist()) for i in keep]
+    for name, (value, unit) in candidate.derived(predictor, explanation.best.coordinates.tolist()).items():
+        low, high = _interval(np.array([d[name][0] for d in derived]), weights)
+        result[name] = ParameterEstimate(value, unit, low, high, at_bound=False)
+    return result
+
+
+def _interval(values: FloatArray, weights: FloatArray) -> tuple[float, float]:
+    """Return the weighted 2.5 and 97.5 % quantiles, interpolated between samples."""
+    order = np.argsort(values)
+    middle = np.cumsum(weights[order]) - 0.5 * weights[order]
+    low, high = np.interp([0.025, 0.975], middle, values[order])
+    return float(low), float(high)

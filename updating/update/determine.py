@@ -1,0 +1,103 @@
+"""What the data determine: covariance of the parameters, and which of them nothing but the prior holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2 as chi2_distribution
+
+from acquisition.arrays import BoolArray, FloatArray
+from updating.update.solve import NEGLIGIBLE
+from updating.update.system import Linear, System
+
+SIGNIFICANT = 1e-3
+"""A misfit less probable than this means that the model's error, not the measurement's, is what scatters."""
+
+
+@dataclass(frozen=True, eq=False)
+class Statistics:
+    """Statistics of an update.
+
+    Parameters
+    ----------
+    covariance : (p, p) array
+        Of the coordinates; infinite variance where nothing determines a parameter.
+    undetermined : (p,) bool array
+        Parameters of which the data alone say less than the doubt there was before.
+    chi2 : float
+        Sum of squared residuals over measurement variance [-].
+    dof : int
+        Data minus parameters.
+    inflation : float
+        Factor by which standard deviations were raised because the model does not fit the data [-].
+    """
+
+    covariance: FloatArray
+    undetermined: BoolArray
+    chi2: float
+    dof: int
+    inflation: float
+
+
+def assess(system: System, linear: Linear) -> Statistics:
+    """Work out covariance and determinability at the solution.
+
+    With weights from the covariance of the measurement, the covariance is (S'WS + W_theta)^-1, raised by
+    chi^2 / dof where the misfit is beyond what the measurement explains. With any other weights the scatter of
+    the residuals stands in for the measurement's variance.
+    """
+    scaled = system.whitened(linear) * system.doubt
+    undetermined = _alone(scaled) > 1.0
+    residual = np.concatenate([1 - k.frequency / s.measured.frequency for k, s in _each(system, linear)])
+    variance = np.concatenate([s.relative_variance for s in system.specimens])
+    chi2 = float(np.sum((residual**2 / variance)[system.used]))
+    dof = system.count - int(np.sum(system.prior == 0))
+    inflation = 1.0
+    if dof > 0 and chi2_distribution.sf(chi2, dof) < SIGNIFICANT:
+        inflation = float(np.sqrt(chi2 / dof))
+    covariance = _covariance(system, linear, variance * inflation**2)
+    hopeless = undetermined & (system.prior == 0)
+    covariance[hopeless, :] = 0.0
+    covariance[:, hopeless] = 0.0
+    covariance[hopeless, hopeless] = np.inf
+    return Statistics(covariance, undetermined, chi2, dof, inflation)
+
+
+def _each(system: System, linear: Linear) -> list[tuple[object, object]]:
+    return list(zip(linear.looks, system.specimens, strict=True))
+
+
+def _alone(scaled: FloatArray) -> FloatArray:
+    """Return each parameter's standard deviation from the data alone, in units of its doubt."""
+    _, size, right = np.linalg.svd(scaled, full_matrices=True)
+    padded = np.zeros(scaled.shape[1])
+    padded[: len(size)] = size
+    floor = NEGLIGIBLE * max(padded.max(), 1e-300)
+    return np.sqrt(np.sum((right.T / np.maximum(padded, floor)) ** 2, axis=1))
+
+
+def _covariance(system: System, linear: Linear, variance: FloatArray) -> FloatArray:
+    """Return the covariance of the estimate: of Eq. 25's linear answer to errors of the stated variance."""
+    per_log = np.concatenate([system._per_log(s, k) for k, s in zip(linear.looks, system.specimens, strict=True)])
+    noise = variance * per_log**2
+    doubt = system.doubt
+    s = linear.sensitivity * doubt
+    normal = (s.T * linear.weight) @ s + np.diag(system.prior * doubt**2)
+    inverse = np.linalg.pinv(normal, rcond=NEGLIGIBLE, hermitian=True)
+    gain = inverse @ (s.T * linear.weight)
+    data = (gain * noise) @ gain.T
+    prior = inverse @ np.diag(system.prior * doubt**2) @ inverse
+    return np.asarray((data + prior) * np.outer(doubt, doubt))
+
+
+def correlations(covariance: FloatArray) -> FloatArray:
+    """Return the correlation matrix; nan where a variance is infinite or zero [-]."""
+    sigma = np.sqrt(np.diag(covariance))
+    good = np.isfinite(sigma) & (sigma > 0)
+    safe = np.where(good, sigma, 1.0)
+    matrix = covariance / np.outer(safe, safe)
+    matrix[~good, :] = np.nan
+    matrix[:, ~good] = np.nan
+    np.fill_diagonal(matrix, 1.0)
+    return np.asarray(matrix)

@@ -1,0 +1,118 @@
+"""What an update hands back, reported as a fit ought to be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from acquisition.arrays import FloatArray
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One updated parameter.
+
+    Parameters
+    ----------
+    name : str
+        Name as the user wrote it.
+    study : str or None
+        Study it belongs to; None where it is shared by several.
+    value : float
+        Value after the update [``unit``].
+    unit : str
+        Its unit.
+    factor : float or None
+        Value over nominal value; None for what is no factor [-].
+    sigma : float
+        Standard deviation of ``value`` [``unit``]; infinite where the data do not determine it.
+    at_bound : bool
+        Whether the value stands at the end of its range.
+    low, high : float
+        The range [``unit``].
+    """
+
+    name: str
+    study: str | None
+    value: float
+    unit: str
+    factor: float | None
+    sigma: float
+    at_bound: bool
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class Update:
+    """An updated model.
+
+    Parameters
+    ----------
+    parameters : tuple of Estimate
+        What was updated.
+    pairs : DataFrame
+        One row per paired mode: study, test_mode, model_mode (from 1), mac, test_hz, before_hz, after_hz, used.
+    covariance, correlations : (p, p) arrays
+        Of the values [product of units] and [-].
+    undetermined : tuple of str
+        Parameters that the data do not determine: what they say alone is less than the doubt before.
+    iterations : int
+        Number of steps.
+    converged : bool
+        Whether the increments of the parameters died out.
+    chi2, dof, inflation : float, int, float
+        Misfit in measurement variances, degrees of freedom, and the factor by which it raised ``sigma``.
+    history : DataFrame
+        Factors and values of every iteration.
+    exact : bool
+        Whether the frequencies after the update are those of the full model.
+    warnings : tuple of str
+        What the user ought to know.
+    """
+
+    parameters: tuple[Estimate, ...]
+    pairs: pd.DataFrame
+    covariance: FloatArray
+    correlations: FloatArray
+    undetermined: tuple[str, ...]
+    iterations: int
+    converged: bool
+    chi2: float
+    dof: int
+    inflation: float
+    history: pd.DataFrame
+    exact: bool
+    warnings: tuple[str, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters, with their study where there are several."""
+        return tuple(str(name) for name in self.history.columns)
+
+    def table(self) -> pd.DataFrame:
+        """Return one row per parameter: value, sigma, unit, factor, and what there is to be careful about."""
+        rows = [
+            {
+                "parameter": p.name,
+                "study": p.study or "shared",
+                "value": p.value,
+                "sigma": p.sigma,
+                "unit": p.unit,
+                "factor": np.nan if p.factor is None else p.factor,
+                "remark": ", ".join(
+                    [*["at bound"] * p.at_bound, *["not determined by the data"] * (name in self.undetermined)]
+                ),
+            }
+            for p, name in zip(self.parameters, self.names, strict=True)
+        ]
+        return pd.DataFrame(rows)
+
+    def rms_percent(self, which: str = "after") -> float:
+        """Return the r.m.s. relative error of the frequencies used, ``before`` or ``after`` [%]."""
+        used = self.pairs[self.pairs["used"]]
+        error = used[f"{which}_hz"] / used["test_hz"] - 1
+        return float(100 * np.sqrt(np.mean(error**2)))
+

@@ -1,0 +1,139 @@
+"""The iteration of paper A, Eqs. 21-25, with step control."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.update.specimen import Look
+from updating.update.system import Linear, System
+
+NEGLIGIBLE = 1e-10
+"""Singular values under this share of the largest carry nothing [-]."""
+
+CONVERGED = 1e-7
+"""Increments under this share of a parameter's doubt end the iteration [-]."""
+
+GRID = 9
+"""Values tried of a parameter that is no factor, to find where to start."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Where the iteration came to rest.
+
+    Parameters
+    ----------
+    theta : (p,) array
+        Coordinates.
+    looks : tuple of Look
+        Specimens there.
+    history : (iterations + 1, p) array
+        Coordinates of every iteration.
+    converged : bool
+        Whether the increments died out.
+    """
+
+    theta: FloatArray
+    looks: tuple[Look, ...]
+    history: FloatArray
+    converged: bool
+
+    @property
+    def iterations(self) -> int:
+        """Number of steps."""
+        return len(self.history) - 1
+
+
+def solve(system: System, start: FloatArray | None = None, *, steps: int = 40) -> Solution:
+    """Iterate from the nominal model until the increments of the parameters vanish.
+
+    Parameters
+    ----------
+    system : System
+        The problem.
+    start : (p,) array, optional
+        Coordinates to start from; left out, the nominal ones, and for effects the best of a few values.
+    steps : int
+        Largest number of steps.
+
+    Returns
+    -------
+    Solution
+    """
+    theta = _scan(system) if start is None else start
+    looks = system.looks(theta)
+    history, converged = [theta], False
+    for _ in range(steps):
+        increment = step(system, system.linear(theta, looks), theta)
+        new, new_looks, moved = _controlled(system, theta, looks, increment)
+        converged = bool(np.all(np.abs(new - theta) <= CONVERGED * system.doubt))
+        if moved:
+            theta, looks = new, new_looks
+            history.append(theta)
+        if converged or not moved:
+            break
+    return Solution(theta, looks, np.array(history), converged)
+
+
+def step(system: System, linear: Linear, theta: FloatArray) -> FloatArray:
+    """Return the increment of Eq. 25: (S'WS + W_theta)^-1 [S'W dlambda - W_theta (theta - theta_0)].
+
+    Solved by singular values, in units of the parameters' doubts; directions that nothing determines stay where
+    they are. Parameters at a bound that the step would push further stay there.
+    """
+    root = np.sqrt(linear.weight)
+    rows = np.vstack([root[:, None] * linear.sensitivity, np.diag(np.sqrt(system.prior))])
+    load = np.concatenate([root * linear.residual, np.sqrt(system.prior) * (system.start - theta)])
+    free = np.ones(len(theta), dtype=bool)
+    increment = np.zeros(len(theta))
+    for _ in range(len(theta)):
+        increment[:] = 0.0
+        increment[free] = _least((rows * system.doubt)[:, free], load) * system.doubt[free]
+        tiny = 1e-9 * (system.high - system.low)
+        out = free & (
+            ((theta <= system.low + tiny) & (increment < 0)) | ((theta >= system.high - tiny) & (increment > 0))
+        )
+        if not out.any():
+            break
+        free &= ~out
+    return np.where(free, increment, 0.0)
+
+
+def _least(rows: FloatArray, load: FloatArray) -> FloatArray:
+    if rows.shape[1] == 0:
+        return np.zeros(0)
+    left, size, right = np.linalg.svd(rows, full_matrices=False)
+    kept = size > NEGLIGIBLE * max(size.max(), 1e-300)
+    return np.asarray(right[kept].T @ ((left[:, kept].T @ load) / size[kept]))
+
+
+def _controlled(
+    system: System, theta: FloatArray, looks: tuple[Look, ...], increment: FloatArray
+) -> tuple[FloatArray, tuple[Look, ...], bool]:
+    """Shorten the step until the misfit does not grow; tell whether anything moved."""
+    before = system.cost(theta, looks)
+    for halving in range(14):
+        new = np.clip(theta + increment / 2**halving, system.low, system.high)
+        new_looks = system.looks(new)
+        if system.cost(new, new_looks) <= before * (1 + 1e-12):
+            return new, new_looks, True
+        if np.all(np.abs(new - theta) <= CONVERGED * system.doubt):
+            break
+    return theta, looks, False
+
+
+def _scan(system: System) -> FloatArray:
+    """Start factors at 1 and every other parameter at the best of a few values, one after the other."""
+    theta = system.start.copy()
+    for i, knob in enumerate(system.knobs):
+        if knob.factor is not None:
+            continue
+        tried = []
+        for value in [*np.linspace(system.low[i], system.high[i], GRID), theta[i]]:
+            theta[i] = value
+            tried.append((system.cost(theta, system.looks(theta)), float(value)))
+        theta[i] = min(tried)[1]
+    return theta
