@@ -184,7 +184,7 @@ def _add_outliers(hits: Hits, faults: list[list[str]], band: float) -> None:
 
 
 def unexplained(hits: Hits, good: Sequence[int], band: float) -> FloatArray:
-    """Return the part of each hit's response energy that H1 over the other hits leaves, shape (len(good),) [-].
+    """Return what H1 over the other hits leaves of each response's energy, shape (len(good),) [-].
 
     Parameters
     ----------

@@ -35,6 +35,7 @@ class Windows:
     force_length: float | None = None
 
     def __post_init__(self) -> None:
+        """Check the entries."""
         if self.decay < 0 or (self.force_length is not None and self.force_length <= 0):
             raise InputError(
                 f"windows: decay {self.decay}, force length {self.force_length}; both must be positive"

@@ -20,7 +20,7 @@ _ROUNDS = 12
 _EXTRA_POLES = 4
 _SHORT, _LONG = 12, 40
 _COARSE, _FINE = 1e-6, 1e-10
-_REJECTIONS = 3
+_REJECTIONS = 2
 _BROAD = 0.1
 
 
@@ -84,7 +84,17 @@ def fit_modes(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float]) -
     fit = refine(frfs, fit.poles, weights, powers=ladder[0], iterations=_SHORT, tolerance=_COARSE)
     fit = _pruned(frfs, fit, weights, band, iterations=_SHORT, tolerance=_COARSE)
     fit = _completed(frfs, fit, band, ladder)
-    return _weighted(frfs, _without_broad(frfs, fit, band, ladder), band)
+    fit = _without_broad(frfs, fit, band, ladder)
+    return _weighted(frfs, _without_halves(frfs, fit), band)
+
+
+def _without_halves(frfs: FrfSet, fit: Fit) -> Fit:
+    """Make one of poles that are the halves of one mode."""
+    while (halves := leftover.split_halves(fit.poles, fit.linear.residues)) is not None:
+        rest = np.delete(fit.poles, halves[0])
+        weights, powers = _search_weights(frfs, fit), fit.linear.powers
+        fit = refine(frfs, rest, weights, powers=powers, iterations=_SHORT, tolerance=_COARSE)
+    return fit
 
 
 def _completed(frfs: FrfSet, fit: Fit, band: tuple[float, float], ladder: tuple[tuple[int, ...], ...]) -> Fit:
@@ -185,8 +195,12 @@ def _acceptable(frfs: FrfSet, fit: Fit, trial: Fit, pole: complex, band: tuple[f
         return True
     if not band[0] <= pole.imag / (2 * np.pi) <= band[1]:
         return False
-    moved = np.abs(trial.poles[:, None] - fit.poles[None, :]).min(axis=1)
-    return not leftover.mends_a_mode(trial.poles, trial.linear.residues, int(moved.argmax()))
+    if len(frfs.values) < leftover.FEW:
+        moved = np.abs(trial.poles[:, None] - fit.poles[None, :]).min(axis=1)
+        new = int(moved.argmax())
+        gap = np.delete(np.abs(trial.poles - trial.poles[new]), new).min(initial=np.inf)
+        return bool(gap > 3.0 * abs(trial.poles[new].real))
+    return leftover.split_halves(trial.poles, trial.linear.residues) is None
 
 
 def _higher(

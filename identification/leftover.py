@@ -12,7 +12,8 @@ from identification.noise import local_mean
 _WIDTHS = (1, 3, 9, 27, 81)
 _EXCESS = 6.0
 _REAL = 0.7
-_FEW = 4
+FEW = 4
+_TOGETHER = 0.6
 
 
 def trial_poles(
@@ -53,13 +54,13 @@ def trial_poles(
     return np.asarray(damped[(damped.imag >= low) & (damped.imag <= high)])
 
 
-def mends_a_mode(poles: ComplexArray, residues: ComplexArray, new: int) -> bool:
-    """Tell whether an added pole only mends the misfit of the mode beside it.
+def split_halves(poles: ComplexArray, residues: ComplexArray) -> tuple[int, int] | None:
+    """Return two poles that are the halves of one mode, the weaker first, or None.
 
-    FRFs measured one after the other do not agree to the last digit on a frequency; a second pole within
-    three half-power half-widths then fits the difference. Two true modes have shapes whose components lie
-    on a line; the halves of one mode do not. Fewer than four FRFs cannot tell, and the doubt goes against the
-    new pole.
+    FRFs measured one after the other do not agree to the last digit on a frequency; a second pole beside
+    the first then fits the difference. Two modes have shapes whose components lie on a line and that differ;
+    the halves of one mode do not lie on a line, or, under one half-power half-width apart, move together
+    at all points. Fewer than four FRFs cannot tell, and poles that near are then taken for halves.
 
     Parameters
     ----------
@@ -67,14 +68,23 @@ def mends_a_mode(poles: ComplexArray, residues: ComplexArray, new: int) -> bool:
         Poles of the fit [rad/s].
     residues : (n_frf, n_modes) complex array
         Residues [m/(N s)].
-    new : int
-        Which of the poles was added.
     """
-    distance = np.abs(poles - poles[new])
-    distance[new] = np.inf
-    other = int(distance.argmin())
-    if distance[other] > 3.0 * max(abs(poles[new].real), abs(poles[other].real)):
-        return False
-    if len(residues) < _FEW:
-        return True
-    return bool(mpc(residues[:, [new, other]]).min() < _REAL)
+    if len(poles) < 2:
+        return None
+    width = np.maximum(np.abs(poles.real)[:, None], np.abs(poles.real)[None, :])
+    distance = np.abs(poles[:, None] - poles[None, :]) / width
+    straight, size = mpc(residues), np.abs(residues)
+    together = np.abs(residues.conj().T @ residues) / np.maximum(size.T @ size, np.finfo(float).tiny)
+    crooked = np.minimum(straight[:, None], straight[None, :]) < _REAL
+    if len(residues) < FEW:
+        halves = distance < 1.0
+    else:
+        halves = (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER)
+    first, second = np.nonzero(np.triu(halves, 1))
+    if len(first) == 0:
+        return None
+    nearest = int(distance[first, second].argmin())
+    pair = [int(first[nearest]), int(second[nearest])]
+    energy = np.sum(size**2, axis=0) / np.abs(poles.real)
+    weaker, stronger = sorted(pair, key=lambda r: float(energy[r]))
+    return weaker, stronger

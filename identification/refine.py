@@ -163,14 +163,22 @@ def _turns(solution: FloatArray, n_modes: int) -> FloatArray:
 
 def evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]) -> Step:
     """Project the linear unknowns out at given poles; parameters as for :func:`refine`."""
-    n = len(poles)
     _, products, solution, follow = _pieces(frfs, poles, weights, powers)
+    return _step(products, solution, follow, weights, len(poles))
+
+
+def _step(
+    products: grams.Grams, solution: FloatArray, follow: FloatArray, weights: grams.Weights, n: int
+) -> Step:
     k = solution.shape[1]
     cost = float(weights.level @ (products.power - np.einsum("jk,jk->j", products.cross[:, :k], solution)))
-    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
-    slope_cross = products.cross[:, k:] - np.einsum("jk,jkm->jm", solution, products.gram[:, :k, k:] + 0.0)
+    between = products.gram[:, :k, k:]
+    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, follow)
+    carried = solution @ between[0] if len(between) == 1 else np.einsum("jk,jkm->jm", solution, between)
     turns = _turns(solution, n)
-    gradient = np.einsum("j,jni,jnia->na", weights.level, slope_cross.reshape(-1, n, 2), turns)
+    gradient = np.einsum(
+        "j,jni,jnia->na", weights.level, (products.cross[:, k:] - carried).reshape(-1, n, 2), turns
+    )
     normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, weights.level)
     return Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
 
@@ -194,7 +202,7 @@ def _finish(
     poles = poles[order]
     n = len(poles)
     columns, products, solution, follow = _pieces(frfs, poles, weights, powers)
-    state = evaluate(frfs, poles, weights, powers)
+    state = _step(products, solution, follow, weights, n)
     k = solution.shape[1]
     turns = _turns(solution, n)
     blocks = follow.reshape(len(follow), k, n, 2)

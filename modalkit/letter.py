@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 from updating import LIBRARY, Diagnosis
 
 
@@ -90,13 +89,11 @@ def _next(diagnosis: Diagnosis) -> str:
         test = diagnosis.next_test[0]
         return f"{test.measure}: separates {' from '.join(test.separates)} by {test.expected_sigma:.0f} sigma"
     if diagnosis.verdict == "class":
-        tests = dict.fromkeys(LIBRARY[n].separated_by for n in diagnosis.effects if n in LIBRARY)
-        return "; ".join(tests)
+        ways = dict.fromkeys(LIBRARY[n].separated_by for n in diagnosis.effects if n in LIBRARY)
+        return "; ".join(ways)
     if diagnosis.verdict == "named":
         tests = [LIBRARY[n].separated_by for n in diagnosis.sets[0] if n in LIBRARY]
         return "to confirm: " + "; ".join(tests)
     if diagnosis.verdict == "unknown":
         return "look at the modes that miss most below; more points there, and a test of the bare specimen"
     return "nothing; the model may be used within its tolerances"
-
-

@@ -49,9 +49,7 @@ class Processed:
     hits: tuple[HitVerdict, ...]
     warnings: tuple[str, ...]
 
-    def identify(
-        self, *, band: tuple[float, float] | None = None, order: int | None = None
-    ) -> ModalModel:
+    def identify(self, *, band: tuple[float, float] | None = None, order: int | None = None) -> ModalModel:
         """Identify the modes of a band; see :func:`identification.identify`."""
         return identify(self.frfs, band=band, order=order)
 
@@ -114,7 +112,9 @@ def _together(sets: list[FrfSet]) -> FrfSet:
     if len(sets) == 1:
         return first
     joined = {
-        name: None if any(getattr(s, name) is None for s in sets) else np.concatenate([getattr(s, name) for s in sets])
+        name: None
+        if any(getattr(s, name) is None for s in sets)
+        else np.concatenate([getattr(s, name) for s in sets])
         for name in ("values", "coherence", "variance", "averages")
     }
     return replace(
@@ -200,7 +200,7 @@ def _measure(
     if table.modes is not None:
         return measured_from_modes(_modal_data(study.file(table.modes)), axes, spec, **options), None, None
     if not table.files:
-        raise StudyError(f"{study.path}: [{name}] names no data; add files = [...] or modes = \"...\"")
+        raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
     processed = read([study.file(f) for f in table.files], decay=table.exponential_window)
     identified = processed.identify(band=table.band)
     return measured_from_identified(identified, axes, spec, **options), processed, identified
@@ -212,5 +212,7 @@ def _modal_data(path: Path) -> ModalData:
         return read_modes(path)
     modal = read_uff(path).modal
     if modal is None:
-        raise InputError(f"{path}: no modes (data set 55) in it; give a CSV file of modes or another UFF file")
+        raise InputError(
+            f"{path}: no modes (data set 55) in it; give a CSV file of modes or another UFF file"
+        )
     return modal

@@ -71,7 +71,9 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
             "location": where.location,
             "locations": where.locations,
             "points": where.points,
-            "zones": [{"name": z.name, "center": z.center, "probability": z.probability} for z in where.zones],
+            "zones": [
+                {"name": z.name, "center": z.center, "probability": z.probability} for z in where.zones
+            ],
         },
         "cause": {
             "verdict": diagnosis.verdict,
@@ -185,6 +187,16 @@ def _example() -> Any:
     one = np.ones(1)
     index = np.zeros(1, dtype=int)
     measured = Measured(
-        28 * one, one, one, one, np.array([[0.376]]), (1,), index, index, np.ones((1, 1)), np.ones((1, 1)), True
+        28 * one,
+        one,
+        one,
+        one,
+        np.array([[0.376]]),
+        (1,),
+        index,
+        index,
+        np.ones((1, 1)),
+        np.ones((1, 1)),
+        True,
     )
     return Predictor(spec, measured)

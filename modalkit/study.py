@@ -10,10 +10,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from acquisition.errors import StudyError
 from updating.axes import Axes
-from updating.tolerances import Tolerances
 from updating.effects import LIBRARY
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
+from updating.tolerances import Tolerances
 
 Vector = tuple[float, float, float]
 
@@ -170,7 +170,9 @@ class Study(_Strict):
         if model is None:
             raise StudyError(f"{self.path}: this command needs a [model]")
         if model.type == "matrices":
-            raise StudyError(f"{self.path}: [model] type = \"matrices\" is not read by this version; use beam or plate")
+            raise StudyError(
+                f'{self.path}: [model] type = "matrices" is not read by this version; use beam or plate'
+            )
         for key in ("length", "width", "thickness", "material"):
             if getattr(model, key) is None:
                 raise StudyError(f"{self.path}: [model] of type {model.type} needs {key}")
@@ -257,7 +259,9 @@ def read_study(path: Path) -> Study:
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise StudyError(f"{path}: cannot be read ({error.strerror}); give the path of a study file") from error
+        raise StudyError(
+            f"{path}: cannot be read ({error.strerror}); give the path of a study file"
+        ) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
     try:

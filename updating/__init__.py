@@ -3,13 +3,13 @@
 from updating.axes import Axes
 from updating.case import Case
 from updating.diagnosis.diagnose import diagnose
-from updating.tolerances import Tolerances
 from updating.diagnosis.result import Diagnosis
 from updating.effects import LIBRARY, Effect, Parameter, register
 from updating.environment import Environment
 from updating.measured import Measured, measured_from_identified, measured_from_modes
 from updating.models import Damping, Material, PointMass, Region, Spec, Structure, build_structure
 from updating.prediction import Prediction, Predictor
+from updating.tolerances import Tolerances
 
 __all__ = [
     "LIBRARY",

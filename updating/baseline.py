@@ -1,15 +1,16 @@
 """Correction of a model by a test of the same specimen before the effect was there.
 
 The modes that the baseline measured take its frequencies and damping; their shapes stay the model's. What the
-baseline did not reach is scaled like what it did. The correction is a matrix in modal coordinates, so every
-effect acts on top of it, the coupling of modes included.
+baseline did not reach keeps the stiffness that the measured modes have in the middle: one factor on all of it, so
+that a clamp released later still finds a sound model. What is left is a matrix in modal coordinates, and every
+effect acts on top of both, the coupling of modes included.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from acquisition.arrays import IntArray
+from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import EstimationError
 from updating.matching import match
 from updating.measured import Measured
@@ -38,33 +39,34 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     EstimationError
         If two measured modes claim one of the model's.
     """
-    prediction = predictor.predict(count=predictor.reduced.ranks[frozenset()] - predictor.reduced.structure.rigid_modes)
+    prediction = predictor.predict(
+        count=predictor.reduced.ranks[frozenset()] - predictor.reduced.structure.rigid_modes
+    )
     partner = match(baseline, prediction, order)
     if len(set(partner.tolist())) < len(partner):
         raise EstimationError(
             "baseline: two measured modes belong to one of the model's; check the points and the axes"
         )
-    factor = baseline.frequency / prediction.frequency[partner]
-    known = np.argsort(prediction.frequency[partner])
-    at = np.log(prediction.frequency[partner][known])
-    ratio = np.interp(np.log(prediction.frequency), at, factor[known])
-    ratio[partner] = factor
+    ratio = baseline.frequency / prediction.frequency[partner]
+    factor = float(np.median(ratio**2))
     _, mass = predictor.reduced.matrices(State())
     momenta = mass @ prediction.vectors
-    eigenvalues = (2 * np.pi * prediction.frequency) ** 2
-    stiffness = (momenta * (eigenvalues * (ratio**2 - 1))) @ momenta.T
+    nominal = (2 * np.pi * prediction.frequency[partner]) ** 2
+    left = momenta[:, partner] * (nominal * (ratio**2 - factor))
     size = predictor.reduced.basis.shape[1]
-    changes = {"stiffness": (_padded(stiffness, size),)}
+    stiffness = (_padded(left @ momenta[:, partner].T, size),)
     finite = np.isfinite(baseline.damping)
+    damping: tuple[FloatArray, ...] = ()
     if finite.any():
         ratios = np.full(len(prediction.frequency), float(np.median(baseline.damping[finite])))
         ratios[partner[finite]] = baseline.damping[finite]
-        omega = 2 * np.pi * prediction.frequency * ratio
-        changes["damping"] = (_padded((momenta * (2 * ratios * omega)) @ momenta.T, size),)
-    return State(**changes)
+        omega = 2 * np.pi * prediction.frequency * np.sqrt(factor)
+        omega[partner] = 2 * np.pi * baseline.frequency
+        damping = (_padded((momenta * (2 * ratios * omega)) @ momenta.T, size),)
+    return State(factors={"E": factor}, stiffness=stiffness, damping=damping)
 
 
-def _padded(matrix: np.ndarray, size: int) -> np.ndarray:
+def _padded(matrix: FloatArray, size: int) -> FloatArray:
     """Extend a matrix of the clamped basis to the columns that releases add."""
     full = np.zeros((size, size))
     full[: len(matrix), : len(matrix)] = matrix

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from updating.tolerances import Tolerances
 from updating.environment import Environment
 from updating.measured import Measured
 from updating.models import Spec
+from updating.tolerances import Tolerances
 
 
 @dataclass(frozen=True, eq=False)

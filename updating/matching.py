@@ -45,9 +45,13 @@ def match(measured: Measured, prediction: Prediction, order: IntArray) -> IntArr
     if not measured.has_shapes:
         return np.asarray(np.argsort(prediction.frequency)[order])
     ratio = np.abs(np.log(measured.frequency[:, None] / prediction.frequency[None, :]))
+    ratio = np.nan_to_num(ratio, nan=3.0)
     cost = 1 - mac_of_constants(measured, prediction) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
     return np.asarray(linear_sum_assignment(cost)[1])
 
+
+WILD = 0.25
+"""Standard deviation of the logarithms of the frequency ratios beyond which ranks are doubted."""
 
 LOWEST_MAC = 0.4
 """Below this MAC a measured mode has no partner."""
@@ -110,7 +114,11 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
 
 
 def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
-    """Pair by rank, letting model modes be skipped where the ratio of frequencies is then smoother."""
+    """Pair by rank; let modes be skipped only where the ratios of frequencies are wild without."""
+    count = min(len(measured.frequency), len(prediction.frequency))
+    ratio = np.log(measured.frequency[:count] / prediction.frequency[:count])
+    if count == len(measured.frequency) and np.std(ratio) < WILD:
+        return Paired(measured, np.arange(count), ())
     pairs = pair(measured.frequency, prediction.frequency, None)
     rows = np.array([p.test for p in pairs if p.model is not None and p.test is not None], dtype=int)
     order = np.array([p.model for p in pairs if p.model is not None and p.test is not None], dtype=int)

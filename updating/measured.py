@@ -105,7 +105,9 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
     """
     placed = _place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
     rows = placed.rows
-    shapes = np.zeros((0, len(modes))) if modes.shapes is None else modes.shapes.real[rows] * placed.signs[:, None]
+    shapes = (
+        np.zeros((0, len(modes))) if modes.shapes is None else modes.shapes.real[rows] * placed.signs[:, None]
+    )
     if modes.shape_sigma is None and len(rows) == 0:
         sigma = np.zeros_like(shapes)
     elif modes.shape_sigma is None:

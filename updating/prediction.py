@@ -28,7 +28,7 @@ class Prediction:
     Parameters
     ----------
     frequency : (n_modes,) array
-        Natural frequencies [Hz].
+        Natural frequencies, nan where the state has lost its stiffness [Hz].
     damping : (n_modes,) array
         Damping ratios, nan where nothing is expected [-].
     constants : (n_frf, n_modes) array
@@ -96,7 +96,9 @@ class Predictor:
         """The same predictor on the same basis without any addition."""
         return self.looking(self.measured, ()) if self.additions else self
 
-    def looking(self, measured: Measured, additions: tuple[Callable[[Predictor], State], ...] | None = None) -> Predictor:
+    def looking(
+        self, measured: Measured, additions: tuple[Callable[[Predictor], State], ...] | None = None
+    ) -> Predictor:
         """Return a predictor for another test or with other additions, on the same reduced basis."""
         other = replace(self, measured=measured, additions=self.additions if additions is None else additions)
         other.__dict__["reduced"] = self.reduced
@@ -138,7 +140,12 @@ class Predictor:
         return {}
 
     def predict(
-        self, state: State = NOMINAL, *, factors: Sequence[str] = (), count: int | None = None
+        self,
+        state: State = NOMINAL,
+        *,
+        factors: Sequence[str] = (),
+        count: int | None = None,
+        at_least: int = 0,
     ) -> Prediction:
         """Predict the lowest elastic modes of a state.
 
@@ -150,6 +157,8 @@ class Predictor:
             Factors to differentiate by.
         count : int, optional
             Number of modes; left out, those up to 1.6 times the highest measured frequency and three more.
+        at_least : int
+            Fewest modes where ``count`` is left out.
 
         Returns
         -------
@@ -157,18 +166,20 @@ class Predictor:
         """
         total = self.base.plus(state)
         if total.theory is not None and total.theory != self.spec.theory:
-            return self.under(total.theory).predict(replace(state, theory=None), factors=factors, count=count)
+            other = self.under(total.theory)
+            bare = replace(state, theory=None)
+            return other.predict(bare, factors=factors, count=count, at_least=at_least)
         reduced = self.reduced
         values, vectors = reduced.eigen(total)
         first = reduced.structure.rigid_modes
         if count is None:
             top = (2 * np.pi * 1.6 * self.measured.frequency.max()) ** 2
-            count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3)
+            count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
         chosen = np.arange(first, min(first + count, len(values)))
         rows = self._rows(total)
         shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
         by = [self._by_factor(total, values, vectors, chosen, name, rows) for name in factors]
-        frequency = np.sqrt(np.maximum(values[chosen], 1e-12)) / (2 * np.pi)
+        frequency = np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         return Prediction(
             frequency,
             self._damping(total, values[chosen], vectors[:, chosen]),
@@ -266,7 +277,7 @@ class Predictor:
             base = self._proportional(state, omega, vectors)
         if any(region.alpha or region.beta or region.loss_factor for region in self.spec.regions):
             base = np.nan_to_num(base) + self._regional(omega, vectors)
-        return base + quadratic / (2 * omega) + state.decay / omega
+        return np.asarray(base + quadratic / (2 * omega) + state.decay / omega)
 
     def _proportional(self, state: State, omega: FloatArray, vectors: FloatArray) -> FloatArray:
         bare = replace(state, stiffness=(), mass=())

@@ -94,6 +94,7 @@ class HammerPlan:
     bad: Mapping[tuple[int, int], BadHit] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        """Check the entries."""
         positive = ("rate", "samples", "hits", "peak", "width", "headroom")
         wrong = [name for name in positive if not getattr(self, name) > 0]
         not_negative = ("level_scatter", "width_scatter", "pre_trigger", "jitter", "force_noise", "decay")

@@ -46,6 +46,7 @@ class ModalSystem:
     gradients: ComplexArray | None = None
 
     def __post_init__(self) -> None:
+        """Check the entries."""
         object.__setattr__(self, "poles", frozen_array(self.poles, np.complex128))
         object.__setattr__(self, "residues", frozen_array(self.residues, np.complex128))
         object.__setattr__(self, "responses", tuple(self.responses))

@@ -14,6 +14,9 @@ _HERE = re.compile(rb"[ \t]*-1[ \t]*\r?(?=\n)")
 _BINARY_END = re.compile(
     rb"    -1[ \t]*(?:\r?\n[ \t]*-1|[ \t\r\n\x00\x1a]*\Z|(\r?\n[ \t]{0,5}\d{1,5}b?[ \t\d]*\r?\n))"
 )
+_GLUED = re.compile(  # the next data set begins in the middle of a line that was cut off
+    rb"    -1[ \t]*\r?\n[ \t]{0,4}(?:15|55|58|82|151|164|2411|2412|2414)b?[ \t\d]*\r?\n"
+)
 HEADER_LINES = 11
 
 
@@ -58,7 +61,7 @@ def split_blocks(data: bytes | mmap) -> Iterator[Block]:
         line += data[counted : opening.start()].count(b"\n")
         counted = opening.start()
         fields = tuple(int(v) for v in identity[3].split()) if identity[2] else None
-        stop, closed = _end_of_body(data, identity.end(), fields)
+        stop, closed = _end_of_body(data, identity.end(), fields, int(identity[1]))
         yield Block(int(identity[1]), fields, line, identity.end(), stop, closed)
         opening = _next_opening(data, stop, closed)
 
@@ -73,10 +76,15 @@ def header_end(data: bytes | mmap, start: int) -> int:
     return start
 
 
-def _end_of_body(data: bytes | mmap, start: int, fields: tuple[int, ...] | None) -> tuple[int, bool]:
+def _end_of_body(
+    data: bytes | mmap, start: int, fields: tuple[int, ...] | None, number: int
+) -> tuple[int, bool]:
     """Return where the body ends, and whether it is closed by a delimiter of its own."""
     if fields is None:
         found = _DELIMITER.search(data, start)
+        glued = _GLUED.search(data, start) if number == 58 else None
+        if glued is not None and (found is None or glued.start() < found.start()):
+            return glued.start(), False
         if found is None:
             return len(data), False
         return found.start(), _IDENTITY.match(data, found.end() + 1) is None

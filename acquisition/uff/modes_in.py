@@ -59,21 +59,18 @@ def read_mode(body: bytes, units: Units) -> Mode:
 
 
 def _pole(found: dict[str, object], kind: int, stated: float | None) -> tuple[complex, str]:
-    """Return the pole [rad/s]; complex modes come as (real, imaginary) in rad/s or (damping, frequency) in Hz."""
+    """Return the pole [rad/s]; complex modes come as (re, im) in rad/s or as (damping, frequency) in Hz."""
     if kind == 2:
         omega = 2 * np.pi * float(str(found["freq"]))
         zeta = float(str(found["modal_damp_vis"]))
         return complex(-zeta * omega, omega * np.sqrt(max(1 - zeta**2, 0.0))), ""
     value = complex(str(found["eig"]).strip())
-    radian, hertz = (
-        complex(-abs(value.real), abs(value.imag)),
-        2 * np.pi * complex(-abs(value.real), abs(value.imag)),
-    )
-    if (
-        stated is not None
-        and min(abs(abs(p) / (2 * np.pi) - stated) for p in (radian, hertz)) < 0.02 * stated
-    ):
-        return min((radian, hertz), key=lambda p: abs(abs(p) / (2 * np.pi) - stated)), ""
+    radian = complex(-abs(value.real), abs(value.imag))
+    hertz = 2 * np.pi * radian
+    for pole in (radian, hertz):
+        ratio = 0.0 if stated is None or pole == 0 else 2 * np.pi * stated / abs(pole)
+        if abs(ratio - 1) < 0.02:  # where only rounding is between them, the ID line has more digits
+            return pole * (ratio if abs(ratio - 1) < 1e-5 else 1.0), ""
     if value.real > 0:
         return hertz, "its eigenvalue has a positive real part; taken for (damping, frequency) in Hz"
     return radian, "its eigenvalue is taken for (real, imaginary) in rad/s"

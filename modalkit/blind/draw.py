@@ -70,7 +70,7 @@ def _draw_once(rng: np.random.Generator) -> Setup | None:
         modes=modes,
         band=band,
         hits=int(rng.integers(3, 7)),
-        noise=float(f"{np.exp(rng.uniform(np.log(1e-4), np.log(2e-3))):.1e}"),
+        noise=float(f"{np.exp(rng.uniform(np.log(2e-4), np.log(5e-3))):.1e}"),
         bits=int(rng.choice([16, 24])),
         calibration=float(rng.choice([0.005, 0.01, 0.02, 0.05])),
         repeatability=float(rng.choice([0.0002, 0.0005, 0.001])),

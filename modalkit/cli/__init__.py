@@ -19,7 +19,7 @@ app = typer.Typer(
 for module in (look, compare, diagnosing, blinding, demonstrate):
     module.add_commands(app)
 
-_Usage = typer.BadParameter.__mro__[1]
+_Usage: type[Exception] = typer.BadParameter.__mro__[1]
 """The error of wrong arguments, whichever click typer brings along."""
 
 
@@ -35,13 +35,18 @@ def main() -> None:
         _fail(str(error))
     except _Usage as error:
         if type(error).__name__ == "NoArgsIsHelpError":
-            sys.stdout.write(error.format_message() + "\n")
+            sys.stdout.write(_message(error) + "\n")
             sys.exit(0)
-        _fail(error.format_message())
+        _fail(_message(error))
     except (typer.Abort, KeyboardInterrupt):
         _fail("interrupted; nothing was written")
     else:
         sys.exit(code if isinstance(code, int) else 0)
+
+
+def _message(error: Exception) -> str:
+    """Return what click has to say about wrong arguments."""
+    return str(getattr(error, "format_message", lambda: error)())
 
 
 def _fail(message: str) -> None:

@@ -38,7 +38,9 @@ def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] |
         numeric = pd.api.types.is_numeric_dtype(frame[column])
         table.add_column(str(column), justify="right" if numeric else "left")
     for index, row in zip(frame.index, frame.itertuples(index=False), strict=True):
-        cells = [_cell(value, (digits or {}).get(str(c))) for c, value in zip(frame.columns, row, strict=True)]
+        cells = [
+            _cell(value, (digits or {}).get(str(c))) for c, value in zip(frame.columns, row, strict=True)
+        ]
         table.add_row(*([str(index)] if named else []), *cells)
     out.print(table)
     out.print()

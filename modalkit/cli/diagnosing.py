@@ -89,8 +89,12 @@ def effects(
         for p in effect["parameters"]:
             scale = "log-uniform" if p["log"] else "uniform"
             unit = "" if p["unit"] == "-" else f" {p['unit']}"
-            out.print(f"  {p['name']}: {p['low']:.4g} to {p['high']:.4g}{unit}, {scale}: {p['why']}", markup=False)
+            out.print(
+                f"  {p['name']}: {p['low']:.4g} to {p['high']:.4g}{unit}, {scale}: {p['why']}", markup=False
+            )
         if effect["equivalent_to"]:
             out.print(f"  mistaken for: {', '.join(effect['equivalent_to'])}", markup=False)
         out.print(f"  separated by: {effect['separated_by']}", markup=False)
-    out.print("\nPriors that scale with the specimen are shown for a steel cantilever of 376 x 30.5 x 4.7625 mm.")
+    out.print(
+        "\nPriors that scale with the specimen are shown for a steel cantilever of 376 x 30.5 x 4.7625 mm."
+    )

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 
-from acquisition import FrfSet, HitVerdict, hits_table, read_uff, write_uff
+from acquisition import HitVerdict, hits_table, read_uff, write_uff
 from identification import ModalModel
 from modalkit.cli.common import is_study, out, show_figures, show_table, show_warnings, working
 from modalkit.process import Processed, process, read
@@ -85,7 +85,7 @@ def identify(
     if processed.frfs.decay:
         out.print(f"Window: {processed.frfs.decay:g} 1/s of decay was taken out of the damping.")
     if check:
-        _show_second_opinion(processed.frfs, band, order)
+        _show_second_opinion(model)
     warnings = [*processed.warnings, *model.warnings]
     show_warnings(warnings)
     if json is not None:
@@ -118,11 +118,11 @@ def _show_hits(hits: tuple[HitVerdict, ...]) -> None:
         show_table(noted)
 
 
-def _show_second_opinion(frfs: FrfSet, band: tuple[float, float] | None, order: int | None) -> None:
+def _show_second_opinion(model: ModalModel) -> None:
     from identification import second_opinion
 
     with working("asking sdypy-EMA"):
-        table = second_opinion(frfs, band, order)
+        table = second_opinion(model.frfs, band=model.band)
     show_table(table, "Second opinion: sdypy-EMA (LSCF)")
 
 

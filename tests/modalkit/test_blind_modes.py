@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from acquisition import estimate_frfs, read_uff
 from modalkit.blind.beam import Beam
 from modalkit.blind.complex_modes import complex_modes
 from modalkit.blind.parts import Attached
 from modalkit.blind.record import hammer_plan, measure, modal_system, remounted
 from modalkit.blind.scene import nominal_scene
-from modalkit.blind.trial import draw_trial
+from modalkit.blind.trial import draw_trial, write_trial
 
 BEAM = Beam(0.0, 0.5, 0.03, 0.005, 210e9, 7850.0, alpha=3.0, beta=1e-6)
 PLACES = np.array([0.1, 0.27, 0.5])
@@ -79,15 +82,30 @@ def test_records_hold_the_rigs_own_frf(effect: str) -> None:
     assert test.decay == setup.window
     inside = (modes.frequency > setup.band[0]) & (modes.frequency < setup.band[1])
     assert inside.sum() >= setup.modes
-    line = np.fft.rfftfreq(test.samples, 1 / test.rate)
+    estimated = estimate_frfs(test)
+    line = estimated.frequency
     near = np.unique(np.searchsorted(line, np.outer(modes.frequency[inside], [0.998, 1.0, 1.002]).ravel()))
     s = 2j * np.pi * line[near] + scene.window
     system = modal_system(modes, setup)
-    for row, hits in enumerate(test.points):
-        force, motion = np.fft.rfft(hits.force)[:, near], np.fft.rfft(hits.motion[:, 0])[:, near]
-        estimate = (motion * force.conj()).sum(axis=0) / (np.abs(force) ** 2).sum(axis=0)
+    for row in range(len(test.points)):
         exact = 1.3 * s**2 * system.receptance(s, row)[0]
-        assert np.abs(estimate - exact).max() < 0.01 * np.abs(exact).max()
+        assert np.abs(estimated.values[row, near] - exact).max() < 0.01 * np.abs(exact).max()
+
+
+def test_files_hold_what_the_study_says_of_them(tmp_path: Path) -> None:
+    trial = draw_trial(17, 3, effects=["E"])
+    setup = trial.scene.setup
+    study = tomllib.loads(write_trial(trial, tmp_path).read_text())
+    content = read_uff([tmp_path / name for name in study["test"]["files"]])
+    (test,) = content.tests
+    hit = [i for i in range(len(setup.points)) if setup.drive or i != setup.sensor]
+    assert [point.reference.node - 1 for point in test.points] == hit
+    assert {point.count for point in test.points} == {setup.hits}
+    places = content.geometry.at(range(1, len(setup.points) + 1))
+    np.testing.assert_allclose(places[:, 0], setup.points, atol=1e-9)
+    assert np.all(places[:, 1:] == 0)
+    (response,) = test.points[0].responses
+    assert (response.node - 1, response.sign) == (setup.sensor, setup.sensor_sign)
 
 
 def test_records_are_long_enough() -> None:

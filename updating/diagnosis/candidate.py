@@ -51,7 +51,9 @@ class Candidate:
 
     def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
         """Take prior quantiles to values, by effect.parameter."""
-        return {f"{e.name}.{n}": v for e, part in self._split(predictor, coordinates) for n, v in part.items()}
+        return {
+            f"{e.name}.{n}": v for e, part in self._split(predictor, coordinates) for n, v in part.items()
+        }
 
     def _split(
         self, predictor: Predictor, coordinates: Sequence[float]
@@ -83,7 +85,9 @@ class Candidate:
         stage = self.stage(predictor)
         parts = self._split(predictor, coordinates)
         return {
-            f"{effect.name}.{n}": v for effect, values in parts for n, v in effect.derived(stage, values).items()
+            f"{effect.name}.{n}": v
+            for effect, values in parts
+            for n, v in effect.derived(stage, values).items()
         }
 
     def starts(self, predictor: Predictor) -> list[FloatArray]:
@@ -91,4 +95,7 @@ class Candidate:
         import numpy as np
 
         stage = self.stage(predictor)
-        return [np.concatenate([*map(np.asarray, s), []]) for s in product(*(e.starts(stage) for e in self.effects))]
+        return [
+            np.concatenate([*map(np.asarray, s), []])
+            for s in product(*(e.starts(stage) for e in self.effects))
+        ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -67,7 +66,7 @@ def diagnose(
         sets,
         rank(problem, found),
         propose(problem, found, sets),
-        tuple([*warnings, *_remarks(problem, found)]),
+        (*warnings, *_remarks(problem, found)),
         found.not_examined,
     )
 
@@ -88,7 +87,9 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
         predictor = predictor.looking(case.measured, tuple(additions))
         paired = pair_modes(case.measured, predictor.predict())
     predictor = predictor.looking(paired.measured)
-    return Problem(predictor, paired.measured, case.tolerances, paired.order, baseline), warnings
+    accepted = tuple(LIBRARY[name] for name, _ in case.accepted)
+    problem = Problem(predictor, paired.measured, case.tolerances, paired.order, baseline, accepted)
+    return problem, warnings
 
 
 def _accepted(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:

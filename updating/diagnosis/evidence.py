@@ -59,9 +59,7 @@ class Explanation:
         return self.candidate.names
 
 
-def explain(
-    problem: Problem, candidate: Candidate, *, starts: list[FloatArray] | None = None
-) -> Explanation:
+def explain(problem: Problem, candidate: Candidate, *, starts: list[FloatArray] | None = None) -> Explanation:
     """Weigh a candidate.
 
     Parameters
@@ -80,9 +78,7 @@ def explain(
     places = candidate.starts(problem.predictor) if starts is None else starts
     if len(places[0]) == 0:
         point = evaluate(problem, candidate, np.zeros(0))
-        return Explanation(
-            candidate, point.marginal.log_likelihood, point, np.zeros((1, 0)), np.ones(1)
-        )
+        return Explanation(candidate, point.marginal.log_likelihood, point, np.zeros((1, 0)), np.ones(1))
     peaks = _peaks(problem, candidate, places)
     samples, proposal = _draw(peaks, 16 * 2 ** len(places[0]))
     points = [evaluate(problem, candidate, u) for u in samples]

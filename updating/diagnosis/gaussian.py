@@ -108,5 +108,3 @@ def whiten(
     inner = cho_factor(np.eye(j.shape[1]) + (j.T / d) @ j)
     solved = (columns.T / d).T - ((j.T / d).T) @ cho_solve(inner, (j.T / d) @ columns)
     return columns.T @ solved, solved.T @ comparison.residual[rows]
-
-

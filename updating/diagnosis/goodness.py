@@ -36,7 +36,11 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     tails = np.cumsum(comparison.scale_prior[::-1])[::-1]
     values = {}
     for name in ("all", *CHANNELS):
-        keep = np.ones(len(comparison.channel), bool) if name == "all" else comparison.channel == CHANNELS.index(name)
+        keep = (
+            np.ones(len(comparison.channel), bool)
+            if name == "all"
+            else comparison.channel == CHANNELS.index(name)
+        )
         if not keep.any():
             continue
         shapes = bool((comparison.channel[keep] == 2).any())

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.effects.base import Effect
 from updating.matching import match
 from updating.measured import Measured
 from updating.models.state import NOMINAL, State
@@ -86,6 +87,8 @@ class Problem:
         Rank of the model mode of each measured mode, for data without shapes.
     baseline : Measured, optional
         Modes of the same specimen before the effect; its correction is in the predictor.
+    accepted : tuple of Effect
+        Effects put into the model beforehand, the first of the predictor's additions.
     """
 
     predictor: Predictor
@@ -93,11 +96,17 @@ class Problem:
     tolerances: Tolerances
     order: IntArray
     baseline: Measured | None = None
+    accepted: tuple[Effect, ...] = ()
 
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Factors with a tolerance."""
         return tuple(n for n in FACTORS if self.tolerances.factors.get(n, 0.0) > 0)
+
+    @property
+    def reach(self) -> int:
+        """How many of the model's modes a match may need."""
+        return int(self.order.max()) + 3
 
     @cached_property
     def sigmas(self) -> FloatArray:
@@ -109,18 +118,19 @@ class Problem:
         """R.m.s. of the measured constants of each mode [1/kg]."""
         if not len(self.measured.seen):
             return np.ones(len(self.measured.frequency))
-        return np.sqrt(np.mean(self.measured.constants**2, axis=0))
+        return np.asarray(np.sqrt(np.mean(self.measured.constants**2, axis=0)))
 
     @cached_property
-    def damping_known(self) -> FloatArray:
+    def damping_known(self) -> IntArray:
         """Rows of modes whose damping is measured and expected."""
         finite = np.isfinite(self.measured.damping) & (self.measured.damping > 0)
-        return np.flatnonzero(finite if self.predictor.expects_damping else np.zeros_like(finite))
+        known = finite if self.predictor.expects_damping else np.zeros_like(finite)
+        return np.asarray(np.flatnonzero(known), dtype=np.int64)
 
     @cached_property
     def nominal(self) -> Prediction:
         """The nominal prediction of the matched modes."""
-        prediction = self.predictor.predict(factors=self.names)
+        prediction = self.predictor.predict(factors=self.names, at_least=self.reach)
         return prediction.select(match(self.measured, prediction, self.order))
 
     @property
@@ -142,7 +152,7 @@ class Problem:
         """
         shift = np.zeros(len(self.names)) if shift is None else shift
         moved = State(factors=dict(zip(self.names, np.exp(shift * self.sigmas), strict=True)))
-        prediction = self.predictor.predict(state.plus(moved), factors=self.names)
+        prediction = self.predictor.predict(state.plus(moved), factors=self.names, at_least=self.reach)
         prediction = prediction.select(match(self.measured, prediction, self.order))
         reference = self.nominal if fidelity else None
         blocks = [self._frequencies(prediction, reference, fidelity), self._dampings(prediction)]
@@ -150,9 +160,7 @@ class Problem:
             blocks.append(self._shapes(prediction, reference, fidelity))
         return self._assemble(blocks, shift, prediction)
 
-    def _assemble(
-        self, blocks: list[_Block], shift: FloatArray, prediction: Prediction
-    ) -> Comparison:
+    def _assemble(self, blocks: list[_Block], shift: FloatArray, prediction: Prediction) -> Comparison:
         columns = sum(b.own.shape[1] for b in blocks) + len(self.names)
         rows = sum(len(b.residual) for b in blocks)
         nuisance = np.zeros((rows, columns))
@@ -182,10 +190,27 @@ class Problem:
         if self.baseline is not None:
             variance = variance + self._baseline_variance
             by = by - self._baseline_sensitivity(now)
+        variance = variance + self._accepted_variance
         if reference is not None:
             variance = variance + (fidelity * np.log(now.frequency / reference.frequency)) ** 2
         n = len(test.frequency)
         return _Block(np.log(test.frequency / now.frequency), by, np.zeros((n, 0)), variance, np.arange(n))
+
+    @cached_property
+    def _accepted_variance(self) -> FloatArray:
+        """How far the idealisations of the effects put into the model beforehand may be off, relative [-]."""
+        if not self.doubt_of_accepted:
+            return np.zeros(len(self.measured.frequency))
+        without = self.predictor.looking(self.measured, self.predictor.additions[len(self.accepted) :])
+        plain = without.predict(at_least=self.reach)
+        plain = plain.select(match(self.measured, plain, self.order))
+        shift = np.log(self.nominal.frequency / plain.frequency)
+        return np.asarray((self.doubt_of_accepted * shift) ** 2)
+
+    @property
+    def doubt_of_accepted(self) -> float:
+        """Largest fidelity of the effects put into the model beforehand [-]."""
+        return max((effect.fidelity for effect in self.accepted), default=0.0)
 
     @cached_property
     def _baseline_variance(self) -> FloatArray:

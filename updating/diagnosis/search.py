@@ -113,7 +113,9 @@ def _falls_short(problem: Problem, effects: list[Effect]) -> bool:
     here = problem.predictor.predict(count=count).frequency
     there = problem.predictor.under("timoshenko").predict(count=count).frequency
     within = here <= 1.001 * problem.nominal.frequency.max()
-    noise = np.hypot(problem.measured.repeatability, np.min(problem.measured.frequency_sigma / problem.measured.frequency))
+    noise = np.hypot(
+        problem.measured.repeatability, np.min(problem.measured.frequency_sigma / problem.measured.frequency)
+    )
     return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
 
 
@@ -145,9 +147,7 @@ def _joined(first: Explanation, second: Explanation) -> Candidate:
     return Candidate(first.candidate.effects + second.candidate.effects, theory=theory)
 
 
-def _linear_look(
-    problem: Problem, first: Explanation, second: Explanation
-) -> tuple[float, list[FloatArray]]:
+def _linear_look(problem: Problem, first: Explanation, second: Explanation) -> tuple[float, list[FloatArray]]:
     """Return the log-likelihood that a linear step from either single's best would reach, and where to start."""
     reached, starts = [], []
     for leader, other in ((first, second), (second, first)):

@@ -39,7 +39,9 @@ def shrinkage(
     floor = _rms(np.sqrt(_noise(problem, metric)))
     held = held_out(problem, best, metric)
     other = None if runner_up is None else held_out(problem, runner_up, metric)
-    alone = held_out(problem, Explanation(Candidate(), 0.0, nothing.best, nothing.samples, nothing.weights), metric)
+    alone = held_out(
+        problem, Explanation(Candidate(), 0.0, nothing.best, nothing.samples, nothing.weights), metric
+    )
     return Shrink(
         metric,  # type: ignore[arg-type]
         100 * _rms(raw),

@@ -22,7 +22,9 @@ CLOSE = 4.0
 
 def is_significant(found: Search, p_value: float) -> bool:
     """Tell whether the tolerances and the noise fail to explain the data, and something else does better."""
-    beaten = any(row.names and row.explanation.log_evidence > found.nothing.log_evidence for row in found.weighed)
+    beaten = any(
+        row.names and row.explanation.log_evidence > found.nothing.log_evidence for row in found.weighed
+    )
     return p_value < SIGNIFICANT and (beaten or p_value < SIGNIFICANT**2)
 
 

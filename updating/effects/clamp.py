@@ -19,7 +19,9 @@ class ClampRotation(Effect):
     summary = "The clamp turns with the structure instead of holding its slope."
     footprint = "All frequencies fall, the lowest most; shapes tilt about the clamp."
     equivalent_to = ("length", "E")
-    separated_by = "points near the clamp, a free-free test of the same specimen, or re-clamping at another torque"
+    separated_by = (
+        "points near the clamp, a free-free test of the same specimen, or re-clamping at another torque"
+    )
     fidelity = 0.02
     freed = "rotation"
 
@@ -62,7 +64,9 @@ def _edge_slopes(predictor: Predictor) -> FloatArray:
             size = spec.width if edge[0] == "x" else spec.length
             nodes, weights = np.polynomial.legendre.leggauss(40)
             span, weights = (nodes + 1) * size / 2, weights * size / 2
-            points = np.stack([np.full(40, place), span] if edge[0] == "x" else [span, np.full(40, place)], axis=1)
+            points = np.stack(
+                [np.full(40, place), span] if edge[0] == "x" else [span, np.full(40, place)], axis=1
+            )
             rows = reduced.rows(points)[name]
         total += rows.T @ (weights[:, None] * rows)
     return total

@@ -24,7 +24,7 @@ class FactorEffect(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the state with the factor applied."""
-        return State(factors={name: values["factor"] for name in self.factors})
+        return State(factors=dict.fromkeys(self.factors, values["factor"]))
 
 
 class Modulus(FactorEffect):
@@ -47,7 +47,9 @@ class Density(FactorEffect):
     name = "density"
     channel = "mass"
     summary = "The density (or a mass spread evenly) differs from the model's by more than its tolerance."
-    footprint = "All frequencies by one factor; modal constants by the inverse square of that factor's inverse."
+    footprint = (
+        "All frequencies by one factor; modal constants by the inverse square of that factor's inverse."
+    )
     equivalent_to = ("E", "thickness", "length", "fluid_added_mass")
     separated_by = "weigh the specimen; absolute level; a known added mass"
     factors = ("density",)

@@ -17,7 +17,9 @@ class FluidAddedMass(Effect):
     name = "fluid_added_mass"
     channel = "mass"
     summary = "The surrounding fluid moves with the structure and adds its inertia."
-    footprint = "Frequencies fall strongly, modes of long waves more than modes of short waves and of torsion."
+    footprint = (
+        "Frequencies fall strongly, modes of long waves more than modes of short waves and of torsion."
+    )
     equivalent_to = ("density",)
     separated_by = "the same test dry; or a second depth of immersion"
 

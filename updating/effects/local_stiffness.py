@@ -11,7 +11,6 @@ from updating.effects.base import Effect, Parameter, Values
 from updating.models.state import State
 from updating.prediction import Predictor
 
-
 COMPLIANCE = (5e-4, 0.6)
 """Range of the compliance, the integral of EI0/EI - 1, relative to the length [-]."""
 

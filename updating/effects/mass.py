@@ -13,7 +13,9 @@ class SensorMass(Effect):
     name = "sensor_mass"
     channel = "mass"
     summary = "The mounted sensor (each of them) loads the structure and is not in the model."
-    footprint = "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
+    footprint = (
+        "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
+    )
     equivalent_to = ("lumped_mass",)
     separated_by = "weigh the sensor, or add a second known mass beside it"
     fidelity = 0.01

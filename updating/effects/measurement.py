@@ -40,7 +40,9 @@ class CalibrationGain(Effect):
 
     name = "calibration_gain"
     channel = "measurement"
-    summary = "The calibration of the measurement chain is off: every FRF is too large or too small by one factor."
+    summary = (
+        "The calibration of the measurement chain is off: every FRF is too large or too small by one factor."
+    )
     footprint = "Modal constants by one factor; frequencies, damping and shapes unchanged."
     equivalent_to = ("section_scale",)
     separated_by = "a calibration with a known free mass"

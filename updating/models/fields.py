@@ -58,14 +58,10 @@ class Component:
         inside = np.clip(points, low, high).T
         cells = self._finder(*inside)
         local = mapping.invF(inside[:, :, None], tind=cells)
-        values = [
-            self.basis.elem.gbasis(mapping, local, i, tind=cells)[0] for i in range(self.basis.Nbfun)
-        ]
+        values = [self.basis.elem.gbasis(mapping, local, i, tind=cells)[0] for i in range(self.basis.Nbfun)]
         return {n: self._matrix(values, d, cells, n_dofs) for n, d in self.names.items()}
 
-    def _matrix(
-        self, values: list[Any], derivative: tuple[int, ...], cells: IntArray, n_dofs: int
-    ) -> Sparse:
+    def _matrix(self, values: list[Any], derivative: tuple[int, ...], cells: IntArray, n_dofs: int) -> Sparse:
         order = ("value", "grad", "hess")[len(derivative)]
         arrays = [np.asarray(v if order == "value" else getattr(v, order)) for v in values]
         data = np.stack([array[derivative].ravel() for array in arrays])

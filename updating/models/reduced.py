@@ -16,10 +16,10 @@ from scipy import linalg as dense
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, IntArray
 from updating.models.fields import Sparse
 from updating.models.state import State
-from updating.models.structure import FACTORS, Structure
+from updating.models.structure import FACTORS, Structure, Term
 
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
@@ -58,15 +58,17 @@ class Reduced:
         masks = [np.flatnonzero(region == (i if i < count else -1)) for i in range(count + 1)]
         return tuple(np.stack([self._product(t, rows) for rows in masks]) for t in self.structure.terms)
 
-    def _product(self, term: object, rows: FloatArray, weights: FloatArray | None = None) -> FloatArray:
-        left, right = self.sampled[term.left][rows], self.sampled[term.right][rows]  # type: ignore[attr-defined]
-        coefficient = term.coefficient[rows]  # type: ignore[attr-defined]
+    def _product(self, term: Term, rows: IntArray, weights: FloatArray | None = None) -> FloatArray:
+        left, right = self.sampled[term.left][rows], self.sampled[term.right][rows]
+        coefficient = term.coefficient[rows]
         if weights is not None:
             coefficient = coefficient * weights
         part = left.T @ (coefficient[:, None] * right)
         return np.asarray((part + part.T) / 2)
 
-    def weighted(self, kind: str, weights: FloatArray, factors: Mapping[str, float] | None = None) -> FloatArray:
+    def weighted(
+        self, kind: str, weights: FloatArray, factors: Mapping[str, float] | None = None
+    ) -> FloatArray:
         """Return the stiffness or mass matrix of the structure under weights at the quadrature points.
 
         Parameters
@@ -92,7 +94,7 @@ class Reduced:
     @cached_property
     def point_masses(self) -> FloatArray:
         """Matrix of the masses the modeller knows of, shape (r, r) [kg in w]."""
-        full = self.structure._point_masses()
+        full = self.structure.point_masses()
         return np.asarray(self.basis.T @ (full @ self.basis))
 
     def matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
@@ -163,7 +165,11 @@ def reduce_structure(structure: Structure, points: FloatArray, *, modes: int = 3
     unknowns = len(structure.free())
     count = unknowns if unknowns <= SMALL else min(modes + structure.rigid_modes, unknowns)
     values, vectors = structure.eigen(count)
-    clamped = vectors if count == unknowns else _extend(vectors, _static_answers(structure, stiffness, mass, values, vectors, points), mass)
+    clamped = (
+        vectors
+        if count == unknowns
+        else _extend(vectors, _static_answers(structure, stiffness, mass, values, vectors, points), mass)
+    )
     ranks = {frozenset[str](): clamped.shape[1]}
     basis = clamped
     if structure.fixed:

@@ -8,6 +8,7 @@ from functools import reduce
 from types import MappingProxyType
 
 from acquisition.arrays import FloatArray
+from updating.models.spec import Theory
 
 
 def _nothing() -> Mapping[str, float]:
@@ -42,7 +43,7 @@ class State:
     mass: tuple[FloatArray, ...] = ()
     damping: tuple[FloatArray, ...] = ()
     released: frozenset[str] = frozenset()
-    theory: str | None = None
+    theory: Theory | None = None
     gain: float = 1.0
     decay: float = 0.0
 

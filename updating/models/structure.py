@@ -97,10 +97,11 @@ class Structure:
                 part = left.T @ sparse.diags_array(term.coefficient * weights) @ right
                 total = total + (part if term.left == term.right else (part + part.T) / 2)
         if kind == "mass":
-            total = total + self._point_masses()
+            total = total + self.point_masses()
         return Sparse(total)
 
-    def _point_masses(self) -> Sparse:
+    def point_masses(self) -> Sparse:
+        """Assemble the masses the modeller knows of [kg in w]."""
         n = self.fields.n_dofs
         total = Sparse((n, n))
         for mass in self.spec.masses:
@@ -216,7 +217,11 @@ def build_structure(spec: Spec) -> Structure:
         if not inside.any():
             raise StudyError(f"region {region.name!r} holds no part of the model; check its x and y")
         region_of[inside] = index
-    terms = _plate_terms(spec, fields, region_of) if spec.kind == "plate" else _beam_terms(spec, fields, region_of)
+    terms = (
+        _plate_terms(spec, fields, region_of)
+        if spec.kind == "plate"
+        else _beam_terms(spec, fields, region_of)
+    )
     return Structure(spec, fields, terms, region_of, _fixed(spec, fields))
 
 
@@ -231,7 +236,9 @@ def _beam_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[Term, 
     thickness = _local(spec, region_of, "thickness", spec.thickness)
     area = np.array([np.nan if r.area is None else r.area for r in spec.regions] + [np.nan])[region_of]
     area = np.where(np.isnan(area), spec.width * thickness, area)
-    inertia = np.array([np.nan if r.inertia is None else r.inertia for r in spec.regions] + [np.nan])[region_of]
+    inertia = np.array([np.nan if r.inertia is None else r.inertia for r in spec.regions] + [np.nan])[
+        region_of
+    ]
     inertia = np.where(np.isnan(inertia), spec.width * thickness**3 / 12, inertia)
     modulus = _local(spec, region_of, "E", spec.material.E)
     density = _local(spec, region_of, "density", spec.material.density)

@@ -6,3 +6,12 @@ PUBLISHED: dict[str, tuple[float, ...]] = {
     "plate_dry": (16.76, 70.69, 104.91, 229.96, 296.64, 425.51, 446.90, 574.19, 591.14, 731.06, 843.22, 951.13),
     "plate_wet": (7.27, 39.61, 48.60, 132.58, 146.44, 262.12, 268.27, 310.61, 367.30, 446.70, 531.26, 539.65),
 }
+
+PAPER = "Badan, Rade, Pillet and Pena, 'Experimental characterization and adjustment of finite element models of submerged structures'"
+
+TABLES: dict[str, str] = {
+    "beam_dry": "Table 1",
+    "beam_wet": "Table 2",
+    "plate_dry": "Table 3",
+    "plate_wet": "Table 4",
+}
