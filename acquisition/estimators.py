@@ -83,8 +83,9 @@ def random_error(frfs: FrfSet) -> FloatArray:
 
     Notes
     -----
-    sqrt((1 - coherence) / (2 n coherence)), Bendat and Piersol, Random Data (2010), equation 9.90, where
-    the scatter of the hits is not known; else sqrt(variance / 2) / |H|.
+    sqrt(variance / 2) / |H| where the scatter of the hits is known; else
+    sqrt((1 - coherence) / (2 (n - 1) coherence)): Bendat and Piersol, Random Data (2010), equation 9.90, with
+    n - 1 instead of n because the coherence of n hits is itself too high by that.
 
     Raises
     ------
@@ -94,10 +95,10 @@ def random_error(frfs: FrfSet) -> FloatArray:
     size = np.abs(frfs.values)
     if frfs.variance is not None:
         return np.asarray(np.sqrt(frfs.variance / 2) / np.maximum(size, np.finfo(float).tiny))
-    if frfs.coherence is None or frfs.averages is None:
+    if frfs.coherence is None or frfs.averages is None or frfs.averages.min() < 2:
         raise EstimationError(f"{frfs.source}: no coherence with averages, so no random error can be given")
     coherence = np.clip(frfs.coherence, 1e-12, 1.0)
-    return np.asarray(np.sqrt((1 - coherence) / (2 * frfs.averages[:, None] * coherence)))
+    return np.asarray(np.sqrt((1 - coherence) / (2 * (frfs.averages[:, None] - 1) * coherence)))
 
 
 def mean_variance(force: ComplexArray, motion: ComplexArray, frf: ComplexArray) -> FloatArray:

@@ -100,25 +100,30 @@ def clipped(records: FloatArray) -> BoolArray:
     The broad top of a long pulse is flat too once it is rounded to the converter's steps; there the next
     samples lie a step below, while a clipped wave leaves its top steeply.
     """
-    size = np.abs(records)
-    extreme = size.max(axis=-1, keepdims=True)
-    at_top = (size >= (1 - 1e-6) * extreme) & (extreme > 0)
-    flat = at_top[..., :-2] & at_top[..., 1:-1] & at_top[..., 2:]
     answer = np.zeros(records.shape[:-1], dtype=np.bool_)
-    for index in np.argwhere(flat.any(axis=-1)):
-        answer[tuple(index)] = _leaves_steeply(size[tuple(index)], at_top[tuple(index)])
+    largest = np.abs(records).max(axis=-1, keepdims=True)
+    for side in (records, -records):
+        extreme = side.max(axis=-1, keepdims=True)
+        at_top = (side >= (1 - 1e-6) * extreme) & (extreme > 0.2 * largest)
+        flat = at_top[..., :-2] & at_top[..., 1:-1] & at_top[..., 2:]
+        for index in map(tuple, np.argwhere(flat.any(axis=-1)).tolist()):
+            answer[index] |= _leaves_steeply(side[index], at_top[index])
     return answer
 
 
-def _leaves_steeply(size: FloatArray, at_top: BoolArray) -> bool:
-    """Tell whether some flat top of three samples or more is left by more than a rounding step."""
+def _leaves_steeply(wave: FloatArray, at_top: BoolArray) -> bool:
+    """Tell whether some flat top of three samples or more is no rounded parabola.
+
+    A parabola that rounding has flattened over r samples is some 8 steps lower r samples farther out.
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], at_top, [False]]).astype(np.int8)))
-    steps = np.abs(np.diff(size[size > 0.5 * size.max()]))
-    step = float(steps[steps > 0].min(initial=np.inf))
-    for start, stop in zip(edges[::2], edges[1::2], strict=True):
-        outside = [size[i] for i in (start - 1, stop) if 0 <= i < len(size)]
-        drop = size.max() - max(outside, default=0.0)
-        if stop - start >= 3 and drop > 1e-3 * size.max() and drop >= 1.5 * step:
+    top = float(wave.max())
+    steps = np.abs(np.diff(wave[wave > 0.5 * top]))
+    step = float(steps[steps > 1e-9 * top].min(initial=top))
+    for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        run = stop - start
+        outside = [wave[i] for i in (start - run, stop - 1 + run) if 0 <= i < len(wave)]
+        if run >= 3 and outside and top - max(outside) > max(1e-3 * top, min(20 * step, 0.1 * top)):
             return True
     return False
 
@@ -129,13 +134,15 @@ def dead_from(records: FloatArray) -> FloatArray:
     1 means that it lives to the end or has died away.
     """
     length = records.shape[-1]
-    moving = np.diff(records, axis=-1) != 0
+    steps = np.abs(np.diff(records, axis=-1))
+    moving = steps != 0
+    step = np.where(moving, steps, np.inf).min(axis=-1)
     last = np.where(moving.any(axis=-1), length - 1 - moving[..., ::-1].argmax(axis=-1), 0)
     span = max(length // 50, 2)
     size = np.abs(records)
     index = np.clip(last[..., None] - np.arange(1, span + 1), 0, length - 1)
     before = np.take_along_axis(size, index, axis=-1).max(axis=-1)
-    alive = before <= 1e-3 * size.max(axis=-1)
+    alive = before <= np.maximum(1e-3 * size.max(axis=-1), 3 * step)  # died away, or into the last bits
     return np.asarray(np.where(alive | (last > 0.98 * length), 1.0, last / length), dtype=np.float64)
 
 

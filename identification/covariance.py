@@ -7,7 +7,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.frf import FrfSet
 from identification.fitting import Fitted
-from identification.pruning import pole_covariance, residue_variance
+from identification.pruning import constant_variance, pole_covariance
 
 
 def misfit_factor(frfs: FrfSet, fitted: Fitted) -> FloatArray:
@@ -51,6 +51,5 @@ def pole_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
 
 
 def constant_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
-    """Return the standard deviation of each modal constant's parts, shape (n_frf, n_modes) [1/kg]."""
-    variance = residue_variance(fitted.fit) * misfit_factor(frfs, fitted)[None, :]
-    return np.asarray(2.0 * fitted.fit.poles.imag[None, :] * np.sqrt(variance))
+    """Return the standard deviation of each modal constant's real part, shape (n_frf, n_modes) [1/kg]."""
+    return np.asarray(np.sqrt(constant_variance(fitted.fit) * misfit_factor(frfs, fitted)[None, :]))

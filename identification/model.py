@@ -35,7 +35,7 @@ class ModalModel:
     constants : (n_frf, n_modes) complex array
         Modal constants A = phi_i phi_j, signs of the transducers' directions applied [1/kg].
     constant_sigma : (n_frf, n_modes) array
-        Standard deviation of their real part, and of their imaginary part [1/kg].
+        Standard deviation of their real part; that of the imaginary part is about the same [1/kg].
     responses, references : tuple of Dof, length n_frf
         Degrees of freedom, directions positive.
     lower, upper : (n_frf,) arrays

@@ -11,18 +11,16 @@ from identification.refine import Fit
 _FALSE_ALARM = 1e-8
 
 
-def residue_variance(fit: Fit) -> FloatArray:
-    """Return the variance of either part of each residue, shape (n_frf, n_modes) [(m/(N s))^2].
+def constant_variance(fit: Fit) -> FloatArray:
+    """Return the variance of the real part of each modal constant, shape (n_frf, n_modes) [1/kg^2].
 
-    Poles' uncertainty included; the mean over both parts, which for circular noise are alike.
+    A = 2 i w R, so its real part is that of -2 w Im R. Poles' uncertainty is included. The imaginary part has
+    the same variance unless the mode is near the residual terms, as the first of a band that starts at zero.
     """
-    n = len(fit.poles)
-    covariance = pole_covariance(fit)
-    by_poles = np.einsum(
-        "jka,ab,jkb->jk", fit.pole_gain[:, : 2 * n], covariance, fit.pole_gain[:, : 2 * n], optimize=True
-    )
-    both = fit.linear_inverse[:, : 2 * n] + by_poles
-    return np.asarray(both.reshape(len(both), n, 2).mean(axis=2))
+    columns = slice(1, 2 * len(fit.poles), 2)
+    gain = fit.pole_gain[:, columns]
+    by_poles = np.einsum("jka,ab,jkb->jk", gain, pole_covariance(fit), gain, optimize=True)
+    return np.asarray((2.0 * fit.poles.imag) ** 2 * (fit.linear_inverse[:, columns] + by_poles))
 
 
 def pole_covariance(fit: Fit) -> FloatArray:

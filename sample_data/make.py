@@ -145,7 +145,9 @@ def system(rig: Rig) -> ModalSystem:
     """Return the structure behind a test with its poles at the published frequencies."""
     truth = _numbered(structure_behind(rig), rig.name)
     published = np.array(PUBLISHED[rig.name])
-    beyond = truth.frequency[len(published) :] * np.mean(published[-3:] / truth.frequency[len(published) - 3 : len(published)])  # fmt: skip
+    known = len(published)
+    ratio = np.mean(published[-3:] / truth.frequency[known - 3 : known])
+    beyond = truth.frequency[known:] * ratio
     frequency = np.concatenate([published, beyond])
     zeta = damping_ratios(rig, frequency)
     omega = 2 * np.pi * frequency
@@ -221,7 +223,10 @@ def make(rig: Rig, folder: Path) -> Path:
 
 def write_modes(name: str, folder: Path) -> None:
     """Write the published frequencies beside a test."""
-    table, unit = TABLES[name], "half of the last printed digit and 0.05 % for an identification nobody documented"
+    table, unit = (
+        TABLES[name],
+        "half of the last printed digit and 0.05 % for an identification nobody documented",
+    )
     lines = [
         f"# Published natural frequencies, {PAPER}, {table}, column 'Experim.' (two decimals printed).",
         f"# sigma is ours: {unit}. No shapes and no damping were published.",

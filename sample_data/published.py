@@ -3,11 +3,27 @@
 PUBLISHED: dict[str, tuple[float, ...]] = {
     "beam_dry": (24.47, 153.96, 429.15),
     "beam_wet": (19.17, 119.80, 337.86),
-    "plate_dry": (16.76, 70.69, 104.91, 229.96, 296.64, 425.51, 446.90, 574.19, 591.14, 731.06, 843.22, 951.13),
+    "plate_dry": (
+        16.76,
+        70.69,
+        104.91,
+        229.96,
+        296.64,
+        425.51,
+        446.90,
+        574.19,
+        591.14,
+        731.06,
+        843.22,
+        951.13,
+    ),
     "plate_wet": (7.27, 39.61, 48.60, 132.58, 146.44, 262.12, 268.27, 310.61, 367.30, 446.70, 531.26, 539.65),
 }
 
-PAPER = "Badan, Rade, Pillet and Pena, 'Experimental characterization and adjustment of finite element models of submerged structures'"
+PAPER = (
+    "Badan, Rade, Pillet and Pena, 'Experimental characterization and adjustment of finite element models of "
+    "submerged structures'"
+)
 
 TABLES: dict[str, str] = {
     "beam_dry": "Table 1",

@@ -88,8 +88,7 @@ def _draw_sensor(rng: np.random.Generator, setup: Setup, strength: float) -> Par
 
 
 def _act_sensor(scene: Scene, parameters: Parameters) -> Scene:
-    mass, x = parameters["mass"], scene.setup.points[scene.setup.sensor]
-    return _attach(scene, Attached(x, mass=mass, inertia=mass * 0.003**2))
+    return _attach(scene, Attached(scene.setup.points[scene.setup.sensor], mass=parameters["mass"]))
 
 
 def _draw_notch(rng: np.random.Generator, setup: Setup, strength: float) -> Parameters:

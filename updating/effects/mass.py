@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, total_mass
 from updating.models.state import State
 from updating.prediction import Predictor
@@ -28,14 +31,25 @@ class SensorMass(Effect):
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Need to know where the sensors sit."""
-        return None if predictor.measured.sensors else "the data do not say where a sensor sits"
+        if len(sensor_places(predictor)):
+            return None
+        return "the data do not say where a sensor sits; a [[model.mass]] of 0 kg would"
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the mass at every sensor."""
-        rows = predictor.nominal_rows["w"][list(predictor.measured.sensors)]
+        rows = predictor.reduced.rows(sensor_places(predictor))["w"]
         return State(mass=(values["mass"] * rows.T @ rows,))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return the sensors."""
-        points = predictor.measured.points[list(predictor.measured.sensors)]
+        points = sensor_places(predictor)
         return tuple((float(p[0]), float(p[1]) if len(p) > 1 else 0.0, 0.0) for p in points)
+
+
+def sensor_places(predictor: Predictor) -> FloatArray:
+    """Return where sensors sit, (n, dim) [m]: as the data say, else where the modeller put masses."""
+    test, spec = predictor.measured, predictor.spec
+    if test.sensors:
+        return np.asarray(test.points[list(test.sensors)])
+    dim = 1 if spec.kind == "beam" else 2
+    return np.array([mass.at[:dim] for mass in spec.masses], dtype=float).reshape(-1, dim)

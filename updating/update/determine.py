@@ -49,7 +49,8 @@ def assess(system: System, linear: Linear) -> Statistics:
     """
     scaled = system.whitened(linear) * system.doubt
     undetermined = _alone(scaled) > 1.0
-    residual = np.concatenate([1 - k.frequency / s.measured.frequency for k, s in _each(system, linear)])
+    both = zip(linear.looks, system.specimens, strict=True)
+    residual = np.concatenate([1 - look.frequency / s.measured.frequency for look, s in both])
     variance = np.concatenate([s.relative_variance for s in system.specimens])
     chi2 = float(np.sum((residual**2 / variance)[system.used]))
     dof = system.count - int(np.sum(system.prior == 0))
@@ -64,22 +65,20 @@ def assess(system: System, linear: Linear) -> Statistics:
     return Statistics(covariance, undetermined, chi2, dof, inflation)
 
 
-def _each(system: System, linear: Linear) -> list[tuple[object, object]]:
-    return list(zip(linear.looks, system.specimens, strict=True))
-
-
 def _alone(scaled: FloatArray) -> FloatArray:
     """Return each parameter's standard deviation from the data alone, in units of its doubt."""
     _, size, right = np.linalg.svd(scaled, full_matrices=True)
     padded = np.zeros(scaled.shape[1])
     padded[: len(size)] = size
     floor = NEGLIGIBLE * max(padded.max(), 1e-300)
-    return np.sqrt(np.sum((right.T / np.maximum(padded, floor)) ** 2, axis=1))
+    return np.asarray(np.sqrt(np.sum((right.T / np.maximum(padded, floor)) ** 2, axis=1)))
 
 
 def _covariance(system: System, linear: Linear, variance: FloatArray) -> FloatArray:
     """Return the covariance of the estimate: of Eq. 25's linear answer to errors of the stated variance."""
-    per_log = np.concatenate([system._per_log(s, k) for k, s in zip(linear.looks, system.specimens, strict=True)])
+    per_log = np.concatenate(
+        [system._per_log(s, k) for k, s in zip(linear.looks, system.specimens, strict=True)]
+    )
     noise = variance * per_log**2
     doubt = system.doubt
     s = linear.sensitivity * doubt

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.effects.mass import sensor_places
 from updating.models.fields import Sparse
 from updating.models.state import State
 from updating.models.structure import Structure
@@ -30,7 +31,7 @@ def full_matrices(structure: Structure, state: State) -> tuple[Sparse, Sparse]:
         Only its factors, of the whole and of regions, are looked at.
     """
     n = structure.fields.n_dofs
-    total = {"stiffness": Sparse((n, n)), "mass": structure._point_masses()}
+    total = {"stiffness": Sparse((n, n)), "mass": structure.point_masses()}
     fields = structure.fields.sampled
     for term in structure.terms:
         weights = term.coefficient * term.scale(state.factors)
@@ -68,8 +69,7 @@ def full_frequencies(
     structure = predictor.reduced.structure
     stiffness, mass = full_matrices(structure, state)
     if "sensor_mass" in effects:
-        points = predictor.measured.points[list(predictor.measured.sensors)]
-        rows = structure.fields.at(points)["w"]
+        rows = structure.fields.at(sensor_places(predictor))["w"]
         mass = Sparse(mass + effects["sensor_mass"]["mass"] * (rows.T @ rows))
     first = structure.rigid_modes
     values, _ = structure.eigen(first + count, stiffness=stiffness, mass=mass)

@@ -9,11 +9,11 @@ from types import MappingProxyType
 import numpy as np
 
 from acquisition.errors import StudyError
-from updating.diagnosis.problem import Tolerances
 from updating.effects import LIBRARY, Effect
 from updating.models.spec import Spec
 from updating.models.state import State
 from updating.prediction import Predictor
+from updating.tolerances import Tolerances
 
 UNITS = {"E": "Pa", "density": "kg/m^3", "thickness": "m", "width": "m"}
 """Properties that a factor of the whole structure can scale, and their units."""
@@ -166,7 +166,7 @@ def build_panel(
     for name in names:
         knobs += _knobs(name, predictor, tolerances)
     if not knobs:
-        raise StudyError("update: no parameters; name some, for instance parameters = [\"E\"]")
+        raise StudyError('update: no parameters; name some, for instance parameters = ["E"]')
     seen = [knob.name for knob in knobs]
     if twice := sorted({n for n in seen if seen.count(n) > 1}):
         raise StudyError(f"update: parameter {twice[0]!r} stands twice; name each once")
@@ -229,9 +229,7 @@ def _factor(name: str, unit: str, nominal: float, tolerance: float, factor: str,
     return Knob(name, unit, nominal, 1.0, low, high, doubt, tolerance > 0, True, factor, region)
 
 
-def _effect(
-    name: str, effect: Effect, tail: str, predictor: Predictor, tolerances: Tolerances
-) -> list[Knob]:
+def _effect(name: str, effect: Effect, tail: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob]:
     obstacle = effect.obstacle(predictor)
     if obstacle is not None:
         raise StudyError(f"update: {effect.name} cannot be updated: {obstacle}")
@@ -245,7 +243,9 @@ def _effect(
     for p in chosen:
         log = p.log and (p.name == "factor" or p.high > 1e3 * p.low)
         low, high = (p.low, p.high) if effect.channel != "mass" or p.name != "mass" else (0.0, p.high)
-        start = 1.0 if p.name in ("factor", "gain") else (0.0 if low <= 0 <= high else float(np.sqrt(low * high)))
+        start = (
+            1.0 if p.name in ("factor", "gain") else (0.0 if low <= 0 <= high else float(np.sqrt(low * high)))
+        )
         width = np.log(high / low) if log else high - low
         knob = Knob(
             effect.name if alone else f"{effect.name}.{p.name}",

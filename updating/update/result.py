@@ -103,7 +103,10 @@ class Update:
                 "unit": p.unit,
                 "factor": np.nan if p.factor is None else p.factor,
                 "remark": ", ".join(
-                    [*["at bound"] * p.at_bound, *["not determined by the data"] * (name in self.undetermined)]
+                    [
+                        *["at bound"] * p.at_bound,
+                        *["not determined by the data"] * (name in self.undetermined),
+                    ]
                 ),
             }
             for p, name in zip(self.parameters, self.names, strict=True)
@@ -115,4 +118,3 @@ class Update:
         used = self.pairs[self.pairs["used"]]
         error = used[f"{which}_hz"] / used["test_hz"] - 1
         return float(100 * np.sqrt(np.mean(error**2)))
-

@@ -19,7 +19,7 @@ from updating.update.solve import Solution, solve
 from updating.update.specimen import Specimen, build_specimen
 from updating.update.system import Quantity, System, Weights, build_system
 
-EXACT = 1e-8
+EXACT = 1e-6
 """Agreement of reduced and full frequencies at which the outer iteration ends, relative [-]."""
 
 
@@ -88,7 +88,9 @@ def _per_case(parameters: Sequence[str] | Sequence[Sequence[str]], count: int) -
     if all(isinstance(p, str) for p in parameters):
         return [[str(p) for p in parameters]] * count
     if len(parameters) != count:
-        raise StudyError(f"update: {len(parameters)} lists of parameters for {count} studies; give one for each")
+        raise StudyError(
+            f"update: {len(parameters)} lists of parameters for {count} studies; give one for each"
+        )
     return [list(own) for own in parameters]
 
 
@@ -132,7 +134,8 @@ def _report(system: System, solution: Solution, statistics: Statistics, exact: b
     with_units = statistics.covariance * np.outer(jacobian, jacobian)
     sigma = np.sqrt(np.diag(with_units))
     parameters = tuple(
-        _estimate(system, i, float(t), float(s)) for i, (t, s) in enumerate(zip(solution.theta, sigma, strict=True))
+        _estimate(system, i, float(t), float(s))
+        for i, (t, s) in enumerate(zip(solution.theta, sigma, strict=True))
     )
     names = [_column(system, i) for i in range(len(system.knobs))]
     history = pd.DataFrame(
@@ -219,5 +222,7 @@ def _warnings(system: System, solution: Solution, statistics: Statistics, exact:
             "explains; the standard deviations are raised by that factor"
         )
     if not exact:
-        found.append("an effect is known to the reduced model alone: the frequencies after the update are its own")
+        found.append(
+            "an effect is known to the reduced model alone: the frequencies after the update are its own"
+        )
     return found

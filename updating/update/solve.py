@@ -94,7 +94,8 @@ def step(system: System, linear: Linear, theta: FloatArray) -> FloatArray:
         increment[free] = _least((rows * system.doubt)[:, free], load) * system.doubt[free]
         tiny = 1e-9 * (system.high - system.low)
         out = free & (
-            ((theta <= system.low + tiny) & (increment < 0)) | ((theta >= system.high - tiny) & (increment > 0))
+            ((theta <= system.low + tiny) & (increment < 0))
+            | ((theta >= system.high - tiny) & (increment > 0))
         )
         if not out.any():
             break

@@ -165,7 +165,7 @@ def predictor_of(case: Case) -> Predictor:
     additions = tuple(_accepted(name, values) for name, values in case.accepted)
     predictor = Predictor(case.spec, case.measured, case.environment, additions)
     theory = predictor.base.theory
-    return predictor if theory is None else predictor.under(theory)  # type: ignore[arg-type]
+    return predictor if theory is None else predictor.under(theory)
 
 
 def _accepted(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:

@@ -125,7 +125,8 @@ class System:
         """Diagonal of W_s for the residuals, shape (n,)."""
         if self.quantity == "frequency":
             return np.concatenate(self.weights)
-        per = [w / (2 * (2 * np.pi * s.measured.frequency) ** 2) ** 2 for w, s in zip(self.weights, self.specimens, strict=True)]  # fmt: skip
+        both = zip(self.weights, self.specimens, strict=True)
+        per = [w / (2 * (2 * np.pi * s.measured.frequency) ** 2) ** 2 for w, s in both]
         return np.concatenate(per)
 
     def cost(self, theta: FloatArray, looks: tuple[Look, ...]) -> float:
@@ -155,7 +156,9 @@ class System:
         for specimen, look in zip(self.specimens, linear.looks, strict=True):
             begin, end = end, end + len(look.frequency)
             per_log = self._per_log(specimen, look)[:, None]
-            rows.append(linear.sensitivity[begin:end] / per_log / np.sqrt(specimen.relative_variance)[:, None])
+            rows.append(
+                linear.sensitivity[begin:end] / per_log / np.sqrt(specimen.relative_variance)[:, None]
+            )
         return np.vstack(rows)[self.used]
 
     @cached_property
@@ -188,7 +191,9 @@ def build_system(
     """
     known = {knob.name for s in specimens for knob in s.panel.knobs}
     if missing := sorted(set(shared) - known):
-        raise StudyError(f"update: shared parameter {missing[0]!r} is updated in no study; add it to the parameters")
+        raise StudyError(
+            f"update: shared parameter {missing[0]!r} is updated in no study; add it to the parameters"
+        )
     unknowns: dict[tuple[str, int], Knob] = {}
     index = []
     for i, specimen in enumerate(specimens):

@@ -1,0 +1,96 @@
+"""Tables 1-4 of paper A."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from modalkit.tables.chain import Walked, open_test, sample_folder, walk
+from modalkit.tables.printed_a import COLUMN_FACTOR, TABLES, Column, Printed, PrintedTable
+from modalkit.tables.render import PaperTable
+
+
+def tables_a(folder: Path | None = None) -> list[PaperTable]:
+    """Work out paper A's tables from the sample tests.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        Where the sample studies are; left out, those that come with the package.
+    """
+    return [_table(table, folder or sample_folder()) for table in TABLES]
+
+
+def _table(table: PrintedTable, folder: Path) -> PaperTable:
+    session = open_test(table, folder)
+    walked = [walk(table, printed, session) for printed in table.models]
+    rows = [_rows(table, p, w) for p, w in zip(table.models, walked, strict=True)]
+    factors = pd.concat(
+        [_factors(table, p, w) for p, w in zip(table.models, walked, strict=True)], ignore_index=True
+    )
+    return PaperTable(
+        "A", table.number, table.title, pd.concat(rows, ignore_index=True), factors, table.notes
+    )
+
+
+def _rows(table: PrintedTable, printed: Printed, walked: Walked) -> pd.DataFrame:
+    test, before, after = (walked.pairs[n].to_numpy() for n in ("test_hz", "before_hz", "after_hz"))
+    updated = np.array([f is not None for f in printed.after])
+    columns: dict[str, object] = {
+        "model": printed.program,
+        "mode": table.modes,
+        "test [Hz]": table.test,
+        "test, ours": walked.identified,
+        "before [Hz]": _numbers(printed.before),
+        "before, ours": before,
+        "error before [%]": _numbers(printed.before_error),
+        "error before, ours": 100 * (before / test - 1),
+        "after [Hz]": _numbers(printed.after),
+        "after, ours": np.where(updated, after, np.nan),
+        "error after [%]": _numbers(printed.after_error),
+        "error after, ours": np.where(updated, 100 * (after / test - 1), np.nan),
+    }
+    if table.number in COLUMN_FACTOR:
+        given = COLUMN_FACTOR[table.number]
+        columns[f"after at {given}, ours"] = np.where(updated, before / np.sqrt(given), np.nan)
+    if printed.mac:
+        columns["MAC [%]"] = _numbers(printed.mac)
+        columns["MAC, ours"] = 100 * walked.pairs["mac"].to_numpy()
+    columns["erratum"] = [
+        _remark(printed, mode, row) for mode, row in zip(table.modes, _partners(walked), strict=True)
+    ]
+    return pd.DataFrame(columns)
+
+
+def _partners(walked: Walked) -> list[tuple[int, int]]:
+    """Return, for each row, its place in the order of the test and its partner in the model."""
+    partners = walked.pairs["model_mode"].tolist()
+    return [(i + 1, int(p)) for i, p in enumerate(partners)]
+
+
+def _remark(printed: Printed, mode: int, row: tuple[int, int]) -> str:
+    """Return the erratum of a row, and say where our pairing is another."""
+    place, partner = row
+    parts = [printed.errata[mode]] if mode in printed.errata else []
+    if place != partner:
+        parts.append(f"ours is paired by MAC with FE mode {partner}")
+    return "; ".join(parts)
+
+
+def _factors(table: PrintedTable, printed: Printed, walked: Walked) -> pd.DataFrame:
+    ours = walked.result.parameters[0]
+    columns = {
+        "model": [printed.program],
+        "parameter": [table.parameter],
+        "factor": [printed.factor],
+        "factor, ours": [ours.factor],
+        "r.m.s. error before, ours [%]": [walked.result.rms_percent("before")],
+        "r.m.s. error after, ours [%]": [walked.result.rms_percent("after")],
+    }
+    return pd.DataFrame(columns)
+
+
+def _numbers(column: Column) -> np.ndarray:
+    return np.array([np.nan if v is None else v for v in column])

@@ -1,0 +1,165 @@
+"""H1, H2, Hv and what is said of their uncertainty."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from acquisition import (
+    Dof,
+    EstimationError,
+    HammerPlan,
+    HammerTest,
+    Hits,
+    HitVerdict,
+    InputError,
+    Windows,
+    apply_windows,
+    estimate_frfs,
+    hammer_test,
+    modal_system,
+    random_error,
+)
+
+SYSTEM = modal_system(
+    frequency=np.array([60.0, 140.0]),
+    damping=np.array([0.02, 0.015]),
+    response_shapes=np.array([[1.0, 0.7], [0.4, -0.8]]),
+    point_shapes=np.array([[1.0, 0.7]]),
+    responses=(Dof(1, 3), Dof(2, 3)),
+    points=(Dof(1, 3),),
+)
+NOISY = HammerPlan(rate=1024.0, samples=2048, hits=5, width=4e-3, response_noise=5e-3, adc_bits=None)
+
+
+def noisy(seed: int, **more: object) -> HammerTest:
+    return hammer_test(SYSTEM, replace(NOISY, **more), rng=np.random.default_rng(seed))
+
+
+def exact(laplace):
+    return SYSTEM.receptance(laplace, 0) * laplace**2
+
+
+def verdict(hit: int, used: bool) -> HitVerdict:
+    return HitVerdict(Dof(1, 3), hit, used, () if used else ("by hand",), 1.0, 1e-3, 100.0, 200.0)
+
+
+def test_variance_is_the_scatter_that_occurs():
+    """Over many tests, the mean of the estimated variance equals the mean squared error, line by line."""
+    sets = [estimate_frfs(noisy(seed)).band(20.0, 200.0) for seed in range(150)]
+    error = np.mean([np.abs(s.values - exact(s.laplace)) ** 2 for s in sets], axis=0)
+    stated = np.mean([s.variance for s in sets], axis=0)
+    assert np.median(stated / error) == pytest.approx(1.0, abs=0.05)
+    assert stated.sum() / error.sum() == pytest.approx(1.0, abs=0.1)
+
+
+def test_random_error_is_that_of_the_magnitude():
+    sets = [estimate_frfs(noisy(seed)).band(50.0, 70.0) for seed in range(150)]
+    scatter = np.std([np.abs(s.values) for s in sets], axis=0) / np.abs(exact(sets[0].laplace))
+    stated = np.sqrt(np.mean([random_error(s) ** 2 for s in sets], axis=0))
+    without = np.sqrt(np.mean([random_error(replace(s, variance=None)) ** 2 for s in sets], axis=0))
+    assert np.median(stated / scatter) == pytest.approx(1.0, abs=0.1)
+    assert np.median(without / scatter) == pytest.approx(1.0, abs=0.15)
+
+
+def test_estimators_lie_in_order_and_agree_without_noise():
+    h1, h2, hv = (estimate_frfs(noisy(1), estimator=e) for e in ("H1", "H2", "Hv"))  # type: ignore[arg-type]
+    assert np.all(np.abs(h1.values) <= np.abs(hv.values) * (1 + 1e-12))
+    assert np.all(np.abs(hv.values) <= np.abs(h2.values) * (1 + 1e-12))
+    assert np.allclose(hv.values**2, h1.values * h2.values)
+    assert np.allclose(h1.values, h2.values * h1.coherence)
+    clean = [
+        estimate_frfs(noisy(1, response_noise=0.0), estimator=e).band(20, 200).values for e in ("H1", "H2")
+    ]  # type: ignore[arg-type]
+    assert np.allclose(*clean, rtol=1e-3)
+
+
+def test_noise_on_the_force_biases_h1_and_not_h2():
+    test = noisy(3, hits=300, response_noise=0.0, force_noise=2.0)
+    h1, h2 = (estimate_frfs(test, estimator=e).band(55.0, 65.0) for e in ("H1", "H2"))  # type: ignore[arg-type]
+    size = np.abs(exact(h1.laplace))
+    assert np.mean(np.abs(h1.values) / size) < 0.9
+    assert np.mean(np.abs(h2.values) / size) == pytest.approx(1.0, abs=0.05)
+
+
+def test_one_hit_has_no_coherence_and_no_variance():
+    frfs = estimate_frfs(noisy(1, hits=1))
+    assert frfs.coherence is None and frfs.variance is None and frfs.averages.tolist() == [1, 1]
+    with pytest.raises(EstimationError, match="coherence"):
+        random_error(frfs)
+
+
+def test_refused_hits_are_as_if_they_were_not_there():
+    test = noisy(2)
+    (hits,) = test.points
+    less = replace(
+        test, points=(Hits(hits.reference, hits.responses, hits.force[[0, 2, 4]], hits.motion[[0, 2, 4]]),)
+    )
+    some = estimate_frfs(test, verdicts=[verdict(n, n % 2 == 1) for n in range(1, 6)])
+    assert np.array_equal(some.values, estimate_frfs(less).values) and some.averages.tolist() == [3, 3]
+    with pytest.raises(EstimationError, match="no usable hit"):
+        estimate_frfs(test, verdicts=[verdict(n, False) for n in range(1, 6)])
+
+
+def test_a_point_without_usable_hits_is_left_out():
+    test = noisy(2)
+    other = replace(test.points[0], reference=Dof(9, 3))
+    frfs = estimate_frfs(
+        replace(test, points=(*test.points, other)), verdicts=[verdict(n, False) for n in range(1, 6)]
+    )
+    assert set(frfs.references) == {Dof(9, 3)}
+
+
+@settings(max_examples=20, deadline=None)
+@given(order=st.permutations(range(5)), force=st.floats(1e-3, 1e3), motion=st.floats(1e-3, 1e3))
+def test_order_of_hits_and_units_do_not_matter(order, force, motion):
+    test = noisy(4, samples=256)
+    (hits,) = test.points
+    turned = Hits(hits.reference, hits.responses, force * hits.force[order], motion * hits.motion[order])
+    one, two = estimate_frfs(test), estimate_frfs(replace(test, points=(turned,)))
+    scale = motion / force
+    assert np.allclose(two.values, scale * one.values, rtol=1e-9)
+    assert np.allclose(two.coherence, one.coherence, rtol=1e-9)
+    assert np.allclose(two.variance, scale**2 * one.variance, rtol=1e-6)
+
+
+def test_exponential_window_leaves_amplitude_and_damping_exact():
+    """The window's decay is handed on, and the FRF is that of the structure beside the imaginary axis."""
+    test = apply_windows(noisy(1, response_noise=0.0), Windows(decay=10.0))
+    frfs = estimate_frfs(test).band(20.0, 200.0)
+    assert frfs.decay == 10.0
+    assert np.abs(frfs.values - exact(frfs.laplace)).max() < 2e-4 * np.abs(frfs.values).max()
+    (hits,) = test.points
+    assert np.allclose(hits.force.max(axis=-1), noisy(1, response_noise=0.0).points[0].force.max(axis=-1))
+
+
+def test_windows_add_up():
+    test = apply_windows(apply_windows(noisy(1), Windows(decay=2.0)), Windows(decay=3.0))
+    assert test.decay == 5.0
+    assert np.allclose(test.points[0].motion, apply_windows(noisy(1), Windows(decay=5.0)).points[0].motion)
+
+
+def test_force_window_takes_noise_and_leaves_the_pulse():
+    test = noisy(1, force_noise=1.0)
+    short = apply_windows(test, Windows(force_length=0.02))
+    before, after = test.points[0].force, short.points[0].force
+    top = int(before[0].argmax())
+    assert np.array_equal(after[0, : top + 15], before[0, : top + 15])
+    assert not after[:, 100:].any() and before[:, 100:].any()
+    clean = exact(estimate_frfs(test).band(20.0, 200.0).laplace)
+    worse, better = (np.abs(estimate_frfs(t).band(20.0, 200.0).values - clean).mean() for t in (test, short))
+    assert better < worse
+
+
+def test_nonsense_is_refused():
+    with pytest.raises(InputError, match="H3"):
+        estimate_frfs(noisy(1), estimator="H3")  # type: ignore[arg-type]
+    with pytest.raises(InputError):
+        Windows(decay=-1.0)
+    (hits,) = noisy(1).points
+    with pytest.raises(EstimationError, match="force"):
+        estimate_frfs(replace(noisy(1), points=(replace(hits, force=0 * hits.force),)))

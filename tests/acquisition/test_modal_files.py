@@ -1,0 +1,58 @@
+"""Tables of modes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from acquisition import Dof, InputError, read_modes
+
+
+def test_full_table(tmp_path):
+    path = tmp_path / "modes.csv"
+    path.write_text(
+        "# a plate\nfrequency, sigma, damping, damping_sigma, 1+Z, 3-Z\n10.5,0.01,0.002,0.0001,1.0,0.5\n20,,,,2,-1\n"
+    )
+    modal = read_modes(path)
+    assert modal.frequency.tolist() == [10.5, 20.0]
+    assert modal.frequency_sigma[0] == 0.01 and np.isnan(modal.frequency_sigma[1])
+    assert modal.damping[0] == 0.002 and np.isnan(modal.damping[1])
+    assert modal.dofs == (Dof(1, 3), Dof(3, 3)) and modal.shapes.tolist() == [[1, 2], [-0.5, 1]]
+
+
+def test_frequency_alone(tmp_path):
+    path = tmp_path / "modes.csv"
+    path.write_text("sigma,frequency\n0.1,33\n")
+    modal = read_modes(path)
+    assert len(modal) == 1 and modal.shapes is None and modal.frequency_sigma.tolist() == [0.1]
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("", "table"),
+        ("frequency,sigma\n", "no mode"),
+        ("10.5,0.01\n20,0.01\n", "no column 'frequency'"),
+        ("frequency,sigma\n10.5,abc\n", "'abc'"),
+        ("frequency,sigma\n-3,0.1\n", "not positive"),
+        ("frequency,sigma\n,0.1\n", "missing"),
+        ("frequency,1+Z\n10,\n", "gaps"),
+        ("frequency\n10\n11,12,13\n", "table"),
+    ],
+)
+def test_what_is_wrong_is_said(tmp_path, text, word):
+    path = tmp_path / "modes.csv"
+    path.write_text(text)
+    with pytest.raises(InputError, match=word):
+        read_modes(path)
+
+
+def test_missing_table_and_universal_file_without_modes(tmp_path, shared_data):
+    with pytest.raises(InputError, match="cannot be opened"):
+        read_modes(tmp_path / "none.csv")
+    with pytest.raises(InputError, match="no modes"):
+        read_modes(shared_data("uff/UFFFiles.jl/dataset15.unv"))
+
+
+def test_universal_file_with_modes(shared_data):
+    assert len(read_modes(shared_data("uff/pyuff/uff55_translation.uff"))) == 3
