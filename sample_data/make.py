@@ -43,6 +43,8 @@ SENSOR = 0.0086
 """Mass of the accelerometer [kg]."""
 WATER = 998.0
 """Density of the water [kg/m^3]."""
+BOUNDARY_LAYER = 3e-3
+"""Damping ratio that the water's boundary layer adds at 1 Hz; it falls with the root of the frequency [-]."""
 BEYOND = 6
 """Modes above the published ones that still sound in the FRFs."""
 EXCHANGED = {"plate_wet": (5, 6)}
@@ -135,10 +137,18 @@ def _seen_from(rig: Rig, frequency: FloatArray) -> Measured:
 
 
 def damping_ratios(rig: Rig, frequency: FloatArray) -> FloatArray:
-    """Return damping ratios, invented: some per mille of steel and clamp, more at low frequency and in water [-]."""
-    rng = np.random.default_rng(rig.seed)
-    level = 0.004 if rig.wet else 0.002
-    return np.asarray((level + 0.04 / frequency) * np.exp(0.25 * rng.standard_normal(len(frequency))))
+    """Return damping ratios, invented: some per mille of steel and clamp, more at low frequency [-].
+
+    In water the same damper acts on more inertia, so that its ratio falls with the frequency, and the boundary
+    layer adds a little.
+    """
+    dry = np.array(PUBLISHED[rig.name.replace("wet", "dry")])
+    rng = np.random.default_rng(len(dry))
+    ratio = np.resize(frequency, len(dry)) / dry if rig.wet else np.ones(len(dry))
+    reached = np.concatenate([ratio, np.full(len(frequency) - len(dry), ratio[-1])])
+    own = (0.002 + 0.04 * reached / frequency) * np.exp(0.25 * rng.standard_normal(len(frequency)))
+    layer = BOUNDARY_LAYER / np.sqrt(frequency) if rig.wet else np.zeros(len(frequency))
+    return np.asarray(own * reached + layer)
 
 
 def system(rig: Rig) -> ModalSystem:
@@ -183,7 +193,7 @@ def plan(rig: Rig) -> HammerPlan:
         width=1.2 / rig.band,
         pre_trigger=0.02 * rig.samples / (2.56 * rig.band),
         force_noise=2e-4 * rig.peak,
-        response_noise=1e-3 if rig.wet else 3e-4,
+        response_noise=3e-4,
         position_sigma=5e-4,
         decay=rig.decay,
         adc_bits=20,

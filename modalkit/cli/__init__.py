@@ -6,6 +6,7 @@ import sys
 
 import typer
 from rich.console import Console
+from threadpoolctl import threadpool_limits
 
 from acquisition.errors import ModalkitError
 from modalkit.cli import blinding, compare, demonstrate, diagnosing, look
@@ -28,7 +29,8 @@ def main() -> None:
     arguments = [a for a in sys.argv[1:] if a != "--debug"]
     debug = len(arguments) < len(sys.argv) - 1
     try:
-        code = app(args=arguments, prog_name="modalkit", standalone_mode=False)
+        with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
+            code = app(args=arguments, prog_name="modalkit", standalone_mode=False)
     except ModalkitError as error:
         if debug:
             raise

@@ -80,6 +80,8 @@ def explain(problem: Problem, candidate: Candidate, *, starts: list[FloatArray] 
         point = evaluate(problem, candidate, np.zeros(0))
         return Explanation(candidate, point.marginal.log_likelihood, point, np.zeros((1, 0)), np.ones(1))
     peaks = _peaks(problem, candidate, places)
+    if not peaks[0].point.possible:
+        return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
     samples, proposal = _draw(peaks, 16 * 2 ** len(places[0]))
     points = [evaluate(problem, candidate, u) for u in samples]
     log_likelihood = np.array([p.marginal.log_likelihood for p in points])
@@ -100,7 +102,7 @@ def _peaks(problem: Problem, candidate: Candidate, places: list[FloatArray]) -> 
     for peak in found:
         near = any(np.abs(peak.point.coordinates - k.point.coordinates).max() < 0.02 for k in kept)
         behind = found[0].point.marginal.log_likelihood - peak.point.marginal.log_likelihood
-        if not near and behind < 12:
+        if not kept or (not near and behind < 12):
             kept.append(peak)
     return kept
 

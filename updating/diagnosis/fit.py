@@ -37,6 +37,11 @@ class Point:
     marginal: Marginal
 
     @property
+    def possible(self) -> bool:
+        """Whether the model has a finite prediction there."""
+        return bool(np.isfinite(self.marginal.log_likelihood))
+
+    @property
     def left_over(self) -> FloatArray:
         """Residual after the most probable nuisances, shape (n,) [-]."""
         return self.comparison.residual - self.comparison.nuisance @ self.marginal.shift
@@ -113,6 +118,8 @@ def climb(
         Most steps taken.
     """
     point = evaluate(problem, candidate, start, keep=keep)
+    if not point.possible:
+        return Peak(point, np.eye(len(start)), np.zeros(len(start)))
     damping = 1e-3
     normal, gradient = _curvature(problem, candidate, point, keep)
     for _ in range(rounds if len(start) else 0):
@@ -144,5 +151,5 @@ def _step(normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: fl
 def _curvature(
     problem: Problem, candidate: Candidate, point: Point, keep: BoolArray | None
 ) -> tuple[FloatArray, FloatArray]:
-    columns = sensitivities(problem, candidate, point)
+    columns = np.nan_to_num(sensitivities(problem, candidate, point))
     return whiten(point.comparison, columns, point.marginal.scale, keep)

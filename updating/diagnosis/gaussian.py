@@ -57,7 +57,7 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     Marginal
         With a likelihood of zero where the prediction is not finite.
     """
-    if not (np.isfinite(comparison.residual).all() and np.isfinite(comparison.nuisance).all()):
+    if not _sound(comparison):
         nothing = np.zeros(comparison.nuisance.shape[1])
         return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
     shapes = comparison.channel == 2 if keep is None else (comparison.channel == 2) & keep
@@ -67,6 +67,12 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     score = np.array([part.log_likelihood for part in parts]) + prior
     top = parts[int(np.argmax(score))]
     return Marginal(float(logsumexp(score)), top.chi2, top.shift, top.count, top.scale)
+
+
+def _sound(comparison: Comparison) -> bool:
+    """Tell whether a prediction is finite and no sensitivity is beyond all measure."""
+    whole = np.isfinite(comparison.residual).all() and np.isfinite(comparison.nuisance).all()
+    return bool(whole and np.isfinite(comparison.variance).all() and np.abs(comparison.nuisance).max(initial=0.0) < 1e6)
 
 
 def gaussian(comparison: Comparison, scale: float, keep: BoolArray | None = None) -> Marginal:

@@ -136,6 +136,7 @@ def _pairs(problem: Problem, singles: list[Explanation]) -> list[Explanation]:
     for first, second in combinations(singles, 2):
         gain, starts = _linear_look(problem, first, second)
         looks.append((gain, first, second, starts))
+    looks = [look for look in looks if np.isfinite(look[0])]
     looks.sort(key=lambda look: -look[0])
     return [
         explain(problem, _joined(first, second), starts=starts) for _, first, second, starts in looks[:PAIRS]
@@ -151,14 +152,16 @@ def _linear_look(problem: Problem, first: Explanation, second: Explanation) -> t
     """Return the log-likelihood that a linear step from either single's best would reach, and where to start."""
     reached, starts = [], []
     for leader, other in ((first, second), (second, first)):
+        if not (leader.best.possible and other.best.possible):
+            continue
         columns = [sensitivities(problem, leader.candidate, leader.best), _increment(problem, other)]
-        normal, load = whiten(leader.best.comparison, np.hstack(columns), leader.best.marginal.scale)
+        normal, load = whiten(leader.best.comparison, np.nan_to_num(np.hstack(columns)), leader.best.marginal.scale)
         step = np.linalg.lstsq(normal, load, rcond=1e-10)[0]
         reached.append(leader.best.marginal.log_likelihood + 0.5 * float(load @ step))
     middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]
     a, b = first.best.coordinates, second.best.coordinates
     starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
-    return max(reached), starts
+    return max(reached, default=-np.inf), starts
 
 
 def _increment(problem: Problem, explanation: Explanation) -> FloatArray:
