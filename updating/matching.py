@@ -53,6 +53,12 @@ def match(measured: Measured, prediction: Prediction, order: IntArray) -> IntArr
 WILD = 0.25
 """Standard deviation of the logarithms of the frequency ratios beyond which ranks are doubted."""
 
+FAINT = 0.35
+"""Modes whose constants are no better known than this, relative to their r.m.s., are not compared."""
+
+ASTRAY = 0.5
+"""A pair whose logarithm of the frequency ratio lies so far from the others' median is no pair."""
+
 LOWEST_MAC = 0.4
 """Below this MAC a measured mode has no partner."""
 
@@ -93,6 +99,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     """
     if not measured.has_shapes:
         return _pair_by_order(measured, prediction)
+    measured, lost = _without_faint(measured)
     if len(measured.frequency) > len(prediction.frequency):
         raise EstimationError(
             f"the test has {len(measured.frequency)} modes and the model {len(prediction.frequency)} in its band; "
@@ -100,17 +107,36 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
         )
     order = match(measured, prediction, np.arange(len(measured.frequency)))
     mac = mac_of_constants(measured, prediction)[np.arange(len(order)), order]
-    keep = mac >= LOWEST_MAC
+    ratio = np.log(measured.frequency / prediction.frequency[order])
+    near = np.abs(ratio - np.median(ratio)) < ASTRAY
+    keep = (mac >= LOWEST_MAC) & near
     if not keep.any():
         raise EstimationError(
             f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
             "check axes, points and boundary conditions"
         )
-    lost = [
-        f"mode at {f:.2f} Hz has no partner in the model (MAC {m:.2f}) and is left out"
-        for f, m in zip(measured.frequency[~keep], mac[~keep], strict=True)
+    lost += [
+        f"mode at {f:.2f} Hz has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f}) "
+        "and is left out"
+        for f, m, r in zip(measured.frequency[~keep], mac[~keep], ratio[~keep], strict=True)
     ]
     return Paired(measured.modes(keep), order[keep], tuple(lost))
+
+
+def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
+    """Leave out modes whose constants drown in their own uncertainty."""
+    size = np.sqrt(np.mean(measured.constants**2, axis=0))
+    doubt = np.sqrt(np.mean(measured.constants_sigma**2, axis=0)) / np.maximum(size, 1e-300)
+    faint = doubt > FAINT
+    if faint.all():
+        raise EstimationError(
+            f"{measured.title or 'test'}: every mode's shape drowns in noise; average more hits or narrow the band"
+        )
+    lost = [
+        f"mode at {f:.2f} Hz is too faint to compare (its constants are uncertain by {100 * d:.0f} %) and is left out"
+        for f, d in zip(measured.frequency[faint], doubt[faint], strict=True)
+    ]
+    return measured.modes(~faint), lost
 
 
 def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:

@@ -8,10 +8,8 @@ from dataclasses import dataclass, field, replace
 from updating import Spec
 from updating.models.spec import Theory
 
-UNUSED = None
-"""What the paper did not update, or did not print."""
-
 Column = tuple[float | None, ...]
+"""Printed values by mode; None where the paper prints none."""
 
 
 @dataclass(frozen=True)

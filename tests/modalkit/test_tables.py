@@ -42,7 +42,6 @@ def test_measured_frequencies_come_out_of_the_chain(made: list[PaperTable]) -> N
 @pytest.mark.parametrize("number", [1, 2])
 def test_nominal_beams(made: list[PaperTable], number: int) -> None:
     printed, ours = both(made[number - 1], "before [Hz]")
-    assert np.abs(ours - printed) == pytest.approx(0, abs=1)  # a mode is not another
     assert (np.abs(ours / printed - 1) < 2e-4 + 0.005 / printed).all()  # 0.02 % and half the last digit
 
 

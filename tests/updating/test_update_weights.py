@@ -121,4 +121,7 @@ def test_accepted_effects_are_in_the_model_before_and_after() -> None:
     result = update(case, parameters=["E"], weights="relative")
     longer = np.sqrt(build_structure(replace(BEAM, length=0.386, regions=())).eigen(3)[0]) / (2 * np.pi)
     assert result.pairs["before_hz"].to_numpy() == pytest.approx(longer, rel=1e-4)
+    assert result.exact
+    ratio = result.pairs["after_hz"] / longer
+    assert ratio.to_numpy() == pytest.approx(np.sqrt(factor_of(result)), rel=1e-9)
     assert factor_of(result) > factor_of(update(case_of(), weights="relative"))

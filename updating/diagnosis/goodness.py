@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.stats import chi2, norm
 
 from updating.diagnosis.fit import Point
 from updating.diagnosis.gaussian import gaussian, marginal
@@ -28,7 +28,8 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     Returns
     -------
     dict
-        ``frequency``, ``damping``, ``frf`` where there are such data, and ``all``.
+        ``frequency``, ``damping``, ``frf`` where there are such data, ``all`` of them together, and ``doubts``:
+        whether a tolerance or the calibration had to be stretched beyond belief.
     """
     comparison = point.comparison
     if not np.isfinite(point.marginal.log_likelihood):
@@ -48,6 +49,9 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
         parts = [(gaussian(comparison, scale, keep), tail) for scale, tail in tried]
         freedom = max(int(keep.sum()) - (fitted if name == "all" else 0), 1)
         values[name] = max(min(float(chi2.sf(part.chi2, freedom)), float(tail)) for part, tail in parts)
+    named = point.marginal.shift[: comparison.doubts]
+    if len(named):
+        values["doubts"] = float(min(1.0, len(named) * 2 * norm.sf(np.abs(named).max())))
     return values
 
 

@@ -32,6 +32,9 @@ KNOWN_SCATTER = (0.85, 0.12, 0.025, 0.004, 0.001)
 UNKNOWN_SCATTER = (0.3, 0.25, 0.2, 0.15, 0.1)
 """Prior of each scale, where repeated hits show the scatter and where nothing does."""
 
+REPEATED_DAMPING = 0.1
+"""Scatter of damping from one mounting of a specimen to the next, relative [-]."""
+
 UNKNOWN_LEVEL = 0.2
 """A calibration worse than this is found by least squares before anything is linearised."""
 
@@ -56,6 +59,8 @@ class Comparison:
         The predicted modes, in the order of the measured ones.
     scale_prior : tuple of float
         Prior of each of ``SCALES`` on the noise of the shapes [-].
+    doubts : int
+        How many of the first nuisances are named doubts: tolerances, level of damping, calibration.
     """
 
     residual: FloatArray
@@ -65,6 +70,7 @@ class Comparison:
     mode: IntArray
     prediction: Prediction
     scale_prior: tuple[float, ...] = KNOWN_SCATTER
+    doubts: int = 0
 
     def noise(self, scale: float) -> FloatArray:
         """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
@@ -107,6 +113,12 @@ class Problem:
     def reach(self) -> int:
         """How many of the model's modes a match may need."""
         return int(self.order.max()) + 3
+
+    @property
+    def damping_doubt(self) -> float:
+        """Doubt in the expected damping: a baseline that measured it knows better than a modeller [-]."""
+        told = self.tolerances.damping
+        return min(told, REPEATED_DAMPING) if self.baseline is not None else told
 
     @cached_property
     def sigmas(self) -> FloatArray:
@@ -181,6 +193,7 @@ class Problem:
             np.concatenate([b.mode for b in blocks]),
             prediction,
             KNOWN_SCATTER if self.measured.repeated else UNKNOWN_SCATTER,
+            len(self.names) + blocks[1].own.shape[1] + int(self.measured.absolute and len(blocks) > 2),
         )
 
     def _frequencies(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:
@@ -241,7 +254,7 @@ class Problem:
         test = self.measured
         relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=0.05)
         expected = np.maximum(now.damping[rows], 1e-7)
-        tolerance = self.tolerances.damping
+        tolerance = self.damping_doubt
         variance = relative**2 + tolerance**2
         return _Block(
             np.log(test.damping[rows] / expected),

@@ -72,7 +72,7 @@ def _noise(problem: Problem, metric: str) -> FloatArray:
     rows = plain.channel == CHANNELS.index(metric)
     variance = plain.variance[rows]
     if metric == "damping":
-        variance = variance - problem.tolerances.damping**2
+        variance = variance - problem.damping_doubt**2
     return np.asarray(np.maximum(variance, 0.0))
 
 

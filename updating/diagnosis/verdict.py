@@ -16,16 +16,19 @@ CERTAIN = 0.95
 SIGNIFICANT = 0.005
 """A gap is one when chance alone makes it less often than this."""
 
+FAR_BETTER = 6.0
+"""Logarithm of the Bayes factor at which an effect shows a gap that no single test does."""
+
 CLOSE = 4.0
 """Chi-squared difference of 2 sigma: below it two explanations are equivalent."""
 
 
 def is_significant(found: Search, p_value: float) -> bool:
-    """Tell whether the tolerances and the noise fail to explain the data, and something else does better."""
-    beaten = any(
-        row.names and row.explanation.log_evidence > found.nothing.log_evidence for row in found.weighed
-    )
-    return p_value < SIGNIFICANT and (beaten or p_value < SIGNIFICANT**2)
+    """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better."""
+    gain = max((row.explanation.log_evidence for row in found.weighed if row.names), default=-np.inf)
+    gain -= found.nothing.log_evidence
+    surprising = p_value < SIGNIFICANT and (gain > 0 or p_value < SIGNIFICANT**2)
+    return bool(surprising or gain > FAR_BETTER)
 
 
 def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import sparse
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, bending_stiffness
 from updating.effects.length import clamped_places
+from updating.models.fields import Sparse
 from updating.models.state import State
+from updating.models.structure import Structure
 from updating.prediction import Predictor
 
 
@@ -49,24 +52,26 @@ class ClampRotation(Effect):
 
 def _edge_slopes(predictor: Predictor) -> FloatArray:
     """Integrate the square of the slope across every clamped edge, as an (r, r) matrix [m in w]."""
-    spec, fields, reduced = predictor.spec, predictor.reduced.structure.fields, predictor.reduced
-    total = np.zeros((reduced.basis.shape[1],) * 2)
+    reduced = predictor.reduced
+    return np.asarray(reduced.basis.T @ (edge_slopes(reduced.structure) @ reduced.basis))
+
+
+def edge_slopes(structure: Structure) -> Sparse:
+    """Integrate the square of the slope across every clamped edge of the full model [m in w]."""
+    spec, fields = structure.spec, structure.fields
+    total = Sparse((fields.n_dofs, fields.n_dofs))
     for edge in spec.clamped:
-        along = np.array([0.0]) if spec.kind == "beam" else None
         name = "wx" if edge[0] == "x" else "wy"
         place = {"x0": 0.0, "x1": spec.length, "y0": 0.0, "y1": spec.width}[edge]
-        if along is not None:
-            component = fields.components[-1]
+        if spec.kind == "beam":
             slope = "r" if spec.theory == "timoshenko" else "wx"
-            rows = np.asarray(component.at(np.array([[place]]), fields.n_dofs)[slope] @ reduced.basis)
+            rows = fields.components[-1].at(np.array([[place]]), fields.n_dofs)[slope]
             weights = np.ones(1)
         else:
             size = spec.width if edge[0] == "x" else spec.length
             nodes, weights = np.polynomial.legendre.leggauss(40)
             span, weights = (nodes + 1) * size / 2, weights * size / 2
-            points = np.stack(
-                [np.full(40, place), span] if edge[0] == "x" else [span, np.full(40, place)], axis=1
-            )
-            rows = reduced.rows(points)[name]
-        total += rows.T @ (weights[:, None] * rows)
-    return total
+            ends = (np.full(40, place), span) if edge[0] == "x" else (span, np.full(40, place))
+            rows = fields.at(np.stack(ends, axis=1))[name]
+        total = total + rows.T @ sparse.diags_array(weights) @ rows
+    return Sparse(total)

@@ -25,9 +25,9 @@ class SensorMass(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the mass of one sensor."""
-        high = min(0.1, total_mass(predictor.spec))
-        why = "from the lightest accelerometer with its wax to an impedance head"
-        return (Parameter("mass", "kg", min(2e-4, 1e-2 * high), high, why, log=True),)
+        high = 0.5 * total_mass(predictor.spec)
+        why = "from the lightest accelerometer with its wax to an impedance head as heavy as half the structure"
+        return (Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True),)
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Need to know where the sensors sit."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.effects.clamp import edge_slopes
 from updating.effects.mass import sensor_places
 from updating.models.fields import Sparse
 from updating.models.state import State
@@ -64,13 +65,16 @@ def full_frequencies(
     (count,) array or None
         Frequencies [Hz]; None if an effect is known to the reduced model alone.
     """
-    if set(effects) - PLAIN - NO_STRUCTURE - {"sensor_mass"}:
+    if set(effects) - PLAIN - NO_STRUCTURE - {"sensor_mass", "clamp_rotation"}:
         return None
     structure = predictor.reduced.structure
     stiffness, mass = full_matrices(structure, state)
     if "sensor_mass" in effects:
         rows = structure.fields.at(sensor_places(predictor))["w"]
         mass = Sparse(mass + effects["sensor_mass"]["mass"] * (rows.T @ rows))
+    if "clamp_rotation" in effects:
+        spring = effects["clamp_rotation"]["stiffness"]
+        stiffness = Sparse(stiffness + spring * edge_slopes(structure))
     first = structure.rigid_modes
-    values, _ = structure.eigen(first + count, stiffness=stiffness, mass=mass)
+    values, _ = structure.eigen(first + count, stiffness=stiffness, mass=mass, released=state.released)
     return np.asarray(np.sqrt(np.maximum(values[first:], 0.0)) / (2 * np.pi))

@@ -10,13 +10,12 @@ import pandas as pd
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.case import Case
-from updating.models.state import State
 from updating.update.determine import Statistics, assess, correlations
 from updating.update.exact import full_frequencies
 from updating.update.knobs import Knob
 from updating.update.result import Estimate, Update
 from updating.update.solve import Solution, solve
-from updating.update.specimen import Specimen, build_specimen
+from updating.update.specimen import build_specimen
 from updating.update.system import Quantity, System, Weights, build_system
 
 EXACT = 1e-6
@@ -114,19 +113,13 @@ def _exactly(system: System) -> tuple[System, Solution, bool]:
 
 
 def _full(system: System, index: int, solution: Solution) -> FloatArray | None:
-    specimen = system.specimens[index]
-    state = solution.looks[index].state
-    added = specimen.panel.effects(system.values(solution.theta, index))
-    return _of_full_model(specimen, state, added, int(solution.looks[index].partner.max()) + 1)
-
-
-def _of_full_model(
-    specimen: Specimen, state: State, effects: dict[str, dict[str, float]], count: int
-) -> FloatArray | None:
-    """Return the full model's frequencies; None where accepted or updated effects live on the reduced one."""
-    if specimen.predictor.additions:
-        return None
-    return full_frequencies(specimen.predictor, state, effects, count)
+    """Return the full model's frequencies; None where an effect lives on the reduced one alone."""
+    specimen, look = system.specimens[index], solution.looks[index]
+    updated = specimen.panel.effects(system.values(solution.theta, index))
+    state = specimen.predictor.base.plus(look.state)
+    return full_frequencies(
+        specimen.predictor, state, dict(specimen.accepted) | updated, int(look.partner.max()) + 1
+    )
 
 
 def _report(system: System, solution: Solution, statistics: Statistics, exact: bool) -> Update:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -66,6 +66,8 @@ class Specimen:
         What was left out.
     correction : (n_modes,) array
         Ratio of the full model's frequencies to the reduced model's [-].
+    accepted : mapping of str to mapping
+        Effects in the model beforehand and the values of their parameters.
     """
 
     title: str
@@ -76,6 +78,7 @@ class Specimen:
     panel: Panel
     warnings: tuple[str, ...]
     correction: FloatArray
+    accepted: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def look(self, values: Sequence[float]) -> Look:
         """Evaluate the model, and find the partner of every measured mode by MAC."""
@@ -157,6 +160,7 @@ def build_specimen(case: Case, parameters: Sequence[str]) -> Specimen:
         panel,
         (*case.measured.warnings, *paired.warnings),
         np.ones(len(number)),
+        {name: values for name, values in accepted.items() if name not in updated},
     )
 
 
