@@ -77,18 +77,20 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
     predictor = Predictor(case.spec, case.measured, case.environment, tuple(additions))
     paired = pair_modes(case.measured, predictor.predict())
     warnings = [*case.measured.warnings, *paired.warnings]
-    baseline = None
+    baseline, baseline_order = None, None
     if case.baseline is not None:
         looking = predictor.looking(case.baseline)
         before = pair_modes(case.baseline, looking.predict())
         warnings += [f"baseline: {w}" for w in before.warnings]
         additions.append(_corrected(before))
-        baseline = before.measured
+        baseline, baseline_order = before.measured, before.order
         predictor = predictor.looking(case.measured, tuple(additions))
         paired = pair_modes(case.measured, predictor.predict())
     predictor = predictor.looking(paired.measured)
     accepted = tuple(LIBRARY[name] for name, _ in case.accepted)
-    problem = Problem(predictor, paired.measured, case.tolerances, paired.order, baseline, accepted)
+    problem = Problem(
+        predictor, paired.measured, case.tolerances, paired.order, baseline, baseline_order, accepted
+    )
     return problem, warnings
 
 

@@ -72,7 +72,11 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
 def _sound(comparison: Comparison) -> bool:
     """Tell whether a prediction is finite and no sensitivity is beyond all measure."""
     whole = np.isfinite(comparison.residual).all() and np.isfinite(comparison.nuisance).all()
-    return bool(whole and np.isfinite(comparison.variance).all() and np.abs(comparison.nuisance).max(initial=0.0) < 1e6)
+    return bool(
+        whole
+        and np.isfinite(comparison.variance).all()
+        and np.abs(comparison.nuisance).max(initial=0.0) < 1e6
+    )
 
 
 def gaussian(comparison: Comparison, scale: float, keep: BoolArray | None = None) -> Marginal:

@@ -14,10 +14,11 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.diagnosis.before import Before
 from updating.effects.base import Effect
 from updating.matching import match
 from updating.measured import Measured
-from updating.models.state import NOMINAL, State
+from updating.models.state import State
 from updating.models.structure import FACTORS
 from updating.prediction import Prediction, Predictor
 from updating.tolerances import Tolerances
@@ -93,6 +94,8 @@ class Problem:
         Rank of the model mode of each measured mode, for data without shapes.
     baseline : Measured, optional
         Modes of the same specimen before the effect; its correction is in the predictor.
+    baseline_order : (n_baseline,) int array, optional
+        Rank of the model mode of each of them, for data without shapes.
     accepted : tuple of Effect
         Effects put into the model beforehand, the first of the predictor's additions.
     """
@@ -102,6 +105,7 @@ class Problem:
     tolerances: Tolerances
     order: IntArray
     baseline: Measured | None = None
+    baseline_order: IntArray | None = None
     accepted: tuple[Effect, ...] = ()
 
     @cached_property
@@ -113,6 +117,13 @@ class Problem:
     def reach(self) -> int:
         """How many of the model's modes a match may need."""
         return int(self.order.max()) + 3
+
+    @cached_property
+    def before(self) -> Before | None:
+        """What the baseline has already said."""
+        if self.baseline is None or self.baseline_order is None:
+            return None
+        return Before(self.predictor, self.measured, self.baseline, self.baseline_order, self.names)
 
     @property
     def damping_doubt(self) -> float:
@@ -200,9 +211,9 @@ class Problem:
         test = self.measured
         variance = (test.frequency_sigma / test.frequency) ** 2 + test.repeatability**2
         by = now.log_frequency_by
-        if self.baseline is not None:
-            variance = variance + self._baseline_variance
-            by = by - self._baseline_sensitivity(now)
+        if self.before is not None:
+            doubt, known = self.before.frequency(now)
+            variance, by = variance + doubt, by - known
         variance = variance + self._accepted_variance
         if reference is not None:
             variance = variance + (fidelity * np.log(now.frequency / reference.frequency)) ** 2
@@ -225,30 +236,6 @@ class Problem:
         """Largest fidelity of the effects put into the model beforehand [-]."""
         return max((effect.fidelity for effect in self.accepted), default=0.0)
 
-    @cached_property
-    def _baseline_variance(self) -> FloatArray:
-        assert self.baseline is not None
-        base = self.baseline
-        relative = (base.frequency_sigma / base.frequency) ** 2 + base.repeatability**2
-        nearest = np.argmin(np.abs(np.log(self.nominal.frequency[:, None] / base.frequency)), axis=1)
-        return np.asarray(relative[nearest])
-
-    def _baseline_sensitivity(self, now: Prediction) -> FloatArray:
-        """What the baseline has already said of the tolerances, carried over by the overlap of the modes."""
-        before = self._before
-        n = min(now.vectors.shape[0], before.vectors.shape[0])
-        overlap = (before.vectors[:n].T @ self._mass[:n, :n] @ now.vectors[:n]) ** 2
-        share = overlap / np.maximum(overlap.sum(axis=0), 1e-12)
-        return np.asarray(share.T @ before.log_frequency_by)
-
-    @cached_property
-    def _before(self) -> Prediction:
-        return self.predictor.predict(factors=self.names, count=25)
-
-    @cached_property
-    def _mass(self) -> FloatArray:
-        return self.predictor.reduced.matrices(NOMINAL)[1]
-
     def _dampings(self, now: Prediction) -> _Block:
         rows = self.damping_known
         test = self.measured
@@ -266,8 +253,11 @@ class Problem:
 
     def _shapes(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:
         test, scale = self.measured, self.scale
-        predicted, by = now.constants / scale, now.constants_by / scale[:, None]
-        along = now.along / scale
+        constants, by, doubt = now.constants, now.constants_by, np.zeros_like(now.constants)
+        if self.before is not None:
+            missed, doubt, known = self.before.shapes(now)
+            constants, by = constants + missed, by - known
+        predicted, by, along = constants / scale, by / scale[:, None], now.along / scale
         level = 1.0
         if not test.absolute:
             share = _projection(test.constants / scale, predicted, axis=0)
@@ -275,7 +265,7 @@ class Problem:
         elif test.calibration > UNKNOWN_LEVEL:
             level = float(_projection(test.constants / scale, predicted, axis=None))
             predicted, by, along = predicted * level, by * level, along * level
-        variance = (test.constants_sigma / scale) ** 2 + SHAPE_FLOOR**2
+        variance = (test.constants_sigma**2 + doubt) / scale**2 + SHAPE_FLOOR**2
         if reference is not None:
             # the part of the change that is not a mere change of the mode's level
             before = reference.constants / scale

@@ -155,7 +155,9 @@ def _linear_look(problem: Problem, first: Explanation, second: Explanation) -> t
         if not (leader.best.possible and other.best.possible):
             continue
         columns = [sensitivities(problem, leader.candidate, leader.best), _increment(problem, other)]
-        normal, load = whiten(leader.best.comparison, np.nan_to_num(np.hstack(columns)), leader.best.marginal.scale)
+        normal, load = whiten(
+            leader.best.comparison, np.nan_to_num(np.hstack(columns)), leader.best.marginal.scale
+        )
         step = np.linalg.lstsq(normal, load, rcond=1e-10)[0]
         reached.append(leader.best.marginal.log_likelihood + 0.5 * float(load @ step))
     middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]

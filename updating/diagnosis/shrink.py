@@ -67,9 +67,13 @@ def _raw(problem: Problem, metric: str) -> FloatArray:
 
 
 def _noise(problem: Problem, metric: str) -> FloatArray:
-    """Return the variance that repeating the test alone would give, per datum of a channel."""
+    """Return the variance that repeating the test (and the baseline) alone would give, per datum of a channel."""
     plain = problem.compare(Candidate().state(problem.predictor, ()))
     rows = plain.channel == CHANNELS.index(metric)
+    if metric == "frequency":
+        tests = [problem.measured] + ([] if problem.baseline is None else [problem.baseline])
+        noise = [np.mean((t.frequency_sigma / t.frequency) ** 2) + t.repeatability**2 for t in tests]
+        return np.full(int(rows.sum()), sum(noise))
     variance = plain.variance[rows]
     if metric == "damping":
         variance = variance - problem.damping_doubt**2

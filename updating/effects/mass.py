@@ -26,7 +26,9 @@ class SensorMass(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the mass of one sensor."""
         high = 0.5 * total_mass(predictor.spec)
-        why = "from the lightest accelerometer with its wax to an impedance head as heavy as half the structure"
+        why = (
+            "from the lightest accelerometer with its wax to an impedance head as heavy as half the structure"
+        )
         return (Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True),)
 
     def obstacle(self, predictor: Predictor) -> str | None:
@@ -37,7 +39,7 @@ class SensorMass(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the mass at every sensor."""
-        rows = predictor.reduced.rows(sensor_places(predictor))["w"]
+        rows = predictor.once("sensors", lambda: predictor.reduced.rows(sensor_places(predictor))["w"])
         return State(mass=(values["mass"] * rows.T @ rows,))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:

@@ -241,8 +241,8 @@ def _effect(name: str, effect: Effect, tail: str, predictor: Predictor, toleranc
     alone = len(parameters) == 1
     knobs = []
     for p in chosen:
-        log = p.log and (p.name == "factor" or p.high > 1e3 * p.low)
         low, high = (p.low, p.high) if effect.channel != "mass" or p.name != "mass" else (0.0, p.high)
+        log = p.log and low > 0 and (p.name == "factor" or high > 1e3 * low)
         start = (
             1.0 if p.name in ("factor", "gain") else (0.0 if low <= 0 <= high else float(np.sqrt(low * high)))
         )
