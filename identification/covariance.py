@@ -6,6 +6,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.frf import FrfSet
+from identification import fading
 from identification.fitting import Fitted
 from identification.pruning import constant_variance, pole_covariance
 
@@ -47,9 +48,15 @@ def pole_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
         axis=1,
     )
     covariance = np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian)
-    return np.asarray(covariance * misfit_factor(frfs, fitted)[:, None, None])
+    factor = misfit_factor(frfs, fitted) * _fading(frfs, fitted)[2]
+    return np.asarray(covariance * factor[:, None, None])
 
 
 def constant_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
     """Return the standard deviation of each modal constant's real part, shape (n_frf, n_modes) [1/kg]."""
-    return np.asarray(np.sqrt(constant_variance(fitted.fit) * misfit_factor(frfs, fitted)[None, :]))
+    factor = misfit_factor(frfs, fitted) * _fading(frfs, fitted)[1]
+    return np.asarray(np.sqrt(constant_variance(fitted.fit) * factor[None, :]))
+
+
+def _fading(frfs: FrfSet, fitted: Fitted) -> tuple[FloatArray, FloatArray, FloatArray]:
+    return fading.inflation(fitted.weights.fade, (frfs.decay - fitted.fit.poles.real) / frfs.df)

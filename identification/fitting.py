@@ -10,7 +10,7 @@ from scipy import stats
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.errors import EstimationError
 from acquisition.frf import FrfSet
-from identification import background, basis, leftover, noise
+from identification import background, basis, fading, leftover, noise
 from identification.grams import Weights
 from identification.pruning import inside, plausible, significant, threshold
 from identification.refine import Fit, evaluate, refine
@@ -125,12 +125,12 @@ def _without_broad(
     frfs: FrfSet, fit: Fit, band: tuple[float, float], ladder: tuple[tuple[int, ...], ...]
 ) -> Fit:
     """Do without poles whose half-power band is a tenth of the band, if a background explains as much."""
-    limit = float(stats.chi2.isf(1e-6, 2 * len(frfs.values)))
     for pole in fit.poles[_broad(fit.poles, band, frfs.df)]:
         rest = fit.poles[np.abs(fit.poles - pole) > 1e-9 * abs(pole)]
         if len(rest) == 0 or len(rest) == len(fit.poles):
             continue
         weights = _search_weights(frfs, fit)
+        limit = float(stats.chi2.isf(1e-6, 2 * len(frfs.values))) * fading.at_start(weights.fade)
         powers = fit.linear.powers
         plain = refine(frfs, rest, weights, powers=powers, iterations=_SHORT, tolerance=_COARSE)
         plain = _completed(frfs, plain, band, ladder)
@@ -182,6 +182,7 @@ def _best_pole(
     if len(trials) == 0:
         return 0j, 0.0
     gain = 2.0 * background.gains(frfs, fit.poles, fit.linear.powers, weights, trials)
+    gain = gain / fading.inflation(weights.fade, _decay_over_record(frfs, trials))[0]
     best = int(gain.argmax())
     return complex(trials[best]), float(gain[best]) - threshold(*frfs.values.shape)
 
@@ -213,7 +214,8 @@ def _higher(
     extra = (len(ladder[rung + 1]) - len(ladder[rung])) * len(frfs.values)
     here = evaluate(frfs, fit.poles, weights, fit.linear.powers).cost
     there = evaluate(frfs, fit.poles, weights, ladder[rung + 1]).cost
-    return ladder[rung + 1], 2.0 * (here - there) - float(stats.chi2.isf(1e-6, extra))
+    gain = 2.0 * (here - there) / fading.at_start(weights.fade)
+    return ladder[rung + 1], gain - float(stats.chi2.isf(1e-6, extra))
 
 
 def _residual(frfs: FrfSet, fit: Fit) -> ComplexArray:
@@ -222,8 +224,15 @@ def _residual(frfs: FrfSet, fit: Fit) -> ComplexArray:
 
 def _search_weights(frfs: FrfSet, fit: Fit) -> Weights:
     """Weigh by the scatter from line to line, which does not mind what the model still lacks."""
-    level = np.maximum(noise.scatter(_residual(frfs, fit)), noise.quiet_floor(frfs.values)[:, 0])
-    return Weights(1.0 / level, np.ones((1, len(frfs.frequency))))
+    residual = _residual(frfs, fit)
+    fade = fading.decay_over_record(residual)
+    level = noise.scatter(residual) / fading.roughness(fade, 4)
+    level = np.maximum(level, noise.quiet_floor(frfs.values)[:, 0])
+    return Weights(1.0 / level, np.ones((1, len(frfs.frequency))), fade)
+
+
+def _decay_over_record(frfs: FrfSet, poles: ComplexArray) -> FloatArray:
+    return np.asarray((frfs.decay - poles.real) / frfs.df)
 
 
 def _pruned(
@@ -232,7 +241,8 @@ def _pruned(
     """Strike off what is implausible or insignificant, refine the rest, and look again."""
     powers = fit.linear.powers
     for _ in range(_ROUNDS):
-        keep = plausible(fit.poles, band) & significant(fit, n_lines=len(frfs.frequency))
+        held = fading.inflation(weights.fade, _decay_over_record(frfs, fit.poles))[0]
+        keep = plausible(fit.poles, band) & significant(fit, n_lines=len(frfs.frequency), inflation=held)
         if keep.all():
             break
         if not (keep & inside(fit.poles, band, frfs.df)).any():
@@ -260,16 +270,17 @@ def _weighted(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fitted:
 def _noise(
     frfs: FrfSet, fit: Fit, residual: ComplexArray, absorbed: FloatArray
 ) -> tuple[Weights, FloatArray, bool]:
+    fade = fading.decay_over_record(residual)
     known = noise.from_statistics(frfs, frfs.values - residual)
     floor = noise.quiet_floor(frfs.values)
     if known is None:
         weights, variance = noise.from_residual(residual, absorbed, floor)
-        return weights, variance, False
+        return replace(weights, fade=fade), variance, False
     if frfs.variance is None:
         excess = np.mean(np.abs(residual) ** 2 / known / np.maximum(1.0 - absorbed, 0.02), axis=1)
         known = np.maximum(known * excess[:, None], floor)
     level = 1.0 / np.exp(np.mean(np.log(known), axis=1))
-    return Weights(level, 1.0 / (known * level[:, None])), known, True
+    return Weights(level, 1.0 / (known * level[:, None]), fade), known, True
 
 
 def _absorbed(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:

@@ -19,10 +19,14 @@ class Weights:
         Factor of each FRF [1 / unit of the FRFs squared].
     lines : (n_frf or 1, n_lines) array
         Factor of each line; one row if all FRFs share it [-].
+    fade : float
+        How far the noise fades over the record, w T, see :mod:`identification.fading`; 0 if it is steady and
+        the lines' errors are independent [-].
     """
 
     level: FloatArray
     lines: FloatArray
+    fade: float = 0.0
 
     @property
     def full(self) -> FloatArray:

@@ -44,9 +44,13 @@ def threshold(n_frf: int, n_lines: int) -> float:
     return float(stats.chi2.isf(_FALSE_ALARM / n_lines, 2 * n_frf + 2))
 
 
-def significant(fit: Fit, *, n_lines: int) -> BoolArray:
-    """Tell which modes are significant, shape (n_modes,)."""
-    return np.asarray(strength(fit) > threshold(len(fit.linear.residues), n_lines))
+def significant(fit: Fit, *, n_lines: int, inflation: FloatArray | float = 1.0) -> BoolArray:
+    """Tell which modes are significant, shape (n_modes,).
+
+    ``inflation`` is the factor by which noise that fades over the record makes the residues' variances
+    larger, see :func:`identification.fading.inflation`.
+    """
+    return np.asarray(strength(fit) > threshold(len(fit.linear.residues), n_lines) * inflation)
 
 
 def plausible(poles: ComplexArray, band: tuple[float, float]) -> BoolArray:

@@ -2,7 +2,7 @@
 
 The modes that the baseline measured take its frequencies and damping; their shapes stay the model's. What the
 baseline did not reach keeps the stiffness that the measured modes have in the middle: one factor on all of it, so
-that a clamp released later still finds a sound model. What is left is a matrix in modal coordinates, and every
+that a clamp released later still finds a sound model; where levels are calibrated, modal masses follow them. What is left is a matrix in modal coordinates, and every
 effect acts on top of both, the coupling of modes included.
 """
 
@@ -16,6 +16,9 @@ from updating.matching import match
 from updating.measured import Measured
 from updating.models.state import State
 from updating.prediction import Predictor
+
+COARSE = 0.2
+"""A calibration worse than this says nothing of modal masses [-]."""
 
 
 def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
@@ -39,31 +42,66 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     EstimationError
         If two measured modes claim one of the model's.
     """
-    prediction = predictor.predict(
-        count=predictor.reduced.ranks[frozenset()] - predictor.reduced.structure.rigid_modes
-    )
-    partner = match(baseline, prediction, order)
+    everything = predictor.reduced.ranks[frozenset()] - predictor.reduced.structure.rigid_modes
+    plain = predictor.predict(count=everything)
+    partner = match(baseline, plain, order)
     if len(set(partner.tolist())) < len(partner):
         raise EstimationError(
             "baseline: two measured modes belong to one of the model's; check the points and the axes"
         )
-    ratio = baseline.frequency / prediction.frequency[partner]
-    factor = float(np.median(ratio**2))
-    _, mass = predictor.reduced.matrices(State())
+    heavier, _ = modal_mass(baseline, plain.constants[:, partner])
+    factor = float(np.median((baseline.frequency / plain.frequency[partner]) ** 2))
+    scaled = State(factors={"E": factor, "section": heavier})
+    prediction = predictor.predict(scaled, count=everything)
+    partner = match(baseline, prediction, order)
+    _, mass = predictor.reduced.matrices(scaled)
     momenta = mass @ prediction.vectors
-    nominal = (2 * np.pi * prediction.frequency[partner]) ** 2
-    left = momenta[:, partner] * (nominal * (ratio**2 - factor))
+    wanted, there = (2 * np.pi * baseline.frequency) ** 2, (2 * np.pi * prediction.frequency[partner]) ** 2
     size = predictor.reduced.basis.shape[1]
-    stiffness = (_padded(left @ momenta[:, partner].T, size),)
+    left = (momenta[:, partner] * (wanted - there)) @ momenta[:, partner].T
+    stiffness = (_padded(left, size),)
     finite = np.isfinite(baseline.damping)
     damping: tuple[FloatArray, ...] = ()
     if finite.any():
         ratios = np.full(len(prediction.frequency), float(np.median(baseline.damping[finite])))
         ratios[partner[finite]] = baseline.damping[finite]
-        omega = 2 * np.pi * prediction.frequency * np.sqrt(factor)
+        omega = 2 * np.pi * prediction.frequency
         omega[partner] = 2 * np.pi * baseline.frequency
         damping = (_padded((momenta * (2 * ratios * omega)) @ momenta.T, size),)
-    return State(factors={"E": factor}, stiffness=stiffness, damping=damping)
+    return State(factors=scaled.factors, stiffness=stiffness, damping=damping)
+
+
+def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]:
+    """Return by what factor the specimen is heavier than its model, and the doubt in its logarithm.
+
+    A model that is too stiff for a test may as well be too light: frequencies cannot tell. The level of calibrated
+    FRFs can, since modal constants are inverse modal masses.
+
+    Parameters
+    ----------
+    baseline : Measured
+        The baseline's modes.
+    predicted : (n_frf, n_modes) array
+        The model's constants for them [1/kg].
+    """
+    if not baseline.absolute or baseline.calibration > COARSE:
+        return 1.0, np.inf
+    level = np.sum(predicted * baseline.constants, axis=0) / np.sum(baseline.constants**2, axis=0)
+    heavier = float(np.median(level))
+    if heavier <= 0:
+        return 1.0, np.inf
+    return heavier, float(np.hypot(baseline.calibration, np.std(level) / heavier / np.sqrt(len(level))))
+
+
+def doubt_in_mass(predictor: Predictor, baseline: Measured, order: IntArray) -> float:
+    """Return the doubt in the logarithm of the modal masses that a baseline leaves [-].
+
+    Where levels say nothing, half of the correction of the frequencies may have been due to mass.
+    """
+    plain = predictor.predict(at_least=int(order.max()) + 3)
+    partner = match(baseline, plain, order)
+    correction = float(np.median(np.log(baseline.frequency / plain.frequency[partner])))
+    return float(min(modal_mass(baseline, plain.constants[:, partner])[1], abs(correction)))
 
 
 def _padded(matrix: FloatArray, size: int) -> FloatArray:

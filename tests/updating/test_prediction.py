@@ -23,9 +23,14 @@ LOOK = {
 }
 
 
+MESH = 3e-5
+"""Error of 40 elements in a fifth mode: (k L / n)^4 / 1440."""
+
+
 def exact(spec: Spec, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    thick = spec.theory == "timoshenko"
     size = (spec.length, spec.width, spec.thickness)
-    beam = ExactBeam(*size, spec.material.E, spec.material.density, clamped=bool(spec.clamped))
+    beam = ExactBeam(*size, clamped=bool(spec.clamped), shear=thick, rotary=thick)
     frequency = beam.frequencies(5)
     return frequency, beam.shapes(frequency, points)
 
@@ -35,16 +40,16 @@ def test_constants_are_products_of_mass_normalised_shapes(name: str) -> None:
     predictor = LOOK[name]
     frequency, shape = exact(predictor.spec, predictor.measured.points[:, 0])
     found = predictor.predict(State(gain=1.3), count=5)
-    assert found.frequency == pytest.approx(frequency, rel=1e-5)
+    assert found.frequency == pytest.approx(frequency, rel=MESH)
     constants = 1.3 * shape * shape[-1]
-    np.testing.assert_allclose(found.constants, constants, atol=2e-5 * np.abs(constants).max())
+    np.testing.assert_allclose(found.constants, constants, atol=2e-4 * np.abs(constants).max())
 
 
 def test_without_a_reference_constants_are_the_shapes() -> None:
     _, shape = exact(BEAM, POINTS)
     found = LOOK["shapes"].predict(count=5).constants
     sign = np.sign(np.sum(found * shape, axis=0))
-    np.testing.assert_allclose(found * sign, shape, atol=2e-5 * np.abs(shape).max())
+    np.testing.assert_allclose(found * sign, shape, atol=1e-4 * np.abs(shape).max())
 
 
 def differences(predictor: Predictor, state: State, name: str, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -155,13 +160,13 @@ def test_damping_of_regions_adds_up(whole: Damping) -> None:
     found, omega = damping(replace(BEAM, damping=whole, regions=halves))
     expected = (3.0 + (whole.alpha or 0.0)) / (2 * omega) + 1e-6 * omega + 0.005
     assert found == pytest.approx(expected, rel=1e-6)
-    tip = replace(BEAM, damping=Damping(), regions=(Region("b", (0.188, 0.376), alpha=3.0),))
-    frequency, _ = exact(BEAM, POINTS)
+    thin = replace(BEAM, theory="euler-bernoulli", damping=Damping())
+    tip = replace(thin, regions=(Region("b", (0.188, 0.376), alpha=3.0),))
     x = np.linspace(0.188, 0.376, 2001)
-    shape = exact(BEAM, x)[1]
+    frequency, shape = exact(thin, x)
     line = STEEL.density * BEAM.width * BEAM.thickness
     expected = 3.0 * np.trapezoid(line * shape**2, x, axis=0) / (4 * np.pi * frequency)
-    assert damping(tip)[0] == pytest.approx(expected, rel=2e-3)
+    assert damping(tip)[0] == pytest.approx(expected, rel=1e-4)
 
 
 def test_another_theory_takes_the_place_of_the_nominal_one() -> None:

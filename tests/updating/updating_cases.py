@@ -116,7 +116,7 @@ class ExactBeam:
 def blank(points: np.ndarray, *, top: float = 1600.0, sensor: int = -1, shapes_only: bool = False) -> Measured:
     """A test that only says where to look: all points hit, one sensor."""
     n = len(points)
-    seen = np.arange(n) if shapes_only else np.full(n, sensor % n)
+    seen = np.arange(n) if shapes_only else np.full(n, sensor % max(n, 1))
     hit = np.full(n, -1) if shapes_only else np.arange(n)
     frequency = np.array([0.5 * top, top])
     constants = np.ones((n, 2))
@@ -125,7 +125,7 @@ def blank(points: np.ndarray, *, top: float = 1600.0, sensor: int = -1, shapes_o
         1e-4 * frequency,
         np.full(2, 0.01),
         np.full(2, 0.001),
-        np.asarray(points, dtype=float).reshape(n, -1),
+        np.asarray(points, dtype=float).reshape(n, 2 if np.ndim(points) == 2 else 1),
         tuple(range(1, n + 1)),
         seen,
         hit,
@@ -178,7 +178,7 @@ def specimen(rng: np.random.Generator, **changes: object) -> ExactBeam:
     return ExactBeam(**made)  # type: ignore[arg-type]
 
 
-def tested(
+def struck(
     beam: ExactBeam,
     rng: np.random.Generator,
     *,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray
-from updating.baseline import correct
+from updating.baseline import correct, doubt_in_mass
 from updating.case import Case
 from updating.diagnosis.goodness import p_value
 from updating.diagnosis.next_test import propose
@@ -77,10 +78,12 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
     predictor = Predictor(case.spec, case.measured, case.environment, tuple(additions))
     paired = pair_modes(case.measured, predictor.predict())
     warnings = [*case.measured.warnings, *paired.warnings]
-    baseline, baseline_order = None, None
+    baseline, baseline_order, tolerances = None, None, case.tolerances
     if case.baseline is not None:
         looking = predictor.looking(case.baseline)
         before = pair_modes(case.baseline, looking.predict())
+        doubt = doubt_in_mass(predictor.looking(before.measured), before.measured, before.order)
+        tolerances = replace(tolerances, factors={**tolerances.factors, "section": doubt})
         warnings += [f"baseline: {w}" for w in before.warnings]
         additions.append(_corrected(before))
         baseline, baseline_order = before.measured, before.order
@@ -89,7 +92,7 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
     predictor = predictor.looking(paired.measured)
     accepted = tuple(LIBRARY[name] for name, _ in case.accepted)
     problem = Problem(
-        predictor, paired.measured, case.tolerances, paired.order, baseline, baseline_order, accepted
+        predictor, paired.measured, tolerances, paired.order, baseline, baseline_order, accepted
     )
     return problem, warnings
 

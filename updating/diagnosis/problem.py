@@ -204,7 +204,10 @@ class Problem:
             np.concatenate([b.mode for b in blocks]),
             prediction,
             KNOWN_SCATTER if self.measured.repeated else UNKNOWN_SCATTER,
-            len(self.names) + blocks[1].own.shape[1] + int(self.measured.absolute and len(blocks) > 2),
+            len(self.names)
+            + blocks[0].own.shape[1]
+            + blocks[1].own.shape[1]
+            + int(self.measured.absolute and len(blocks) > 2),
         )
 
     def _frequencies(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:
@@ -215,10 +218,13 @@ class Problem:
             doubt, known = self.before.frequency(now)
             variance, by = variance + doubt, by - known
         variance = variance + self._accepted_variance
-        if reference is not None:
-            variance = variance + (fidelity * np.log(now.frequency / reference.frequency)) ** 2
         n = len(test.frequency)
-        return _Block(np.log(test.frequency / now.frequency), by, np.zeros((n, 0)), variance, np.arange(n))
+        own = np.zeros((n, 0))
+        if reference is not None:
+            # an idealisation errs in the size of the whole shift, and again in each mode
+            doubtful = fidelity * np.log(now.frequency / reference.frequency)
+            variance, own = variance + doubtful**2, doubtful[:, None]
+        return _Block(np.log(test.frequency / now.frequency), by, own, variance, np.arange(n))
 
     @cached_property
     def _accepted_variance(self) -> FloatArray:

@@ -34,8 +34,8 @@ def shrinkage(
     metric = carrier(nothing.best)
     rows = nothing.best.comparison.channel == CHANNELS.index(metric)
     mode = nothing.best.comparison.mode[rows]
-    raw = _raw(problem, metric)
-    fitted = best.best.left_over[rows]
+    raw = _relative(_raw(problem, metric), metric)
+    fitted = _relative(best.best.left_over[rows], metric)
     floor = _rms(np.sqrt(_noise(problem, metric)))
     held = held_out(problem, best, metric)
     other = None if runner_up is None else held_out(problem, runner_up, metric)
@@ -102,7 +102,12 @@ def held_out(problem: Problem, explanation: Explanation, metric: str) -> FloatAr
         start = explanation.best.coordinates
         point = climb(problem, explanation.candidate, start, keep=keep, rounds=4).point
         errors[~keep] = point.left_over[~keep]
-    return np.asarray(errors[channel])
+    return _relative(errors[channel], metric)
+
+
+def _relative(residual: FloatArray, metric: str) -> FloatArray:
+    """Take logarithmic residuals, test over model, to relative errors of the model [-]."""
+    return np.asarray(residual if metric == "frf" else np.exp(-residual) - 1)
 
 
 def _closed(

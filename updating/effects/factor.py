@@ -37,7 +37,7 @@ class Modulus(FactorEffect):
     equivalent_to = ("density", "thickness", "length")
     separated_by = "absolute level (calibrated FRFs), a known added mass, or a measured density"
     factors = ("E",)
-    low, high = 0.6, 1.6
+    low, high = 0.4, 2.5
     why = "wrong alloy or data sheet, not merely its scatter"
 
 
@@ -53,7 +53,7 @@ class Density(FactorEffect):
     equivalent_to = ("E", "thickness", "length", "fluid_added_mass")
     separated_by = "weigh the specimen; absolute level; a known added mass"
     factors = ("density",)
-    low, high = 0.6, 1.6
+    low, high = 0.4, 2.5
     why = "wrong alloy, coating or paint"
 
 
@@ -67,7 +67,7 @@ class Thickness(FactorEffect):
     equivalent_to = ("E", "density", "length")
     separated_by = "a caliper; absolute level; a known added mass"
     factors = ("thickness",)
-    low, high = 0.75, 1.3
+    low, high = 0.6, 1.6
     why = "next standard gauge"
 
 
@@ -80,6 +80,6 @@ class SectionScale(FactorEffect):
     footprint = "Frequencies and shapes unchanged, modal constants in inverse proportion."
     equivalent_to = ("calibration_gain",)
     separated_by = "a caliper; a calibration of the measurement chain with a known mass"
-    factors = ("E", "density")
-    low, high = 0.6, 1.6
+    factors = ("section",)
+    low, high = 0.4, 2.5
     why = "wrong width or number of layers"

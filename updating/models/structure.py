@@ -22,7 +22,8 @@ from acquisition.errors import StudyError
 from updating.models.fields import Fields, Sparse, beam_fields, plate_fields, timoshenko_fields
 from updating.models.spec import Region, Spec
 
-FACTORS = ("E", "density", "thickness", "width", "length")
+FACTORS = ("E", "density", "thickness", "width", "length", "section")
+"""What a model can be scaled by; ``section`` scales stiffness and mass alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +39,7 @@ class Term:
     coefficient : (n_points,) array
         Physical coefficient at the quadrature points, times their weights [SI].
     powers : mapping
-        Power of the term in each factor; what is missing is 0 [-].
+        Power of the term in each factor; what is missing is 0, but every term grows with ``section`` [-].
     """
 
     kind: str
@@ -46,6 +47,9 @@ class Term:
     right: str
     coefficient: FloatArray
     powers: Mapping[str, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "powers", MappingProxyType({"section": 1.0, **self.powers}))
 
     def scale(self, factors: Mapping[str, float]) -> float:
         """Return the product of the factors to their powers [-]."""
