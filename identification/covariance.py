@@ -7,8 +7,10 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.frf import FrfSet
 from identification import fading
+from identification.disagreement import Disagreement, between_frfs
 from identification.fitting import Fitted
 from identification.pruning import constant_variance, pole_covariance
+from identification.refine import scores
 
 
 def misfit_factor(frfs: FrfSet, fitted: Fitted) -> FloatArray:
@@ -34,11 +36,14 @@ def misfit_factor(frfs: FrfSet, fitted: Fitted) -> FloatArray:
 def pole_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
     """Return the covariance of (ln frequency, damping ratio) of every mode, shape (n_modes, 2, 2) [-].
 
-    First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|.
+    First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|; with what noise that fades
+    and FRFs that disagree add.
     """
     poles = fitted.fit.poles
     full = pole_covariance(fitted.fit).reshape(len(poles), 2, len(poles), 2)
     own = np.einsum("rarb->rab", full)
+    factor = misfit_factor(frfs, fitted) * _fading(frfs, fitted)[2]
+    own = own * factor[:, None, None] + _disagreement(frfs, fitted).mean
     a, b, size = poles.real, poles.imag, np.abs(poles)
     jacobian = np.stack(
         [
@@ -47,16 +52,29 @@ def pole_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
         ],
         axis=1,
     )
-    covariance = np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian)
-    factor = misfit_factor(frfs, fitted) * _fading(frfs, fitted)[2]
-    return np.asarray(covariance * factor[:, None, None])
+    return np.asarray(np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian))
 
 
 def constant_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
-    """Return the standard deviation of each modal constant's real part, shape (n_frf, n_modes) [1/kg]."""
+    """Return the standard deviation of each modal constant's real part, shape (n_frf, n_modes) [1/kg].
+
+    Where FRFs disagree on a pole, each constant bears the scatter of its own FRF's pole about the common one.
+    """
+    fit = fitted.fit
+    n = len(fit.poles)
     factor = misfit_factor(frfs, fitted) * _fading(frfs, fitted)[1]
-    return np.asarray(np.sqrt(constant_variance(fitted.fit) * factor[None, :]))
+    noise = constant_variance(fit) * factor[None, :]
+    gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(len(noise), n, n, 2)
+    own = np.einsum("jnna->jna", gain)
+    shift = np.einsum("jna,nab,jnb->jn", own, _disagreement(frfs, fitted).each, own)
+    return np.asarray(np.sqrt(noise + (2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0)))
 
 
 def _fading(frfs: FrfSet, fitted: Fitted) -> tuple[FloatArray, FloatArray, FloatArray]:
     return fading.inflation(fitted.weights.fade, (frfs.decay - fitted.fit.poles.real) / frfs.df)
+
+
+def _disagreement(frfs: FrfSet, fitted: Fitted) -> Disagreement:
+    fit = fitted.fit
+    gradient, normal = scores(frfs, fit.poles, fitted.weights, fit.linear.powers)
+    return between_frfs(gradient, normal, misfit_factor(frfs, fitted) * _fading(frfs, fitted)[2])

@@ -22,7 +22,7 @@ _CERTAIN = 2.0  # four standard deviations of the ratio below, for steady noise
 
 def _stencil(order: int) -> FloatArray:
     signs = [(-1.0) ** k * comb(order, k) for k in range(order + 1)]
-    return np.array(signs) / np.sqrt(comb(2 * order, order))
+    return np.asarray(np.array(signs) / np.sqrt(comb(2 * order, order)))
 
 
 def roughness(fade: float, order: int) -> float:
@@ -67,7 +67,7 @@ def _pieces(residual: ComplexArray, order: int) -> FloatArray:
     """Return mean squares of differences over stretches of lines, shape (n_frf, n_pieces)."""
     rough = ndimage.convolve1d(residual, _stencil(order), axis=1, mode="reflect")[:, 2:-2]
     pieces = np.array_split(np.abs(rough) ** 2, rough.shape[1] // _PIECE, axis=1)
-    return np.maximum(np.stack([p.mean(axis=1) for p in pieces], axis=1), np.finfo(float).tiny)
+    return np.asarray(np.maximum(np.stack([p.mean(axis=1) for p in pieces], axis=1), np.finfo(float).tiny))
 
 
 def _fade(ratio: float, n_values: int) -> float:

@@ -85,7 +85,10 @@ def fit_modes(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float]) -
     fit = _pruned(frfs, fit, weights, band, iterations=_SHORT, tolerance=_COARSE)
     fit = _completed(frfs, fit, band, ladder)
     fit = _without_broad(frfs, fit, band, ladder)
-    return _weighted(frfs, _without_halves(frfs, fit), band)
+    fitted = _weighted(frfs, _without_halves(frfs, fit), band)
+    while leftover.split_halves(fitted.fit.poles, fitted.fit.linear.residues) is not None:
+        fitted = _weighted(frfs, _without_halves(frfs, fitted.fit), band)
+    return fitted
 
 
 def _without_halves(frfs: FrfSet, fit: Fit) -> Fit:
@@ -176,7 +179,7 @@ def _best_pole(
     """Return the pole, in the band or beyond, that explains most, and by how much more than noise."""
     inner = np.zeros(0, complex)
     if len(search.blocked) < _REJECTIONS:
-        inner = leftover.trial_poles(frfs, _residual(frfs, fit), weights.level, search.blocked)
+        inner = leftover.trial_poles(frfs, _residual(frfs, fit), weights, search.blocked)
     outer = background.trial_poles(band) if search.beyond > 0 else np.zeros(0, complex)
     trials = np.concatenate([inner, outer])
     if len(trials) == 0:
@@ -223,12 +226,22 @@ def _residual(frfs: FrfSet, fit: Fit) -> ComplexArray:
 
 
 def _search_weights(frfs: FrfSet, fit: Fit) -> Weights:
-    """Weigh by the scatter from line to line, which does not mind what the model still lacks."""
+    """Weigh by the scatter from line to line, which does not mind what the model still lacks.
+
+    Where the data carry variance or coherence, the lines weigh in common as these say: noise of the force
+    is larger on a peak.
+    """
     residual = _residual(frfs, fit)
-    fade = fading.decay_over_record(residual)
-    level = noise.scatter(residual) / fading.roughness(fade, 4)
+    known = noise.from_statistics(frfs, frfs.values - residual)
+    shape = np.ones((1, len(frfs.frequency)))
+    if known is not None:
+        power = np.log(known)
+        shape = np.exp(np.mean(power - power.mean(axis=1, keepdims=True), axis=0, keepdims=True))
+    even = residual / np.sqrt(shape)
+    fade = fading.decay_over_record(even)
+    level = noise.scatter(even) / fading.roughness(fade, 4)
     level = np.maximum(level, noise.quiet_floor(frfs.values)[:, 0])
-    return Weights(1.0 / level, np.ones((1, len(frfs.frequency))), fade)
+    return Weights(1.0 / level, 1.0 / shape, fade)
 
 
 def _decay_over_record(frfs: FrfSet, poles: ComplexArray) -> FloatArray:

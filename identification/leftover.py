@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.arrays import ComplexArray
 from acquisition.frf import FrfSet
+from identification.grams import Weights
 from identification.mac import mpc
 from identification.noise import local_mean
 
@@ -14,10 +15,11 @@ _EXCESS = 6.0
 _REAL = 0.7
 FEW = 4
 _TOGETHER = 0.6
+_SAME = 0.25
 
 
 def trial_poles(
-    frfs: FrfSet, residual: ComplexArray, level: FloatArray, blocked: tuple[tuple[float, float], ...]
+    frfs: FrfSet, residual: ComplexArray, weights: Weights, blocked: tuple[tuple[float, float], ...]
 ) -> ComplexArray:
     """Return poles about the most conspicuous peak of a residual, none if there is no peak [rad/s].
 
@@ -27,13 +29,13 @@ def trial_poles(
         The FRFs.
     residual : (n_frf, n_lines) complex array
         Data minus model [unit of the FRFs].
-    level : (n_frf,) array
-        Reciprocal noise variance of each FRF [1 / unit squared].
+    weights : Weights
+        Reciprocal noise variances [1 / unit squared].
     blocked : tuple of (float, float)
         Stretches of the band not to look at again [Hz].
     """
     n_frf, n_lines = residual.shape
-    power = (level @ np.abs(residual) ** 2)[None, :]
+    power = np.sum(weights.full * np.abs(residual) ** 2, axis=0, keepdims=True)
     free = np.ones(n_lines, dtype=bool)
     for low, high in blocked:
         free &= (frfs.frequency < low) | (frfs.frequency > high)
@@ -60,7 +62,8 @@ def split_halves(poles: ComplexArray, residues: ComplexArray) -> tuple[int, int]
     FRFs measured one after the other do not agree to the last digit on a frequency; a second pole beside
     the first then fits the difference. Two modes have shapes whose components lie on a line and that differ;
     the halves of one mode do not lie on a line, or, under one half-power half-width apart, move together
-    at all points. Fewer than four FRFs cannot tell, and poles that near are then taken for halves.
+    at all points. Under a quarter of that half-width a drift from FRF to FRF and a second mode look alike, and
+    it is taken for a drift. Fewer than four FRFs cannot tell, and poles that near are then taken for halves.
 
     Parameters
     ----------
@@ -79,7 +82,7 @@ def split_halves(poles: ComplexArray, residues: ComplexArray) -> tuple[int, int]
     if len(residues) < FEW:
         halves = distance < 1.0
     else:
-        halves = (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER)
+        halves = (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
     first, second = np.nonzero(np.triu(halves, 1))
     if len(first) == 0:
         return None

@@ -20,7 +20,9 @@ def constant_variance(fit: Fit) -> FloatArray:
     columns = slice(1, 2 * len(fit.poles), 2)
     gain = fit.pole_gain[:, columns]
     by_poles = np.einsum("jka,ab,jkb->jk", gain, pole_covariance(fit), gain, optimize=True)
-    return np.asarray((2.0 * fit.poles.imag) ** 2 * (fit.linear_inverse[:, columns] + by_poles))
+    return np.asarray(
+        (2.0 * fit.poles.imag) ** 2 * (fit.linear_inverse[:, columns] + np.maximum(by_poles, 0.0))
+    )
 
 
 def pole_covariance(fit: Fit) -> FloatArray:

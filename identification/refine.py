@@ -150,6 +150,31 @@ def _pieces(
     return columns, products, solution, follow
 
 
+def scores(
+    frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return what each FRF alone says about each pole; parameters as for :func:`refine`.
+
+    Returns
+    -------
+    gradient : (n_frf, n_modes, 2) array
+        J^T r of (Re, Im) of each pole, the linear unknowns projected out [s/rad].
+    normal : (n_frf, n_modes, 2, 2) array
+        J^T J of the same [s^2/rad^2].
+    """
+    _, products, solution, follow = _pieces(frfs, poles, weights, powers)
+    n, k = len(poles), solution.shape[1]
+    between = np.broadcast_to(products.gram[:, :k, k:], (len(solution), k, 2 * n))
+    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
+    own = np.einsum("jninm->jnim", projected.reshape(-1, n, 2, n, 2))
+    left = (products.cross[:, k:] - np.einsum("jk,jkm->jm", solution, between)).reshape(-1, n, 2)
+    turns = _turns(solution, n)
+    gradient = np.einsum("j,jni,jnia->jna", weights.level, left, turns)
+    own = np.broadcast_to(own, (len(solution), n, 2, 2))
+    normal = np.einsum("j,jnia,jnim,jnmb->jnab", weights.level, turns, own, turns, optimize=True)
+    return gradient, normal
+
+
 def _turns(solution: FloatArray, n_modes: int) -> FloatArray:
     """Return the 2 x 2 blocks that turn (Re, Im) of a pole's step into weights of its two slope columns.
 

@@ -164,18 +164,22 @@ class Study(_Strict):
         Raises
         ------
         StudyError
-            If there is no model, or one of a kind this version does not know.
+            If there is no model, or one that cannot be.
         """
+        try:
+            return self._spec()
+        except StudyError as error:
+            raise StudyError(f"{self.path}: {error}") from error
+
+    def _spec(self) -> Spec:
         model = self.model
         if model is None:
-            raise StudyError(f"{self.path}: this command needs a [model]")
+            raise StudyError("this command needs a [model]")
         if model.type == "matrices":
-            raise StudyError(
-                f'{self.path}: [model] type = "matrices" is not read by this version; use beam or plate'
-            )
+            raise StudyError('[model] type = "matrices" is not read by this version; use beam or plate')
         for key in ("length", "width", "thickness", "material"):
             if getattr(model, key) is None:
-                raise StudyError(f"{self.path}: [model] of type {model.type} needs {key}")
+                raise StudyError(f"[model] of type {model.type} needs {key}")
         assert model.material is not None
         assert model.length is not None
         assert model.width is not None
@@ -206,7 +210,10 @@ class Study(_Strict):
 
     def axes(self, table: MeasurementTable) -> Axes:
         """Return the model's axes in the coordinates of a test."""
-        return Axes(table.axes.origin, table.axes.x, table.axes.y)
+        try:
+            return Axes(table.axes.origin, table.axes.x, table.axes.y)
+        except StudyError as error:
+            raise StudyError(f"{self.path}: {error}") from error
 
     def doubts(self) -> Tolerances:
         """Return the tolerances."""
@@ -231,6 +238,8 @@ class Study(_Strict):
                 raise StudyError(
                     f"{self.path}: [[model.effect]] knows no effect {name!r}; `modalkit effects` lists them"
                 )
+            if wrong := [k for k, v in values.items() if not isinstance(v, int | float)]:
+                raise StudyError(f"{self.path}: [[model.effect]] {name}: {', '.join(wrong)} must be a number")
             found.append((name, {k: float(v) for k, v in values.items()}))
         return tuple(found)
 
@@ -257,13 +266,15 @@ def read_study(path: Path) -> Study:
         If the file cannot be read, is no TOML, or has a key or value that does not belong there.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise StudyError(
             f"{path}: cannot be read ({error.strerror}); give the path of a study file"
         ) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
+    if "path" in content:
+        raise StudyError(f"{path}: unknown key path; known here: {', '.join(_known(()))}")
     try:
         return Study(**content, path=path)
     except ValidationError as error:

@@ -2,8 +2,8 @@
 
 The modes that the baseline measured take its frequencies and damping; their shapes stay the model's. What the
 baseline did not reach keeps the stiffness that the measured modes have in the middle: one factor on all of it, so
-that a clamp released later still finds a sound model; where levels are calibrated, modal masses follow them. What is left is a matrix in modal coordinates, and every
-effect acts on top of both, the coupling of modes included.
+that a clamp released later still finds a sound model. Where levels are calibrated, modal masses follow them. What
+is left is a matrix in modal coordinates, and every effect acts on top of both, the coupling of modes included.
 """
 
 from __future__ import annotations

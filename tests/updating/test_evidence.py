@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
-from updating_cases import BEAM, DOUBTS, ExactBeam, case_of, observed
+from updating_cases import BEAM, DOUBTS, ExactBeam, blank, case_of, observed
 
-from updating import LIBRARY, Case, Measured, Tolerances
+from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.evidence import explain
@@ -21,6 +21,9 @@ from updating.diagnosis.problem import KNOWN_SCATTER, SCALES, Comparison, Proble
 
 COARSE = replace(BEAM, elements=(8,), theory="euler-bernoulli")
 HIT = np.array([0.1, 0.25, 0.376])
+MODULUS, GAIN = (
+    LIBRARY[name].parameters(Predictor(COARSE, blank(HIT)))[0] for name in ("E", "calibration_gain")
+)
 
 
 def trial(*, E: float = 1.0, gain: float = 1.0, noise: float = 1.0, **changes: object) -> Measured:
@@ -59,8 +62,8 @@ def candidate(*names: str) -> Candidate:
         ("E", {"E": 0.9}),
         ("thickness", {"E": 1.0}),
         ("clamp_rotation", {"E": 1.0}),  # a peak at the edge: the stiffest clamp fits best
-        ("E", {"E": 0.57}),  # beyond the edge
-        ("E", {"E": 1.75}),
+        ("E", {"E": 0.95 * MODULUS.low}),  # beyond the edge
+        ("E", {"E": 1.05 * MODULUS.high}),
         ("exponential_window", {"E": 1.0}),  # nearly invisible
         ("sensor_mass", {"E": 0.97}),
         ("calibration_gain", {"gain": 1.6}),
@@ -69,7 +72,7 @@ def candidate(*names: str) -> Candidate:
 def test_evidence_of_one_parameter(names: str, truth: dict[str, float]) -> None:
     problem = posed(trial(**truth))
     found = explain(problem, candidate(names))
-    assert found.log_evidence == pytest.approx(brute(problem, candidate(names), 1200), abs=0.2)
+    assert found.log_evidence == pytest.approx(brute(problem, candidate(names), 1000), abs=0.2)
     assert found.weights.sum() == pytest.approx(1.0)
     assert ((found.samples >= 0) & (found.samples <= 1)).all()
 
@@ -80,13 +83,13 @@ def test_evidence_of_one_parameter(names: str, truth: dict[str, float]) -> None:
         (("E", "calibration_gain"), {"E": 0.8, "gain": 1.3}),
         (("E", "sensor_mass"), {"E": 0.75}),
         (("E", "density"), {"E": 0.9}),  # a ridge: only the level tells them apart
-        (("clamp_rotation", "calibration_gain"), {"gain": 2.6}),  # both at an edge
+        (("clamp_rotation", "calibration_gain"), {"gain": 1.04 * GAIN.high}),  # both at an edge
     ],
 )
 def test_evidence_of_two_parameters(names: tuple[str, ...], truth: dict[str, float]) -> None:
     problem = posed(trial(**truth, noise=12.0), {"E": 0.03})
     found = explain(problem, candidate(*names))
-    assert found.log_evidence == pytest.approx(brute(problem, candidate(*names), 48), abs=0.2)
+    assert found.log_evidence == pytest.approx(brute(problem, candidate(*names), 40), abs=0.2)
 
 
 def test_a_parameter_that_nothing_sees_costs_nothing() -> None:
@@ -96,7 +99,7 @@ def test_a_parameter_that_nothing_sees_costs_nothing() -> None:
     problem = posed(replace(blind, constants_sigma=blind.constants, absolute=False))
     plain = explain(problem, Candidate()).log_evidence
     found = explain(problem, candidate("section_scale"))
-    assert found.log_evidence == pytest.approx(plain, abs=1e-2)
+    assert found.log_evidence == pytest.approx(plain, abs=0.05)
     mean = float(found.weights @ found.samples[:, 0])
     assert mean == pytest.approx(0.5, abs=0.05)
     assert np.sqrt(found.weights @ (found.samples[:, 0] - mean) ** 2) == pytest.approx(1 / np.sqrt(12), rel=0.1)
@@ -105,7 +108,7 @@ def test_a_parameter_that_nothing_sees_costs_nothing() -> None:
 def test_the_posterior_is_where_the_truth_is_and_as_wide_as_the_likelihood() -> None:
     problem = posed(trial(E=0.9))
     found = explain(problem, candidate("E"))
-    grid = (np.arange(3000) + 0.5) / 3000
+    grid = (np.arange(1500) + 0.5) / 1500
     score = np.array(
         [evaluate(problem, candidate("E"), np.array([u])).marginal.log_likelihood for u in grid]
     )
@@ -208,9 +211,10 @@ def test_one_scale_is_one_gaussian() -> None:
 def test_a_pair_has_the_parameters_of_both() -> None:
     problem = posed(trial())
     both = candidate("E", "sensor_mass")
+    prior = LIBRARY["E"].parameters(problem.predictor)[0]
     values = both.values(problem.predictor, [0.25, 0.75])
     assert list(values) == ["E.factor", "sensor_mass.mass"]
-    assert values["E.factor"] == pytest.approx(0.6 * (1.6 / 0.6) ** 0.25)
+    assert values["E.factor"] == pytest.approx(prior.low * (prior.high / prior.low) ** 0.25)
     state = both.state(problem.predictor, [0.25, 0.75])
     assert dict(state.factors) == {"E": values["E.factor"]}
     assert len(state.mass) == 1

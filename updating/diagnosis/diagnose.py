@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+from threadpoolctl import threadpool_limits
 
 from acquisition.arrays import FloatArray
 from updating.baseline import correct, doubt_in_mass
@@ -49,8 +50,13 @@ def diagnose(
         If no measured mode has a partner in the model.
     """
     rng = np.random.default_rng(1) if rng is None else rng
-    problem, warnings = pose(case)
     effects = list(LIBRARY.values()) if library is None else list(library)
+    with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
+        return _diagnose(case, effects, rng)
+
+
+def _diagnose(case: Case, effects: list[Effect], rng: np.random.Generator) -> Diagnosis:
+    problem, warnings = pose(case)
     accepted = {name for name, _ in case.accepted}
     found = search(problem, [e for e in effects if e.name not in accepted])
     chance = p_value(found.nothing.best)

@@ -59,7 +59,13 @@ class Explanation:
         return self.candidate.names
 
 
-def explain(problem: Problem, candidate: Candidate, *, starts: list[FloatArray] | None = None) -> Explanation:
+def explain(
+    problem: Problem,
+    candidate: Candidate,
+    *,
+    starts: list[FloatArray] | None = None,
+    density: int = 16,
+) -> Explanation:
     """Weigh a candidate.
 
     Parameters
@@ -70,6 +76,8 @@ def explain(problem: Problem, candidate: Candidate, *, starts: list[FloatArray] 
         Effects.
     starts : list of (k,) arrays, optional
         Prior quantiles to start from; left out, the effects' own.
+    density : int
+        Samples: this many times two to the number of parameters, at most 512.
 
     Returns
     -------
@@ -82,7 +90,7 @@ def explain(problem: Problem, candidate: Candidate, *, starts: list[FloatArray] 
     peaks = _peaks(problem, candidate, places)
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
-    samples, proposal = _draw(peaks, 16 * 2 ** len(places[0]))
+    samples, proposal = _draw(peaks, min(density * 2 ** len(places[0]), 512))
     points = [evaluate(problem, candidate, u) for u in samples]
     log_likelihood = np.array([p.marginal.log_likelihood for p in points])
     log_weight = log_likelihood - proposal

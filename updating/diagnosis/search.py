@@ -21,6 +21,12 @@ from updating.effects import Effect
 REJECTED = 0.01
 """An explanation that fits worse than this is rejected."""
 
+CLOSER_LOOKS = 3
+"""How many explanations at most are weighed with more samples..."""
+
+WORTH_A_CLOSER_LOOK = 0.03
+"""...and from which probability on."""
+
 PAIRS = 8
 """How many pairs are weighed, those a linear look finds the most promising."""
 
@@ -85,7 +91,19 @@ def search(problem: Problem, library: Sequence[Effect]) -> Search:
     found = [nothing, *singles]
     if max(_fit(e) for e in found) < REJECTED:
         found += _pairs(problem, singles)
-    return Search(nothing, _weigh(found), obstacles)
+    rows = _weigh(found)
+    closer = [_closer(problem, row) if i < CLOSER_LOOKS else row.explanation for i, row in enumerate(rows)]
+    return Search(nothing, _weigh(closer), obstacles)
+
+
+def _closer(problem: Problem, row: Weighed) -> Explanation:
+    """Weigh what matters again with more samples, from where it was best."""
+    explanation = row.explanation
+    if row.probability < WORTH_A_CLOSER_LOOK or not explanation.samples.shape[1]:
+        return explanation
+    finer = explain(problem, explanation.candidate, starts=[explanation.best.coordinates], density=64)
+    lost = explanation.log_evidence - finer.log_evidence
+    return explanation if lost > 1.0 else finer  # it had more peaks than one
 
 
 def _fit(explanation: Explanation) -> float:

@@ -90,7 +90,7 @@ def _plausible(problem: Problem, explanation: Explanation) -> bool:
 
 
 def estimates(problem: Problem, explanation: Explanation) -> dict[str, ParameterEstimate]:
-    """Return posterior mean and 95 % interval of every parameter and derived quantity."""
+    """Return posterior median and 95 % interval of every parameter and derived quantity."""
     candidate, predictor = explanation.candidate, problem.predictor
     stage = candidate.stage(predictor)
     parameters = candidate.parameters(stage)
@@ -102,20 +102,19 @@ def estimates(problem: Problem, explanation: Explanation) -> dict[str, Parameter
     result = {}
     for i, (name, parameter) in enumerate(parameters):
         values = np.array([d[name] for d in drawn])
-        low, high = _interval(values, weights)
-        best = candidate.values(predictor, explanation.best.coordinates.tolist())[name]
+        low, middle, high = _quantiles(values, weights)
         at_bound = bool(min(explanation.best.coordinates[i], 1 - explanation.best.coordinates[i]) < 1e-3)
-        result[name] = ParameterEstimate(best, parameter.unit, low, high, at_bound)
+        result[name] = ParameterEstimate(middle, parameter.unit, low, high, at_bound)
     derived = [candidate.derived(predictor, explanation.samples[i].tolist()) for i in keep]
-    for name, (value, unit) in candidate.derived(predictor, explanation.best.coordinates.tolist()).items():
-        low, high = _interval(np.array([d[name][0] for d in derived]), weights)
-        result[name] = ParameterEstimate(value, unit, low, high, at_bound=False)
+    for name, (_, unit) in derived[0].items():
+        low, middle, high = _quantiles(np.array([d[name][0] for d in derived]), weights)
+        result[name] = ParameterEstimate(middle, unit, low, high, at_bound=False)
     return result
 
 
-def _interval(values: FloatArray, weights: FloatArray) -> tuple[float, float]:
-    """Return the weighted 2.5 and 97.5 % quantiles, interpolated between samples."""
+def _quantiles(values: FloatArray, weights: FloatArray) -> tuple[float, float, float]:
+    """Return the weighted 2.5, 50 and 97.5 % quantiles, interpolated between samples."""
     order = np.argsort(values)
-    middle = np.cumsum(weights[order]) - 0.5 * weights[order]
-    low, high = np.interp([0.025, 0.975], middle, values[order])
-    return float(low), float(high)
+    share = np.cumsum(weights[order]) - 0.5 * weights[order]
+    low, middle, high = np.interp([0.025, 0.5, 0.975], share, values[order])
+    return float(low), float(middle), float(high)

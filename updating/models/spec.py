@@ -158,6 +158,10 @@ class Spec:
             raise StudyError(f"model: no theory {self.theory!r} for a {self.kind}; use {sorted(theories)}")
         if len(self.elements) != (1 if self.kind == "beam" else 2) or min(self.elements) < 1:
             raise StudyError(f"model: elements = {list(self.elements)} does not fit a {self.kind}")
+        if short := [list(m.at) for m in self.masses if len(m.at) < len(self.elements)]:
+            raise StudyError(
+                f"model: mass at {short[0]} needs {len(self.elements)} coordinates on a {self.kind}"
+            )
         if not self.regions:
             object.__setattr__(self, "regions", _default_regions(self))
 

@@ -1,0 +1,177 @@
+"""Study files: what is left out, what is understood, and one line for what is wrong."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from acquisition.errors import StudyError
+from modalkit.study import Study, read_study
+
+BEAM = """
+[model]
+type = "beam"
+length = 0.376
+width = 0.0305
+thickness = 0.0047625
+[model.material]
+E = 210e9
+density = 7850.0
+"""
+PLATE = BEAM.replace("beam", "plate").replace("0.0305", "0.2")
+TEST = '[test]\nfiles = ["a.uff"]\n'
+
+
+def study(folder: Path, text: str) -> Study:
+    path = folder / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_study(path)
+
+
+def complaint(folder: Path, text: str) -> str:
+    """What a wrong study file is told, reading and using it."""
+    with pytest.raises(StudyError) as caught:
+        found = study(folder, text)
+        found.spec()
+        found.axes(found.test)
+        found.accepted()
+    message = str(caught.value)
+    assert "\n" not in message
+    assert "study.toml" in message
+    return message
+
+
+def test_defaults_are_those_of_the_contract(tmp_path: Path) -> None:
+    found = study(tmp_path, TEST)
+    assert found.test.band is None
+    assert (found.test.exponential_window, found.test.calibration) == (0.0, 0.02)
+    assert (found.test.repeatability, found.test.position_sigma) == (0.0005, 0.001)
+    axes = found.axes(found.test)
+    assert (axes.origin, axes.x, axes.y) == ((0, 0, 0), (1, 0, 0), (0, 1, 0))
+    doubts = found.doubts()
+    assert dict(doubts.factors) == {
+        "E": 0.01,
+        "density": 0.003,
+        "thickness": 0.005,
+        "length": 0.002,
+        "width": 0.002,
+    }
+    assert doubts.damping == 0.3
+    around = found.surroundings()
+    assert (around.fluid_density, around.free_surface, around.bottom, around.walls) == (None, None, None, None)
+    assert found.accepted() == ()
+    assert found.update.method == "eigenvalue"
+    assert found.name == tmp_path.name
+
+
+def test_a_beam_with_everything(tmp_path: Path) -> None:
+    text = (
+        'title = "T"\n[test]\nmodes = "m.csv"\nband = [5.0, 100.0]\ncalibration = 0.1\n'
+        "axes = { origin = [1.0, 0.0, 0.0], x = [0.0, 1.0, 0.0], y = [-1.0, 0.0, 0.0] }\n"
+        + BEAM.replace("[model.material]", 'elements = 12\nclamped = ["x0"]\ntheory = "timoshenko"\n[model.material]')
+        + "poisson = 0.25\n[model.damping]\nalpha = 1.0\nbeta = 5e-7\n"
+        "[[model.mass]]\nat = [0.376]\nmass = 0.01\ninertia = 1e-6\n"
+        '[[model.region]]\nname = "root"\nx = [0.0, 0.1]\nE = 2e11\n'
+        '[[model.region]]\nname = "rest"\nx = [0.1, 0.376]\narea = 1e-4\ninertia = 1e-10\nloss_factor = 0.01\n'
+        '[[model.effect]]\nname = "clamp_rotation"\nstiffness = 4000\n'
+        "[tolerances]\nE = 0.0\n[environment]\nfluid_density = 998.0\nwalls = [-0.1, 0.5, -0.1, 0.1]\n"
+    )
+    found = study(tmp_path, text)
+    spec = found.spec()
+    assert (spec.kind, spec.elements, spec.clamped, spec.theory) == ("beam", (12,), ("x0",), "timoshenko")
+    assert (spec.length, spec.width, spec.thickness) == (0.376, 0.0305, 0.0047625)
+    assert (spec.material.E, spec.material.density, spec.material.poisson) == (210e9, 7850.0, 0.25)
+    assert (spec.damping.alpha, spec.damping.beta, spec.damping.known) == (1.0, 5e-7, True)
+    assert (spec.masses[0].at, spec.masses[0].mass, spec.masses[0].inertia) == ((0.376,), 0.01, 1e-6)
+    assert [r.name for r in spec.regions] == ["root", "rest"]
+    assert (spec.regions[0].E, spec.regions[1].area, spec.regions[1].loss_factor) == (2e11, 1e-4, 0.01)
+    assert found.accepted() == (("clamp_rotation", {"stiffness": 4000.0}),)
+    assert found.doubts().factors["E"] == 0.0
+    assert found.surroundings().walls == (-0.1, 0.5, -0.1, 0.1)
+    assert found.name == "T"
+    assert found.file("a/b.uff") == tmp_path / "a" / "b.uff"
+    np.testing.assert_allclose(found.axes(found.test).to_model(np.array([[1.0, 0.3, 0.0]]))[0], [0.3, 0, 0])
+
+
+def test_a_plate_and_what_is_left_out_of_models(tmp_path: Path) -> None:
+    plate = study(tmp_path, TEST + PLATE.replace("[model.material]", "elements = [10, 6]\n[model.material]")).spec()
+    assert (plate.kind, plate.elements, plate.clamped, plate.theory) == ("plate", (10, 6), (), "kirchhoff")
+    assert len(plate.regions) == 15
+    assert plate.regions[0].y == pytest.approx((0.0, 0.2 / 3))
+    beam = study(tmp_path, TEST + BEAM).spec()
+    assert (beam.theory, len(beam.regions), beam.material.poisson) == ("euler-bernoulli", 10, 0.3)
+    assert beam.regions[-1].x == pytest.approx((0.9 * 0.376, 0.376))
+    assert not beam.damping.known
+
+
+def test_a_baseline_has_the_keys_of_a_test(tmp_path: Path) -> None:
+    found = study(tmp_path, TEST + '[baseline]\nfiles = ["dry.uff"]\ncalibration = 0.05\n')
+    assert found.baseline is not None
+    assert (found.baseline.files, found.baseline.calibration) == (["dry.uff"], 0.05)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[test]\nfile = ['a']\n", r"unknown key test\.file; known here: files, modes, band"),
+        (TEST + "[tolerance]\nE = 0.1\n", r"unknown key tolerance; known here: .*tolerances"),
+        (TEST + BEAM.replace("length", "lenght"), r"unknown key model\.lenght; known here: .*length"),
+        (TEST + BEAM + "rho = 3.0\n", r"unknown key model\.material\.rho; known here: E, density, poisson"),
+        (TEST + "axes = { z = [0, 0, 1] }\n", r"unknown key test\.axes\.z; known here: origin, x, y"),
+        (TEST + BEAM + "[[model.region]]\nname='a'\nx=[0.0,0.1]\nrho=1\n", r"model\.region\.0\.rho"),
+        (TEST + "band = 5.0\n", r"test\.band"),
+        (TEST + 'calibration = "good"\n', r"test\.calibration"),
+        (TEST + "calibration = 0.0\n", r"test\.calibration: input should be greater than 0"),
+        (TEST + "exponential_window = -1.0\n", r"test\.exponential_window"),
+        ("title = 'x'\n", r"test: field required"),
+        (TEST + BEAM.replace("beam", "shell"), r"model\.type"),
+        (TEST + BEAM.replace("210e9", "-1.0"), r"model\.material\.E"),
+        (TEST + BEAM + "poisson = 0.5\n", r"model\.material\.poisson"),
+        (TEST + "[update]\nmethod = 'magic'\n", r"update\.method"),
+        (TEST + "[environment]\nfree_surface = -0.1\n", r"environment\.free_surface"),
+        (TEST, r"needs a \[model\]"),
+        (TEST + BEAM.replace("width = 0.0305\n", ""), r"\[model\] of type beam needs width"),
+        (TEST + "[model]\ntype = 'matrices'\n", r"\[model\]"),
+        (TEST + BEAM + "[[model.effect]]\nname = 'gremlin'\nfactor = 1.0\n", r"no effect 'gremlin'.*modalkit effects"),
+        (TEST + BEAM + "[[model.effect]]\nfactor = 1.0\n", r"model\.effect"),
+        ("[test\n", r"not a valid TOML"),
+        ("path = 'b.toml'\n" + TEST, r"unknown key path"),
+        (TEST + BEAM.replace("length = 0.376", "length = -1.0"), r"length must be positive"),
+        (TEST + BEAM.replace("[model.material]", "clamped=['y0']\n[model.material]"), r"no edge"),
+        (TEST + BEAM.replace("[model.material]", "elements=[3, 4]\n[model.material]"), r"elements"),
+        (TEST + BEAM.replace("[model.material]", "theory='kirchhoff'\n[model.material]"), r"theory"),
+        (TEST + "axes = { x = [1, 1, 0] }\n" + BEAM, r"not perpendicular"),
+        (TEST + BEAM + "[[model.effect]]\nname = 'E'\nfactor = 'big'\n", r"factor"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(tmp_path: Path, text: str, says: str) -> None:
+    assert re.search(says, complaint(tmp_path, text))
+
+
+@pytest.mark.xfail(strict=True, reason="parameters of [[model.effect]] are not compared with the effect's own")
+@pytest.mark.parametrize("parameters", ["", "stifness = 4000.0\n", "stiffness = 4000.0\nloss = 0.1\n"])
+def test_an_effect_without_its_parameters_is_refused(tmp_path: Path, parameters: str) -> None:
+    text = TEST + BEAM + "[[model.effect]]\nname = 'clamp_rotation'\n" + parameters
+    assert "stiffness" in complaint(tmp_path, text)
+
+
+def test_a_mass_on_a_plate_needs_two_coordinates(tmp_path: Path) -> None:
+    assert "mass" in complaint(tmp_path, TEST + PLATE + "[[model.mass]]\nat = [0.3]\nmass = 0.01\n")
+
+
+def test_a_file_that_is_not_there_or_is_no_text(tmp_path: Path) -> None:
+    with pytest.raises(StudyError, match=r"nowhere\.toml: cannot be read \(No such file"):
+        read_study(tmp_path / "nowhere.toml")
+    with pytest.raises(StudyError, match="cannot be read"):
+        read_study(tmp_path)
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(StudyError, match=r"binary\.toml: not a valid TOML"):
+        read_study(tmp_path / "binary.toml")
+
+
+def test_a_study_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
+    """As editors on some systems write it."""
+    path = tmp_path / "study.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + TEST.encode())
+    assert read_study(path).test.files == ["a.uff"]

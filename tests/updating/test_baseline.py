@@ -1,0 +1,104 @@
+"""A model corrected by a baseline has the baseline's modes, and everything else acts on top."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from updating_cases import BEAM, POINTS, blank, specimen, struck
+
+from acquisition.errors import EstimationError
+from updating import LIBRARY, Damping, Measured, Predictor
+from updating.baseline import correct
+from updating.models.state import State
+
+LOOK = Predictor(BEAM, blank(POINTS))
+SOUND = LOOK.predict(count=5)
+
+
+def baseline(ratios: list[float], *, damping: float | None = 0.01, shapes: bool = True) -> Measured:
+    """The model's own modes with frequencies off by given ratios."""
+    n = len(ratios)
+    keep = slice(None) if shapes else slice(0, 0)
+    frequency = SOUND.frequency[:n] * np.array(ratios)
+    test = LOOK.measured
+    return replace(
+        test,
+        frequency=frequency,
+        frequency_sigma=1e-4 * frequency,
+        damping=np.full(n, np.nan if damping is None else damping) * (1 + 0.1 * np.arange(n)),
+        damping_sigma=np.full(n, 1e-4),
+        seen=test.seen[keep],
+        hit=test.hit[keep],
+        constants=SOUND.constants[keep, :n],
+        constants_sigma=0.01 * np.abs(SOUND.constants[keep, :n]) + 1e-6,
+        absolute=shapes,
+    )
+
+
+def corrected(test: Measured) -> Predictor:
+    looking = LOOK.looking(test)
+    state = correct(looking, test, np.arange(len(test.frequency)))
+    return looking.looking(test, (lambda _: state,))
+
+
+@settings(max_examples=10, deadline=None)
+@given(ratios=st.lists(st.floats(0.85, 1.2), min_size=2, max_size=5), shapes=st.booleans())
+def test_the_model_takes_the_baselines_frequencies_and_damping(ratios: list[float], shapes: bool) -> None:
+    test = baseline(ratios, shapes=shapes)
+    order = np.argsort(test.frequency)
+    if not shapes:  # ranks are all there is
+        test = test.modes(order)
+    found = corrected(test).predict(count=len(ratios))
+    rank = np.argsort(np.argsort(test.frequency))
+    assert found.frequency[rank] == pytest.approx(test.frequency, rel=1e-6)
+    assert found.damping[rank] == pytest.approx(test.damping, rel=1e-6)
+
+
+def test_a_real_baseline_is_reproduced() -> None:
+    """A specimen from an exact beam with its tolerances, noise and all."""
+    rng = np.random.default_rng(2)
+    test = struck(specimen(rng), rng)
+    found = corrected(test).predict(count=5)
+    assert found.frequency == pytest.approx(test.frequency, rel=1e-6)
+    assert found.damping == pytest.approx(test.damping, rel=1e-6)
+
+
+def test_shapes_stay_the_models() -> None:
+    found = corrected(baseline([0.9, 0.95, 1.1, 1.0, 1.05])).predict(count=5)
+    np.testing.assert_allclose(found.constants, SOUND.constants, rtol=1e-5, atol=1e-6)
+
+
+def test_modes_that_were_not_measured_follow_the_measured_ones() -> None:
+    found = corrected(baseline([0.9, 0.9, 0.9])).predict(count=5).frequency
+    assert found[3:] == pytest.approx(0.9 * SOUND.frequency[3:], rel=1e-6)
+
+
+def test_an_effect_acts_on_the_corrected_model() -> None:
+    """A uniform beam 10 % slow, then a mass at the tip: as if the beam had been made of softer stuff."""
+    soft = replace(BEAM, material=replace(BEAM.material, E=0.81 * BEAM.material.E))
+    truth = Predictor(soft, LOOK.measured)
+    predictor = corrected(baseline([0.9] * 5))
+    for name, values in (("sensor_mass", {"mass": 0.02}), ("clamp_rotation", {"stiffness": 300.0})):
+        expected = truth.predict(LIBRARY[name].state(truth, values), count=5).frequency
+        found = predictor.predict(LIBRARY[name].state(predictor, values), count=5).frequency
+        assert found == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_baseline_without_damping_expects_none() -> None:
+    bare = Predictor(replace(BEAM, damping=Damping()), LOOK.measured)
+    test = baseline([0.9, 1.0], damping=None)
+    assert correct(bare.looking(test), test, np.arange(2)).damping == ()
+    known = correct(bare.looking(test), baseline([0.9, 1.0]), np.arange(2))
+    assert len(known.damping) == 1
+    told = bare.looking(test, (lambda _: known,))
+    assert told.expects_damping
+    assert not bare.expects_damping
+
+
+def test_two_modes_for_one_of_the_models_are_refused() -> None:
+    test = baseline([1.0, 1.0], shapes=False)
+    with pytest.raises(EstimationError, match="two measured modes"):
+        correct(LOOK.looking(test), test, np.array([0, 0]))
+    assert isinstance(correct(LOOK.looking(test), test, np.array([0, 1])), State)

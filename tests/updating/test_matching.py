@@ -1,0 +1,118 @@
+"""Which mode belongs to which."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from updating_cases import BEAM, POINTS, blank
+
+from acquisition.errors import EstimationError
+from updating import Measured, Predictor
+from updating.matching import mac_of_constants, match, pair_modes
+from updating.models.state import State
+from updating.prediction import Prediction
+
+LOOK = Predictor(BEAM, blank(POINTS))
+MODEL = LOOK.predict(count=6)
+
+
+def seen_as(prediction: Prediction, *, shapes: bool = True) -> Measured:
+    """A test without noise of what a model predicts."""
+    n = len(prediction.frequency)
+    keep = slice(None) if shapes else slice(0, 0)
+    test = LOOK.measured
+    return replace(
+        test,
+        frequency=prediction.frequency,
+        frequency_sigma=1e-4 * prediction.frequency,
+        damping=np.full(n, 0.01),
+        damping_sigma=np.full(n, 1e-3),
+        seen=test.seen[keep],
+        hit=test.hit[keep],
+        constants=prediction.constants[keep],
+        constants_sigma=0.01 * np.abs(prediction.constants[keep]) + 1e-6,
+    )
+
+
+def test_mac_is_what_its_definition_says() -> None:
+    test = seen_as(MODEL)
+    found = mac_of_constants(test, MODEL)
+    a, b = test.constants, MODEL.constants
+    for i in range(6):
+        for j in range(6):
+            expected = (a[:, i] @ b[:, j]) ** 2 / ((a[:, i] @ a[:, i]) * (b[:, j] @ b[:, j]))
+            assert found[i, j] == pytest.approx(expected)
+    assert np.diag(found) == pytest.approx(np.ones(6))
+
+
+@settings(max_examples=30, deadline=None)
+@given(order=st.permutations(range(5)), level=st.floats(0.1, 10), stretch=st.floats(0.8, 1.25))
+def test_shapes_find_their_partner_in_any_order_and_level(
+    order: list[int], level: float, stretch: float
+) -> None:
+    test = seen_as(MODEL.select(np.array(order)))
+    test = replace(test, frequency=stretch * test.frequency, constants=-level * test.constants)
+    assert match(test, MODEL, np.arange(5)).tolist() == order
+
+
+def test_without_shapes_the_rank_decides() -> None:
+    test = seen_as(MODEL, shapes=False)
+    assert match(test, MODEL, np.array([0, 1, 2, 4, 5, 3])).tolist() == [0, 1, 2, 4, 5, 3]
+
+
+def test_modes_that_cross_are_followed() -> None:
+    """Two of the model's modes in swapped order: shapes say so, whatever their frequencies."""
+    near = replace(MODEL, frequency=MODEL.frequency.copy())
+    near.frequency[2] = 1.02 * near.frequency[1]
+    crossed = replace(near, frequency=near.frequency[[0, 2, 1, 3, 4, 5]])
+    assert match(seen_as(near), crossed, np.arange(6)).tolist() == list(range(6))
+
+
+def test_a_mode_missing_from_the_test_shifts_nothing() -> None:
+    paired = pair_modes(seen_as(MODEL.select(np.array([0, 2, 3]))), MODEL)
+    assert paired.order.tolist() == [0, 2, 3]
+    assert paired.warnings == ()
+    alone = pair_modes(seen_as(MODEL.select(np.array([0, 2, 3])), shapes=False), MODEL)
+    assert alone.order.tolist() == [0, 2, 3]
+
+
+def test_a_mode_that_the_model_lacks_is_left_out_and_said() -> None:
+    test = seen_as(MODEL.select(np.arange(4)))
+    strange = test.constants.copy()
+    basis = np.linalg.svd(MODEL.constants[:, :4])[0][:, 4]
+    strange[:, 2] = basis * np.linalg.norm(strange[:, 2])
+    paired = pair_modes(replace(test, constants=strange), MODEL.select(np.arange(4)))
+    assert paired.order.tolist() == [0, 1, 3]
+    assert f"{test.frequency[2]:.2f} Hz has no partner" in paired.warnings[0]
+
+
+def test_a_mode_that_drowns_in_noise_is_left_out_and_said() -> None:
+    test = seen_as(MODEL)
+    sigma = test.constants_sigma.copy()
+    sigma[:, 3] = np.abs(test.constants[:, 3]).max()
+    paired = pair_modes(replace(test, constants_sigma=sigma), MODEL)
+    assert paired.order.tolist() == [0, 1, 2, 4, 5]
+    assert "too faint" in paired.warnings[0]
+    with pytest.raises(EstimationError, match="drowns in noise"):
+        pair_modes(replace(test, constants_sigma=np.full_like(sigma, 1e9)), MODEL)
+
+
+def test_more_modes_than_the_model_has_are_refused() -> None:
+    with pytest.raises(EstimationError, match="6 modes and the model 3"):
+        pair_modes(seen_as(MODEL), MODEL.select(np.arange(3)))
+
+
+def test_another_structure_altogether_is_refused() -> None:
+    test = seen_as(MODEL.select(np.arange(1)))
+    other = np.linalg.svd(MODEL.constants[:, :2])[0][:, [2]]
+    with pytest.raises(EstimationError, match="check axes, points and boundary conditions"):
+        pair_modes(replace(test, constants=other, constants_sigma=0.01 * np.ones((5, 1))), MODEL.select(np.arange(2)))
+
+
+def test_a_uniform_change_keeps_all_pairs() -> None:
+    soft = LOOK.predict(State(factors={"E": 0.6}), count=6)
+    for shapes in (True, False):
+        paired = pair_modes(seen_as(soft.select(np.arange(5)), shapes=shapes), MODEL)
+        assert paired.order.tolist() == list(range(5))
