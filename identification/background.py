@@ -7,6 +7,7 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frf import FrfSet
 from identification import basis, grams
+from identification.thinning import thinned
 
 _STEPS = np.array([0.003, 0.01, 0.02, 0.04, 0.07, 0.11, 0.16, 0.22, 0.3, 0.4, 0.55, 0.75])
 _DAMPING = 0.004
@@ -32,10 +33,11 @@ def gains(
     Colours that differ between FRFs are replaced by their mean: this is a search, not the fit.
     """
     shared = grams.Weights(weights.level, weights.lines.mean(axis=0, keepdims=True))
-    columns = basis.build(frfs.laplace, poles, frfs.form, powers).linear
-    extra = basis.build(frfs.laplace, trials, frfs.form, ()).modes
+    lines, shared = thinned(frfs, np.append(poles, trials), shared)
+    columns = basis.build(lines.laplace, poles, lines.form, powers).linear
+    extra = basis.build(lines.laplace, trials, lines.form, ()).modes
     k = columns.shape[1]
-    products = grams.form(np.hstack([columns, extra]), frfs.values, shared)
+    products = grams.form(np.hstack([columns, extra]), lines.values, shared)
     g = products.gram
     follow = grams.solve(g[:, :k, :k], g[:, :k, k:])[0]
     left = products.cross[:, k:] - products.cross[:, :k] @ follow

@@ -66,8 +66,9 @@ def decay_over_record(residual: ComplexArray) -> float:
 def _pieces(residual: ComplexArray, order: int) -> FloatArray:
     """Return mean squares of differences over stretches of lines, shape (n_frf, n_pieces)."""
     rough = ndimage.convolve1d(residual, _stencil(order), axis=1, mode="reflect")[:, 2:-2]
-    pieces = np.array_split(np.abs(rough) ** 2, rough.shape[1] // _PIECE, axis=1)
-    return np.asarray(np.maximum(np.stack([p.mean(axis=1) for p in pieces], axis=1), np.finfo(float).tiny))
+    whole = rough.shape[1] // _PIECE * _PIECE
+    power = np.abs(rough[:, :whole]) ** 2
+    return np.asarray(np.maximum(power.reshape(len(power), -1, _PIECE).mean(axis=2), np.finfo(float).tiny))
 
 
 def _fade(ratio: float, n_values: int) -> float:

@@ -147,8 +147,7 @@ def _without_broad(
 
 
 def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArray:
-    width = -poles.real / np.pi
-    return np.asarray(inside(poles, band, df) & (width > _BROAD * (band[1] - band[0])))
+    return np.asarray(inside(poles, band, df) & (-poles.real / np.pi > _BROAD * (band[1] - band[0])))
 
 
 @dataclass(frozen=True)
@@ -272,17 +271,16 @@ def _pruned(
 def _weighted(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fitted:
     """Weigh by the noise itself and refine until both agree."""
     weights = _search_weights(frfs, fit)
-    for _ in range(3):
+    for tolerance in (_COARSE, _COARSE, _FINE):
         residual, absorbed = _residual(frfs, fit), _absorbed(frfs, fit, weights)
-        weights, variance, measured = _noise(frfs, fit, residual, absorbed)
-        fit = refine(frfs, fit.poles, weights, powers=fit.linear.powers)
-        fit = _pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=_FINE)
+        weights, variance, measured = _noise(frfs, residual, absorbed)
+        powers = fit.linear.powers
+        fit = refine(frfs, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance)
+        fit = _pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=tolerance)
     return Fitted(fit, weights, variance, _residual(frfs, fit), _absorbed(frfs, fit, weights), measured)
 
 
-def _noise(
-    frfs: FrfSet, fit: Fit, residual: ComplexArray, absorbed: FloatArray
-) -> tuple[Weights, FloatArray, bool]:
+def _noise(frfs: FrfSet, residual: ComplexArray, absorbed: FloatArray) -> tuple[Weights, FloatArray, bool]:
     fade = fading.decay_over_record(residual)
     known = noise.from_statistics(frfs, frfs.values - residual)
     floor = noise.quiet_floor(frfs.values)

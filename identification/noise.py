@@ -51,14 +51,18 @@ def scatter(residual: ComplexArray) -> FloatArray:
 
 def leverage(columns: ComplexArray, weights: Weights) -> FloatArray:
     """Return which part of each line's power the linear unknowns absorb, shape (n_frf or 1, n_lines) [-]."""
-    root = np.sqrt(weights.lines)
-    result = np.empty(root.shape)
-    for j, row in enumerate(root):
-        scaled = np.concatenate([(columns.real * row[:, None]), (columns.imag * row[:, None])])
-        scaled = scaled / np.maximum(np.linalg.norm(scaled, axis=0), np.finfo(float).tiny)
-        q = np.linalg.qr(scaled)[0]
-        both = np.einsum("nk,nk->n", q, q)
-        result[j] = 0.5 * (both[: len(row)] + both[len(row) :])
+    real = np.concatenate([columns.real, columns.imag])
+    real = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
+    result = np.empty(weights.lines.shape)
+    for j, row in enumerate(weights.lines):
+        both = np.concatenate([row, row])
+        gram = (real * both[:, None]).T @ real
+        length = np.sqrt(np.maximum(np.diag(gram), np.finfo(float).tiny))
+        values, vectors = np.linalg.eigh(gram / np.outer(length, length))
+        seen = values > 1e-13 * values[-1]
+        half = real @ (vectors[:, seen] / np.sqrt(values[seen]) / length[:, None])
+        share = both * np.einsum("nk,nk->n", half, half)
+        result[j] = 0.5 * (share[: len(row)] + share[len(row) :])
     return result
 
 

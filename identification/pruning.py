@@ -26,10 +26,20 @@ def constant_variance(fit: Fit) -> FloatArray:
 
 
 def pole_covariance(fit: Fit) -> FloatArray:
-    """Return the covariance of (Re, Im) of the poles, interleaved, (2 n_modes, 2 n_modes) [rad^2/s^2]."""
-    length = np.sqrt(np.maximum(np.diag(fit.information), np.finfo(float).tiny))
-    unit = fit.information / np.outer(length, length)
-    return np.asarray(np.linalg.pinv(unit, hermitian=True, rcond=1e-13) / np.outer(length, length))
+    """Return the covariance of (Re, Im) of the poles, interleaved, (2 n_modes, 2 n_modes) [rad^2/s^2].
+
+    Poles the data tell nothing about, to rounding, get the variance of that rounding and no correlation.
+    """
+    diagonal = np.diag(fit.information)
+    floor = 1e-16 * diagonal.max(initial=0.0) + np.finfo(float).tiny
+    seen = np.flatnonzero(diagonal > floor)
+    length = np.sqrt(diagonal[seen])
+    values, vectors = np.linalg.eigh(fit.information[np.ix_(seen, seen)] / np.outer(length, length))
+    sure = values > 1e-13 * values[-1]
+    half = vectors[:, sure] / np.sqrt(values[sure]) / length[:, None]
+    covariance = np.diag(np.full(len(diagonal), 1.0 / floor))
+    covariance[np.ix_(seen, seen)] = half @ half.T
+    return covariance
 
 
 def strength(fit: Fit) -> FloatArray:

@@ -10,9 +10,11 @@ from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frf import FrfSet
 from identification import basis, grams
 from identification.residues import Residues, unpack
+from identification.thinning import Lines, thinned
 
 _ITERATIONS = 40
 _CONVERGED = 1e-10
+_POLISHED = 1e-8  # a tolerance under which all lines have the last word
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,23 +106,38 @@ def refine(
     Fit
         The refined model.
     """
-    state, damping, converged = evaluate(frfs, poles, weights, powers), 1e-3, False
+    few, few_weights = thinned(frfs, poles, weights)
+    poles, converged = _iterate(few, poles, few_weights, powers, iterations, tolerance)
+    if tolerance < _POLISHED and len(few.laplace) < len(frfs.frequency):
+        every = Lines(frfs.laplace, frfs.values, frfs.form, frfs.decay)
+        poles, converged = _iterate(every, poles, weights, powers, iterations, tolerance)
+    return _finish(frfs, poles, weights, powers, converged)
+
+
+def _iterate(
+    lines: Lines,
+    poles: ComplexArray,
+    weights: grams.Weights,
+    powers: tuple[int, ...],
+    iterations: int,
+    tolerance: float,
+) -> tuple[ComplexArray, bool]:
+    """Return the poles at which the steps come to rest, and whether they do."""
+    state, damping = _evaluate(lines, poles, weights, powers), 1e-3
     for _ in range(iterations):
         trial_poles = poles + _solve_step(state, damping)
-        trial_poles = _inside(trial_poles, poles, frfs.decay)
-        trial = evaluate(frfs, trial_poles, weights, powers)
+        trial_poles = _inside(trial_poles, poles, lines.decay)
+        trial = _evaluate(lines, trial_poles, weights, powers)
         if trial.cost <= state.cost:
             gain = (state.cost - trial.cost) / max(state.cost, np.finfo(float).tiny)
             poles, state, damping = trial_poles, trial, max(0.1 * damping, 1e-12)
             if gain < tolerance:
-                converged = True
-                break
+                return poles, True
         else:
             damping *= 10.0
             if damping > 1e8:
-                converged = True
-                break
-    return _finish(frfs, poles, weights, powers, converged)
+                return poles, True
+    return poles, False
 
 
 def _solve_step(state: Step, damping: float) -> ComplexArray:
@@ -139,7 +156,7 @@ def _inside(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexAr
 
 
 def _pieces(
-    frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
+    frfs: FrfSet | Lines, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
 ) -> tuple[basis.Basis, grams.Grams, FloatArray, FloatArray]:
     """Return the basis, its products, the linear solution and how the linear unknowns follow the slopes."""
     columns = basis.build(frfs.laplace, poles, frfs.form, powers)
@@ -188,7 +205,12 @@ def _turns(solution: FloatArray, n_modes: int) -> FloatArray:
 
 def evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]) -> Step:
     """Project the linear unknowns out at given poles; parameters as for :func:`refine`."""
-    _, products, solution, follow = _pieces(frfs, poles, weights, powers)
+    few, few_weights = thinned(frfs, poles, weights)
+    return _evaluate(few, poles, few_weights, powers)
+
+
+def _evaluate(lines: Lines, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]) -> Step:
+    _, products, solution, follow = _pieces(lines, poles, weights, powers)
     return _step(products, solution, follow, weights, len(poles))
 
 

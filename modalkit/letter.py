@@ -47,9 +47,9 @@ def _where(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unknown":
         return text + " is where the least bad explanations act; do not trust it"
     if where.location is not None:
-        x, y, _ = where.location
-        text += f", at x = {x:.3f} m" + (f", y = {y:.3f} m" if y else "")
-        text += f" (point {', '.join(map(str, where.points))})" if where.points else ""
+        places = [f"x = {x:.3f} m" + (f", y = {y:.3f} m" if y else "") for x, y, _ in where.locations[:3]]
+        text += ", at " + " and ".join(dict.fromkeys(places))
+        text += f" (nearest test point {', '.join(map(str, where.points))})" if where.points else ""
     else:
         text += ", spread over the whole structure" if where.channel != "measurement" else ""
     return text

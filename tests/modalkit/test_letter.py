@@ -70,7 +70,7 @@ def test_a_named_cause_says_its_size_its_place_and_its_test() -> None:
     assert "sensor_mass" in said["Cause"]
     assert "mass 0.0123 kg [0.0119, 0.0127]" in said["Cause"]
     assert LIBRARY["sensor_mass"].summary in said["Cause"]
-    assert "mass (97 %), at x = 0.376 m (point 5)" in said["Where"]
+    assert "mass (97 %), at x = 0.376 m (nearest test point 5)" in said["Where"]
     assert "5 % -> 0.1 % fitted, 0.2 % on modes held out (noise floor 0.05 %)" in said["Closes"]
     assert "runner-up 1.5 %" in said["Closes"]
     assert "tolerances alone 4 %" in said["Closes"]
@@ -142,8 +142,11 @@ def test_a_fault_of_the_measurement_has_no_place_on_the_structure() -> None:
     assert lines(replace(NAMED, where=chain))["Where"] == "Where:   measurement (100 %)"
 
 
-def test_a_place_on_a_plate_has_two_coordinates() -> None:
-    corner = replace(TIP, location=(0.3, 0.15, 0.0), points=(7, 9))
-    assert "x = 0.300 m, y = 0.150 m (point 7, 9)" in lines(replace(NAMED, where=corner))["Where"]
-    edge = replace(TIP, location=(0.3, 0.0, 0.0), points=())
-    assert lines(replace(NAMED, where=edge))["Where"].endswith("x = 0.300 m")
+def test_a_place_on_a_plate_has_two_coordinates_and_its_mirror_images() -> None:
+    corner = (0.3, 0.15, 0.0)
+    found = replace(TIP, location=corner, locations=(corner,), points=(7, 9))
+    said = lines(replace(NAMED, where=found))["Where"]
+    assert said.endswith("at x = 0.300 m, y = 0.150 m (nearest test point 7, 9)")
+    both = replace(TIP, location=corner, locations=(corner, (0.3, 0.05, 0.0)), points=())
+    said = lines(replace(NAMED, where=both))["Where"]
+    assert said.endswith("at x = 0.300 m, y = 0.150 m and x = 0.300 m, y = 0.050 m")

@@ -164,7 +164,9 @@ def test_a_window_that_the_file_states_is_not_taken_out_twice(tmp_path: Path) ->
 
 
 def test_a_study_of_frfs_becomes_a_case(folder: Path) -> None:
-    path = study(folder, 'files = ["frfs.uff"]\nband = [10.0, 250.0]\ncalibration = 0.05\nrepeatability = 0.001')
+    path = study(
+        folder, 'files = ["frfs.uff"]\nband = [10.0, 250.0]\ncalibration = 0.05\nrepeatability = 0.001'
+    )
     session = open_study(read_study(path))
     test = session.case.measured
     assert test.frequency == pytest.approx(FREQUENCY, rel=1e-4)

@@ -72,9 +72,7 @@ def written(record: dict[str, Any]) -> dict[str, Any]:
     def refuse(name: str) -> None:
         raise AssertionError(f"{name} is no JSON")
 
-    found: dict[str, Any] = json.loads(
-        json.dumps(plain(record), allow_nan=False), parse_constant=refuse
-    )
+    found: dict[str, Any] = json.loads(json.dumps(plain(record), allow_nan=False), parse_constant=refuse)
     return found
 
 
@@ -102,7 +100,12 @@ def test_the_record_of_a_hit() -> None:
     from modalkit.records import hit_record
 
     verdict = HitVerdict(Dof(3, -3), 2, False, ("double hit",), 1.0, 1.0, 1.0, 1.0)
-    assert written(hit_record(verdict)) == {"point": "3-Z", "hit": 2, "used": False, "reasons": ["double hit"]}
+    assert written(hit_record(verdict)) == {
+        "point": "3-Z",
+        "hit": 2,
+        "used": False,
+        "reasons": ["double hit"],
+    }
 
 
 def check(record: dict[str, Any]) -> None:
@@ -143,7 +146,9 @@ def test_what_may_be_missing_is_null_or_complete(diagnosis: Diagnosis) -> None:
     check(record)
     assert record["shrink"]["closed_percent"] == {"value": 90.0, "low95": 80.0, "high95": 95.0}
     assert record["shrink"]["held_out"]["runner_up_percent"] is None
-    assert record["next_test"] == [{"measure": "weigh it", "separates": ["E", "density"], "expected_sigma": 12.0}]
+    assert record["next_test"] == [
+        {"measure": "weigh it", "separates": ["E", "density"], "expected_sigma": 12.0}
+    ]
     none = replace(diagnosis, shrink=replace(shrink, closed=None))
     assert written(diagnosis_record(none))["shrink"]["closed_percent"] is None
 

@@ -9,8 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from updating_cases import BEAM, PLATE, POINTS, blank, case_of, specimen, struck
 
+from acquisition.errors import StudyError
 from modalkit.records import effects_record
 from updating import LIBRARY, Effect, Environment, Parameter, Predictor, diagnose, register
+from updating.effects import accepted_state
 from updating.models import PointMass
 from updating.models.state import NOMINAL, State
 
@@ -106,7 +108,10 @@ def test_what_cannot_be_examined_is_said() -> None:
     assert not admits("shear", "plate")
     assert not admits("sensor_mass", "no shapes")
     assert not admits("calibration_gain", "no shapes")
-    thick, unknown = Predictor(BEAM, blank(POINTS)), replace(LOOK["beam"].measured, damping=np.full(2, np.nan))
+    thick, unknown = (
+        Predictor(BEAM, blank(POINTS)),
+        replace(LOOK["beam"].measured, damping=np.full(2, np.nan)),
+    )
     assert "already" in (LIBRARY["shear"].obstacle(thick) or "")
     assert "damping" in (LIBRARY["exponential_window"].obstacle(LOOK["beam"].looking(unknown)) or "")
 
@@ -128,7 +133,9 @@ def test_priors_have_a_range_and_quantiles_go_there_and_back(name: str, place: s
         assert parameter.low * (1 - 1e-12) <= value <= parameter.high * (1 + 1e-12) or not parameter.log
         assert parameter.coordinate(value) == pytest.approx(u, abs=1e-9)
     count = len(effect.parameters(LOOK[place]))
-    assert all(len(start) == count and all(0 <= v <= 1 for v in start) for start in effect.starts(LOOK[place]))
+    assert all(
+        len(start) == count and all(0 <= v <= 1 for v in start) for start in effect.starts(LOOK[place])
+    )
     assert len(effect.values(LOOK[place], [u] * count)) == count
 
 
@@ -213,7 +220,16 @@ def test_the_record_of_the_library_is_complete() -> None:
     record = effects_record()
     assert record["schema"] == "modalkit.effects/1"
     assert [e["name"] for e in record["effects"]] == list(LIBRARY)
-    keys = {"name", "channel", "summary", "footprint", "models", "equivalent_to", "separated_by", "parameters"}
+    keys = {
+        "name",
+        "channel",
+        "summary",
+        "footprint",
+        "models",
+        "equivalent_to",
+        "separated_by",
+        "parameters",
+    }
     for entry in record["effects"]:
         assert keys <= set(entry)
         for parameter in entry["parameters"]:
@@ -261,8 +277,20 @@ def test_an_outsiders_effect_is_registered_and_named(library: dict[str, Effect])
         frequency_sigma=1e-4 * truth.frequency,
         constants=truth.constants * (1 + 0.003 * rng.standard_normal(truth.constants.shape)),
     )
-    found = diagnose(case_of(test))
+    found = diagnose(case_of(test, BEAM.with_elements(20)))
     assert (found.verdict, found.sets) == ("named", (("ground_spring",),))
     estimate = found.ranking[0].parameters["ground_spring.stiffness"]
     assert estimate.low95 < 3000 < estimate.high95
     assert predictor.predict(NOMINAL, count=1).frequency[0] < truth.frequency[0]
+
+
+@pytest.mark.parametrize("values", [{}, {"stifness": 4000.0}, {"stiffness": 4000.0, "loss": 0.1}])
+def test_an_accepted_effect_takes_its_own_parameters_only(values: dict[str, float]) -> None:
+    predictor = Predictor(BEAM, blank(POINTS))
+    with pytest.raises(StudyError, match="stiffness"):
+        accepted_state(predictor, "clamp_rotation", values)
+
+
+def test_an_accepted_effect_must_exist() -> None:
+    with pytest.raises(StudyError, match="moon_phase"):
+        accepted_state(Predictor(BEAM, blank(POINTS)), "moon_phase", {})

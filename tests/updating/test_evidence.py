@@ -102,16 +102,16 @@ def test_a_parameter_that_nothing_sees_costs_nothing() -> None:
     assert found.log_evidence == pytest.approx(plain, abs=0.05)
     mean = float(found.weights @ found.samples[:, 0])
     assert mean == pytest.approx(0.5, abs=0.05)
-    assert np.sqrt(found.weights @ (found.samples[:, 0] - mean) ** 2) == pytest.approx(1 / np.sqrt(12), rel=0.1)
+    assert np.sqrt(found.weights @ (found.samples[:, 0] - mean) ** 2) == pytest.approx(
+        1 / np.sqrt(12), rel=0.1
+    )
 
 
 def test_the_posterior_is_where_the_truth_is_and_as_wide_as_the_likelihood() -> None:
     problem = posed(trial(E=0.9))
     found = explain(problem, candidate("E"))
     grid = (np.arange(1500) + 0.5) / 1500
-    score = np.array(
-        [evaluate(problem, candidate("E"), np.array([u])).marginal.log_likelihood for u in grid]
-    )
+    score = np.array([evaluate(problem, candidate("E"), np.array([u])).marginal.log_likelihood for u in grid])
     weight = np.exp(score - logsumexp(score))
     mean = float(weight @ grid)
     assert found.weights @ found.samples[:, 0] == pytest.approx(mean, abs=2e-3)
@@ -153,9 +153,7 @@ def test_the_marginal_is_that_of_the_full_covariance(seed: int, part: str) -> No
     }[part]
     keep[0] = True
     scales, prior = (SCALES, KNOWN_SCATTER) if (data.channel[keep] == 2).any() else ((1.0,), (1.0,))
-    parts = [
-        multivariate_normal.logpdf(data.residual[keep], cov=full(data, scale, keep)) for scale in scales
-    ]
+    parts = [multivariate_normal.logpdf(data.residual[keep], cov=full(data, scale, keep)) for scale in scales]
     found = marginal(data, keep)
     assert found.log_likelihood == pytest.approx(logsumexp(parts, b=prior), rel=1e-9)
     top = scales[int(np.argmax(np.array(parts) + np.log(prior)))]

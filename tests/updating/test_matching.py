@@ -108,7 +108,9 @@ def test_another_structure_altogether_is_refused() -> None:
     test = seen_as(MODEL.select(np.arange(1)))
     other = np.linalg.svd(MODEL.constants[:, :2])[0][:, [2]]
     with pytest.raises(EstimationError, match="check axes, points and boundary conditions"):
-        pair_modes(replace(test, constants=other, constants_sigma=0.01 * np.ones((5, 1))), MODEL.select(np.arange(2)))
+        pair_modes(
+            replace(test, constants=other, constants_sigma=0.01 * np.ones((5, 1))), MODEL.select(np.arange(2))
+        )
 
 
 def test_a_uniform_change_keeps_all_pairs() -> None:

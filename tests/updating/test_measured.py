@@ -152,7 +152,9 @@ def test_the_scatter_of_imaginary_parts_widens_sigma(identified: ModalModel) -> 
     plain = measured_from_identified(identified, Axes(), BEAM)
     size = np.sqrt(np.mean(identified.constants.real**2, axis=0))
     noise = 0.2 * size * rng.standard_normal(identified.constants.shape)
-    rough = measured_from_identified(replace(identified, constants=identified.constants + 1j * noise), Axes(), BEAM)
+    rough = measured_from_identified(
+        replace(identified, constants=identified.constants + 1j * noise), Axes(), BEAM
+    )
     ratio = rough.constants_sigma.mean(axis=0) / size
     assert (ratio > 0.05).all()
     assert (ratio < 0.5).all()

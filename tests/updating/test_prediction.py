@@ -73,7 +73,9 @@ def test_sensitivities_are_the_limits_of_differences(name: str, factor: str) -> 
     if name == "shapes":  # whose sign is anybody's
         plain = predictor.predict(state, count=5).constants
         lean = np.sign(np.sum(found.constants * plain, axis=0))
-        by_constants = by_constants * np.sign(np.sum(by_constants * found.constants_by[..., 0], axis=0)) * lean
+        by_constants = (
+            by_constants * np.sign(np.sum(by_constants * found.constants_by[..., 0], axis=0)) * lean
+        )
     scale = np.abs(found.constants).max()
     np.testing.assert_allclose(found.constants_by[..., 0], by_constants, atol=5e-4 * scale)
 
@@ -95,7 +97,9 @@ def test_slopes_are_what_moving_the_hit_changes(name: str) -> None:
             ends.append(predictor.looking(beside).predict(State(factors={"length": 1.02}), count=5).constants)
         difference = (ends[0] - ends[1]) / 2e-5
         scale = np.abs(difference).max()
-        inner = keep & (test.points[:, axis] > 0.001) & (test.points[:, axis] < 0.99 * test.points[:, axis].max())
+        inner = (
+            keep & (test.points[:, axis] > 0.001) & (test.points[:, axis] < 0.99 * test.points[:, axis].max())
+        )
         assert inner.any()
         np.testing.assert_allclose(found.along[axis][inner], difference[inner], atol=2e-4 * scale)
 

@@ -113,7 +113,9 @@ class ExactBeam:
         return np.stack([np.interp(points, x, w[:, r]) for r in range(len(omega))], axis=1) / np.sqrt(total)
 
 
-def blank(points: np.ndarray, *, top: float = 1600.0, sensor: int = -1, shapes_only: bool = False) -> Measured:
+def blank(
+    points: np.ndarray, *, top: float = 1600.0, sensor: int = -1, shapes_only: bool = False
+) -> Measured:
     """A test that only says where to look: all points hit, one sensor."""
     n = len(points)
     seen = np.arange(n) if shapes_only else np.full(n, sensor % max(n, 1))

@@ -20,7 +20,7 @@ from updating.diagnosis.search import Search, search
 from updating.diagnosis.shrink import shrinkage
 from updating.diagnosis.verdict import decide, is_significant, rank
 from updating.diagnosis.where import locate
-from updating.effects import LIBRARY, Effect
+from updating.effects import LIBRARY, Effect, accepted_state
 from updating.matching import Paired, mac_of_constants, pair_modes
 from updating.models.state import State
 from updating.prediction import Predictor
@@ -68,7 +68,7 @@ def _diagnose(case: Case, effects: list[Effect], rng: np.random.Generator) -> Di
         chance,
         _gap(problem),
         locate(problem, found, significant=significant),
-        _shrink(problem, found, rng),
+        _shrink(problem, found, rng, significant=significant),
         verdict,
         sets,
         rank(problem, found),
@@ -104,7 +104,7 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
 
 
 def _accepted(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:
-    return lambda predictor: LIBRARY[name].state(predictor, values)
+    return lambda predictor: accepted_state(predictor, name, values)
 
 
 def _corrected(before: Paired) -> Callable[[Predictor], State]:
@@ -143,11 +143,12 @@ def _frac(problem: Problem) -> FloatArray:
     return np.asarray(np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300))
 
 
-def _shrink(problem: Problem, found: Search, rng: np.random.Generator) -> Shrink:
+def _shrink(problem: Problem, found: Search, rng: np.random.Generator, *, significant: bool) -> Shrink:
     named = [row for row in found.weighed if row.names]
     best = named[0].explanation if named else found.nothing
     runner_up = named[1].explanation if len(named) > 1 else None
-    return shrinkage(problem, found.nothing, best, runner_up, rng)
+    result = shrinkage(problem, found.nothing, best, runner_up, rng)
+    return result if significant else replace(result, closed=None)
 
 
 def _remarks(problem: Problem, found: Search) -> list[str]:

@@ -5,6 +5,9 @@ To add one, subclass :class:`Effect` in some thirty lines and :func:`register` a
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from acquisition.errors import StudyError
 from updating.effects.base import Channel, Effect, Parameter
 from updating.effects.clamp import ClampRotation
 from updating.effects.factor import Density, Modulus, SectionScale, Thickness
@@ -14,6 +17,8 @@ from updating.effects.local_stiffness import LocalStiffness
 from updating.effects.mass import SensorMass
 from updating.effects.measurement import CalibrationGain, ExponentialWindow
 from updating.effects.shear import Shear
+from updating.models.state import State
+from updating.prediction import Predictor
 
 LIBRARY: dict[str, Effect] = {
     effect.name: effect
@@ -40,4 +45,26 @@ def register(effect: Effect) -> None:
     LIBRARY[effect.name] = effect
 
 
-__all__ = ["LIBRARY", "Channel", "Effect", "Parameter", "register"]
+def accepted_state(predictor: Predictor, name: str, values: Mapping[str, float]) -> State:
+    """Return the departure that an accepted effect makes at stated values.
+
+    Raises
+    ------
+    StudyError
+        If the effect is unknown, cannot act on this specimen, or takes other parameters.
+    """
+    if name not in LIBRARY:
+        raise StudyError(f"[[model.effect]] knows no effect {name!r}; `modalkit effects` lists them")
+    effect = LIBRARY[name]
+    if (obstacle := effect.obstacle(predictor)) is not None:
+        raise StudyError(f"[[model.effect]] {name}: {obstacle}")
+    takes = {parameter.name for parameter in effect.parameters(predictor)}
+    if set(values) != takes:
+        raise StudyError(
+            f"[[model.effect]] {name}: it takes {', '.join(sorted(takes)) or 'no parameters'}, "
+            f"found {', '.join(sorted(values)) or 'none'}"
+        )
+    return effect.state(predictor, values)
+
+
+__all__ = ["LIBRARY", "Channel", "Effect", "Parameter", "accepted_state", "register"]

@@ -14,7 +14,7 @@ class Shear(Effect):
     footprint = "Frequencies fall, in proportion to the square of the thickness over the wavelength."
     models = ("beam",)
     separated_by = "a Timoshenko model; nothing has to be measured"
-    fidelity = 0.02
+    fidelity = 0.01
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return nothing: the section fixes everything."""

@@ -24,8 +24,6 @@ from updating.models.structure import FACTORS, Structure, Term
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
 
-RELEASES = ("rotation", "translation")
-
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
@@ -38,7 +36,7 @@ class Reduced:
     basis : (n_dofs, r) array
         Columns orthonormal in the nominal mass: clamped ones first, then what the releases add [kg^-1/2].
     ranks : mapping of frozenset to int
-        For each set of releases, how many leading columns belong to it.
+        For each set of releases (none, the rotation, both), how many leading columns belong to it.
     """
 
     structure: Structure
@@ -176,7 +174,6 @@ def reduce_structure(structure: Structure, points: FloatArray, *, modes: int = 3
         for released in (frozenset({"rotation"}), frozenset({"rotation", "translation"})):
             basis = _extend(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
             ranks[released] = basis.shape[1]
-        ranks[frozenset({"translation"})] = basis.shape[1]
     return Reduced(structure, basis, ranks)
 
 
@@ -251,4 +248,4 @@ def _released_shapes(
     return np.hstack(shapes)
 
 
-__all__ = ["FACTORS", "RELEASES", "Reduced", "reduce_structure"]
+__all__ = ["FACTORS", "Reduced", "reduce_structure"]

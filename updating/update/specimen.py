@@ -10,7 +10,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.case import Case
-from updating.effects import LIBRARY
+from updating.effects import accepted_state
 from updating.matching import mac_of_constants, match, pair_modes
 from updating.measured import Measured
 from updating.models.state import State
@@ -173,4 +173,4 @@ def predictor_of(case: Case) -> Predictor:
 
 
 def _accepted(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:
-    return lambda predictor: LIBRARY[name].state(predictor, values)
+    return lambda predictor: accepted_state(predictor, name, values)

@@ -1,0 +1,56 @@
+"""The house: rooms import to their left only, and nothing prints or plots where it must not."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+ROOMS = ("acquisition", "identification", "updating", "modalkit")
+
+
+def sources(*folders: str) -> list[Path]:
+    return [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
+
+
+def imported(path: Path) -> set[str]:
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+            names.add(node.module)
+    return names
+
+
+def test_the_contracts_of_the_import_linter_are_kept() -> None:
+    command = [str(Path(sys.executable).parent / "lint-imports"), "--no-cache"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize("room", ROOMS[:3])
+def test_no_room_imports_to_its_right(room: str) -> None:
+    right = ROOMS[ROOMS.index(room) + 1 :]
+    for path in sources(room):
+        wrong = {name for name in imported(path) if name.split(".")[0] in right}
+        assert not wrong, f"{path.relative_to(ROOT)} imports {wrong}"
+
+
+def test_the_blind_rig_does_not_know_the_candidates() -> None:
+    for path in sources("modalkit/blind"):
+        assert not {n for n in imported(path) if n.split(".")[0] == "updating"}, path
+
+
+def test_nothing_is_plotted_below_the_face() -> None:
+    for path in sources(*ROOMS[:3]):
+        assert not {n for n in imported(path) if n.split(".")[0] == "matplotlib"}, path
+
+
+def test_pyplot_and_its_global_state_are_not_used() -> None:
+    for path in sources(*ROOMS):
+        assert "matplotlib.pyplot" not in imported(path), path

@@ -1,0 +1,114 @@
+"""The command line on shipped data: what it prints, what it writes, how it fails."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from modalkit.cli import main
+from modalkit.cli.demonstrate import sample
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
+    def call(*arguments: str | Path) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["modalkit", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        text = capfd.readouterr()
+        return int(ended.value.code or 0), text.out, text.err
+
+    return call
+
+
+def beam(name: str = "beam_dry.uff") -> Path:
+    return sample("beam_dry").parent / name
+
+
+def test_inspect_lists_what_is_usable(run: Run) -> None:
+    code, out, _ = run("inspect", beam())
+    assert code == 0
+    assert "75 hits at 5 points" in out
+
+
+def test_identify_finds_the_published_frequencies(run: Run, tmp_path: Path) -> None:
+    target = tmp_path / "modes.json"
+    code, out, _ = run("identify", beam(), "--band", "5", "500", "--json", target)
+    assert code == 0
+    assert "3 modes" in out
+    record = json.loads(target.read_text())
+    assert record["schema"] == "modalkit.modes/1"
+    found = [mode["frequency_hz"] for mode in record["modes"]]
+    assert found == pytest.approx([24.47, 153.96, 429.15], rel=5e-4)
+    assert record["window_decay_removed"] == pytest.approx(8.0)
+    assert len(record["hits"]) == 75
+
+
+def test_frf_writes_what_identify_reads_alike(run: Run, tmp_path: Path) -> None:
+    target, first, second = (tmp_path / n for n in ("frf.uff", "a.json", "b.json"))
+    assert run("frf", beam(), "-o", target)[0] == 0
+    assert run("identify", beam(), "--band", "5", "500", "--json", first)[0] == 0
+    assert run("identify", target, "--band", "5", "500", "--json", second)[0] == 0
+    a, b = (json.loads(path.read_text())["modes"] for path in (first, second))
+    for one, other in zip(a, b, strict=True):
+        assert one["frequency_hz"] == pytest.approx(other["frequency_hz"], rel=1e-5)
+        assert one["damping_ratio"] == pytest.approx(other["damping_ratio"], rel=0.02)
+
+
+def test_diagnose_writes_the_contract(run: Run, tmp_path: Path) -> None:
+    target, figures = tmp_path / "d.json", tmp_path / "figures"
+    code, out, _ = run("diagnose", sample("beam_wet"), "--json", target, "--figures", figures)
+    assert code == 0
+    answer = [line.split(":")[0] for line in out.splitlines()[1:6]]
+    assert answer == ["Cause", "Where", "Closes", "Sure", "Next"]
+    record = json.loads(target.read_text())
+    assert record["schema"] == "modalkit.diagnosis/1"
+    assert record["cause"]["verdict"] == "named"
+    assert record["cause"]["effects"] == ["fluid_added_mass"]
+    assert record["where"]["channel"] == "mass"
+    assert (figures / "diagnosis.png").stat().st_size > 10_000
+
+
+def test_correlate_and_update_print_their_tables(run: Run, tmp_path: Path) -> None:
+    study = sample("beam_dry")
+    assert "MAC" in run("correlate", study)[1]
+    target = tmp_path / "u.json"
+    assert run("update", study, "--json", target)[0] == 0
+    record = json.loads(target.read_text())
+    assert record["schema"] == "modalkit.update/1"
+    assert record["parameters"][0]["name"] == "E"
+    assert 0.74 < record["parameters"][0]["factor"] < 0.77
+
+
+def test_effects_lists_the_names_of_the_contract(run: Run, tmp_path: Path) -> None:
+    target = tmp_path / "effects.json"
+    assert run("effects", "--json", target)[0] == 0
+    names = {effect["name"] for effect in json.loads(target.read_text())["effects"]}
+    assert names >= {
+        "E", "density", "length", "clamp_rotation", "sensor_mass", "local_stiffness", "shear",
+        "fluid_added_mass", "exponential_window", "calibration_gain",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["identify", "nowhere.uff"], "nowhere.uff"),
+        (["diagnose", "nowhere.toml"], "nowhere.toml"),
+        (["identify", "BEAM", "--band", "700", "800"], "band"),
+        (["sing"], "sing"),
+        (["identify", "BEAM", "--json", "no/such/folder/x.json", "--band", "5", "500"], "x.json"),
+    ],
+)
+def test_a_mistake_is_one_line_and_code_2(run: Run, arguments: list[str], said: str) -> None:
+    code, _, err = run(*[beam() if a == "BEAM" else a for a in arguments])
+    assert code == 2
+    assert said in err
+    assert "Traceback" not in err
+    assert len(err.strip().splitlines()) == 1
