@@ -57,7 +57,10 @@ FAINT = 0.35
 """Modes whose constants are no better known than this, relative to their r.m.s., are not compared."""
 
 ASTRAY = 0.5
-"""A pair whose logarithm of the frequency ratio lies so far from the others' median is no pair."""
+"""A pair whose logarithm of the frequency ratio lies so far from the others' median is no pair..."""
+
+SAME = 0.95
+"""...unless the shapes are the same."""
 
 LOWEST_MAC = 0.4
 """Below this MAC a measured mode has no partner."""
@@ -109,7 +112,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     mac = mac_of_constants(measured, prediction)[np.arange(len(order)), order]
     ratio = np.log(measured.frequency / prediction.frequency[order])
     near = np.abs(ratio - np.median(ratio)) < ASTRAY
-    keep = (mac >= LOWEST_MAC) & near
+    keep = (mac >= LOWEST_MAC) & (near | (mac >= SAME))
     if not keep.any():
         raise EstimationError(
             f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
