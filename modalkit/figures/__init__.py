@@ -1,0 +1,24 @@
+"""Figures: pure functions from finished results to matplotlib figures that belong to no window."""
+
+from modalkit.figures.blind import blind_figure
+from modalkit.figures.diagnosis import diagnosis_figure
+from modalkit.figures.frf import frf_figure
+from modalkit.figures.hits import hits_figure
+from modalkit.figures.matrix import auto_mac_figure, mac_figure
+from modalkit.figures.save import save_figures
+from modalkit.figures.shapes import shapes_figure
+from modalkit.figures.stabilisation import stabilisation_figure
+from modalkit.figures.update import update_figure
+
+__all__ = [
+    "auto_mac_figure",
+    "blind_figure",
+    "diagnosis_figure",
+    "frf_figure",
+    "hits_figure",
+    "mac_figure",
+    "save_figures",
+    "shapes_figure",
+    "stabilisation_figure",
+    "update_figure",
+]

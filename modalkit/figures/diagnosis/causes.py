@@ -1,0 +1,143 @@
+"""What causes the gap: the probability of every explanation, the answer marked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from matplotlib.axes import Axes
+
+from modalkit.figures.style import (
+    BLUE,
+    FAINT,
+    GRID,
+    INK,
+    MUTED,
+    SMALL,
+    TEXT,
+    bare,
+    broken,
+    shortened,
+    text_width,
+)
+from modalkit.figures.words import parameters, share, short
+from updating import Diagnosis
+from updating.diagnosis.search import REJECTED
+
+ROWS = 7
+"""Most rows shown."""
+
+ANSWERS = 4
+"""So many rows of an answer have their parameters written out."""
+
+UNDER = 3
+"""Most lines under a bar."""
+
+ROW, LINE = 0.44, 0.16
+"""Height of a row and of a line under it [in]."""
+
+
+@dataclass(frozen=True)
+class _Row:
+    label: str
+    detail: str
+    probability: float
+    answer: bool
+
+
+def explanations(diagnosis: Diagnosis) -> list[_Row]:
+    """Return the rows: those of the answer, then the rest by probability, with the tolerances among them."""
+    chosen = set(diagnosis.sets)
+    none = diagnosis.verdict == "none"
+    alone = max(0.0, 1.0 - sum(row.probability for row in diagnosis.ranking))
+    rows = [_Row("tolerances and noise alone", "", alone, none)]
+    for row in diagnosis.ranking:
+        detail = parameters(row) if row.effects in chosen or row.probability >= 0.01 else ""
+        if row.p_value < REJECTED and not none:
+            detail = "does not fit"
+        rows.append(_Row(short(row.effects), detail, row.probability, row.effects in chosen))
+    return sorted(rows, key=lambda row: (not row.answer, -row.probability))
+
+
+def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float) -> None:
+    """Draw one bar per explanation, its name above it.
+
+    Parameters
+    ----------
+    axes : Axes
+        The panel.
+    diagnosis : Diagnosis
+        The answer.
+    width, height : float
+        Size of the panel [in].
+    """
+    bare(axes)
+    axes.set_xlim(0, width)
+    axes.set_ylim(-height, 0)
+    found = explanations(diagnosis)
+    down, ends = 0.0, [0.0]
+    for i, row in enumerate(found):
+        under = _under(row, width) if i < ANSWERS else []
+        tall = ROW + LINE * len(under)
+        last = i == len(found) - 1
+        if i == ROWS or down + tall + (0.0 if last else LINE) > height:
+            total = share(sum(other.probability for other in found[i:]))
+            said = f"{len(found) - i} more, together {total}"
+            axes.text(0, -down - 0.17, said, fontsize=SMALL, color=MUTED)
+            break
+        _bar(axes, row, -down - 0.30, width)
+        for k, line in enumerate(under):
+            axes.text(0, -down - 0.30 - LINE * (k + 0.9), line, fontsize=SMALL - 1, color=MUTED)
+        down += tall
+        if row.answer:
+            ends.append(down)
+    if diagnosis.verdict == "class":
+        _bracket(axes, ends[-1])
+
+
+def _under(row: _Row, width: float) -> list[str]:
+    """Return what is said of an answer's parameters below its bar."""
+    if not row.answer:
+        return []
+    room, lines = 72 * width, broken(row.detail, 72 * width, SMALL - 1)
+    return (
+        lines
+        if len(lines) <= UNDER
+        else [*lines[: UNDER - 1], shortened(" ".join(lines[UNDER - 1 :]), room, SMALL - 1)]
+    )
+
+
+def _bar(axes: Axes, row: _Row, bottom: float, width: float) -> None:
+    colour = BLUE if row.answer else FAINT
+    axes.barh(bottom, width, height=0.09, color=GRID, align="edge")
+    axes.barh(bottom, width * min(row.probability, 1.0), height=0.09, color=colour, align="edge")
+    weight, line = ("bold" if row.answer else "normal"), bottom + 0.145
+    value = share(row.probability)
+    room = 72 * width - text_width(value, TEXT, weight=weight) - 10
+    label = shortened(row.label, room, TEXT, weight=weight)
+    axes.text(0, line, label, fontsize=TEXT, color=INK, fontweight=weight)
+    axes.text(width, line, value, fontsize=TEXT, color=INK, fontweight=weight, ha="right")
+    used = text_width(label, TEXT, weight=weight) + 8
+    if row.detail and not row.answer and text_width(row.detail, SMALL - 1) < room - used:
+        axes.text(used / 72, line, row.detail, fontsize=SMALL - 1, color=MUTED)
+
+
+def _bracket(axes: Axes, end: float) -> None:
+    """Tie the rows of a class together."""
+    left, top, bottom = -0.14, -0.04, 0.12 - end
+    axes.plot(
+        [left + 0.06, left, left, left + 0.06],
+        [top, top, bottom, bottom],
+        color=BLUE,
+        linewidth=1.6,
+        clip_on=False,
+    )
+    axes.text(
+        left - 0.05,
+        (top + bottom) / 2,
+        "one of these",
+        rotation=90,
+        ha="right",
+        va="center",
+        fontsize=SMALL,
+        color=BLUE,
+    )

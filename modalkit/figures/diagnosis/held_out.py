@@ -1,0 +1,85 @@
+"""Does it hold: the gap on modes that were held out, for the answer and for its rivals."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from modalkit.figures.style import BLUE, FAINT, GRID, INK, MUTED, SMALL, TEXT, shortened, tidy
+from modalkit.figures.words import METRICS, percent, short
+from updating import Diagnosis
+
+
+def rivals(diagnosis: Diagnosis) -> list[tuple[str, float, bool]]:
+    """Return (name, gap on held-out modes [%], whether it is the best explanation) from worst to best known."""
+    shrink, ranking = diagnosis.shrink, diagnosis.ranking
+    rows = [("the model as it stands", shrink.held_before, False)]
+    rows.append(("tolerances alone", shrink.held_nuisance, False))
+    if shrink.held_runner_up is not None:
+        name = short(ranking[1].effects) if len(ranking) > 1 else "the runner-up"
+        rows.append((f"runner-up: {name}", shrink.held_runner_up, False))
+    if ranking:
+        rows.append((short(ranking[0].effects), shrink.held_after, diagnosis.verdict != "none"))
+    return rows
+
+
+def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float) -> None:
+    """Draw one dot per explanation on a logarithmic axis, and the noise floor as a band.
+
+    Parameters
+    ----------
+    axes : Axes
+        The panel.
+    diagnosis : Diagnosis
+        The answer.
+    room : float
+        Width left of the panel for the names [in].
+    """
+    rows = rivals(diagnosis)
+    floor = diagnosis.shrink.floor
+    values = np.array([max(value, 1e-4) for _, value, _ in rows])
+    everything = np.append(values, max(floor, 1e-4))
+    low, high = everything.min() / 2.0, everything.max() * 2.6
+    name = METRICS[diagnosis.shrink.metric]
+    tidy(axes, x=f"{name} gap on modes held out in turn, r.m.s. [%]", grid="x")
+    axes.set_xscale("log")
+    axes.set_xlim(low, high)
+    axes.axvspan(low, max(floor, low), color=GRID, zorder=0.5, linewidth=0)
+    axes.hlines(range(len(rows)), low, values, color=FAINT, linewidth=1.2, linestyle=(0, (1, 2)))
+    for i, (_, value, best) in enumerate(rows):
+        colour = BLUE if best else FAINT
+        axes.scatter(
+            [values[i]], [i], s=95 if best else 70, color=colour, edgecolor="white", zorder=4, clip_on=False
+        )
+        axes.annotate(
+            percent(value),
+            (values[i], i),
+            xytext=(9, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=TEXT,
+            color=INK,
+            fontweight="bold" if best else "normal",
+        )
+    names = [shortened(label, 72 * room, TEXT, weight="bold") for label, _, _ in rows]
+    axes.set_yticks(range(len(rows)), names, fontsize=TEXT)
+    for label, (_, _, best) in zip(axes.get_yticklabels(), rows, strict=True):
+        label.set_fontweight("bold" if best else "normal")
+    axes.set_ylim(len(rows) - 0.45, -0.95)
+    axes.tick_params(axis="y", length=0)
+    axes.spines["left"].set_visible(False)
+    inside = np.log(max(floor, low) / low) > 0.25 * np.log(high / low)
+    axes.annotate(
+        f"noise {percent(floor)}",
+        (max(floor, low), -0.62),
+        xytext=(-5 if inside else 5, 0),
+        textcoords="offset points",
+        ha="right" if inside else "left",
+        va="center",
+        fontsize=SMALL,
+        color=MUTED,
+    )
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if high / low < 300 else (1.0,)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
