@@ -122,6 +122,10 @@ class FrfSet:
         InputError
             If the band holds fewer than two lines.
         """
+        if not 0 <= low < high:
+            raise InputError(
+                f"the band {low:g} to {high:g} Hz is none: give its lower limit first, not below 0"
+            )
         keep = (self.frequency >= low - 1e-9) & (self.frequency <= high + 1e-9)
         if keep.sum() < 2:
             raise InputError(

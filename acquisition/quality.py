@@ -102,9 +102,14 @@ def rejected_points(verdicts: Sequence[HitVerdict]) -> tuple[Dof, ...]:
     return tuple(dict.fromkeys(v.point for v in verdicts if v.point not in used))
 
 
+REGROWTH = 5.0
+"""Most that the decay of an exponential window is taken back in a force record [-]."""
+
+
 def _judge_point(hits: Hits, test: HammerTest, usual: float) -> list[HitVerdict]:
     growth = np.exp(test.decay * np.arange(test.samples) / test.rate)
-    force, motion = hits.force * growth, hits.motion * growth
+    # whether the force was windowed too is not known: take back enough for a second hit, not so much that noise is one
+    force, motion = hits.force * np.minimum(growth, REGROWTH), hits.motion * growth
     waves = upright(force)
     faults = [_force_faults(wave, usual, test.rate) for wave in waves]
     for number, (over_f, over_m, alive) in enumerate(

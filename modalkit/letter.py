@@ -20,7 +20,9 @@ def _cause(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "no gap beyond tolerances and noise; there is nothing to explain"
     if diagnosis.verdict == "unknown":
-        return "unknown: the gap is real, and nothing in the library explains it, alone or in pairs"
+        return (
+            "unknown: the gap is real, and nothing in the library explains it, alone or in the pairs weighed"
+        )
     names = [" + ".join(s) for s in diagnosis.sets]
     if diagnosis.verdict == "named":
         summary = " ".join(LIBRARY[n].summary for n in diagnosis.sets[0] if n in LIBRARY)
@@ -93,7 +95,7 @@ def _next(diagnosis: Diagnosis) -> str:
         return "; ".join(ways)
     if diagnosis.verdict == "named":
         tests = [LIBRARY[n].separated_by for n in diagnosis.sets[0] if n in LIBRARY]
-        return "to confirm: " + "; ".join(tests)
+        return "no rival is left to separate; to confirm: " + "; ".join(tests)
     if diagnosis.verdict == "unknown":
         return "look at the modes that miss most below; more points there, and a test of the bare specimen"
     return "nothing; the model may be used within its tolerances"

@@ -99,8 +99,6 @@ class ModelTable(_Strict):
     mass: list[MassTable] = []
     region: list[RegionTable] = []
     effect: list[dict[str, Any]] = []
-    stiffness: str | None = None
-    mass_matrix: str | None = None
 
 
 class TolerancesTable(_Strict):
@@ -271,10 +269,16 @@ def read_study(path: Path) -> Study:
         raise StudyError(
             f"{path}: cannot be read ({error.strerror}); give the path of a study file"
         ) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        raise StudyError(
+            f"{path}: not a valid TOML file but binary data; give a study file that names it"
+        ) from error
+    except tomllib.TOMLDecodeError as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
     if "path" in content:
         raise StudyError(f"{path}: unknown key path; known here: {', '.join(_known(()))}")
+    if content.get("model", {}).get("type") == "matrices":
+        raise StudyError(f'{path}: [model] type = "matrices" is not in this version; use "beam" or "plate"')
     try:
         return Study(**content, path=path)
     except ValidationError as error:

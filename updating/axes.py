@@ -33,7 +33,9 @@ class Axes:
 
     def __post_init__(self) -> None:
         lengths = np.linalg.norm(self.x), np.linalg.norm(self.y)
-        if min(lengths) == 0 or abs(np.dot(self.x, self.y)) > 1e-3 * lengths[0] * lengths[1]:
+        if min(lengths) == 0:
+            raise StudyError(f"axes: x = {list(self.x)} or y = {list(self.y)} points nowhere")
+        if abs(np.dot(self.x, self.y)) > 1e-3 * lengths[0] * lengths[1]:
             raise StudyError(f"axes: x = {list(self.x)} and y = {list(self.y)} are not perpendicular")
 
     @property

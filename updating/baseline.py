@@ -86,10 +86,8 @@ def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]
     """
     if not baseline.absolute or baseline.calibration > COARSE:
         return 1.0, np.inf
-    level = np.sum(predicted * baseline.constants, axis=0) / np.sum(baseline.constants**2, axis=0)
+    level = np.linalg.norm(predicted, axis=0) / np.linalg.norm(baseline.constants, axis=0)
     heavier = float(np.median(level))
-    if heavier <= 0:
-        return 1.0, np.inf
     return heavier, float(np.hypot(baseline.calibration, np.std(level) / heavier / np.sqrt(len(level))))
 
 

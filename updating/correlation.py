@@ -13,8 +13,8 @@ from identification import frac
 from updating.case import Case
 from updating.matching import Paired, mac_of_constants, pair_modes
 from updating.measured import Measured
+from updating.nominal import predictor_of
 from updating.prediction import Prediction
-from updating.update.specimen import predictor_of
 
 UNKNOWN_DAMPING = 0.005
 """Damping ratio of modes of which neither test nor model says any [-]."""

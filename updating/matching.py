@@ -116,13 +116,15 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     if not keep.any():
         raise EstimationError(
             f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
-            "check axes, points and boundary conditions"
+            "check axes, points, boundary conditions, and the model's units (m, Pa, kg/m3)"
         )
     lost += [
         f"mode at {f:.2f} Hz has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f}) "
         "and is left out"
         for f, m, r in zip(measured.frequency[~keep], mac[~keep], ratio[~keep], strict=True)
     ]
+    if keep.sum() < len(keep) / 2:
+        lost.append("most measured modes have no partner: test and model may not be the same structure")
     return Paired(measured.modes(keep), order[keep], tuple(lost))
 
 

@@ -33,8 +33,8 @@ class Prediction:
         Damping ratios, nan where nothing is expected [-].
     constants : (n_frf, n_modes) array
         Modal constants phi_response * phi_reference, the gain included [1/kg].
-    along : (dim, n_frf, n_modes) array
-        Derivatives of the constants by the position of the hit [1/(kg m)].
+    along, along_seen : (dim, n_frf, n_modes) arrays
+        Derivatives of the constants by the position of the hit, and of the sensor [1/(kg m)].
     log_frequency_by : (n_modes, n_factors) array
         Derivatives of ln f by the logarithms of the factors asked for [-].
     constants_by : (n_frf, n_modes, n_factors) array
@@ -47,6 +47,7 @@ class Prediction:
     damping: FloatArray
     constants: FloatArray
     along: FloatArray
+    along_seen: FloatArray
     log_frequency_by: FloatArray
     constants_by: FloatArray
     vectors: FloatArray
@@ -58,6 +59,7 @@ class Prediction:
             self.damping[modes],
             self.constants[:, modes],
             self.along[:, :, modes],
+            self.along_seen[:, :, modes],
             self.log_frequency_by[modes],
             self.constants_by[:, modes],
             self.vectors[:, modes],
@@ -185,6 +187,7 @@ class Predictor:
             self._damping(total, values[chosen], vectors[:, chosen]),
             total.gain * self._product(shapes["w"], shapes["w"]),
             total.gain * self._slopes(shapes),
+            total.gain * self._sensor_slopes(shapes),
             np.stack([b[0] for b in by], axis=-1) if by else np.zeros((len(chosen), 0)),
             total.gain * np.stack([self._change(shapes["w"], b[1]) for b in by], axis=-1)
             if by
@@ -233,6 +236,11 @@ class Predictor:
             np.where(bare, shapes[n][self.measured.seen], seen * shapes[n][self.measured.hit]) for n in names
         ]
         return np.stack(slopes)
+
+    def _sensor_slopes(self, shapes: dict[str, FloatArray]) -> FloatArray:
+        names = ("wx", "wy")[: self.measured.points.shape[1]]
+        hit = np.where(self.measured.hit[:, None] < 0, 1.0, shapes["w"][self.measured.hit])
+        return np.stack([shapes[n][self.measured.seen] * hit for n in names])
 
     def _by_factor(
         self,

@@ -42,6 +42,18 @@ def main() -> None:
         _fail(_message(error))
     except (typer.Abort, KeyboardInterrupt):
         _fail("interrupted; nothing was written")
+    except (
+        ArithmeticError,
+        AttributeError,
+        LookupError,
+        MemoryError,
+        OSError,
+        TypeError,
+        ValueError,
+    ) as error:
+        if debug:
+            raise
+        _fail(f"this should not have happened: {type(error).__name__}: {error}; run again with --debug")
     else:
         sys.exit(code if isinstance(code, int) else 0)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any
 
+import pandas as pd
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -54,10 +55,25 @@ def show_score(table: Score) -> None:
     out.print(f"Blind run of {len(table.trials)} trials, seed {table.seed}", style="bold")
     digits = {"rate": 3, "low95": 3, "high95": 3}
     show_table(table.rates, "How often, with 95 % intervals", digits=digits)
-    show_table(table.confusion, "Hidden effect (rows) against the answer (columns)")
+    show_table(_answers(table.confusion), "What was hidden, and what was answered")
     failed = table.trials[table.trials["verdict"] == "failed"]
     for index, row in failed.iterrows():
         out.print(f"failed: trial {index} ({row['effect']}): {row.get('failure', '')}", markup=False)
+
+
+def _answers(confusion: pd.DataFrame) -> pd.DataFrame:
+    """Return the confusion matrix as lines: every hidden effect with the answers it got."""
+    rows = [
+        {
+            "hidden": str(hidden),
+            "trials": int(row.sum()),
+            "answers": ", ".join(
+                f"{answer} {int(n)}" for answer, n in row.sort_values(ascending=False).items() if n
+            ),
+        }
+        for hidden, row in confusion.iterrows()
+    ]
+    return pd.DataFrame(rows)
 
 
 def _figures(table: Score) -> dict[str, Any]:

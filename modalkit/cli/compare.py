@@ -59,7 +59,8 @@ def correlate(
         if len(table):
             show_table(table, f"{whose} modes without a partner")
     if len(result.frac):
-        show_table(result.frac, "FRAC per FRF", digits={"FRAC": 3})
+        title = "FRAC per FRF (peaks that do not overlap make it near 0, however alike the shapes)"
+        show_table(result.frac, title, digits={"FRAC": 3})
     show_warnings([*result.warnings, *session.warnings])
     show_figures(figures, lambda: _correlation_figures(session, result))
 
@@ -70,7 +71,7 @@ def update(
     json: Json = None,
     figures: Figures = None,
 ) -> None:
-    """Update the parameters named in [update] by the identified frequencies (paper A, Eqs. 15-25)."""
+    """Update the parameters named in the study's update table by the identified frequencies (paper A, Eqs. 15-25)."""
     with working("reading and identifying"):
         sessions = [open_study(read_study(path)) for path in studies]
     if any(session.study.update.method != "eigenvalue" for session in sessions):
@@ -104,7 +105,11 @@ def _fit(sessions: list[Session], shared: tuple[str, ...]) -> Update:
     if len(cases) == 1 and not shared:
         return fit(cases[0], parameters=tables[0].parameters, weights=tables[0].weights)
     own = [list(dict.fromkeys([*table.parameters, *shared])) for table in tables]
-    return fit(cases, parameters=own, shared=shared, weights=tables[0].weights)
+    lists = [table.weights for table in tables if isinstance(table.weights, list)]
+    if lists and len(lists) < len(tables):
+        raise StudyError("[update] weights: some studies list numbers and some do not; use one kind in all")
+    weights = [w for own_weights in lists for w in own_weights] if lists else tables[0].weights
+    return fit(cases, parameters=own, shared=shared, weights=weights)
 
 
 def tables(
@@ -145,8 +150,8 @@ def _update_figures(result: Update) -> dict[str, Any]:
     test = pairs["test_hz"].to_numpy()
     errors = [100 * (pairs[name].to_numpy() / test - 1) for name in ("before_hz", "after_hz")]
     factors = {
-        p.name: (p.factor, p.sigma)
+        p.name: (p.factor, p.sigma * p.factor / p.value)
         for p in result.parameters
-        if p.factor is not None and np.isfinite(p.sigma)
+        if p.factor is not None and np.isfinite(p.sigma) and p.value
     }
     return {"update": update_figure(test, errors[0], errors[1], parameters=factors or None)}

@@ -107,7 +107,7 @@ def test_more_modes_than_the_model_has_are_refused() -> None:
 def test_another_structure_altogether_is_refused() -> None:
     test = seen_as(MODEL.select(np.arange(1)))
     other = np.linalg.svd(MODEL.constants[:, :2])[0][:, [2]]
-    with pytest.raises(EstimationError, match="check axes, points and boundary conditions"):
+    with pytest.raises(EstimationError, match="check axes, points, boundary conditions"):
         pair_modes(
             replace(test, constants=other, constants_sigma=0.01 * np.ones((5, 1))), MODEL.select(np.arange(2))
         )

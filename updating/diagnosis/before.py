@@ -23,6 +23,9 @@ from updating.prediction import Prediction, Predictor
 CARRIED = 0.3
 """How far what the model missed in the baseline may miss differently now, relative to what it missed [-]."""
 
+EXTRAPOLATED = 0.01
+"""Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others [-]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Before:
@@ -51,9 +54,19 @@ class Before:
     @cached_property
     def prediction(self) -> Prediction:
         """The corrected model's modes at the baseline's points, in the order of the baseline."""
-        looking = self.predictor.looking(self.baseline)
+        looking = self.predictor.looking(self.baseline, self.predictor.additions[-1:])
         prediction = looking.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
         return prediction.select(match(self.baseline, prediction, self.order))
+
+    @cached_property
+    def _uneven(self) -> FloatArray:
+        """That part of the correction of ln f which is no common factor, shape (n_baseline,) [-]."""
+        base = self.baseline
+        plain = self.predictor.looking(base, ())
+        prediction = plain.predict(at_least=int(self.order.max()) + 3)
+        prediction = prediction.select(match(base, prediction, self.order))
+        correction = np.log(base.frequency / prediction.frequency)
+        return np.asarray(correction - np.median(correction))
 
     @cached_property
     def relative_variance(self) -> FloatArray:
@@ -63,21 +76,28 @@ class Before:
         factor: a model that missed some modes more than others has wrong shapes, too.
         """
         base = self.baseline
-        plain = self.predictor.looking(base, self.predictor.additions[:-1])
-        prediction = plain.predict(at_least=int(self.order.max()) + 3)
-        prediction = prediction.select(match(base, prediction, self.order))
-        correction = np.log(base.frequency / prediction.frequency)
-        uneven = correction - np.median(correction)
         noise = (base.frequency_sigma / base.frequency) ** 2 + base.repeatability**2
-        return np.asarray(noise + (CARRIED * uneven) ** 2)
+        return np.asarray(noise + (CARRIED * self._uneven) ** 2)
+
+    def seen(self, now: Prediction) -> FloatArray:
+        """Return how much of each present mode the baseline's modes make up together, (n_modes,) [-]."""
+        return np.asarray(np.clip(self._overlap(now).sum(axis=1), 0.0, 1.0))
 
     def shares(self, now: Prediction) -> FloatArray:
-        """Return how much of each present mode each baseline mode makes up, (n_modes, n_baseline) [-]."""
+        """Return how much each baseline mode has of what they make up of a present one, (n_modes, n_baseline) [-]."""
+        overlap = self._overlap(now)
+        return np.asarray(overlap / np.maximum(overlap.sum(axis=1, keepdims=True), 1e-12))
+
+    def _overlap(self, now: Prediction) -> FloatArray:
+        """Return the squares of the modal overlaps, (n_modes, n_baseline) [-]."""
         before = self.prediction.vectors
         n = min(len(now.vectors), len(before))
         mass = self.predictor.once("nominal mass", lambda: self.predictor.reduced.matrices(NOMINAL)[1])
-        overlap = (now.vectors[:n].T @ mass[:n, :n] @ before[:n]) ** 2
-        return np.asarray(overlap / np.maximum(overlap.sum(axis=1, keepdims=True), 1e-12))
+        norm = np.outer(
+            np.einsum("ir,ij,jr->r", now.vectors[:n], mass[:n, :n], now.vectors[:n]),
+            np.einsum("ir,ij,jr->r", before[:n], mass[:n, :n], before[:n]),
+        )
+        return np.asarray((now.vectors[:n].T @ mass[:n, :n] @ before[:n]) ** 2 / np.maximum(norm, 1e-300))
 
     def frequency(self, now: Prediction) -> tuple[FloatArray, FloatArray]:
         """Return variance of and sensitivities already known in ln f of the present modes.
@@ -87,8 +107,10 @@ class Before:
         variance : (n_modes,) array [-]
         known : (n_modes, n_factors) array [-]
         """
-        shares = self.shares(now)
-        return shares @ self.relative_variance, shares @ self.prediction.log_frequency_by
+        shares, seen = self.shares(now), self.seen(now)
+        beyond = (1 - seen) * (np.var(self._uneven) + EXTRAPOLATED**2)
+        known = seen[:, None] * (shares @ self.prediction.log_frequency_by)
+        return shares @ self.relative_variance + beyond, known
 
     @cached_property
     def _rows(self) -> tuple[IntArray, IntArray]:

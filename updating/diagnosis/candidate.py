@@ -73,12 +73,13 @@ class Candidate:
         return combine([*states, State(theory=self.theory)])
 
     def locations(
-        self, predictor: Predictor, coordinates: Sequence[float]
+        self, predictor: Predictor, coordinates: Sequence[float], *, channel: str | None = None
     ) -> tuple[tuple[float, float, float], ...]:
-        """Return where the effects sit [m]."""
+        """Return where the effects sit, those of one channel or all [m]."""
         stage = self.stage(predictor)
         parts = self._split(predictor, coordinates)
-        return tuple(place for effect, values in parts for place in effect.locations(stage, values))
+        acting = [(e, v) for e, v in parts if channel in (None, e.channel)]
+        return tuple(place for effect, values in acting for place in effect.locations(stage, values))
 
     def derived(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, tuple[float, str]]:
         """Return derived quantities by effect.name, as (value, unit)."""

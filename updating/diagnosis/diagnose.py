@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,9 +20,10 @@ from updating.diagnosis.search import Search, search
 from updating.diagnosis.shrink import shrinkage
 from updating.diagnosis.verdict import decide, is_significant, rank
 from updating.diagnosis.where import locate
-from updating.effects import LIBRARY, Effect, accepted_state
+from updating.effects import LIBRARY, Effect
 from updating.matching import Paired, mac_of_constants, pair_modes
 from updating.models.state import State
+from updating.nominal import predictor_of
 from updating.prediction import Predictor
 
 
@@ -80,15 +81,15 @@ def _diagnose(case: Case, effects: list[Effect], rng: np.random.Generator) -> Di
 
 def pose(case: Case) -> tuple[Problem, list[str]]:
     """Pair the modes, put the baseline and accepted effects into the model, and pose the problem."""
-    additions = [_accepted(name, values) for name, values in case.accepted]
-    predictor = Predictor(case.spec, case.measured, case.environment, tuple(additions))
+    predictor = predictor_of(case)
+    additions = list(predictor.additions)
     paired = pair_modes(case.measured, predictor.predict())
     warnings = [*case.measured.warnings, *paired.warnings]
     baseline, baseline_order, tolerances = None, None, case.tolerances
     if case.baseline is not None:
-        looking = predictor.looking(case.baseline)
+        looking = predictor.looking(case.baseline, ())
         before = pair_modes(case.baseline, looking.predict())
-        doubt = doubt_in_mass(predictor.looking(before.measured), before.measured, before.order)
+        doubt = doubt_in_mass(predictor.looking(before.measured, ()), before.measured, before.order)
         tolerances = replace(tolerances, factors={**tolerances.factors, "section": doubt})
         warnings += [f"baseline: {w}" for w in before.warnings]
         additions.append(_corrected(before))
@@ -103,13 +104,9 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
     return problem, warnings
 
 
-def _accepted(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:
-    return lambda predictor: accepted_state(predictor, name, values)
-
-
 def _corrected(before: Paired) -> Callable[[Predictor], State]:
     def build(predictor: Predictor) -> State:
-        looking = predictor.looking(before.measured)
+        looking = predictor.looking(before.measured, ())
         return correct(looking, before.measured, before.order)
 
     return build
@@ -151,6 +148,19 @@ def _shrink(problem: Problem, found: Search, rng: np.random.Generator, *, signif
     return result if significant else replace(result, closed=None)
 
 
+def _mesh_error(problem: Problem) -> float:
+    """Return the largest relative change of a paired beam mode when the mesh is refined [-]."""
+    spec = problem.predictor.spec
+    if spec.kind != "beam":
+        return 0.0
+    rank = 1 + int(problem.order.max())
+    coarse, fine = (
+        Predictor(one, problem.measured).predict(count=rank).frequency
+        for one in (spec, spec.with_elements(2 * spec.elements[0]))
+    )
+    return float(np.abs(np.log(fine / coarse)).max())
+
+
 def _remarks(problem: Problem, found: Search) -> list[str]:
     """Return what the reader ought to know about how the answer was reached."""
     remarks = []
@@ -159,6 +169,11 @@ def _remarks(problem: Problem, found: Search) -> list[str]:
         remarks.append(
             "the beam theory of the model leaves out shear and rotary inertia by more than the noise; "
             "every effect was weighed with and without them"
+        )
+    finer = _mesh_error(problem)
+    if finer > problem.measured.repeatability:
+        remarks.append(
+            f"the mesh alone moves a mode by {100 * finer:.2g} %, more than the noise: use more elements"
         )
     if len(problem.measured.frequency) < 3:
         remarks.append(f"only {len(problem.measured.frequency)} modes are paired: little can be told apart")

@@ -25,6 +25,12 @@ PRIOR_SHARE = 0.25
 FREEDOM = 5
 """Degrees of freedom of the t-distributions."""
 
+ROUNDS = 2
+"""How often the samples are drawn anew when too few of them carry the weight."""
+
+ENOUGH = 10.0
+"""Effective number of samples that is enough."""
+
 CLIMBS = 3
 """How many of the starting places are climbed from."""
 
@@ -90,14 +96,27 @@ def explain(
     peaks = _peaks(problem, candidate, places)
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
-    samples, proposal = _draw(peaks, min(density * 2 ** len(places[0]), 512))
-    points = [evaluate(problem, candidate, u) for u in samples]
-    log_likelihood = np.array([p.marginal.log_likelihood for p in points])
-    log_weight = log_likelihood - proposal
-    total = float(logsumexp(log_weight)) - np.log(len(samples))
-    weights = np.exp(log_weight - logsumexp(log_weight))
+    count = min(density * 2 ** len(places[0]), 512)
+    for _ in range(ROUNDS):
+        samples, proposal = _draw(peaks, count)
+        points = [evaluate(problem, candidate, u) for u in samples]
+        log_weight = np.array([p.marginal.log_likelihood for p in points]) - proposal
+        total = float(logsumexp(log_weight))
+        weights = np.exp(log_weight - total)
+        if 1 / np.sum(weights**2) >= ENOUGH:
+            break
+        peaks = [*peaks, _moments(problem, candidate, samples, weights)]
+        count = min(2 * count, 512)
     best = max([*points, *(p.point for p in peaks)], key=lambda p: p.marginal.log_likelihood)
-    return Explanation(candidate, total, best, samples, weights)
+    return Explanation(candidate, total - float(np.log(len(samples))), best, samples, weights)
+
+
+def _moments(problem: Problem, candidate: Candidate, samples: FloatArray, weights: FloatArray) -> Peak:
+    """Return a component about the mean of the weighted samples: where the first ones missed the bulk."""
+    best = climb(problem, candidate, samples[int(np.argmax(weights))], rounds=4)
+    spread = samples - best.point.coordinates
+    covariance = (spread.T * weights) @ spread + 1e-6 * np.eye(samples.shape[1])
+    return Peak(best.point, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
 
 
 def _peaks(problem: Problem, candidate: Candidate, places: list[FloatArray]) -> list[Peak]:

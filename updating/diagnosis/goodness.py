@@ -71,10 +71,3 @@ def carrier(point: Point) -> str:
             part = marginal(point.comparison, keep)
             surprise[name] = float(chi2.logsf(part.chi2, part.count))
     return min(surprise, key=lambda n: surprise[n]) if surprise else "frequency"
-
-
-def relative_error(point: Point, *, after: bool, channel: str) -> np.ndarray:
-    """Return the relative errors of a channel, before or after the most probable nuisances [-]."""
-    rows = point.comparison.channel == CHANNELS.index(channel)
-    values = point.left_over if after else point.comparison.residual
-    return np.asarray(values[rows])

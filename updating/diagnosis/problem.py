@@ -36,6 +36,9 @@ UNKNOWN_SCATTER = (0.3, 0.25, 0.2, 0.15, 0.1)
 REPEATED_DAMPING = 0.1
 """Scatter of damping from one mounting of a specimen to the next, relative [-]."""
 
+LEAST_NOISE = 1e-6
+"""No frequency is known better than this, relative [-]."""
+
 UNKNOWN_LEVEL = 0.2
 """A calibration worse than this is found by least squares before anything is linearised."""
 
@@ -212,7 +215,7 @@ class Problem:
 
     def _frequencies(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:
         test = self.measured
-        variance = (test.frequency_sigma / test.frequency) ** 2 + test.repeatability**2
+        variance = (test.frequency_sigma / test.frequency) ** 2 + max(test.repeatability, LEAST_NOISE) ** 2
         by = now.log_frequency_by
         if self.before is not None:
             doubt, known = self.before.frequency(now)
@@ -242,17 +245,24 @@ class Problem:
         """Largest fidelity of the effects put into the model beforehand [-]."""
         return max((effect.fidelity for effect in self.accepted), default=0.0)
 
+    def _damping_tolerance(self, now: Prediction) -> FloatArray:
+        """Return the doubt in the expected damping of each mode: small where a baseline measured it [-]."""
+        told = self.tolerances.damping
+        if self.before is None:
+            return np.full(len(now.frequency), told)
+        return np.where(self.before.seen(now) > 0.5, self.damping_doubt, told)
+
     def _dampings(self, now: Prediction) -> _Block:
         rows = self.damping_known
         test = self.measured
         relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=0.05)
         expected = np.maximum(now.damping[rows], 1e-7)
-        tolerance = self.damping_doubt
+        tolerance = self._damping_tolerance(now)[rows]
         variance = relative**2 + tolerance**2
         return _Block(
             np.log(test.damping[rows] / expected),
             np.zeros((len(rows), len(self.names))),
-            np.full((len(rows), 1 if len(rows) else 0), tolerance),
+            tolerance[:, None] if len(rows) else np.zeros((0, 0)),
             variance,
             rows,
         )
@@ -264,24 +274,27 @@ class Problem:
             missed, doubt, known = self.before.shapes(now)
             constants, by = constants + missed, by - known
         predicted, by, along = constants / scale, by / scale[:, None], now.along / scale
-        level = 1.0
+        along_scale: FloatArray | float | None = None
         if not test.absolute:
             share = _projection(test.constants / scale, predicted, axis=0)
             predicted, by, along = predicted * share, by * share[:, None], along * share
+            along_scale = share
         elif test.calibration > UNKNOWN_LEVEL:
             level = float(_projection(test.constants / scale, predicted, axis=None))
             predicted, by, along = predicted * level, by * level, along * level
+            along_scale = level
         variance = (test.constants_sigma**2 + doubt) / scale**2 + SHAPE_FLOOR**2
         if reference is not None:
             # the part of the change that is not a mere change of the mode's level
             before = reference.constants / scale
             before = before * _projection(predicted, before, axis=0)
             variance = variance + (fidelity * (predicted - before)) ** 2
-        own = [self._level_columns(predicted), self._position_columns(along)]
+        sensors = now.along_seen / scale * (along_scale if along_scale is not None else 1.0)
+        own = [self._level_columns(predicted), self._position_columns(along), self._sensor_columns(sensors)]
         modes = np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel()
         return _Block(
             (test.constants / scale - predicted).ravel(),
-            by.reshape(-1, len(self.names)),
+            by.reshape(predicted.size, len(self.names)),
             np.hstack(own),
             variance.ravel(),
             modes,
@@ -301,6 +314,17 @@ class Problem:
         columns = [
             (self.measured.position_sigma * np.where((place == p)[:, None], slope, 0.0)).ravel()
             for p in points
+            for slope in along
+        ]
+        return np.stack(columns, axis=1)
+
+    def _sensor_columns(self, along: FloatArray) -> FloatArray:
+        """Return one column per sensor and direction: the effect of having mounted it beside its point."""
+        if (self.measured.hit < 0).all():
+            return np.zeros((along[0].size, 0))
+        columns = [
+            (self.measured.position_sigma * np.where((self.measured.seen == p)[:, None], slope, 0.0)).ravel()
+            for p in np.unique(self.measured.seen)
             for slope in along
         ]
         return np.stack(columns, axis=1)

@@ -151,7 +151,10 @@ def _single(problem: Problem, effect: Effect, *, twin: bool) -> Explanation:
 def _pairs(problem: Problem, singles: list[Explanation]) -> list[Explanation]:
     """Weigh the pairs that a linear look at every pair finds the most promising."""
     looks = []
+    data = len(problem.measured.frequency) + len(problem.damping_known) + problem.measured.constants.size
     for first, second in combinations(singles, 2):
+        if len(first.best.coordinates) + len(second.best.coordinates) >= data:
+            continue  # as many parameters as data explain anything
         gain, starts = _linear_look(problem, first, second)
         looks.append((gain, first, second, starts))
     looks = [look for look in looks if np.isfinite(look[0])]

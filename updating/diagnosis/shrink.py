@@ -125,8 +125,7 @@ def _closed(
     draws = []
     for _ in range(400):
         drawn = np.concatenate([np.flatnonzero(mode == m) for m in rng.choice(modes, len(modes))])
-        noise = floor * rng.standard_normal((2, len(drawn)))
-        draws.append(share(before[drawn] + noise[0], after[drawn] + noise[1]))
+        draws.append(share(before[drawn], after[drawn]))
     low, high = np.nanpercentile(draws, [2.5, 97.5])
     value = min(share(before, after), 100.0)
     return Closed(value, float(min(low, value)), float(max(min(high, 100.0), value)))

@@ -20,15 +20,15 @@ FAR_BETTER = 6.0
 """Logarithm of the Bayes factor at which an effect shows a gap that no single test does."""
 
 CLOSE = 4.0
-"""Chi-squared difference of 2 sigma: below it two explanations are equivalent."""
+"""Twice the difference of log-likelihood at 2 sigma: below it two explanations are equivalent."""
 
 
 def is_significant(found: Search, p_value: float) -> bool:
     """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better."""
-    gain = max((row.explanation.log_evidence for row in found.weighed if row.names), default=-np.inf)
+    fitting = [row for row in found.weighed if row.names and row.p_value >= REJECTED]
+    gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
     gain -= found.nothing.log_evidence
-    surprising = p_value < SIGNIFICANT and (gain > 0 or p_value < SIGNIFICANT**2)
-    return bool(surprising or gain > FAR_BETTER)
+    return bool(p_value < SIGNIFICANT or gain > FAR_BETTER)
 
 
 def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
@@ -44,15 +44,18 @@ def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[st
     if not significant:
         return "none", ()
     rows = [row for row in found.weighed if row.names]
-    fitting = [row for row in rows if row.p_value >= REJECTED]
-    if not fitting:
+    if not rows or rows[0].p_value < REJECTED:
         return "unknown", ()
-    sets = _credible(fitting)
+    least = found.nothing.log_evidence
+    better = [row for row in rows if row.p_value >= REJECTED and row.explanation.log_evidence > least]
+    if not better:
+        return "unknown", ()
+    sets = _credible(better)
     return ("named" if len(sets) == 1 else "class"), sets
 
 
 def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:
-    """Return the fewest rows that hold the certainty asked for, among those that fit."""
+    """Return the fewest rows that hold the certainty asked for."""
     total = sum(row.probability for row in rows)
     sets, held = [], 0.0
     for row in rows:
@@ -81,7 +84,8 @@ def rank(problem: Problem, found: Search) -> tuple[Ranked, ...]:
 
 
 def _close(a: Weighed, b: Weighed) -> bool:
-    return abs(a.explanation.best.marginal.chi2 - b.explanation.best.marginal.chi2) < CLOSE
+    best = [row.explanation.best.marginal.log_likelihood for row in (a, b)]
+    return bool(2 * abs(best[0] - best[1]) < CLOSE)
 
 
 def _plausible(problem: Problem, explanation: Explanation) -> bool:

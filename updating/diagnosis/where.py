@@ -38,7 +38,7 @@ def locate(problem: Problem, found: Search, *, significant: bool) -> Where:
     if not significant:
         return Where("none", {**shares, "none": nothing}, None, (), (), _zones(problem, found))
     leader = next((row for row in found.weighed if row.names), None)
-    places = () if leader is None else _places(problem, leader)
+    places = () if leader is None else _places(problem, leader, top)
     return Where(
         top,
         {**shares, "none": nothing},
@@ -49,9 +49,12 @@ def locate(problem: Problem, found: Search, *, significant: bool) -> Where:
     )
 
 
-def _places(problem: Problem, row: Weighed) -> tuple[Place, ...]:
+def _places(problem: Problem, row: Weighed, channel: str) -> tuple[Place, ...]:
+    """Return where the effects of a channel sit, of all effects if none of it has a place."""
     explanation = row.explanation
-    places = explanation.candidate.locations(problem.predictor, explanation.best.coordinates.tolist())
+    candidate, coordinates = explanation.candidate, explanation.best.coordinates.tolist()
+    places = candidate.locations(problem.predictor, coordinates, channel=channel)
+    places = places or candidate.locations(problem.predictor, coordinates)
     return tuple((float(p[0]), float(p[1]), float(p[2])) for p in places)
 
 

@@ -56,7 +56,10 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, float])
     if name not in LIBRARY:
         raise StudyError(f"[[model.effect]] knows no effect {name!r}; `modalkit effects` lists them")
     effect = LIBRARY[name]
-    if (obstacle := effect.obstacle(predictor)) is not None:
+    there_already = (
+        name == "shear" and predictor.spec.theory == "timoshenko"
+    )  # the second look, on the better theory
+    if not there_already and (obstacle := effect.obstacle(predictor)) is not None:
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
     takes = {parameter.name for parameter in effect.parameters(predictor)}
     if set(values) != takes:

@@ -23,10 +23,7 @@ class FluidAddedMass(Effect):
     equivalent_to = ("density",)
     separated_by = "the same test dry; or a second depth of immersion"
 
-    @property
-    def fidelity(self) -> float:  # type: ignore[override]
-        """Potential flow with walls or surface unknown is good to some 5 % of the shift [-]."""
-        return 0.05
+    fidelity = 0.05
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the density of the fluid."""

@@ -56,7 +56,7 @@ class LocalStiffness(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with its stiffness reduced there."""
         softening = self._softening(predictor, values)
-        return State(stiffness=(-predictor.reduced.weighted("stiffness", softening),))
+        return State(stiffness=(-predictor.reduced.weighted("stiffness", softening, predictor.base.factors),))
 
     def _softening(self, predictor: Predictor, values: Values) -> FloatArray:
         """Return the share of the stiffness lost at every quadrature point [-]: a box with soft edges."""

@@ -33,6 +33,9 @@ class SensorMass(Effect):
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Need to know where the sensors sit."""
+        test = predictor.measured
+        if len(test.sensors) > 3 and len(set(test.hit.tolist())) == 1:
+            return "the sensor seems to rove: it loads another point in every measurement"
         if len(sensor_places(predictor)):
             return None
         return "the data do not say where a sensor sits; a [[model.mass]] of 0 kg would"

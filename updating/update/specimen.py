@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -10,10 +10,10 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.case import Case
-from updating.effects import accepted_state
 from updating.matching import mac_of_constants, match, pair_modes
 from updating.measured import Measured
 from updating.models.state import State
+from updating.nominal import predictor_of
 from updating.prediction import Prediction, Predictor
 from updating.update.knobs import Knob, Panel, build_panel
 from updating.update.sensitivity import log_frequency_by
@@ -162,15 +162,3 @@ def build_specimen(case: Case, parameters: Sequence[str]) -> Specimen:
         np.ones(len(number)),
         {name: values for name, values in accepted.items() if name not in updated},
     )
-
-
-def predictor_of(case: Case) -> Predictor:
-    """Return the nominal model of a case with the accepted effects, on the theory they ask for."""
-    additions = tuple(_accepted(name, values) for name, values in case.accepted)
-    predictor = Predictor(case.spec, case.measured, case.environment, additions)
-    theory = predictor.base.theory
-    return predictor if theory is None else predictor.under(theory)
-
-
-def _accepted(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:
-    return lambda predictor: accepted_state(predictor, name, values)
