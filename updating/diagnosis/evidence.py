@@ -28,6 +28,9 @@ FREEDOM = 5
 ROUNDS = 2
 """How often the samples are drawn anew when too few of them carry the weight."""
 
+HOPELESS = 30.0
+"""So far below a rival's log-likelihood no prior brings a candidate back."""
+
 ENOUGH = 10.0
 """Effective number of samples that is enough."""
 
@@ -71,6 +74,7 @@ def explain(
     *,
     starts: list[FloatArray] | None = None,
     density: int = 16,
+    bar: float = -np.inf,
 ) -> Explanation:
     """Weigh a candidate.
 
@@ -84,6 +88,8 @@ def explain(
         Prior quantiles to start from; left out, the effects' own.
     density : int
         Samples: this many times two to the number of parameters, at most 512.
+    bar : float
+        Log-likelihood that a rival reaches; what stays hopelessly below it is integrated with few samples [-].
 
     Returns
     -------
@@ -96,8 +102,9 @@ def explain(
     peaks = _peaks(problem, candidate, places)
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
-    count = min(density * 2 ** len(places[0]), 512)
-    for _ in range(ROUNDS):
+    hopeless = peaks[0].point.marginal.log_likelihood < bar - HOPELESS
+    count = 16 if hopeless else min(density * 2 ** len(places[0]), 512)
+    for _ in range(1 if hopeless else ROUNDS):
         samples, proposal = _draw(peaks, count)
         points = [evaluate(problem, candidate, u) for u in samples]
         log_weight = np.array([p.marginal.log_likelihood for p in points]) - proposal

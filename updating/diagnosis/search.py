@@ -87,7 +87,9 @@ def search(problem: Problem, library: Sequence[Effect]) -> Search:
     effects, obstacles = examine(problem, library)
     nothing = explain(problem, Candidate())
     twin = _falls_short(problem, effects)
-    singles = [_single(problem, effect, twin=twin) for effect in effects]
+    singles: list[Explanation] = []
+    for effect in effects:
+        singles.append(_single(problem, effect, twin=twin, bar=_bar([nothing, *singles])))
     found = [nothing, *singles]
     if max(_fit(e) for e in found) < REJECTED:
         found += _pairs(problem, singles)
@@ -104,6 +106,11 @@ def _closer(problem: Problem, row: Weighed) -> Explanation:
     finer = explain(problem, explanation.candidate, starts=[explanation.best.coordinates], density=64)
     lost = explanation.log_evidence - finer.log_evidence
     return explanation if lost > 1.0 else finer  # it had more peaks than one
+
+
+def _bar(found: list[Explanation]) -> float:
+    """Return the best log-likelihood so far."""
+    return max(e.best.marginal.log_likelihood for e in found)
 
 
 def _fit(explanation: Explanation) -> float:
@@ -137,12 +144,12 @@ def _falls_short(problem: Problem, effects: list[Effect]) -> bool:
     return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
 
 
-def _single(problem: Problem, effect: Effect, *, twin: bool) -> Explanation:
+def _single(problem: Problem, effect: Effect, *, twin: bool, bar: float) -> Explanation:
     """Weigh one effect; where the theory falls short, on either theory and half the evidence of each."""
-    plain = explain(problem, Candidate((effect,)))
+    plain = explain(problem, Candidate((effect,)), bar=bar)
     if not twin or effect.name == "shear":
         return plain
-    better = explain(problem, Candidate((effect,), theory="timoshenko"))
+    better = explain(problem, Candidate((effect,), theory="timoshenko"), bar=bar)
     total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
     chosen = max(plain, better, key=lambda e: e.log_evidence)
     return Explanation(chosen.candidate, total, chosen.best, chosen.samples, chosen.weights)
@@ -159,9 +166,11 @@ def _pairs(problem: Problem, singles: list[Explanation]) -> list[Explanation]:
         looks.append((gain, first, second, starts))
     looks = [look for look in looks if np.isfinite(look[0])]
     looks.sort(key=lambda look: -look[0])
-    return [
-        explain(problem, _joined(first, second), starts=starts) for _, first, second, starts in looks[:PAIRS]
-    ]
+    found: list[Explanation] = []
+    for _, first, second, starts in looks[:PAIRS]:
+        bar = _bar([*singles, *found])
+        found.append(explain(problem, _joined(first, second), starts=starts, bar=bar))
+    return found
 
 
 def _joined(first: Explanation, second: Explanation) -> Candidate:

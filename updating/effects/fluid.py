@@ -23,7 +23,7 @@ class FluidAddedMass(Effect):
     equivalent_to = ("density",)
     separated_by = "the same test dry; or a second depth of immersion"
 
-    fidelity = 0.05
+    fidelity = 0.06
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the density of the fluid."""
