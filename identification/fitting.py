@@ -12,6 +12,7 @@ from acquisition.errors import EstimationError
 from acquisition.frf import FrfSet
 from identification import background, basis, fading, leftover, noise
 from identification.grams import Weights
+from identification.poly_reference import RankOne, hold_to_rank_one, sorted_frfs
 from identification.pruning import inside, plausible, significant, threshold
 from identification.refine import Fit, evaluate, refine
 from identification.residues import synthesise, uniform_weights
@@ -42,6 +43,11 @@ class Fitted:
         Part of each line's power the linear unknowns absorb [-].
     measured : bool
         Whether the variance came with the data; if not it was estimated from the residual.
+    held : RankOne, optional
+        The fit's factors, where its residues were held to rank one.
+    rank_excess : float
+        By what factor the misfit of rank-one residues exceeds what noise allows, where that is why they were
+        left free; 0 otherwise [-].
     """
 
     fit: Fit
@@ -50,6 +56,8 @@ class Fitted:
     residual: ComplexArray
     absorbed: FloatArray
     measured: bool
+    held: RankOne | None = None
+    rank_excess: float = 0.0
 
 
 def fit_modes(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float]) -> Fitted:
@@ -86,18 +94,36 @@ def fit_modes(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float]) -
     fit = _completed(frfs, fit, band, ladder)
     fit = _without_broad(frfs, fit, band, ladder)
     fitted = _weighted(frfs, _without_halves(frfs, fit), band)
-    while leftover.split_halves(fitted.fit.poles, fitted.fit.linear.residues) is not None:
+    while _halves(frfs, fitted.fit) is not None:
         fitted = _weighted(frfs, _without_halves(frfs, fitted.fit), band)
-    return fitted
+    return _held(frfs, fitted, band)
+
+
+def _held(frfs: FrfSet, fitted: Fitted, band: tuple[float, float]) -> Fitted:
+    """Hold residues to rank one where several references were measured and agree on the shapes."""
+    places = sorted_frfs(frfs)
+    if places is None:
+        return fitted
+    modes = inside(fitted.fit.poles, band, frfs.df)
+    fade = fading.at_start(fitted.weights.fade)
+    held = hold_to_rank_one(frfs, fitted.fit, fitted.weights, places, modes, inflation=fade)
+    if held.excess > 1.0:
+        return replace(fitted, rank_excess=held.excess)
+    result = replace(fitted, fit=held.fit, held=held)
+    return replace(result, residual=_residual(frfs, held.fit))
 
 
 def _without_halves(frfs: FrfSet, fit: Fit) -> Fit:
     """Make one of poles that are the halves of one mode."""
-    while (halves := leftover.split_halves(fit.poles, fit.linear.residues)) is not None:
+    while (halves := _halves(frfs, fit)) is not None:
         rest = np.delete(fit.poles, halves[0])
         weights, powers = _search_weights(frfs, fit), fit.linear.powers
         fit = refine(frfs, rest, weights, powers=powers, iterations=_SHORT, tolerance=_COARSE)
     return fit
+
+
+def _halves(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
+    return leftover.split_halves(fit.poles, fit.linear.residues, sorted_frfs(frfs))
 
 
 def _completed(frfs: FrfSet, fit: Fit, band: tuple[float, float], ladder: tuple[tuple[int, ...], ...]) -> Fit:
@@ -203,7 +229,7 @@ def _acceptable(frfs: FrfSet, fit: Fit, trial: Fit, pole: complex, band: tuple[f
         new = int(moved.argmax())
         gap = np.delete(np.abs(trial.poles - trial.poles[new]), new).min(initial=np.inf)
         return bool(gap > 3.0 * abs(trial.poles[new].real))
-    return leftover.split_halves(trial.poles, trial.linear.residues) is None
+    return _halves(frfs, trial) is None
 
 
 def _higher(

@@ -8,6 +8,8 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
 
+_RIDGE, _SINGULAR = 1e-15, 1e-10  # added to columns of unit length; the second where the first does not do
+
 
 @dataclass(frozen=True, eq=False)
 class Weights:
@@ -84,12 +86,24 @@ def _products(real: FloatArray, root: FloatArray) -> FloatArray:
 
 
 def solve(gram: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve stacked normal equations, (n or 1, k, k) by (n, k, m), with columns of unit length."""
+    """Solve stacked normal equations, (n or 1, k, k) by (n, k, m), with columns of unit length.
+
+    Columns that are the same to rounding, as those of two poles that fell together, share their unknown.
+    """
     length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
     unit = gram / (length[:, :, None] * length[:, None, :])
-    unit = unit + 1e-15 * np.eye(gram.shape[-1])
-    if len(gram) == 1:
-        flat = np.moveaxis(right / length[:, :, None], 0, 1)
-        solved = np.linalg.solve(unit[0], flat.reshape(len(flat), -1)).reshape(flat.shape)
-        return np.asarray(np.moveaxis(solved, 1, 0) / length[:, :, None])
-    return np.asarray(np.linalg.solve(unit, right / length[:, :, None]) / length[:, :, None])
+    scaled = right / length[:, :, None]
+    try:
+        solved = _solve_unit(unit, scaled, _RIDGE)
+    except np.linalg.LinAlgError:
+        solved = _solve_unit(unit, scaled, _SINGULAR)
+    return np.asarray(solved / length[:, :, None])
+
+
+def _solve_unit(unit: FloatArray, right: FloatArray, ridge: float) -> FloatArray:
+    firm = unit + ridge * np.eye(unit.shape[-1])
+    if len(unit) > 1:
+        return np.asarray(np.linalg.solve(firm, right))
+    flat = np.moveaxis(right, 0, 1)
+    solved = np.linalg.solve(firm[0], flat.reshape(len(flat), -1)).reshape(flat.shape)
+    return np.asarray(np.moveaxis(solved, 1, 0))

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
@@ -15,6 +15,7 @@ from identification.arrangement import arrange, signs, unsigned
 from identification.fitting import Fitted, fit_modes
 from identification.model import ModalModel
 from identification.poles import ESTIMATORS
+from identification.poly_reference import sorted_frfs
 from identification.pruning import inside
 from identification.residues import Residues
 from identification.scaling import Shapes, mode_shapes
@@ -122,7 +123,7 @@ def _assemble(
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
     sigma = covariance.constant_statistics(data, fitted)[:, own]
     spread = covariance.pole_statistics(data, fitted)[own]
-    shapes = mode_shapes(data, constants, sigma)
+    shapes = mode_shapes(data, constants, _alone(data, fitted, own, sigma))
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
     return ModalModel(
         modal=_modal_data(data, poles, spread, shapes),
@@ -144,6 +145,22 @@ def _assemble(
     )
 
 
+def _alone(data: FrfSet, fitted: Fitted, own: IntArray, sigma: FloatArray) -> FloatArray:
+    """Return standard deviations of the constants as if each were measured by itself.
+
+    Constants held to rank one share the uncertainty of their shape. What is returned gives that uncertainty
+    back when the constants of all references are averaged with the square of the participations as weights.
+    """
+    held, places = fitted.held, sorted_frfs(data)
+    if held is None or places is None or held.fit.residue_variance is None:
+        return sigma
+    total = np.zeros((places.shape[0], len(held.fit.poles)))
+    np.add.at(total, places.row, np.abs(held.participation[places.column]) ** 2)
+    raw = np.sqrt(held.long_variance * total)[places.row][:, own] * 2.0 * held.fit.poles.imag[own]
+    plain = np.sqrt(held.fit.residue_variance[:, own]) * 2.0 * held.fit.poles.imag[own]
+    return np.asarray(np.maximum(sigma, raw * sigma / np.maximum(plain, np.finfo(float).tiny)))
+
+
 def _modal_data(data: FrfSet, poles: ComplexArray, spread: np.ndarray, shapes: Shapes) -> ModalData:
     frequency = np.abs(poles) / (2 * np.pi)
     return ModalData(
@@ -160,6 +177,12 @@ def _modal_data(data: FrfSet, poles: ComplexArray, spread: np.ndarray, shapes: S
 
 
 def _warnings(fitted: Fitted) -> tuple[str, ...]:
-    if fitted.fit.converged:
-        return ()
-    return ("the refinement of the poles did not come to rest; standard deviations may be too small",)
+    notes = []
+    if not fitted.fit.converged:
+        notes.append("the refinement of the poles did not come to rest; standard deviations may be too small")
+    if fitted.rank_excess > 1.0:
+        notes.append(
+            f"the references do not agree on the shapes: holding each mode to one shape raises the misfit to "
+            f"{fitted.rank_excess:.2g} times what noise allows; check that nothing was moved between them"
+        )
+    return tuple(notes)

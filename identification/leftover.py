@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray
+from acquisition.arrays import BoolArray, ComplexArray
 from acquisition.frf import FrfSet
 from identification.grams import Weights
 from identification.mac import mpc
 from identification.noise import local_mean
+from identification.poly_reference import Sorted
 
 _WIDTHS = (1, 3, 9, 27, 81)
 _EXCESS = 6.0
@@ -16,6 +17,7 @@ _REAL = 0.7
 FEW = 4
 _TOGETHER = 0.6
 _SAME = 0.25
+_PURE, _ALIKE = 0.9, 0.8
 
 
 def trial_poles(
@@ -56,7 +58,9 @@ def trial_poles(
     return np.asarray(damped[(damped.imag >= low) & (damped.imag <= high)])
 
 
-def split_halves(poles: ComplexArray, residues: ComplexArray) -> tuple[int, int] | None:
+def split_halves(
+    poles: ComplexArray, residues: ComplexArray, places: Sorted | None = None
+) -> tuple[int, int] | None:
     """Return two poles that are the halves of one mode, the weaker first, or None.
 
     FRFs measured one after the other do not agree to the last digit on a frequency; a second pole beside
@@ -64,6 +68,9 @@ def split_halves(poles: ComplexArray, residues: ComplexArray) -> tuple[int, int]
     the halves of one mode do not lie on a line, or, under one half-power half-width apart, move together
     at all points. Under a quarter of that half-width a drift from FRF to FRF and a second mode look alike, and
     it is taken for a drift. Fewer than four FRFs cannot tell, and poles that near are then taken for halves.
+    With several references two modes also differ in both their shapes and their participations, whatever
+    their distance; the halves of one do not, since what drifts does so from response to response, from
+    reference to reference, or from FRF to FRF.
 
     Parameters
     ----------
@@ -71,6 +78,8 @@ def split_halves(poles: ComplexArray, residues: ComplexArray) -> tuple[int, int]
         Poles of the fit [rad/s].
     residues : (n_frf, n_modes) complex array
         Residues [m/(N s)].
+    places : Sorted, optional
+        Where each FRF stands in the matrix of responses by references, where there are several.
     """
     if len(poles) < 2:
         return None
@@ -83,6 +92,8 @@ def split_halves(poles: ComplexArray, residues: ComplexArray) -> tuple[int, int]
         halves = distance < 1.0
     else:
         halves = (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
+    if places is not None and halves.any():
+        halves &= ~_two_by_references(residues, places)
     first, second = np.nonzero(np.triu(halves, 1))
     if len(first) == 0:
         return None
@@ -91,3 +102,14 @@ def split_halves(poles: ComplexArray, residues: ComplexArray) -> tuple[int, int]
     energy = np.sum(size**2, axis=0) / np.abs(poles.real)
     weaker, stronger = sorted(pair, key=lambda r: float(energy[r]))
     return weaker, stronger
+
+
+def _two_by_references(residues: ComplexArray, places: Sorted) -> BoolArray:
+    """Tell which pairs differ in shape and in participation, both residues being of rank one."""
+    table = np.zeros((residues.shape[1], *places.shape), complex)
+    table[:, places.row, places.column] = (residues * places.sign[:, None]).T
+    left, values, right = np.linalg.svd(table, full_matrices=False)
+    pure = values[:, 0] ** 2 > _PURE * np.sum(values**2, axis=1)
+    shapes, shares = left[:, :, 0], right[:, 0]
+    alike = np.abs(shapes.conj() @ shapes.T) ** 2, np.abs(shares.conj() @ shares.T) ** 2
+    return np.asarray(pure[:, None] & pure[None, :] & (np.maximum(*alike) < _ALIKE))

@@ -17,6 +17,8 @@ def constant_variance(fit: Fit) -> FloatArray:
     A = 2 i w R, so its real part is that of -2 w Im R. Poles' uncertainty is included. The imaginary part has
     the same variance unless the mode is near the residual terms, as the first of a band that starts at zero.
     """
+    if fit.residue_variance is not None:
+        return np.asarray((2.0 * fit.poles.imag) ** 2 * fit.residue_variance)
     columns = slice(1, 2 * len(fit.poles), 2)
     gain = fit.pole_gain[:, columns]
     by_poles = np.einsum("jka,ab,jkb->jk", gain, pole_covariance(fit), gain, optimize=True)

@@ -37,6 +37,9 @@ class Fit:
         Variance of each linear unknown with the poles held, for weights that are reciprocal variances.
     converged : bool
         Whether the iteration came to rest.
+    residue_variance : (n_frf, n_modes) array, optional
+        Variance of the imaginary part of each residue, everything fitted, where it does not follow from
+        ``pole_gain`` and ``linear_inverse``: residues held to rank one [m^2/(N s)^2].
     """
 
     poles: ComplexArray
@@ -46,6 +49,7 @@ class Fit:
     pole_gain: FloatArray
     linear_inverse: FloatArray
     converged: bool
+    residue_variance: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +130,7 @@ def _iterate(
     state, damping = _evaluate(lines, poles, weights, powers), 1e-3
     for _ in range(iterations):
         trial_poles = poles + _solve_step(state, damping)
-        trial_poles = _inside(trial_poles, poles, lines.decay)
+        trial_poles = decaying(trial_poles, poles, lines.decay)
         trial = _evaluate(lines, trial_poles, weights, powers)
         if trial.cost <= state.cost:
             gain = (state.cost - trial.cost) / max(state.cost, np.finfo(float).tiny)
@@ -148,7 +152,7 @@ def _solve_step(state: Step, damping: float) -> ComplexArray:
     return np.asarray(step[0::2] + 1j * step[1::2])
 
 
-def _inside(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexArray:
+def decaying(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexArray:
     """Keep trial poles decaying and Im > 0; go half-way to a border that would be crossed."""
     real = np.where(trial.real < decay, trial.real, 0.5 * (poles.real + decay))
     imag = np.where(trial.imag > 0.5 * poles.imag, trial.imag, 0.75 * poles.imag)
@@ -185,14 +189,14 @@ def scores(
     projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
     own = np.einsum("jninm->jnim", projected.reshape(-1, n, 2, n, 2))
     left = (products.cross[:, k:] - np.einsum("jk,jkm->jm", solution, between)).reshape(-1, n, 2)
-    turns = _turns(solution, n)
+    turns = pole_turns(solution, n)
     gradient = np.einsum("j,jni,jnia->jna", weights.level, left, turns)
     own = np.broadcast_to(own, (len(solution), n, 2, 2))
     normal = np.einsum("j,jnia,jnim,jnmb->jnab", weights.level, turns, own, turns, optimize=True)
     return gradient, normal
 
 
-def _turns(solution: FloatArray, n_modes: int) -> FloatArray:
+def pole_turns(solution: FloatArray, n_modes: int) -> FloatArray:
     """Return the 2 x 2 blocks that turn (Re, Im) of a pole's step into weights of its two slope columns.
 
     The slope columns are derivatives by Re p; those by Im p are the same two crosswise, because the columns
@@ -222,7 +226,7 @@ def _step(
     between = products.gram[:, :k, k:]
     projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, follow)
     carried = solution @ between[0] if len(between) == 1 else np.einsum("jk,jkm->jm", solution, between)
-    turns = _turns(solution, n)
+    turns = pole_turns(solution, n)
     gradient = np.einsum(
         "j,jni,jnia->na", weights.level, (products.cross[:, k:] - carried).reshape(-1, n, 2), turns
     )
@@ -251,7 +255,7 @@ def _finish(
     columns, products, solution, follow = _pieces(frfs, poles, weights, powers)
     state = _step(products, solution, follow, weights, n)
     k = solution.shape[1]
-    turns = _turns(solution, n)
+    turns = pole_turns(solution, n)
     blocks = follow.reshape(len(follow), k, n, 2)
     gain = -np.einsum("jkni,jnia->jkna", np.broadcast_to(blocks, (len(solution), k, n, 2)), turns)
     inverse = _inverse_diagonal(products.gram[:, :k, :k])
