@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
@@ -14,6 +15,7 @@ from identification import covariance
 from identification.arrangement import arrange, signs, unsigned
 from identification.fitting import Fitted, fit_modes
 from identification.model import ModalModel
+from identification.overrule import nearest_modes
 from identification.poles import ESTIMATORS
 from identification.poly_reference import sorted_frfs
 from identification.pruning import inside
@@ -32,6 +34,8 @@ def identify(
     band: tuple[float, float] | None = None,
     order: int | None = None,
     method: Literal["lsce", "lscf"] = "lscf",
+    add: Sequence[float] = (),
+    drop: Sequence[float] = (),
 ) -> ModalModel:
     """Identify the modes of a band, without asking.
 
@@ -48,6 +52,10 @@ def identify(
         Largest number of poles tried; default 60, fewer if there are few lines [-].
     method : {"lscf", "lsce"}
         Pole estimator that supplies the candidates.
+    add, drop : sequence of float
+        The user's word against the automatic choice: frequencies at which a mode is kept that the data
+        alone would not bear out, and modes that are none, hum of the mains for instance. What is dropped stays
+        in the fit, as background, and out of the result [Hz].
 
     Returns
     -------
@@ -57,7 +65,7 @@ def identify(
     Raises
     ------
     InputError
-        If the band is empty or the method unknown.
+        If the band is empty, the method unknown, or there is no mode where one is to be dropped.
     EstimationError
         If no mode stands out.
     """
@@ -73,7 +81,12 @@ def identify(
             f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
             "order rises; widen the band, raise the order or check the FRFs"
         )
-    return _assemble(data, fit_modes(data, start, band=limits), chart, limits, points_rejected)
+    fitted = fit_modes(data, start, band=limits, add=add)
+    modes = inside(fitted.fit.poles, limits, data.df)
+    modes &= ~nearest_modes(fitted.fit.poles, drop, modes, data.df)
+    if not modes.any():
+        raise EstimationError(f"{frfs.source}: no mode is left once the modes named are dropped")
+    return _assemble(data, fitted, modes, chart, limits, points_rejected)
 
 
 def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tuple[str, ...]]:
@@ -111,13 +124,13 @@ def order_list(frfs: FrfSet, order: int | None, method: str) -> list[int]:
 def _assemble(
     data: FrfSet,
     fitted: Fitted,
+    modes: BoolArray,
     chart: StabilisationChart,
     band: tuple[float, float],
     points_rejected: tuple[str, ...],
 ) -> ModalModel:
     fit = fitted.fit
-    own = np.flatnonzero(inside(fit.poles, band, data.df))
-    rest = np.setdiff1d(np.arange(len(fit.poles)), own)
+    own, rest = np.flatnonzero(modes), np.flatnonzero(~modes)
     sign = signs(data)
     poles: ComplexArray = fit.poles[own]
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
