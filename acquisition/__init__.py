@@ -1,5 +1,7 @@
-"""Acquisition: universal files, raw hits and the FRFs made of them, in SI units."""
+"""Acquisition: files of every kind, raw hits and the FRFs made of them, in SI units."""
 
+from acquisition.bootstrap import bootstrap_frfs
+from acquisition.columns import Layout, layout_from, read_columns, read_frf_columns, read_layout
 from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError, ModalkitError, StudyError
 from acquisition.estimators import estimate_frfs, random_error
@@ -8,23 +10,34 @@ from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest, Hits
 from acquisition.modal_data import ModalData
 from acquisition.modal_files import read_modes
-from acquisition.quality import HitVerdict, hits_table, judge_hits, rejected_points
+from acquisition.quality import HitVerdict, decide, hits_table, judge_hits, rejected_points
+from acquisition.readers import installed_readers, read_test, written_as_uff
+from acquisition.reciprocity import reciprocity
+from acquisition.scatter import HitGroup, HitScatter, variance_of_groups
+from acquisition.sensor_mass import remove_sensor_mass
+from acquisition.spectra import ESTIMATORS, Estimator
+from acquisition.splitting import looks_long, propose_trigger, split_hits
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
 from acquisition.uff import DatasetInfo, UffContent, read_functions, read_uff, write_uff
-from acquisition.windows import Windows, apply_windows
+from acquisition.windows import Windows, apply_windows, force_noise_decay, state_window
 
 __all__ = [
+    "ESTIMATORS",
     "FORMS",
     "DatasetInfo",
     "Dof",
     "EstimationError",
+    "Estimator",
     "FrfSet",
     "Geometry",
     "HammerPlan",
     "HammerTest",
+    "HitGroup",
+    "HitScatter",
     "HitVerdict",
     "Hits",
     "InputError",
+    "Layout",
     "ModalData",
     "ModalSystem",
     "ModalkitError",
@@ -32,15 +45,32 @@ __all__ = [
     "UffContent",
     "Windows",
     "apply_windows",
+    "bootstrap_frfs",
+    "decide",
     "estimate_frfs",
+    "force_noise_decay",
     "hammer_test",
     "hits_table",
+    "installed_readers",
     "judge_hits",
+    "layout_from",
+    "looks_long",
     "modal_system",
+    "propose_trigger",
     "random_error",
+    "read_columns",
+    "read_frf_columns",
     "read_functions",
+    "read_layout",
     "read_modes",
+    "read_test",
     "read_uff",
+    "reciprocity",
     "rejected_points",
+    "remove_sensor_mass",
+    "split_hits",
+    "state_window",
+    "variance_of_groups",
     "write_uff",
+    "written_as_uff",
 ]

@@ -13,9 +13,39 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 AnyArray = NDArray[Any]
 
+_SINGLE = {np.dtype(np.float64): np.dtype(np.float32), np.dtype(np.complex128): np.dtype(np.complex64)}
 
-def frozen_array(values: Any, dtype: Any = np.float64) -> NDArray[Any]:
-    """Return a read-only copy of ``values``, so that a frozen dataclass is frozen to the last number."""
-    array = np.array(values, dtype=dtype)
+
+def frozen_array(values: Any, dtype: Any = np.float64, *, keep_single: bool = False) -> NDArray[Any]:
+    """Return ``values`` read-only, so that a frozen dataclass is frozen to the last number.
+
+    Parameters
+    ----------
+    values : array_like
+        Copied, unless it is an array that nobody can write to any more.
+    dtype : dtype
+        Wanted type.
+    keep_single : bool
+        Whether an array in the single precision of ``dtype`` stays as it is.
+    """
+    wanted = np.dtype(dtype)
+    given = getattr(values, "dtype", None)
+    if keep_single and given is not None and given == _SINGLE.get(wanted):
+        wanted = given
+    if given == wanted and _is_frozen(values):
+        return np.asarray(values)
+    array = np.array(values, dtype=wanted)
     array.setflags(write=False)
     return array
+
+
+def _is_frozen(values: Any) -> bool:
+    """Tell whether an array and whatever it is a view of are read-only and numpy's own."""
+    if type(values) is not np.ndarray:
+        return False
+    array: Any = values
+    while type(array) is np.ndarray:
+        if array.flags.writeable:
+            return False
+        array = array.base
+    return array is None

@@ -1,21 +1,22 @@
-"""From hits to FRFs: H1, H2 and Hv with coherence and variance."""
+"""From hits to FRFs: H1, H2 and Hv with coherence, variance and covariance."""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
-from typing import Literal
+from dataclasses import dataclass
 
 import numpy as np
-import scipy.fft
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
+from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet
 from acquisition.hammer import HammerTest, Hits
 from acquisition.quality import HitVerdict
+from acquisition.scatter import HitGroup, HitScatter
+from acquisition.spectra import ESTIMATORS, Estimator, Spectra, coherence_of, combine, deviations, squared
 from acquisition.windows import Windows, apply_windows
-
-Estimator = Literal["H1", "H2", "Hv"]
 
 
 def estimate_frfs(
@@ -24,6 +25,8 @@ def estimate_frfs(
     estimator: Estimator = "H1",
     verdicts: Sequence[HitVerdict] | None = None,
     windows: Windows | None = None,
+    band: tuple[float, float] | None = None,
+    keep_scatter: bool = True,
 ) -> FrfSet:
     """Estimate FRFs by linear averages of spectra over the hits at each point.
 
@@ -38,43 +41,53 @@ def estimate_frfs(
         `rejected_points`); without verdicts all are used.
     windows : Windows, optional
         Windows applied before; the decay of an exponential one is handed on.
+    band : tuple of float, optional
+        Lowest and highest line kept; default from 0 to the Nyquist frequency [Hz].
+    keep_scatter : bool
+        Whether the covariance from the repeated hits is handed on as ``FrfSet.scatter``. In single precision
+        it takes as much memory as the records of the hits do, or, with ``band``, that part of it.
 
     Returns
     -------
     FrfSet
-        From 0 to the Nyquist frequency, with coherence and the variance of the mean where there are two hits
-        or more at every point.
+        With coherence, variance and scatter of the mean where there are two hits or more at every point.
 
     Raises
     ------
     EstimationError
         If no hit is left at any point, or a force is zero.
+    InputError
+        If the estimator is unknown or the band empty.
 
     Notes
     -----
     Ewins, Modal Testing (2000), section 3.9: H1 = G_xf / G_ff, H2 = G_xx / G_fx, coherence =
     |G_xf|^2 / (G_xx G_ff). Hv as in Rocklin, Crowley and Vold, IMAC 3 (1985), with force and response scaled
-    to equal power at each line. The variance is that of H1, see `mean_variance`.
+    to equal power at each line. For the variance see `acquisition.spectra.deviations`.
     """
-    if estimator not in ("H1", "H2", "Hv"):
-        raise InputError(f"unknown estimator {estimator!r}; use H1, H2 or Hv")
+    if estimator not in ESTIMATORS:
+        raise InputError(f"unknown estimator {estimator!r}; use {', '.join(ESTIMATORS)}")
     test = test if windows is None else apply_windows(test, windows)
-    kept = _kept(test, verdicts)
-    parts = [_point(point, keep, estimator, test) for point, keep in kept]
-    averages = np.concatenate([np.full(len(point.responses), keep.sum()) for point, keep in kept])
-    several = bool(averages.min() > 1)
+    frequency = np.asarray(np.fft.rfftfreq(test.samples, 1 / test.rate), dtype=np.float64)
+    lines = _lines(frequency, band, test)
+    kept = kept_hits(test, verdicts)
+    several = min(int(keep.sum()) for _, keep in kept) > 1
+    parts = [
+        _average(Spectra.of(hits, keep, test, lines), estimator, several, keep_scatter) for hits, keep in kept
+    ]
     return FrfSet(
-        frequency=np.asarray(np.fft.rfftfreq(test.samples, 1 / test.rate), dtype=np.float64),
-        values=np.concatenate([part[0] for part in parts]),
-        responses=tuple(dof for p, _ in kept for dof in p.responses),
-        references=tuple(p.reference for p, _ in kept for _ in p.responses),
+        frequency=frequency[lines],
+        values=np.concatenate([part.values for part in parts]),
+        responses=tuple(dof for hits, _ in kept for dof in hits.responses),
+        references=tuple(hits.reference for hits, _ in kept for _ in hits.responses),
         form=test.form,
-        coherence=np.concatenate([part[1] for part in parts]) if several else None,
-        variance=np.concatenate([part[2] for part in parts]) if several else None,
-        averages=averages,
+        coherence=np.concatenate([part.coherence for part in parts]) if several else None,
+        variance=np.concatenate([part.variance for part in parts]) if several else None,
+        averages=np.concatenate([np.full(len(hits.responses), keep.sum()) for hits, keep in kept]),
         decay=test.decay,
         geometry=test.geometry,
         source=test.source,
+        scatter=_scatter(parts) if several and keep_scatter else None,
     )
 
 
@@ -101,41 +114,77 @@ def random_error(frfs: FrfSet) -> FloatArray:
     return np.asarray(np.sqrt((1 - coherence) / (2 * (frfs.averages[:, None] - 1) * coherence)))
 
 
-def mean_variance(force: ComplexArray, motion: ComplexArray, frf: ComplexArray) -> FloatArray:
-    """Return E|dH|^2 of an FRF averaged over hits, from the scatter of the hits about it.
+@dataclass(frozen=True, eq=False)
+class _Average:
+    """FRFs of one point with what is known of their errors."""
+
+    values: ComplexArray
+    coherence: FloatArray
+    variance: FloatArray
+    deviations: ComplexArray | None
+
+
+def _average(spectra: Spectra, estimator: Estimator, several: bool, keep_scatter: bool) -> _Average:
+    sums = spectra.sums()
+    values = combine(*sums, estimator)
+    if not several:
+        nothing = np.zeros(values.shape)
+        return _Average(values, nothing, nothing, None)
+    moved = deviations(spectra, values, estimator)
+    variance = squared(moved).sum(axis=0)
+    return _Average(
+        values, coherence_of(*sums), variance, moved.astype(np.complex64) if keep_scatter else None
+    )
+
+
+def _scatter(parts: Sequence[_Average]) -> HitScatter:
+    """Number the FRFs of all points through."""
+    first = np.cumsum([0, *(len(part.values) for part in parts)])
+    groups = []
+    for part, start in zip(parts, first[:-1], strict=True):
+        assert part.deviations is not None
+        part.deviations.setflags(write=False)
+        groups.append(HitGroup(start + np.arange(len(part.values)), part.deviations))
+    return HitScatter(tuple(groups))
+
+
+def _lines(frequency: FloatArray, band: tuple[float, float] | None, test: HammerTest) -> slice:
+    if band is None:
+        return slice(0, len(frequency))
+    kept = np.flatnonzero((frequency >= band[0] - 1e-9) & (frequency <= band[1] + 1e-9))
+    if len(kept) < 2:
+        raise InputError(
+            f"{test.source}: the band {band[0]:g}-{band[1]:g} Hz holds {len(kept)} lines; the records give "
+            f"lines from 0 to {frequency[-1]:g} Hz, {frequency[1]:g} Hz apart"
+        )
+    return slice(int(kept[0]), int(kept[-1]) + 1)
+
+
+def kept_hits(test: HammerTest, verdicts: Sequence[HitVerdict] | None = None) -> list[tuple[Hits, BoolArray]]:
+    """Return the points that have hits to use, and which hits those are.
 
     Parameters
     ----------
-    force : (n_hits, n_lines) complex array
-        Spectra of the force [any].
-    motion : (n_hits, n_responses, n_lines) complex array
-        Spectra of the responses [any].
-    frf : (n_responses, n_lines) complex array
-        H1 over these hits.
+    test : HammerTest
+        Raw records.
+    verdicts : sequence of HitVerdict, optional
+        Which hits to use; where a degree of freedom was hit in several runs, its verdicts go to them in turn.
 
-    Returns
-    -------
-    (n_responses, n_lines) array
-        Weighted least squares with robust (sandwich, HC2) scatter: the leave-out of a hit is corrected by its
-        leverage h_i = |F_i|^2 / sum |F|^2, so that the estimate has no bias for equal noise in all hits
-        (MacKinnon and White, Journal of Econometrics 29, 1985).
+    Raises
+    ------
+    EstimationError
+        If no hit is left at any point.
     """
-    power = np.abs(force) ** 2
-    total = power.sum(axis=0)
-    leverage = power / total
-    residual = np.abs(motion - frf * force[:, None]) ** 2
-    weight = leverage / np.maximum(1 - leverage, 1e-12)
-    return np.asarray(np.einsum("hl,hrl->rl", weight, residual) / total, dtype=np.float64)
-
-
-def _kept(test: HammerTest, verdicts: Sequence[HitVerdict] | None) -> list[tuple[Hits, BoolArray]]:
-    """Return the points that have hits to use, and which."""
-    refused = {(v.point, v.hit) for v in verdicts or () if not v.used}
+    told: dict[tuple[Dof, int], list[bool]] = defaultdict(list)
+    for verdict in verdicts or ():
+        told[verdict.point, verdict.hit].append(verdict.used)
+    seen: dict[Dof, int] = defaultdict(int)
     kept = []
     for point in test.points:
-        mask = np.array(
-            [(point.reference, hit + 1) not in refused for hit in range(point.count)], dtype=np.bool_
-        )
+        run = seen[point.reference]
+        seen[point.reference] += 1
+        answers = [told.get((point.reference, hit + 1), [True]) for hit in range(point.count)]
+        mask = np.array([used[min(run, len(used) - 1)] for used in answers], dtype=np.bool_)
         if mask.any():
             kept.append((point, mask))
     if not kept:
@@ -143,25 +192,3 @@ def _kept(test: HammerTest, verdicts: Sequence[HitVerdict] | None) -> list[tuple
             f"{test.source}: no usable hit is left at any point; accept some by hand or repeat the test"
         )
     return kept
-
-
-def _point(
-    hits: Hits, keep: BoolArray, estimator: Estimator, test: HammerTest
-) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """Return FRFs, coherence and variance of one point, each (n_responses, n_lines)."""
-    force = scipy.fft.rfft(hits.force[keep], axis=-1)
-    motion = scipy.fft.rfft(hits.motion[keep], axis=-1)
-    gff = (np.abs(force) ** 2).sum(axis=0)
-    if not np.all(gff > 0):
-        raise EstimationError(f"{test.source}: the force at {hits.reference} is zero; check its channel")
-    gxx = (np.abs(motion) ** 2).sum(axis=0)
-    gxf = np.einsum("hrl,hl->rl", motion, force.conj())
-    h1 = gxf / gff
-    safe = np.where(gxx > 0, gxx, 1.0)
-    coherence = np.clip(np.abs(gxf) ** 2 / (safe * gff), 0.0, 1.0)
-    variance = mean_variance(force, motion, h1)
-    if estimator == "H1":
-        return h1, coherence, variance
-    scale = 1 / np.maximum(coherence, 1e-12)
-    factor = scale if estimator == "H2" else np.sqrt(scale)
-    return h1 * factor, coherence, variance * factor**2

@@ -8,10 +8,11 @@ from typing import Any, Literal
 import numpy as np
 import pandas as pd
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, frozen_array
+from acquisition.arrays import ComplexArray, FloatArray, IntArray, frozen_array
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
+from acquisition.scatter import HitScatter, complex_type
 
 Form = Literal["receptance", "mobility", "accelerance"]
 FORMS: tuple[Form, ...] = ("receptance", "mobility", "accelerance")
@@ -27,7 +28,7 @@ class FrfSet:
     frequency : (n_lines,) array
         Evenly spaced frequency lines [Hz].
     values : (n_frf, n_lines) complex array
-        FRFs [m/N, m/(N s) or 1/kg, by ``form``].
+        FRFs [m/N, m/(N s) or 1/kg, by ``form``]; single precision stays single precision, see `double`.
     responses, references : tuple of Dof, length n_frf
         Where each FRF was measured and where it was excited. Signs of the directions are as in the file:
         they are *not* yet applied to ``values``.
@@ -46,6 +47,9 @@ class FrfSet:
         Nodes of the test.
     source : str
         Where the FRFs came from, for messages.
+    scatter : HitScatter, optional
+        Covariance of the FRFs from the repeated hits. It goes with ``variance``, which is its diagonal: where
+        that is None, so is this.
 
     Raises
     ------
@@ -64,10 +68,11 @@ class FrfSet:
     decay: float = 0.0
     geometry: Geometry = field(default_factory=Geometry.empty)
     source: str = "arrays"
+    scatter: HitScatter | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frequency", frozen_array(self.frequency))
-        object.__setattr__(self, "values", frozen_array(self.values, np.complex128))
+        object.__setattr__(self, "values", frozen_array(self.values, complex_type(self.values)))
         object.__setattr__(self, "responses", tuple(self.responses))
         object.__setattr__(self, "references", tuple(self.references))
         n_frf, n_lines = len(self.responses), len(self.frequency)
@@ -75,6 +80,8 @@ class FrfSet:
             value = getattr(self, name)
             if value is not None:
                 object.__setattr__(self, name, frozen_array(value, dtype))
+        if self.variance is None:
+            object.__setattr__(self, "scatter", None)
         self._check(n_frf, n_lines)
 
     def _check(self, n_frf: int, n_lines: int) -> None:
@@ -91,6 +98,13 @@ class FrfSet:
             value = getattr(self, name)
             if value is not None and value.shape != self.values.shape:
                 raise InputError(f"{self.source}: {name} has shape {value.shape}, not {self.values.shape}")
+        if self.scatter is not None:
+            last = max(int(rows.max()) for rows in self.scatter.hit_groups)
+            if self.scatter.n_lines != n_lines or last >= n_frf:
+                raise InputError(
+                    f"{self.source}: scatter of {self.scatter.n_lines} lines and {last + 1} FRFs does not "
+                    f"belong to {n_lines} lines and {n_frf} FRFs; give the set's own, or variance=None"
+                )
         steps = np.diff(self.frequency)
         if steps.min() <= 0 or np.ptp(steps) > 1e-3 * steps.mean():
             raise InputError(f"{self.source}: the frequency axis is not evenly spaced; resample it first")
@@ -132,18 +146,20 @@ class FrfSet:
                 f"{self.source}: the band {low:g}-{high:g} Hz holds {int(keep.sum())} lines; the data run "
                 f"from {self.frequency[0]:g} to {self.frequency[-1]:g} Hz"
             )
-        return self._lines(keep)
+        kept = np.flatnonzero(keep)
+        return self._lines(slice(int(kept[0]), int(kept[-1]) + 1))
 
-    def _lines(self, keep: BoolArray) -> FrfSet:
+    def _lines(self, keep: slice) -> FrfSet:
         cut: dict[str, Any] = {
             name: None if getattr(self, name) is None else getattr(self, name)[:, keep]
             for name in ("values", "coherence", "variance")
         }
-        return replace(self, frequency=self.frequency[keep], **cut)
+        scatter = None if self.scatter is None else self.scatter.lines(keep)
+        return replace(self, frequency=self.frequency[keep], scatter=scatter, **cut)
 
     def select(self, index: list[int] | IntArray) -> FrfSet:
         """Return some of the FRFs, by their row numbers."""
-        rows = [int(i) for i in index]
+        rows = [range(len(self.responses))[int(i)] for i in index]
         cut: dict[str, Any] = {
             name: None if getattr(self, name) is None else getattr(self, name)[rows]
             for name in ("values", "coherence", "variance", "averages")
@@ -152,6 +168,7 @@ class FrfSet:
             self,
             responses=tuple(self.responses[i] for i in rows),
             references=tuple(self.references[i] for i in rows),
+            scatter=None if self.scatter is None else self.scatter.select(rows),
             **cut,
         )
 
@@ -171,10 +188,44 @@ class FrfSet:
         power = FORMS.index(form) - FORMS.index(self.form)
         if power == 0:
             return self
-        whole = self._lines(np.abs(self.laplace) > 0) if power < 0 else self
-        factor = whole.laplace**power
-        variance = None if whole.variance is None else whole.variance * np.abs(factor) ** 2
-        return replace(whole, values=whole.values * factor, variance=variance, form=form)
+        first = int(np.flatnonzero(np.abs(self.laplace) > 0)[0]) if power < 0 else 0
+        whole = self._lines(slice(first, None)) if first else self
+        return replace(whole._times(whole.laplace**power), form=form)
+
+    def scaled(self, factor: float | FloatArray) -> FrfSet:
+        """Return the set multiplied by a calibration factor, its variance and scatter with it.
+
+        Parameters
+        ----------
+        factor : float or (n_frf,) array
+            One factor for all FRFs or one for each; negative turns a transducer round [-].
+
+        Raises
+        ------
+        InputError
+            If a factor is zero or not finite, or their number is not that of the FRFs.
+        """
+        wide = np.asarray(factor, dtype=np.float64)
+        if wide.shape not in ((), (len(self.responses),)) or not np.all(np.isfinite(wide) & (wide != 0)):
+            raise InputError(
+                f"{self.source}: factor {factor} for {len(self.responses)} FRFs; give one number other than "
+                "zero, or one for each FRF"
+            )
+        return self._times(wide if wide.ndim == 0 else wide[:, None])
+
+    def _times(self, factor: Any) -> FrfSet:
+        return replace(
+            self,
+            values=(self.values * factor).astype(self.values.dtype),
+            variance=None if self.variance is None else self.variance * np.abs(factor) ** 2,
+            scatter=None if self.scatter is None else self.scatter.times(factor),
+        )
+
+    def double(self) -> FrfSet:
+        """Return the set with values in double precision, as fits need them; itself if they are already."""
+        if self.values.dtype == np.complex128:
+            return self
+        return replace(self, values=self.values.astype(np.complex128))
 
     def table(self) -> pd.DataFrame:
         """Return one row per FRF: response, reference, lines, averages, mean coherence."""

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, frozen_array
+from acquisition.arrays import FloatArray, IntArray, frozen_array
+from acquisition.dof import Dof
 from acquisition.errors import InputError
 
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """Nodes of the test and their coordinates.
+    """Nodes of the test, their coordinates, and the lines that join them in drawings.
 
     Parameters
     ----------
@@ -21,27 +22,46 @@ class Geometry:
         Node numbers, each once.
     coordinates : (n_nodes, 3) array
         Positions in the test's axes [m].
+    lines : (n_lines, 2) int array, optional
+        Pairs of node numbers to be joined in drawings.
+    axes : (n_nodes, 3, 3) array, optional
+        Rows are the axes, in the test's axes, in which the directions of a node are meant [-]; only where
+        some node is turned by other than right angles (see `direction`).
 
     Raises
     ------
     InputError
-        If a node number stands twice or the shapes do not agree.
+        If a node number stands twice, the shapes do not agree, or a line ends at a node that does not exist.
     """
 
     nodes: tuple[int, ...]
     coordinates: FloatArray
+    lines: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    axes: FloatArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "nodes", tuple(int(n) for n in self.nodes))
         object.__setattr__(self, "coordinates", frozen_array(self.coordinates).reshape(-1, 3))
+        object.__setattr__(self, "lines", frozen_array(self.lines, np.int64).reshape(-1, 2))
+        if self.axes is not None:
+            object.__setattr__(self, "axes", frozen_array(self.axes).reshape(-1, 3, 3))
+        self._check()
+
+    def _check(self) -> None:
         if len(self.nodes) != len(self.coordinates):
             raise InputError(
                 f"geometry has {len(self.nodes)} node numbers and {len(self.coordinates)} coordinates; "
                 "give one row of x, y, z per node"
             )
-        if len(set(self.nodes)) != len(self.nodes):
+        if self.axes is not None and len(self.axes) != len(self.nodes):
+            raise InputError(f"geometry has {len(self.nodes)} nodes and axes for {len(self.axes)} of them")
+        known = set(self.nodes)
+        if len(known) != len(self.nodes):
             twice = sorted({n for n in self.nodes if self.nodes.count(n) > 1})
             raise InputError(f"geometry defines node(s) {twice} more than once; number every node once")
+        strange = sorted(set(self.lines.ravel().tolist()) - known)
+        if strange:
+            raise InputError(f"geometry has lines to node(s) {strange[:5]}, which have no coordinates")
 
     @classmethod
     def empty(cls) -> Geometry:
@@ -68,3 +88,12 @@ class Geometry:
                 f"no coordinates for node(s) {missing}; add them to data set 15 or 2411 of the test file"
             )
         return np.array(self.coordinates[[row[n] for n in wanted]]).reshape(-1, 3)
+
+    def direction(self, dof: Dof) -> FloatArray:
+        """Return the signed direction of a translation in the test's axes, shape (3,) [-].
+
+        It is that of the direction code, unless the node has axes of its own; zero for rotations and scalars.
+        """
+        if self.axes is None or dof.node not in self.nodes:
+            return dof.unit_vector
+        return np.asarray(dof.unit_vector @ self.axes[self.nodes.index(dof.node)], dtype=np.float64)

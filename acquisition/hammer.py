@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, frozen_array
+from acquisition.arrays import AnyArray, frozen_array
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frf import Form
@@ -24,9 +24,9 @@ class Hits:
     responses : tuple of Dof, length n_responses
         Where the motion was measured.
     force : (n_hits, n_samples) array
-        Force records [N].
+        Force records, in double or, where they came so, in single precision [N].
     motion : (n_hits, n_responses, n_samples) array
-        Response records [m/s^2, m/s or m, by the test's form].
+        Response records, likewise [m/s^2, m/s or m, by the test's form].
 
     Raises
     ------
@@ -36,13 +36,13 @@ class Hits:
 
     reference: Dof
     responses: tuple[Dof, ...]
-    force: FloatArray
-    motion: FloatArray
+    force: AnyArray
+    motion: AnyArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "responses", tuple(self.responses))
-        object.__setattr__(self, "force", frozen_array(self.force))
-        object.__setattr__(self, "motion", frozen_array(self.motion))
+        object.__setattr__(self, "force", frozen_array(self.force, keep_single=True))
+        object.__setattr__(self, "motion", frozen_array(self.motion, keep_single=True))
         expected = (self.force.shape[0], len(self.responses), self.force.shape[-1])
         if self.force.ndim != 2 or self.motion.shape != expected:
             raise InputError(

@@ -25,7 +25,7 @@ _COLUMNS = {
 
 
 def read_modes(path: Path | str) -> ModalData:
-    """Read modes from a table (.csv) or from data sets 55 of a universal file.
+    """Read modes from a table (.csv) or from data sets 55 and 2414 of a universal file.
 
     The table has a header row with the columns ``frequency`` [Hz] and ``sigma`` [Hz]; ``damping`` and
     ``damping_sigma`` [-] are optional, as are shape columns named by degree of freedom, ``3+Z`` (real). Lines
@@ -46,7 +46,7 @@ def read_modes(path: Path | str) -> ModalData:
         modal = read_uff(path).modal
         if modal is None:
             raise InputError(
-                f"{path}: holds no modes; give a table with a column 'frequency' or data sets 55"
+                f"{path}: holds no modes; give a table with a column 'frequency' or data sets 55 or 2414"
             )
         return modal
     table = _table(path)

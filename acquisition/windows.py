@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from acquisition.hammer import HammerTest
+from acquisition.hit_checks import pulse_ends, upright
 
 
 @dataclass(frozen=True)
@@ -20,7 +22,7 @@ class Windows:
     decay : float
         Decay rate of an exponential window exp(-decay (t - t0)), with t0 the time of the peak of the force of
         each hit [1/s]. Force and responses are both windowed: what results are exact samples of
-        H(i omega + decay), and the amplitude at the hit is left as it is.
+        H(i omega + decay), whatever t0 is, so the amplitude is left as it is.
     force_length : float or None
         Time after the peak of the force at which the force is taken for zero, with a cosine taper over the
         last fifth [s]; None leaves the force alone.
@@ -45,6 +47,9 @@ class Windows:
 def apply_windows(test: HammerTest, windows: Windows) -> HammerTest:
     """Return the test with windows applied and its ``decay`` raised accordingly.
 
+    A force window acts about the offset of the record, which is taken off first: cut off behind the pulse, an
+    offset would become a step.
+
     Parameters
     ----------
     test : HammerTest
@@ -55,16 +60,117 @@ def apply_windows(test: HammerTest, windows: Windows) -> HammerTest:
     time = np.arange(test.samples) / test.rate
     points = []
     for hits in test.points:
-        after = time - time[np.abs(hits.force).argmax(axis=-1)][:, None]
+        offset = np.median(hits.force, axis=-1, keepdims=True)
+        after = time - time[np.abs(hits.force - offset).argmax(axis=-1)][:, None]
         decay = np.exp(-windows.decay * after)
+        force = hits.force if windows.force_length is None else hits.force - offset
         points.append(
             replace(
                 hits,
-                force=hits.force * decay * force_window(after, windows.force_length),
+                force=force * decay * force_window(after, windows.force_length),
                 motion=hits.motion * decay[:, None, :],
             )
         )
     return replace(test, points=tuple(points), decay=test.decay + windows.decay)
+
+
+def state_window(
+    test: HammerTest,
+    *,
+    decay: float,
+    on: Literal["both", "responses"] | None = None,
+    origin: float = 0.0,
+) -> tuple[HammerTest, tuple[str, ...]]:
+    """Return the test with an exponential window stated that was applied before the records were stored.
+
+    If force x(t) and response y(t) were both multiplied by exp(-d (t - t0)), their ratio is H(s + d)
+    whatever t0 is, and nothing needs to be done but to hand d on. If the response alone was, the ratio is
+    H(s + d) exp(-d (t_hit - t0)) with the hit's own time, which scatters from hit to hit; then the force is
+    given the same window here, which makes the ratio H(s + d) exactly.
+
+    Parameters
+    ----------
+    test : HammerTest
+        Records as they were stored, with no decay stated yet.
+    decay : float
+        Decay rate of the window [1/s].
+    on : {"both", "responses"}, optional
+        Which records were windowed; left out: told from whether the noise of the force decays, and both where
+        the noise does not tell.
+    origin : float
+        Time after the start of the record at which a window on the responses alone was 1 [s].
+
+    Returns
+    -------
+    HammerTest
+        Records with force and responses windowed alike, and ``decay`` stated.
+    tuple of str
+        What was found and done.
+
+    Raises
+    ------
+    InputError
+        If the decay is negative, or one is stated already.
+    """
+    if decay < 0 or not np.isfinite(decay):
+        raise InputError(f"{test.source}: the decay of a window is {decay:g} 1/s; give a rate of 0 or above")
+    if test.decay and decay:
+        raise InputError(f"{test.source}: an exponential window of {test.decay:g} 1/s is stated already")
+    if decay == 0:
+        return test, ()
+    messages: tuple[str, ...] = ()
+    if on is None:
+        on, messages = _heard(test, decay)
+    if on == "both":
+        return replace(test, decay=decay), messages
+    window = np.exp(-decay * (np.arange(test.samples) / test.rate - origin))
+    points = tuple(
+        replace(p, force=(p.force - np.median(p.force, axis=-1, keepdims=True)) * window) for p in test.points
+    )
+    return replace(test, points=points, decay=decay), messages
+
+
+def _heard(test: HammerTest, decay: float) -> tuple[Literal["both", "responses"], tuple[str, ...]]:
+    """Return which records were windowed, as the noise of the force tells, and what to say of it."""
+    seen = force_noise_decay(test)
+    if seen is None or seen >= 0.5 * decay:
+        return "both", ()
+    message = (
+        f"{test.source}: the noise of the force does not decay, so the window of {decay:g} 1/s was on "
+        "the responses alone; the force was given the same window, counted from the start of the records"
+    )
+    return "responses", (message,)
+
+
+def force_noise_decay(test: HammerTest) -> float | None:
+    """Return the rate at which the noise of the force decays after the pulse [1/s]; None if it does not tell.
+
+    It tells if the noise is there, a millionth of the peak and a few steps of the converter, over 200 samples.
+
+    Parameters
+    ----------
+    test : HammerTest
+        Records as they were stored.
+    """
+    rates, weights = [], []
+    for wave in (wave for point in test.points for wave in upright(point.force)):
+        first, last = pulse_ends(wave)
+        rest = wave[last + 12 * (last - first + 1) :]
+        if len(rest) < 200:
+            continue
+        parts = rest[: len(rest) // 10 * 10].reshape(10, -1)
+        level = np.sqrt(np.mean((parts - parts.mean(axis=1, keepdims=True)) ** 2, axis=1))
+        steps = np.abs(np.diff(rest))
+        step = float(steps[steps > 0].min(initial=np.inf))
+        if level[0] < 3 * step and level[0] < 1e-3 * wave.max():
+            continue
+        heard = level > max(step, 1e-6 * float(wave.max())) if step < level[0] / 30 else level > 3 * step
+        if heard.sum() < 3:
+            continue
+        time = (np.arange(10) * parts.shape[1] / test.rate)[heard]
+        rates.append(-float(np.polyfit(time, np.log(level[heard]), 1)[0]))
+        weights.append(float(np.ptp(time)) ** 2)
+    return float(np.average(rates, weights=weights)) if rates else None
 
 
 def force_window(after: FloatArray, length: float | None) -> FloatArray:

@@ -1,17 +1,33 @@
 """From FRFs to modes with uncertainties."""
 
-from identification.identify import identify
-from identification.mac import auto_mac, comac, ecomac, fdac, frac, mac, macx, mpc, msf
+from identification.identify import identify, undecayed
+from identification.mac import (
+    auto_mac,
+    comac,
+    common_dofs,
+    coordinate_table,
+    ecomac,
+    fdac,
+    frac,
+    frac_table,
+    mac,
+    mac_table,
+    macx,
+    mpc,
+    msf,
+    subspace_mac,
+)
 from identification.model import ModalModel
-from identification.pairing import Pair, pair
+from identification.pairing import Correlation, Pair, Subspace, correlate, pair
 from identification.poles import ESTIMATORS, PoleEstimator, PoleSets, lsce, lscf
 from identification.residues import Residues, fit_residues
-from identification.scaling import Shapes, mode_shapes
+from identification.scaling import Shapes, modal_constants, mode_shapes, real_modes
 from identification.sdypy_bridge import from_sdypy, second_opinion, to_sdypy
 from identification.stabilisation import StabilisationChart, stabilise
 
 __all__ = [
     "ESTIMATORS",
+    "Correlation",
     "ModalModel",
     "Pair",
     "PoleEstimator",
@@ -19,23 +35,33 @@ __all__ = [
     "Residues",
     "Shapes",
     "StabilisationChart",
+    "Subspace",
     "auto_mac",
     "comac",
+    "common_dofs",
+    "coordinate_table",
+    "correlate",
     "ecomac",
     "fdac",
     "fit_residues",
     "frac",
+    "frac_table",
     "from_sdypy",
     "identify",
     "lsce",
     "lscf",
     "mac",
+    "mac_table",
     "macx",
+    "modal_constants",
     "mode_shapes",
     "mpc",
     "msf",
     "pair",
+    "real_modes",
     "second_opinion",
     "stabilise",
+    "subspace_mac",
     "to_sdypy",
+    "undecayed",
 ]

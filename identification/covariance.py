@@ -9,6 +9,8 @@ from acquisition.frf import FrfSet
 from identification import fading
 from identification.disagreement import Disagreement, between_frfs
 from identification.fitting import Fitted
+from identification.hit_scatter import NoiseFactors
+from identification.hit_scatter import factors as hit_factors
 from identification.pruning import constant_variance, pole_covariance
 from identification.refine import scores
 
@@ -33,17 +35,28 @@ def misfit_factor(frfs: FrfSet, fitted: Fitted) -> FloatArray:
     return np.asarray(np.where(excess > 1.0 + 3.0 * np.sqrt(spread) / under, excess, 1.0))
 
 
-def pole_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
+def noise_factors(frfs: FrfSet, fitted: Fitted) -> NoiseFactors:
+    """Return by what factor the errors exceed those of independent noise of the weights' size.
+
+    The hits tell where they came with the FRFs; otherwise the misfit does, and noise that fades.
+    """
+    fit, misfit = fitted.fit, misfit_factor(frfs, fitted)
+    _, free, pole = fading.inflation(fitted.weights.fade, (frfs.decay - fit.poles.real) / frfs.df)
+    every = np.broadcast_to(misfit * free, fit.linear.residues.shape)
+    prior = NoiseFactors(misfit * pole, every)
+    return hit_factors(frfs, fit, fitted.weights, prior) or prior
+
+
+def pole_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
     """Return the covariance of (ln frequency, damping ratio) of every mode, shape (n_modes, 2, 2) [-].
 
-    First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|; with what noise that fades
-    and FRFs that disagree add.
+    First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|; with what FRFs that disagree
+    add.
     """
     poles = fitted.fit.poles
     full = pole_covariance(fitted.fit).reshape(len(poles), 2, len(poles), 2)
     own = np.einsum("rarb->rab", full)
-    factor = misfit_factor(frfs, fitted) * _fading(frfs, fitted)[2]
-    own = own * factor[:, None, None] + _disagreement(frfs, fitted).mean
+    own = own * factors.poles[:, None, None] + _disagreement(frfs, fitted, factors).mean
     a, b, size = poles.real, poles.imag, np.abs(poles)
     jacobian = np.stack(
         [
@@ -55,26 +68,21 @@ def pole_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
     return np.asarray(np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian))
 
 
-def constant_statistics(frfs: FrfSet, fitted: Fitted) -> FloatArray:
+def constant_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
     """Return the standard deviation of each modal constant's real part, shape (n_frf, n_modes) [1/kg].
 
     Where FRFs disagree on a pole, each constant bears the scatter of its own FRF's pole about the common one.
     """
     fit = fitted.fit
     n = len(fit.poles)
-    factor = misfit_factor(frfs, fitted) * _fading(frfs, fitted)[1]
-    noise = constant_variance(fit) * factor[None, :]
+    noise = constant_variance(fit) * factors.constants
     gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(len(noise), n, n, 2)
     own = np.einsum("jnna->jna", gain)
-    shift = np.einsum("jna,nab,jnb->jn", own, _disagreement(frfs, fitted).each, own)
+    shift = np.einsum("jna,nab,jnb->jn", own, _disagreement(frfs, fitted, factors).each, own)
     return np.asarray(np.sqrt(noise + (2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0)))
 
 
-def _fading(frfs: FrfSet, fitted: Fitted) -> tuple[FloatArray, FloatArray, FloatArray]:
-    return fading.inflation(fitted.weights.fade, (frfs.decay - fitted.fit.poles.real) / frfs.df)
-
-
-def _disagreement(frfs: FrfSet, fitted: Fitted) -> Disagreement:
+def _disagreement(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Disagreement:
     fit = fitted.fit
     gradient, normal = scores(frfs, fit.poles, fitted.weights, fit.linear.powers)
-    return between_frfs(gradient, normal, misfit_factor(frfs, fitted) * _fading(frfs, fitted)[2])
+    return between_frfs(gradient, normal, factors.poles)

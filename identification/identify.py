@@ -26,6 +26,7 @@ from identification.stabilisation import StabilisationChart, stabilise
 
 _ORDER = 60
 _LEVELS = 25
+_AT_REST = 0.02  # part of a mode left at the end of a record that is worth a word
 
 
 def identify(
@@ -92,6 +93,7 @@ def identify(
 def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tuple[str, ...]]:
     """Cut to the band; leave out the line at s = 0 and FRFs that are zero."""
     data = frfs if band is None else frfs.band(*band)
+    data = data.double()
     first = float(data.frequency[0])
     if first < 1e-6 * data.df and len(data.frequency) > 2:
         data = data.band(0.5 * data.df, float(data.frequency[-1]))
@@ -134,8 +136,9 @@ def _assemble(
     sign = signs(data)
     poles: ComplexArray = fit.poles[own]
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
-    sigma = covariance.constant_statistics(data, fitted)[:, own]
-    spread = covariance.pole_statistics(data, fitted)[own]
+    factors = covariance.noise_factors(data, fitted)
+    sigma = covariance.constant_statistics(data, fitted, factors)[:, own]
+    spread = covariance.pole_statistics(data, fitted, factors)[own]
     shapes = mode_shapes(data, constants, _alone(data, fitted, own, sigma))
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
     return ModalModel(
@@ -153,7 +156,7 @@ def _assemble(
         band=band,
         frfs=data,
         chart=chart,
-        warnings=shapes.warnings + _warnings(fitted),
+        warnings=shapes.warnings + _warnings(fitted) + _ringing(data, poles),
         points_rejected=points_rejected,
     )
 
@@ -199,3 +202,28 @@ def _warnings(fitted: Fitted) -> tuple[str, ...]:
             f"{fitted.rank_excess:.2g} times what noise allows; check that nothing was moved between them"
         )
     return tuple(notes)
+
+
+def undecayed(model: ModalModel) -> FloatArray:
+    """Return which part of each mode is left at the end of records as long as the lines are fine.
+
+    The record is taken to be 1/df long, the exponential window in the FRFs included, shape (n_modes,) [-].
+    """
+    return _left(model.frfs, model.poles)
+
+
+def _left(data: FrfSet, poles: ComplexArray) -> FloatArray:
+    return np.asarray(np.exp(-(data.decay - poles.real) / data.df))
+
+
+def _ringing(data: FrfSet, poles: ComplexArray) -> tuple[str, ...]:
+    """Say which modes are not at rest when a record of 1/df ends."""
+    left = _left(data, poles)
+    names = ", ".join(str(i + 1) for i in np.flatnonzero(left > _AT_REST))
+    if not names:
+        return ()
+    return (
+        f"mode(s) {names}: {100 * left.max():.2g} % is left at the end of a record of {1 / data.df:.3g} s (1/df). If "
+        "the FRFs come from records that long, leakage biases their damping and level: record longer, or use an "
+        "exponential window",
+    )

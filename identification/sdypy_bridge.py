@@ -3,20 +3,89 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet
+from acquisition.geometry import Geometry
 from acquisition.modal_data import ModalData
-from identification.arrangement import arrange, signs
+from identification.arrangement import signs
 from identification.model import ModalModel
+from identification.scaling import modal_constants, mode_shapes
 
 _FREQUENCY = 1e-3
 _DAMPING = 0.05
+
+
+def frfs_to_sdypy(frfs: FrfSet, *, order: int = 60) -> Any:
+    """Return an sdypy-EMA ``Model`` that holds FRFs as they were measured, every line of them.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs; signs of directions are not applied.
+    order : int
+        Highest polynomial order it will use, in pairs of poles [-].
+
+    Returns
+    -------
+    sdypy.EMA.Model
+        A new model.
+    """
+    other = _empty(frfs, order=order)
+    other.frf, other.freq = np.array(frfs.values), np.array(frfs.frequency)
+    other.omega = 2 * np.pi * other.freq
+    return other
+
+
+def frfs_from_sdypy(
+    model: Any,
+    responses: Sequence[Dof],
+    references: Sequence[Dof],
+    *,
+    geometry: Geometry | None = None,
+    fitted: bool = False,
+) -> FrfSet:
+    """Return the FRFs an sdypy-EMA ``Model`` holds, with the degrees of freedom it does not know.
+
+    Parameters
+    ----------
+    model : sdypy.EMA.Model
+        The model; its last line is missing if it was built with an upper limit.
+    responses, references : sequence of Dof
+        Degrees of freedom of its FRFs.
+    geometry : Geometry, optional
+        Nodes.
+    fitted : bool
+        Whether to return what it reconstructed in place of what was measured.
+
+    Returns
+    -------
+    FrfSet
+
+    Raises
+    ------
+    InputError
+        If nothing was reconstructed, or numbers disagree.
+    """
+    values = getattr(model, "H" if fitted else "frf", None)
+    if values is None:
+        raise InputError("the sdypy-EMA model holds no reconstructed FRFs; call get_constants first")
+    return FrfSet(
+        np.asarray(model.freq, dtype=float),
+        np.atleast_2d(np.asarray(values, dtype=complex)),
+        tuple(responses),
+        tuple(references),
+        form=model.frf_form,
+        geometry=geometry or Geometry.empty(),
+        source="sdypy-EMA",
+    )
 
 
 def to_sdypy(model: ModalModel) -> Any:
@@ -36,7 +105,7 @@ def to_sdypy(model: ModalModel) -> Any:
     sdypy.EMA.Model
         A new model.
     """
-    other = _empty(model.frfs, order=max(1, len(model)))
+    other = frfs_to_sdypy(model.frfs, order=max(1, len(model)))
     sign = signs(model.frfs)
     other.all_poles, other.n_bands, other.len_band = [np.array(model.poles)], 1, len(other.freq)
     other.pole_freq = [np.array(model.modal.frequency)]
@@ -59,13 +128,14 @@ def from_sdypy(model: Any, frfs: FrfSet) -> ModalData:
     model : sdypy.EMA.Model
         A model whose poles were selected and whose constants were computed.
     frfs : FrfSet
-        The FRFs it was made of, for the degrees of freedom; one reference.
+        The FRFs it was made of, for the degrees of freedom.
 
     Returns
     -------
     ModalData
-        Its modes, rising in frequency; standard deviations unknown; shapes not mass-normalised, for its
-        ``phi`` are residues over the root of a residue.
+        Its modes, rising in frequency; standard deviations unknown. Shapes are made of its residues and
+        mass-normalised by our own scaling where there is a drive point: its ``phi`` are residues over the root
+        of a residue.
 
     Raises
     ------
@@ -76,23 +146,25 @@ def from_sdypy(model: Any, frfs: FrfSet) -> ModalData:
         raise InputError(
             "the sdypy-EMA model holds no selected poles with constants; call get_constants first"
         )
-    plan = arrange(frfs)
-    if len(model.A) != len(frfs.values) or len(plan.columns) != 1:
+    if len(model.A) != len(frfs.values):
         raise InputError(
-            f"the sdypy-EMA model has {len(model.A)} constants per mode, the FRFs are {len(plan.rows)} by "
-            f"{len(plan.columns)}; give the FRFs it was made of, one reference at a time"
+            f"the sdypy-EMA model has {len(model.A)} constants per mode and {len(frfs.values)} FRFs were given; "
+            "give the FRFs it was made of"
         )
     order = np.argsort(model.nat_freq)
     frequency = np.asarray(model.nat_freq, dtype=float)[order]
-    constants = (
-        np.asarray(model.A, dtype=complex)[:, order] * (2j * 2 * np.pi * frequency) * signs(frfs)[:, None]
-    )
+    damping = np.asarray(model.nat_xi, dtype=float)[order]
+    poles = 2 * np.pi * frequency * (-damping + 1j * np.sqrt(1 - damping**2))
+    constants = modal_constants(np.asarray(model.A, dtype=complex)[:, order], poles) * signs(frfs)[:, None]
+    equal = 1e-6 * np.abs(constants).max(axis=0, keepdims=True) * np.ones(constants.shape)
+    shapes = mode_shapes(frfs, constants, equal)
     return ModalData(
         frequency=frequency,
         frequency_sigma=np.full(len(frequency), np.nan),
-        damping=np.asarray(model.nat_xi, dtype=float)[order],
-        dofs=plan.rows,
-        shapes=constants[plan.index[:, 0]],
+        damping=damping,
+        dofs=shapes.dofs,
+        shapes=shapes.shapes,
+        scaled=shapes.scaled,
         geometry=frfs.geometry,
     )
 
@@ -116,16 +188,17 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     Returns
     -------
     DataFrame
-        One row per pole: frequency [Hz], damping [%].
+        One row per pole: frequency [Hz], damping [%]. ``attrs["warnings"]`` is a tuple of what is known to
+        make the answer unreliable, by :func:`opinion_warnings`.
 
     Raises
     ------
     EstimationError
         If its linear algebra fails.
     """
-    lowest = max(float(frfs.frequency[0]), frfs.df)
-    data = frfs.band(min(lowest, band[0]), band[1])
-    model = _empty(data, order=max(1, order // 2), lower=min(band[0], max(0.01 * band[1], data.df)))
+    lower = _lower(frfs, band)
+    data = frfs.band(min(max(float(frfs.frequency[0]), frfs.df), max(band[0], frfs.df)), band[1])
+    model = _empty(data, order=max(1, order // 2), lower=lower)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -138,7 +211,40 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     keep = (frequency >= band[0]) & (frequency <= band[1])
     damping = -100 * stable.real / np.abs(stable)
     table = pd.DataFrame({"frequency [Hz]": frequency[keep], "damping [%]": damping[keep]})
-    return table.set_index(pd.RangeIndex(1, len(table) + 1, name="pole"))
+    table = table.set_index(pd.RangeIndex(1, len(table) + 1, name="pole"))
+    table.attrs["warnings"] = opinion_warnings(frfs, band)
+    return table
+
+
+def opinion_warnings(frfs: FrfSet, band: tuple[float, float]) -> tuple[str, ...]:
+    """Say what is known to make sdypy-EMA's LSCF unreliable on a band.
+
+    Measured on structures with known modes: it loses modes if its lower limit lies above a fifth of the upper
+    one, or at 0 Hz, and it knows nothing of a window's decay but what is taken off afterwards.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs it is given.
+    band : tuple of float
+        Lowest and highest frequency [Hz].
+    """
+    lower, upper = _lower(frfs, band), min(band[1], float(frfs.frequency[-1]))
+    told = []
+    if lower > 0.2 * upper:
+        told.append(
+            f"sdypy-EMA sees nothing under {lower:g} Hz here, more than a fifth of {upper:g} Hz: there it loses and "
+            "shifts modes; give it FRFs from lower frequencies on"
+        )
+    if lower <= 0:
+        told.append("sdypy-EMA is given the line at 0 Hz: there it loses modes; start above 0 Hz")
+    return tuple(told)
+
+
+def _lower(frfs: FrfSet, band: tuple[float, float]) -> float:
+    """Return the lower limit handed on: 1 % of the upper one, if the lines reach down to it [Hz]."""
+    wanted = min(max(band[0], frfs.df), max(0.01 * band[1], frfs.df))
+    return max(wanted, float(frfs.frequency[0]))
 
 
 def _empty(frfs: FrfSet, *, order: int, lower: float | None = None) -> Any:

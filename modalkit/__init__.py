@@ -35,7 +35,9 @@ from acquisition import (  # noqa: E402
     write_uff,
 )
 from identification import ModalModel, identify  # noqa: E402
-from modalkit.process import Processed, Session, open_study, read  # noqa: E402
+from modalkit.handling import Handling  # noqa: E402
+from modalkit.process import Session, open_study  # noqa: E402
+from modalkit.reading import Processed, read  # noqa: E402
 from modalkit.study import Study, read_study  # noqa: E402
 from updating import Case, Diagnosis, diagnose, register  # noqa: E402
 
@@ -47,6 +49,7 @@ __all__ = [
     "FrfSet",
     "Geometry",
     "HammerTest",
+    "Handling",
     "InputError",
     "ModalData",
     "ModalModel",

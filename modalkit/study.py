@@ -37,6 +37,14 @@ class MeasurementTable(_Strict):
     modes: str | None = None
     band: tuple[float, float] | None = None
     exponential_window: float = Field(0.0, ge=0.0)
+    window_on: Literal["both", "responses"] | None = None
+    window: Literal["auto"] | float = "auto"
+    estimator: Literal["H1", "H2", "Hv"] = "H1"
+    use: list[tuple[str, int]] = []
+    leave: list[tuple[str, int]] = []
+    add: list[float] = []
+    drop: list[float] = []
+    layout: str | None = None
     calibration: float = Field(0.02, gt=0.0)
     repeatability: float = Field(0.0005, ge=0.0)
     position_sigma: float = Field(0.001, ge=0.0)

@@ -201,7 +201,7 @@ class _Placed:
 def _place(dofs: tuple[Dof, ...], geometry: Geometry, axes: Axes, spec: Spec) -> _Placed:
     """Find the DOFs that move along the model's z, and their points on the model."""
     dim = 1 if spec.kind == "beam" else 2
-    along = np.array([d.unit_vector @ axes.rotation[2] for d in dofs]).reshape(-1)
+    along = np.array([geometry.direction(d) @ axes.rotation[2] for d in dofs]).reshape(-1)
     rows = np.flatnonzero(np.abs(along) > 0.9)
     warnings = []
     if len(rows) < len(dofs):

@@ -23,7 +23,27 @@ def cut_off(records: FloatArray) -> FloatArray:
     return kept
 
 
-def quantise(records: FloatArray, bits: int, full_scale: FloatArray) -> FloatArray:
+def coloured(white: FloatArray, slope: float) -> FloatArray:
+    """Return noise whose power spectral density goes as frequency to a power, of the same expected r.m.s.
+
+    Parameters
+    ----------
+    white : array
+        White noise along the last axis [any].
+    slope : float
+        The power; 0 returns the noise as it is [-].
+    """
+    if slope == 0.0:
+        return white
+    length = white.shape[-1]
+    line = np.fft.rfftfreq(length, 1 / length)
+    gain = np.maximum(line, 1.0) ** (slope / 2)
+    both = np.where((line == 0) | (2 * line == length), 1.0, 2.0)
+    gain = gain / np.sqrt((both * gain**2).sum() / length)
+    return np.asarray(np.fft.irfft(gain * np.fft.rfft(white, axis=-1), length, axis=-1), dtype=np.float64)
+
+
+def quantise(records: FloatArray, bits: int, full_scale: FloatArray | float) -> FloatArray:
     """Return the records rounded to the steps of a converter.
 
     Parameters
@@ -36,7 +56,7 @@ def quantise(records: FloatArray, bits: int, full_scale: FloatArray) -> FloatArr
         Largest magnitude the channel can take [as ``records``]; the range used is the next one that makes
         the step a power of two.
     """
-    scale = np.where(full_scale > 0, full_scale, 1.0)
+    scale = np.where(np.asarray(full_scale) > 0, full_scale, 1.0)
     step = 2.0 ** np.ceil(np.log2(scale / 2 ** (bits - 1)))
     largest = 2.0 ** (bits - 1) - 1
     return np.asarray(np.clip(np.round(records / step), -largest, largest) * step, dtype=np.float64)

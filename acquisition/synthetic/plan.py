@@ -9,8 +9,8 @@ from typing import Literal
 from acquisition.errors import InputError
 from acquisition.frf import FORMS, Form
 
-BadHit = Literal["double", "clipped", "weak", "cut"]
-BAD_HITS: tuple[BadHit, ...] = ("double", "clipped", "weak", "cut")
+BadHit = Literal["double", "clipped", "weak", "cut", "wrong place"]
+BAD_HITS: tuple[BadHit, ...] = ("double", "clipped", "weak", "cut", "wrong place")
 
 
 @dataclass(frozen=True)
@@ -46,11 +46,17 @@ class HammerPlan:
         Noise of each response record, r.m.s. relative to the largest magnitude of that record [-].
     response_floor : float
         Further noise of each response channel, r.m.s. [m/s^2, m/s or m, by ``form``].
+    noise_slope : float
+        Colour of all noise: its power spectral density goes as frequency to this power, 0 for white, -1 for
+        pink, 2 for blue [-].
     adc_bits : int or None
         Resolution of the converter; None for none. The step is a power of two, so that records of up to 24
         bits are exact in single precision.
     headroom : float
         Full scale of each channel relative to its largest value in the test [-].
+    force_range, response_range : float or None
+        Full scale of the force channel and of the response channels instead; what is beyond saturates
+        [N; m/s^2, m/s or m, by ``form``].
     position_sigma : float
         Scatter of the place of each hit along both in-plane axes [m].
     decay : float
@@ -63,7 +69,8 @@ class HammerPlan:
     form : {"receptance", "mobility", "accelerance"}
         Whether displacement, velocity or acceleration is measured.
     bad : mapping of (int, int) to str
-        Faulty hits: (row number of the point, hit), both from 0, to "double", "clipped", "weak" or "cut".
+        Faulty hits: (row number of the point, hit), both from 0, to "double", "clipped", "weak", "cut" (the
+        response dies early) or "wrong place" (the hammer lands on the next point of the system).
 
     Raises
     ------
@@ -84,8 +91,11 @@ class HammerPlan:
     force_noise: float = 0.0
     response_noise: float = 0.0
     response_floor: float = 0.0
+    noise_slope: float = 0.0
     adc_bits: int | None = 24
     headroom: float = 1.5
+    force_range: float | None = None
+    response_range: float | None = None
     position_sigma: float = 0.0
     decay: float = 0.0
     gain: float = 1.0
@@ -101,6 +111,8 @@ class HammerPlan:
         wrong += [
             name for name in (*not_negative, "response_noise", "position_sigma") if getattr(self, name) < 0
         ]
+        ranges = ("force_range", "response_range")
+        wrong += [name for name in ranges if getattr(self, name) is not None and not getattr(self, name) > 0]
         if wrong:
             raise InputError(f"hammer plan: {wrong[0]} = {getattr(self, wrong[0])} makes no sense")
         if self.form not in FORMS or self.pulse not in ("haversine", "half-sine"):

@@ -9,10 +9,11 @@ import numpy as np
 import scipy.fft
 
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.errors import InputError
 from acquisition.frf import FORMS
 from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest, Hits
-from acquisition.synthetic.faults import clip, cut_off, quantise
+from acquisition.synthetic.faults import clip, coloured, cut_off, quantise
 from acquisition.synthetic.plan import HammerPlan
 from acquisition.synthetic.pulses import anti_alias, pulse_transform
 from acquisition.synthetic.system import ModalSystem
@@ -42,9 +43,16 @@ def hammer_test(
         Source of all scatter and noise.
     geometry : Geometry, optional
         Nodes of the test.
+
+    Raises
+    ------
+    InputError
+        If a hit is to land in the wrong place and there is only one point.
     """
     at_level = system if callable(system) else (lambda level: system)
     first = at_level(plan.peak)
+    if "wrong place" in plan.bad.values() and len(first.points) < 2:
+        raise InputError("hammer plan: a hit in the wrong place needs a system with a second point")
     contour = _Contour.over(plan)
     force = np.empty((len(first.points), plan.hits, plan.samples))
     motion = np.empty((len(first.points), plan.hits, len(first.responses), plan.samples))
@@ -113,13 +121,15 @@ def _one_hit(
     second = rng.uniform((0.15, 4 * plan.width), (0.5, 4 * plan.width + 0.015))
     if kind == "double":
         push = push * (1 + second[0] * np.exp(-s * second[1]))
-    receptance = at_level(float(level)).receptance(s, place[0], plan.position_sigma * scatter[3:])
+    structure = at_level(float(level))
+    landed = (place[0] + (kind == "wrong place")) % len(structure.points)
+    receptance = structure.receptance(s, landed, plan.position_sigma * scatter[3:])
     transducer = plan.gain * s ** FORMS.index(plan.form) * np.exp(-s * plan.delay)
     force, motion = contour.samples(push), contour.samples(receptance * (transducer * push))
     largest = np.abs(motion).max(axis=-1, keepdims=True)
-    force = force + plan.force_noise * rng.standard_normal(force.shape)
+    force = force + plan.force_noise * coloured(rng.standard_normal(force.shape), plan.noise_slope)
     noise = np.hypot(plan.response_noise * largest, plan.response_floor)
-    motion = motion + noise * rng.standard_normal(motion.shape)
+    motion = motion + noise * coloured(rng.standard_normal(motion.shape), plan.noise_slope)
     if kind == "clipped":
         return clip(force), clip(motion)
     return force, cut_off(motion) if kind == "cut" else motion
@@ -128,9 +138,12 @@ def _one_hit(
 def _converted(force: FloatArray, motion: FloatArray, plan: HammerPlan) -> tuple[FloatArray, FloatArray]:
     """Return the records as the converter and the exponential window leave them."""
     if plan.adc_bits is not None:
-        force = quantise(force, plan.adc_bits, plan.headroom * np.abs(force).max(keepdims=True))
-        channel = np.abs(motion).max(axis=(0, 1, 3), keepdims=True)
-        motion = quantise(motion, plan.adc_bits, plan.headroom * channel)
+        scale = plan.headroom * np.abs(force).max(keepdims=True)
+        force = quantise(force, plan.adc_bits, scale if plan.force_range is None else plan.force_range)
+        scale = plan.headroom * np.abs(motion).max(axis=(0, 1, 3), keepdims=True)
+        motion = quantise(
+            motion, plan.adc_bits, scale if plan.response_range is None else plan.response_range
+        )
     time = np.arange(plan.samples) / plan.rate
     window = np.exp(-plan.decay * (time - plan.pre_trigger))
     return force * window, motion * window

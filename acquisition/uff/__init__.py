@@ -1,4 +1,4 @@
-"""Universal files: data sets 15, 55, 58, 151, 164 and 2411 in and out."""
+"""Universal files: time records, FRFs, spectra, coherence, geometry and modes in and out."""
 
 from acquisition.uff.content import DatasetInfo, UffContent
 from acquisition.uff.read import read_functions, read_uff

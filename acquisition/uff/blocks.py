@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from mmap import mmap
 
+from acquisition.uff.source import Source
+
 _DELIMITER = re.compile(rb"^[ \t]{0,6}-1[ \t]*\r?$", re.MULTILINE)
 _IDENTITY = re.compile(rb"[ \t]{0,6}(\d{1,6})(b?)([ \t\d]*)\r?\n")
 _CLOSING = re.compile(rb"[ \t\r\n]*-1[ \t\x00\x1a]*(?:\r?\n|\Z)")
@@ -46,11 +48,12 @@ class Block:
     closed: bool
 
 
-def split_blocks(data: bytes | mmap) -> Iterator[Block]:
+def split_blocks(source: Source) -> Iterator[Block]:
     """Find the data sets of a file one after the other; rubbish between them is skipped.
 
     A data set that lacks its closing delimiter ends where the next one begins.
     """
+    data = source.data
     opening = _DELIMITER.search(data)
     line, counted = 1, 0
     while opening is not None:
@@ -58,7 +61,7 @@ def split_blocks(data: bytes | mmap) -> Iterator[Block]:
         if identity is None:
             opening = _DELIMITER.search(data, opening.end())
             continue
-        line += data[counted : opening.start()].count(b"\n")
+        line += source.newlines(counted, opening.start())
         counted = opening.start()
         fields = tuple(int(v) for v in identity[3].split()) if identity[2] else None
         stop, closed = _end_of_body(data, identity.end(), fields, int(identity[1]))
@@ -66,7 +69,7 @@ def split_blocks(data: bytes | mmap) -> Iterator[Block]:
         opening = _next_opening(data, stop, closed)
 
 
-def header_end(data: bytes | mmap, start: int) -> int:
+def header_end(data: mmap, start: int) -> int:
     """Return where the numbers of a data set 58 begin: after its eleven header lines."""
     for _ in range(HEADER_LINES):
         newline = data.find(b"\n", start)
@@ -76,14 +79,13 @@ def header_end(data: bytes | mmap, start: int) -> int:
     return start
 
 
-def _end_of_body(
-    data: bytes | mmap, start: int, fields: tuple[int, ...] | None, number: int
-) -> tuple[int, bool]:
+def _end_of_body(data: mmap, start: int, fields: tuple[int, ...] | None, number: int) -> tuple[int, bool]:
     """Return where the body ends, and whether it is closed by a delimiter of its own."""
     if fields is None:
         found = _DELIMITER.search(data, start)
-        glued = _GLUED.search(data, start) if number == 58 else None
-        if glued is not None and (found is None or glued.start() < found.start()):
+        limit = len(data) if found is None else found.start()
+        glued = _GLUED.search(data, start, limit) if number == 58 else None
+        if glued is not None:
             return glued.start(), False
         if found is None:
             return len(data), False
@@ -96,7 +98,7 @@ def _end_of_body(
     return (len(data), False) if end is None else (end.start(), end[1] is None)
 
 
-def _next_opening(data: bytes | mmap, stop: int, closed: bool) -> re.Match[bytes] | None:
+def _next_opening(data: mmap, stop: int, closed: bool) -> re.Match[bytes] | None:
     if not closed:
         return _HERE.match(data, stop) or _DELIMITER.search(data, stop)
     closing = _CLOSING.match(data, stop)

@@ -42,6 +42,11 @@ class DatasetInfo:
     ok: bool = True
     message: str = ""
 
+    @property
+    def place(self) -> str:
+        """File, data set and line, for messages."""
+        return f"{self.file}, data set {self.number} at line {self.line}"
+
 
 @dataclass(frozen=True, eq=False)
 class UffContent:
@@ -52,11 +57,11 @@ class UffContent:
     tests : tuple of HammerTest
         Raw time records, one entry for each combination of rate, length and quantity.
     frfs : FrfSet, optional
-        FRFs with their coherence.
+        FRFs with their coherence, read or made of auto- and cross-spectra.
     modal : ModalData, optional
-        Modes of data sets 55.
+        Modes of data sets 55 and 2414.
     geometry : Geometry
-        Nodes of data sets 15 and 2411.
+        Nodes of data sets 15 and 2411, with the lines of data sets 82 and 2412.
     datasets : tuple of DatasetInfo
         Every data set in the files, good or bad.
     warnings : tuple of str

@@ -11,6 +11,15 @@ from acquisition.errors import InputError
 _NAME = re.compile(r"\W*(\d+)\W*?([+-]?)([XYZ])([+-]?)\W*$", re.IGNORECASE)
 _AVERAGES = re.compile(r"averages\s*[:=]?\s*(\d+)", re.IGNORECASE)
 _DECAY = re.compile(r"exponential window decay\s*[:=]?\s*([-+.\deE]+)", re.IGNORECASE)
+_STAMP = re.compile(r"\b\d{1,2}:\d{2}:\d{2}(?:[.,]\d+)?\b")
+_NUMBERED = re.compile(
+    r"\b(?:hit|impact|blow|shot|strike|stroke)\s*(?:no\.?|nr\.?|number)?\s*[:=#]?\s*(\d{1,6})\b",
+    re.IGNORECASE,
+)
+# where the fields of records 6, 7 and 8 to 11 end
+IDENTITY = (5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
+FORM = (10, 20, 30, 43, 56, 69)
+AXIS = (10, 15, 20, 25, 46, 200)
 PRECISION = {2: (False, 4), 4: (False, 8), 5: (True, 4), 6: (True, 8)}
 
 
@@ -81,9 +90,15 @@ class Header58:
         return int(found[1]) if found else 0
 
     @property
-    def pair(self) -> tuple[Dof, Dof]:
-        """Response and reference."""
-        return self.response, self.reference
+    def hit(self) -> str:
+        """Number of the hit that the ID lines speak of; empty if they do not."""
+        found = _NUMBERED.search(" ".join(self.title))
+        return found[1] if found else ""
+
+    @property
+    def stamp(self) -> str:
+        """ID line with the time of day; empty if there is none."""
+        return next((line for line in self.title if _STAMP.search(line)), "")
 
 
 def parse_header(raw: bytes) -> Header58:
@@ -97,29 +112,29 @@ def parse_header(raw: bytes) -> Header58:
     lines = [_text(line) for line in raw.splitlines()[:11]]
     if len(lines) < 11:
         raise InputError(f"the header has {len(lines)} lines instead of 11: the file is cut off here")
-    identity, form = lines[5], lines[6]
-    ordinate, points = _whole(form[:10]), _whole(form[10:20])
+    identity, form = _fields(lines[5], IDENTITY), _fields(lines[6], FORM)
+    ordinate, points = _whole(form[0]), _whole(form[1])
     if ordinate not in PRECISION:
         raise InputError(f"ordinate data type {ordinate} does not exist (2, 4, 5 or 6 are known)")
     if points <= 0:
         raise InputError(f"it announces {points} points")
-    even = _whole(form[20:30]) == 1
-    step = _real(form[43:56])
-    if even and step <= 0:
+    even = _whole(form[2]) == 1
+    step = _real(form[4])
+    if even and not 1e-12 < step < 1e12:
         raise InputError(f"the abscissa has an increment of {step:g}")
     axes = [_axis(line) for line in lines[7:10]]
     return Header58(
         title=tuple(line.strip() for line in lines[:5]),
-        function_type=_whole(identity[:5]),
-        response=_dof(identity[41:51], identity[51:55], identity[30:41]),
-        reference=_dof(identity[66:76], identity[76:80], identity[55:66]),
+        function_type=_whole(identity[0]),
+        response=_dof(identity[5], identity[6], identity[4]),
+        reference=_dof(identity[8], identity[9], identity[7]),
         is_complex=PRECISION[ordinate][0],
         item_size=PRECISION[ordinate][1],
         points=points,
         even=even,
-        minimum=_real(form[30:43]),
+        minimum=_real(form[3]),
         increment=step,
-        resolution=_resolution(form[43:56]),
+        resolution=_resolution(form[4]),
         abscissa=axes[0],
         ordinate=axes[1],
         denominator=axes[2],
@@ -131,6 +146,14 @@ def _text(line: bytes) -> str:
         return line.decode("utf-8")
     except UnicodeDecodeError:
         return line.decode("latin-1")
+
+
+def _fields(line: str, ends: tuple[int, ...]) -> list[str]:
+    """Cut a line at its columns or, where tabs stand in it, at blanks."""
+    words = line.split()
+    if "\t" in line:
+        return (words + [""] * len(ends))[: len(ends)]
+    return [line[a:b] for a, b in zip((0, *ends), ends, strict=False)]
 
 
 def _whole(field: str) -> int:
@@ -147,7 +170,7 @@ def _real(field: str) -> float:
         value = float(text or "0")
     except ValueError:
         raise InputError(f"{field.strip()!r} stands in the header where a number is meant") from None
-    if value - value != 0:
+    if value - value != 0 or "_" in text or abs(value) > 1e30:
         raise InputError(f"{field.strip()!r} stands in the header where a finite number is meant")
     return value
 
@@ -172,13 +195,8 @@ def _dof(node: str, direction: str, name: str) -> Dof:
 
 
 def _axis(line: str) -> Axis:
-    return Axis(
-        kind=_whole(line[:10]),
-        length=_whole(line[10:15]),
-        force=_whole(line[15:20]),
-        label=_label(line[26:46]),
-        unit=_label(line[46:]),
-    )
+    kind, length, force, _, label, unit = _fields(line, AXIS)
+    return Axis(_whole(kind), _whole(length), _whole(force), _label(label), _label(unit))
 
 
 def _label(text: str) -> str:

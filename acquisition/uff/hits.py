@@ -2,60 +2,98 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
 from acquisition.arrays import AnyArray
 from acquisition.dof import Dof
+from acquisition.errors import InputError
 from acquisition.frf import Form
 from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest, Hits
 from acquisition.uff.measurements import Measurement
+from acquisition.uff.pairing import Hit, pair_up
+from acquisition.uff.quantities import MOTIONS
 
 _Key = tuple[float, int, Form, float]
+_Forces = dict[Dof, list[Measurement]]
+_Motions = dict[tuple[Dof, Dof], list[Measurement]]
+Read = Callable[[Measurement, AnyArray], None]
 
 
 def assemble_tests(
-    records: Sequence[Measurement], geometry: Geometry, source: str
+    records: Sequence[Measurement], geometry: Geometry, source: str, read: Read
 ) -> tuple[tuple[HammerTest, ...], list[str]]:
     """Return hammer tests from time records, and what had to be left out.
 
-    The n-th force at a degree of freedom belongs to the n-th responses that refer to it. Broken records keep
-    their place in the count; the hit they belong to is left out.
+    Parameters
+    ----------
+    records : sequence of Measurement
+        Time records in the order of the files. Broken ones keep their place in the count; the hit they belong
+        to is left out.
+    geometry : Geometry
+        Nodes of the test.
+    source : str
+        The files, for messages.
+    read : callable
+        Writes the values of a record to a place in memory.
     """
     warnings: list[str] = []
     forces, motions = _sorted_out(records, warnings)
-    points: dict[_Key, list[Hits]] = defaultdict(list)
+    plans: dict[_Key, list[list[Hit]]] = defaultdict(list)
     for reference, shocks in forces.items():
         answers = {dof: list_ for (dof, ref), list_ in motions.items() if ref == reference}
         if not answers:
             warnings.append(f"{source}: no response refers to the force at {reference}; it is left out")
         for form in dict.fromkeys(m.quantity for list_ in answers.values() for m in list_):
             same = {d: [m for m in list_ if m.quantity == form] for d, list_ in answers.items()}
-            for key, hits in _point(
+            for key, hits in _groups(
                 reference, shocks, {d: v for d, v in same.items() if v}, warnings, source
             ):
-                points[key].append(hits)
+                plans[key].append(hits)
     tests = []
-    for (step, _, form, decay), hits_list in points.items():
-        tests.append(HammerTest(1 / step, tuple(hits_list), form, decay, geometry, source))
+    for key, points in plans.items():
+        try:
+            tests.append(_test(key, points, geometry, source, read))
+        except InputError as error:
+            warnings.append(str(error))
     return tuple(tests), warnings
 
 
-def _sorted_out(
-    records: Iterable[Measurement], warnings: list[str]
-) -> tuple[dict[Dof, list[Measurement]], dict[tuple[Dof, Dof], list[Measurement]]]:
+def _test(key: _Key, points: list[list[Hit]], geometry: Geometry, source: str, read: Read) -> HammerTest:
+    step, length, form, decay = key
+    filled = tuple(_filled(hits, length, read) for hits in points)
+    return HammerTest(1 / step, filled, form, decay, geometry, source)
+
+
+def _filled(hits: Sequence[Hit], length: int, read: Read) -> Hits:
+    """Read the records of one point straight into their place."""
+    dofs = tuple(hits[0].motion)
+    records = [m for hit in hits for m in (hit.force, *hit.motion.values())]
+    single = all(m.dtype.itemsize == 4 for m in records)
+    dtype = np.float32 if single else np.float64
+    force = np.empty((len(hits), length), dtype)
+    motion = np.empty((len(hits), len(dofs), length), dtype)
+    for row, hit in enumerate(hits):
+        read(hit.force, force[row])
+        for column, dof in enumerate(dofs):
+            read(hit.motion[dof], motion[row, column])
+    force.setflags(write=False)
+    motion.setflags(write=False)
+    return Hits(hits[0].force.response, dofs, force, motion)
+
+
+def _sorted_out(records: Sequence[Measurement], warnings: list[str]) -> tuple[_Forces, _Motions]:
     """Split records into forces by their place and motions by response and reference."""
-    forces: dict[Dof, list[Measurement]] = defaultdict(list)
-    motions: dict[tuple[Dof, Dof], list[Measurement]] = defaultdict(list)
-    records = list(records)
+    forces: _Forces = defaultdict(list)
+    motions: _Motions = defaultdict(list)
     for record in records:
         if record.quantity == "force":
             forces[record.response].append(record)
     for record in records:
-        if record.quantity in ("force", "other", "pressure"):
+        if record.quantity not in MOTIONS:
             continue
         reference = record.reference
         if reference not in forces and reference.node == 0 and len(forces) == 1:
@@ -70,58 +108,62 @@ def _sorted_out(
     return forces, motions
 
 
-def _point(
+def _groups(
     reference: Dof,
     shocks: Sequence[Measurement],
     answers: dict[Dof, list[Measurement]],
     warnings: list[str],
     source: str,
-) -> Iterable[tuple[_Key, Hits]]:
-    """Return the hits at one point, one group for each rate, length and window."""
-    counts = {str(dof): len(list_) for dof, list_ in answers.items()}
-    if set(counts.values()) != {len(shocks)}:
-        told = ", ".join(f"{n} at {dof}" for dof, n in counts.items())
-        warnings.append(
-            f"{source}: {len(shocks)} forces at {reference} but responses {told}; only the first "
-            f"{min(len(shocks), *counts.values())} hits are used, check that none is missing in between"
-        )
-    groups: dict[tuple[float, int, float], list[tuple[Measurement, ...]]] = defaultdict(list)
-    for number, hit in enumerate(zip(shocks, *answers.values(), strict=False), start=1):
-        trouble = _trouble(hit)
+) -> Iterable[tuple[_Key, list[Hit]]]:
+    """Return the hits at one point, one group for each set of responses, rate, length and window."""
+    hits, uncertain = pair_up(shocks, answers)
+    if uncertain:
+        told = ", ".join(f"{len(list_)} at {dof}" for dof, list_ in answers.items())
+        warnings.append(f"{source}: {len(shocks)} forces at {reference} but responses {told}{uncertain}")
+    whole = _largest([frozenset(hit.motion) for hit in hits])
+    groups: dict[tuple[frozenset[Dof], float, int, float], list[Hit]] = defaultdict(list)
+    for hit in hits:
+        dofs = frozenset(hit.motion)
+        trouble = _missing(dofs, whole) or _trouble([hit.force, *hit.motion.values()])
         if trouble:
-            warnings.append(f"{source}: hit {number} at {reference} is left out: {trouble}")
+            warnings.append(f"{source}: hit {hit.number} at {reference} is left out: {trouble}")
             continue
-        groups[_step_of(groups, hit[0]), len(_values(hit[0])), hit[1].decay].append(hit)
+        ordered = Hit(hit.number, hit.force, {d: hit.motion[d] for d in answers if d in dofs})
+        decay = next(iter(hit.motion.values())).decay
+        step = _step_of([key[1] for key in groups], hit.force)
+        groups[dofs, step, hit.force.points, decay].append(ordered)
     form: Form = next(iter(answers.values()))[0].quantity  # type: ignore[assignment]
-    for (step, length, decay), hits in groups.items():
-        force = np.stack([_values(hit[0]) for hit in hits])
-        motion = np.stack([np.stack([_values(m) for m in hit[1:]]) for hit in hits])
-        yield (step, length, form, decay), Hits(reference, tuple(answers), force, motion)
+    for (_, step, length, decay), group in groups.items():
+        yield (step, length, form, decay), group
 
 
-def _values(record: Measurement) -> AnyArray:
-    assert record.values is not None
-    return np.asarray(record.values.real)
+def _largest(sets: list[frozenset[Dof]]) -> list[frozenset[Dof]]:
+    """Return the sets of responses that are part of no other."""
+    different = set(sets)
+    return [one for one in different if not any(one < other for other in different)]
 
 
-def _step_of(
-    groups: dict[tuple[float, int, float], list[tuple[Measurement, ...]]], record: Measurement
-) -> float:
+def _missing(dofs: frozenset[Dof], whole: list[frozenset[Dof]]) -> str:
+    if dofs in whole and dofs:
+        return ""
+    absent = sorted((sorted(other - dofs) for other in whole), key=len)
+    lost = absent[0] if absent else []
+    return f"no response at {', '.join(map(str, lost))} belongs to it" if lost else "it has no response"
+
+
+def _step_of(steps: Iterable[float], record: Measurement) -> float:
     """Return the spacing of a record, or of a group that agrees with it."""
-    for step, _, _ in groups:
-        if abs(step / record.step - 1) < 1e-6:
-            return step
-    return record.step
+    return next((step for step in steps if abs(step / record.step - 1) < 1e-6), record.step)
 
 
-def _trouble(hit: Sequence[Measurement]) -> str:
+def _trouble(records: Sequence[Measurement]) -> str:
     """Say why the records of a hit do not form one; empty if they do."""
-    broken = [m.place for m in hit if m.values is None]
+    broken = [m.place for m in records if m.values is None]
     if broken:
         return f"{broken[0]} is broken"
-    lengths = Counter(len(_values(m)) for m in hit)
+    lengths = {m.points for m in records}
     if len(lengths) > 1:
         return f"its records have different lengths {sorted(lengths)}"
-    if max(abs(m.step / hit[0].step - 1) for m in hit) > 1e-6:
+    if max(abs(m.step / records[0].step - 1) for m in records) > 1e-6:
         return "its records have different sampling rates"
-    return "its records have different windows" if len({m.decay for m in hit[1:]}) > 1 else ""
+    return "its records have different windows" if len({m.decay for m in records[1:]}) > 1 else ""

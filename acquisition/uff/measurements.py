@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +11,10 @@ from acquisition.arrays import AnyArray
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.uff.header58 import Header58
-from acquisition.uff.units import Quantity, Units, abscissa_factor, ratio_of, to_si
-from acquisition.uff.values58 import Function58
+from acquisition.uff.quantities import quantity_of
+from acquisition.uff.stored import Values, put
+from acquisition.uff.units import Quantity, Units, abscissa_factor
+from acquisition.uff.values58 import Located
 
 FUNCTION_TYPES = {
     0: "general function",
@@ -33,26 +36,38 @@ FUNCTION_TYPES = {
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """One function in SI units.
+    """One function, whose numbers are read when their place in memory is there.
 
     Parameters
     ----------
     function_type : int
-        1, 4 or 6.
+        1, 2, 3, 4, 6 or 9.
     quantity : str
         Form of the motion or FRF, or "force"; "other" for a coherence.
     response, reference : Dof
         Degrees of freedom.
     minimum, step : float
         First abscissa and spacing [s or Hz].
-    values : (n,) array or None
-        Ordinate [SI]; None where the data set is broken, so that its place in the count of hits is kept.
+    values : Values or None
+        Where the ordinate is; None where the data set is broken, so that its place in the count of hits is kept.
+    factor : float
+        What turns the values into SI [-].
     decay : float
         Decay of an exponential window, as the data set states it [1/s].
     place : str
         File, data set and line, for messages.
     averages : int
         Number of averages, 0 if not stated.
+    file, order : int
+        Which file it is from, and its place in the order of all records.
+    hit, stamp : str
+        Number of the hit and ID line with the time of day, as the data set states them.
+    single : bool
+        Whether it is a time record that the file calls single precision, though its text is read as double.
+    density : bool or None
+        Whether a spectrum is per hertz; None if not stated.
+    key : bytes
+        Digest of header and values, to find copies.
     """
 
     function_type: int
@@ -61,88 +76,143 @@ class Measurement:
     reference: Dof
     minimum: float
     step: float
-    values: AnyArray | None
+    values: Values | None
+    factor: float
     decay: float
     place: str
     averages: int = 0
+    file: int = 0
+    order: int = 0
+    hit: str = ""
+    stamp: str = ""
+    single: bool = False
+    density: bool | None = None
+    key: bytes = b""
+
+    @property
+    def points(self) -> int:
+        """Number of values."""
+        return 0 if self.values is None else self.values.points
+
+    @property
+    def dtype(self) -> np.dtype[np.generic]:
+        """Type of the values, 8-byte real numbers where they are broken."""
+        kept = np.dtype(np.float64) if self.values is None else self.values.dtype
+        return np.dtype(np.float32) if self.single and kept.kind == "f" else kept
+
+    @property
+    def axis(self) -> tuple[float, float, int]:
+        """First abscissa, spacing and length, rounded so that equal axes compare equal."""
+        return float(f"{self.minimum:.6g}"), float(f"{self.step:.6g}"), self.points
+
+    def into(self, out: AnyArray) -> None:
+        """Write the values in SI units to an array of their length."""
+        assert self.values is not None
+        self.values.into(out, self.factor)
+
+    def read(self) -> AnyArray:
+        """Return the values in SI units."""
+        out = np.empty(self.points, self.dtype)
+        self.into(out)
+        return out
 
 
-def measure(function: Function58, units: Units, place: str) -> tuple[Measurement, list[str]]:
-    """Return a function in SI units, and what had to be assumed.
+def measure(
+    located: Located, units: Units, place: str, *, file: int, order: int, digest: bool
+) -> tuple[Measurement, list[str]]:
+    """Check the numbers of a function piece by piece; return what it measures, and what had to be assumed.
+
+    Parameters
+    ----------
+    located : Located
+        The function.
+    units : Units
+        The file's units.
+    place : str
+        File, data set and line, for messages.
+    file, order : int
+        Which file it is from, and its place in the order of all records.
+    digest : bool
+        Whether copies are looked for.
 
     Raises
     ------
     InputError
         If its abscissa is uneven or it holds values that are not finite.
     """
-    header = function.header
-    quantity, factor, notes = quantity_of(header, units)
-    minimum, step = _even_abscissa(function)
-    values = function.values * factor
-    wrong = np.flatnonzero(~np.isfinite(values))
-    if len(wrong) and not (header.function_type in (4, 6) and wrong.tolist() == [0] and minimum == 0):
-        raise InputError(
-            f"{len(wrong)} of its {len(values)} values are not finite, the first at point {wrong[0] + 1}"
-        )
+    header = located.header
+    found, notes = described(header, units, place, file=file, order=order)
+    minimum, step = _even_abscissa(located)
     seconds = abscissa_factor(header.abscissa)
+    key = _checked(located, found, minimum, digest)
+    complete = {"values": located.stored, "minimum": minimum * seconds, "step": step * seconds, "key": key}
+    return Measurement(**{**found.__dict__, **complete}), notes
+
+
+def described(
+    header: Header58, units: Units, place: str, *, file: int, order: int
+) -> tuple[Measurement, list[str]]:
+    """Return a measurement without values, from its header alone, and what had to be assumed."""
+    quantity, factor, density, notes = quantity_of(header, units)
     found = Measurement(
         function_type=header.function_type,
         quantity=quantity,
         response=header.response,
         reference=header.reference,
-        minimum=minimum * seconds,
-        step=step * seconds,
-        values=values,
+        minimum=0.0,
+        step=1.0,
+        values=None,
+        factor=factor,
         decay=header.decay,
         place=place,
         averages=header.averages,
+        file=file,
+        order=order,
+        hit=header.hit,
+        stamp=header.stamp,
+        single=header.function_type == 1 and header.item_size == 4,
+        density=density,
     )
     return found, notes
 
 
-def quantity_of(header: Header58, units: Units) -> tuple[Quantity, float, list[str]]:
-    """Return what a function measures, its SI factor, and what had to be assumed."""
-    rotation = abs(header.response.direction) > 3
-    quantity, factor = to_si(header.ordinate, units, rotation=rotation)
-    notes: list[str] = []
-    if header.function_type == 6:
-        return "other", 1.0, notes
-    if header.function_type == 4:
-        return _frf_quantity(header, units, quantity, factor)
-    if quantity == "other" and header.function_type == 1 and header.response == header.reference:
-        notes.append("its ordinate has no type; taken for the force, as response and reference are the same")
-        return "force", 1.0, notes
-    if quantity == "other" and header.function_type == 1 and header.ordinate.kind in (0, 1):
-        notes.append("its ordinate has no type; taken for an acceleration in m/s^2")
-        return "accelerance", 1.0, notes
-    return quantity, factor, notes
+def _checked(located: Located, found: Measurement, minimum: float, digest: bool) -> bytes:
+    """Look for values that are not finite in SI; return a digest of header and values where one is wanted."""
+    factor, spare_first = found.factor, found.function_type in (4, 6) and minimum == 0
+    kept = located.stored.dtype
+    dtype = np.dtype(np.float32) if found.single and kept.kind == "f" else kept
+    total, first_bad = 0, -1
+    sum_ = hashlib.blake2b(located.raw_header, digest_size=16)
+    for first, values in located.stored.chunks():
+        if digest:
+            sum_.update(np.ascontiguousarray(values).data)
+        scaled = values
+        if factor != 1 or values.dtype != dtype:
+            scaled = np.empty_like(values, dtype=dtype)
+            put(scaled, values, factor)
+        good = np.isfinite(scaled)
+        if not good.all():
+            bad = np.flatnonzero(~good) + first
+            first_bad = int(bad[0]) if first_bad < 0 else first_bad
+            total += len(bad)
+    if total and not (spare_first and total == 1 and first_bad == 0):
+        raise InputError(
+            f"{total} of its {located.header.points} values are not finite, the first at point {first_bad + 1}"
+        )
+    return sum_.digest() if digest else b""
 
 
-def _frf_quantity(
-    header: Header58, units: Units, quantity: Quantity, factor: float
-) -> tuple[Quantity, float, list[str]]:
-    rotation = abs(header.reference.direction) > 3
-    below, divisor = to_si(header.denominator, units, rotation=rotation)
-    if quantity in ("receptance", "mobility", "accelerance") and below == "force":
-        return quantity, factor / divisor, []
-    stated = ratio_of(header.ordinate.unit)
-    if stated is not None:
-        return stated[0], stated[1], [f"no data types; its unit {header.ordinate.unit} decides"]
-    if quantity in ("receptance", "mobility", "accelerance") and header.denominator.kind == 0:
-        return quantity, factor * units.force, ["its denominator has no type; taken for a force"]
-    if quantity == "other" and header.ordinate.kind in (0, 1):
-        return "accelerance", 1.0, ["neither data types nor units; taken for accelerance in 1/kg"]
-    return "other", 1.0, []
-
-
-def _even_abscissa(function: Function58) -> tuple[float, float]:
-    header, abscissa = function.header, function.abscissa
+def _even_abscissa(located: Located) -> tuple[float, float]:
+    header = located.header
     if header.even:
         return header.minimum, simplest_within(header.increment, header.resolution)
+    abscissa = located.abscissa()
+    if not np.all(np.abs(abscissa) < 1e30):  # nan is not either
+        raise InputError("its abscissa holds values that are not finite")
     steps = np.diff(abscissa)
     step = float((abscissa[-1] - abscissa[0]) / max(len(steps), 1))
     printed = np.spacing(np.float32(np.abs(abscissa).max()))
-    if len(steps) == 0 or step <= 0 or np.ptp(steps) > 1e-4 * step + 4 * printed:
+    if len(steps) == 0 or not 1e-12 < step < 1e12 or np.ptp(steps) > 1e-4 * step + 4 * printed:
         raise InputError("its abscissa is unevenly spaced: resample it evenly")
     return float(abscissa[0]), step
 

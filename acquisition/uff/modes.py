@@ -11,35 +11,56 @@ from acquisition.modal_data import ModalData
 
 
 def mode_sets(modal: ModalData) -> Iterator[bytes]:
-    """Yield one data set 55 for each mode: complex modes, eigenvalue as (real, imaginary) in rad/s."""
+    """Yield one data set 55 for each mode: complex modes, eigenvalue as (real, imaginary) in rad/s.
+
+    The first ID line keeps all digits, ``mode 1: 10.25 Hz, damping ratio 0.0125``; the second the standard
+    deviations, where there are any, ``sigma 0.001 Hz, damping sigma 0.0002``: a data set 55 has no other
+    place for them.
+    """
     assert modal.damping is not None
+    assert modal.damping_sigma is not None
     zeta = np.nan_to_num(modal.damping, nan=0.0)
     omega = 2 * np.pi * modal.frequency
     poles = -zeta * omega + 1j * omega * np.sqrt(1 - zeta**2)
     nodes, shapes = _by_node(modal)
+    width = shapes.shape[1]
     for mode, pole in enumerate(poles):
-        hertz = modal.frequency[mode]
-        lines = [f"mode {mode + 1}: {hertz:.12g} Hz, damping ratio {zeta[mode]:.12g}", *["NONE"] * 4]
+        hertz = float(modal.frequency[mode])
+        lines = [f"mode {mode + 1}: {hertz!r} Hz, damping ratio {float(zeta[mode])!r}"]
+        lines += [
+            _sigmas(float(modal.frequency_sigma[mode]), float(modal.damping_sigma[mode])),
+            *["NONE"] * 3,
+        ]
         modal_a = 2j * pole.imag if modal.scaled else 0.0
-        lines.append("".join(f"{v:10d}" for v in (1, 3, 2, 8, 5, 3)))
+        lines.append("".join(f"{v:10d}" for v in (1, 3, 2 if width == 3 else 3, 8, 5, width)))
         lines.append("".join(f"{v:10d}" for v in (2, 6, 1, mode + 1)))
-        lines.append(_row([pole, complex(modal_a), -complex(modal_a) * pole]))
+        lines += _rows([pole, complex(modal_a), -complex(modal_a) * pole])
         for node, vector in zip(nodes, shapes[:, :, mode], strict=True):
-            lines += [f"{node:10d}", _row(vector)]
+            lines += [f"{node:10d}", *_rows(vector)]
         body = "".join(f"{line:<80s}\n" for line in lines)
         yield f"    -1\n    55\n{body}    -1\n".encode("ascii", "replace")
 
 
+def _sigmas(frequency: float, damping: float) -> str:
+    told = [f"sigma {frequency!r} Hz"] if np.isfinite(frequency) else []
+    told += [f"damping sigma {damping!r}"] if np.isfinite(damping) else []
+    return ", ".join(told) or "NONE"
+
+
 def _by_node(modal: ModalData) -> tuple[list[int], ComplexArray]:
-    """Return the nodes and the translations of each, shape (n_nodes, 3, n_modes)."""
+    """Return the nodes and how each moves, shape (n_nodes, 3 or, with rotations, 6, n_modes)."""
     nodes = list(dict.fromkeys(dof.node for dof in modal.dofs))
-    table = np.zeros((len(nodes), 3, len(modal)), dtype=np.complex128)
+    row = {node: i for i, node in enumerate(nodes)}
+    width = 6 if any(dof.axis > 2 for dof in modal.dofs) else 3
+    table = np.zeros((len(nodes), width, len(modal)), dtype=np.complex128)
     if modal.shapes is not None:
-        for row, dof in enumerate(modal.dofs):
-            if 0 <= dof.axis < 3:
-                table[nodes.index(dof.node), dof.axis] = dof.sign * modal.shapes[row]
+        for number, dof in enumerate(modal.dofs):
+            if dof.axis >= 0:
+                table[row[dof.node], dof.axis] = dof.sign * modal.shapes[number]
     return nodes, table
 
 
-def _row(values: ComplexArray | list[complex]) -> str:
-    return "".join(f"{part:13.5e}" for value in values for part in (value.real, value.imag))
+def _rows(values: ComplexArray | list[complex]) -> list[str]:
+    """Return numbers as lines of six columns."""
+    parts = [f"{part:13.5e}" for value in values for part in (value.real, value.imag)]
+    return ["".join(parts[i : i + 6]) for i in range(0, len(parts), 6)]

@@ -1,102 +1,145 @@
-"""Modes of data sets 55, in SI units and mass-normalised where they say how."""
+"""Modes of data sets 55 and 2414 as one record, in SI units and mass-normalised where they say how."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 
 from acquisition.arrays import ComplexArray
 from acquisition.dof import Dof
-from acquisition.errors import InputError
 from acquisition.geometry import Geometry
 from acquisition.modal_data import ModalData
-from acquisition.uff.text_sets import read_with_pyuff
-from acquisition.uff.units import Units
-
-_HERTZ = re.compile(r"(?:FR\s*=\s*|\b)([\d.]+(?:[eE][-+]?\d+)?)\s*(?:Hz\b|:d=)")
+from acquisition.uff.mode_sets import ModeSet
 
 
 @dataclass(frozen=True, eq=False)
 class Mode:
-    """One mode: pole [rad/s], shape by node (n_nodes, 3), whether it is mass-normalised, what was odd."""
+    """One mode: its data set, its pole [rad/s], whether damping is stated, shape in SI, whether mass-normalised.
 
+    ``hertz`` tells whether its eigenvalue was taken for (damping, frequency) in Hz.
+    """
+
+    stated: ModeSet
     pole: complex
+    hertz: bool
     damped: bool
-    nodes: tuple[int, ...]
     shape: ComplexArray
     scaled: bool
-    note: str
 
 
-def read_mode(body: bytes, units: Units) -> Mode:
-    """Read one data set 55 of normal (2) or complex modes (3, 7).
+def solve_modes(sets: Sequence[ModeSet]) -> tuple[list[Mode], list[str]]:
+    """Return modes with poles in rad/s, and what had to be assumed.
 
-    Raises
-    ------
-    InputError
-        If it is something else, or cannot be read.
+    Complex eigenvalues come as (real, imaginary) in rad/s or as (damping, frequency) in Hz. The frequency in the
+    ID lines and the ratio of modal B to modal A, which is the eigenvalue in rad/s, tell; what they say of some
+    modes of a file holds for all of them.
     """
-    found = read_with_pyuff(55, body)
-    kind = int(found["analysis_type"])
-    if kind not in (2, 3, 7):
-        raise InputError(f"data set 55 with analysis type {kind}; only modes (2, 3 and 7) are used")
-    shape = np.stack([np.asarray(found[f"r{i}"], dtype=np.complex128) for i in (1, 2, 3)], axis=-1)
-    nodes = tuple(int(n) for n in found["node_nums"])
-    if len(nodes) != len(shape) or not np.isfinite(shape).all():
-        raise InputError("data set 55: nodes and shape do not agree, or values are not finite")
-    stated = _HERTZ.search(body[:400].decode("latin-1"))
-    pole, note = _pole(found, kind, float(stated[1]) if stated else None)
-    if abs(pole) == 0:
-        raise InputError("data set 55: its frequency is zero")
-    mass = _modal_mass(found, kind, pole)
-    if mass == 0:
-        return Mode(pole, pole.real != 0, nodes, shape, False, note)
-    scale = np.sqrt(units.force / units.length / np.complex128(mass))
-    return Mode(pole, pole.real != 0, nodes, shape * scale, True, note)
+    modes, remarks = [], []
+    for _, group in groupby(sorted(sets, key=lambda s: s.file), key=lambda s: s.file):
+        members = list(group)
+        hertz, remark = _in_hertz([s for s in members if s.is_complex])
+        remarks += [remark] if remark else []
+        modes += [_solved(s, hertz=hertz) for s in members]
+    return modes, remarks
 
 
-def _pole(found: dict[str, object], kind: int, stated: float | None) -> tuple[complex, str]:
-    """Return the pole [rad/s]; complex modes come as (re, im) in rad/s or as (damping, frequency) in Hz."""
-    if kind == 2:
-        omega = 2 * np.pi * float(str(found["freq"]))
-        zeta = float(str(found["modal_damp_vis"]))
-        return complex(-zeta * omega, omega * np.sqrt(max(1 - zeta**2, 0.0))), ""
-    value = complex(str(found["eig"]).strip())
-    radian = complex(-abs(value.real), abs(value.imag))
-    hertz = 2 * np.pi * radian
-    for pole in (radian, hertz):
-        ratio = 0.0 if stated is None or pole == 0 else 2 * np.pi * stated / abs(pole)
-        if abs(ratio - 1) < 0.02:  # where only rounding is between them, the ID line has more digits
-            return pole * (ratio if abs(ratio - 1) < 1e-5 else 1.0), ""
-    if value.real > 0:
-        return hertz, "its eigenvalue has a positive real part; taken for (damping, frequency) in Hz"
-    return radian, "its eigenvalue is taken for (real, imaginary) in rad/s"
+def describe(mode: Mode) -> str:
+    """Say what a mode was taken for."""
+    text = f"{abs(mode.pole) / (2 * np.pi):.6g} Hz, {len(mode.stated.nodes)} nodes"
+    if not mode.stated.is_complex:
+        return f"{text}, normal mode"
+    unit = "(damping, frequency) in Hz" if mode.hertz else "(real, imaginary) in rad/s"
+    return f"{text}, complex mode, eigenvalue taken for {unit}"
 
 
-def _modal_mass(found: dict[str, object], kind: int, pole: complex) -> complex:
-    """Return the modal mass in the file's units, 0 if not stated; modal A = 2 i omega_d m."""
-    if kind == 2:
-        return float(str(found["modal_m"]))
-    return complex(str(found["modal_a"]).strip()) / (2j * pole.imag)
+def _in_hertz(sets: Sequence[ModeSet]) -> tuple[bool, str]:
+    """Tell whether the eigenvalues of a file are in Hz, and what had to be assumed."""
+    if not sets:
+        return False, ""
+    votes = [vote for s in sets for vote in (_by_frequency(s), _by_modal_b(s)) if vote is not None]
+    hertz = sum(votes) > len(votes) / 2
+    name = "(damping, frequency) in Hz" if hertz else "(real, imaginary) in rad/s"
+    if votes:
+        doubt = any(vote != hertz for vote in votes)
+        told = f"{sets[0].place}: the modes disagree on the unit of their eigenvalues; taken for {name}"
+        return hertz, told if doubt else ""
+    if any(s.eigenvalue.real > 0 for s in sets):
+        return True, (
+            f"{sets[0].place}: eigenvalues have positive real parts; taken for (damping, frequency) in Hz; "
+            "put the frequency into an ID line to make sure"
+        )
+    return False, (
+        f"{sets[0].place}: nothing tells the unit of the eigenvalues; taken for {name}; "
+        "put the frequency into an ID line to make sure"
+    )
+
+
+def _by_frequency(mode: ModeSet) -> bool | None:
+    """Return what the frequency in the ID lines says: in Hz or not; None if nothing."""
+    ratio = mode.told.frequency / abs(mode.eigenvalue)
+    return next(
+        (hertz for hertz, unit in ((True, 1.0), (False, 0.5 / np.pi)) if abs(ratio / unit - 1) < 0.02), None
+    )
+
+
+def _by_modal_b(mode: ModeSet) -> bool | None:
+    """Return what modal B / modal A = -eigenvalue says; None if they are not stated."""
+    if mode.modal_a == 0 or mode.modal_b == 0:
+        return None
+    ratio = abs(mode.modal_b / mode.modal_a) / abs(mode.eigenvalue)
+    return next(
+        (hertz for hertz, unit in ((True, 2 * np.pi), (False, 1.0)) if abs(np.log(ratio / unit)) < 0.3), None
+    )
+
+
+def _solved(mode: ModeSet, *, hertz: bool) -> Mode:
+    if mode.is_complex:
+        factor = 2 * np.pi if hertz else 1.0
+        pole = factor * complex(-abs(mode.eigenvalue.real), abs(mode.eigenvalue.imag))
+    else:
+        omega = 2 * np.pi * mode.frequency
+        pole = complex(-mode.damping * omega, omega * np.sqrt(1 - mode.damping**2))
+    pole = _with_all_digits(mode, pole)
+    mass = mode.mass if not mode.is_complex else mode.modal_a / (2j * pole.imag) if pole.imag else 0j
+    shape = mode.shape
+    if mass != 0:
+        scale = np.sqrt(mode.units.force / mode.units.length / np.complex128(mass))
+        shape = shape * scale * np.array([1, 1, 1, *[mode.units.length] * 3])
+    damped = mode.is_complex or mode.damping > 0
+    return Mode(
+        mode, pole, hertz, damped and pole.real != 0, shape, bool(mass != 0 and np.isfinite(shape).all())
+    )
+
+
+def _with_all_digits(mode: ModeSet, pole: complex) -> complex:
+    """Return the pole with the digits of the ID lines, where only rounding is between them."""
+    omega, zeta = abs(pole), -pole.real / abs(pole)
+    told = mode.told
+    if abs(2 * np.pi * told.frequency / omega - 1) < 1e-5:
+        omega = 2 * np.pi * told.frequency
+    if abs(told.damping - zeta) < 1e-5 * zeta + 1e-12 and told.damping < 1:
+        zeta = told.damping
+    return complex(-zeta * omega, omega * np.sqrt(max(1 - zeta**2, 0.0)))
 
 
 def join_modes(modes: Sequence[Mode], geometry: Geometry) -> ModalData:
     """Return modes as one record over all nodes that move, in the order of frequency."""
     ordered = sorted(modes, key=lambda mode: abs(mode.pole))
-    nodes = list(dict.fromkeys(n for mode in ordered for n in mode.nodes))
+    nodes = list(dict.fromkeys(n for mode in ordered for n in mode.stated.nodes.tolist()))
     row = {node: i for i, node in enumerate(nodes)}
-    table = np.zeros((len(nodes), 3, len(ordered)), dtype=np.complex128)
+    table = np.zeros((len(nodes), 6, len(ordered)), dtype=np.complex128)
     for column, mode in enumerate(ordered):
-        table[[row[n] for n in mode.nodes], :, column] = mode.shape
+        table[[row[n] for n in mode.stated.nodes.tolist()], :, column] = mode.shape
     moving = np.argwhere(np.any(table != 0, axis=-1))
     poles = np.array([mode.pole for mode in ordered])
     return ModalData(
         frequency=np.abs(poles) / (2 * np.pi),
-        frequency_sigma=np.full(len(poles), np.nan),
+        frequency_sigma=np.array([m.stated.told.frequency_sigma for m in ordered]),
         damping=np.array([-m.pole.real / abs(m.pole) if m.damped else np.nan for m in ordered]),
+        damping_sigma=np.array([m.stated.told.damping_sigma for m in ordered]),
         dofs=tuple(Dof(nodes[n], int(axis) + 1) for n, axis in moving),
         shapes=table[moving[:, 0], moving[:, 1]] if len(moving) else None,
         scaled=all(mode.scaled for mode in ordered),

@@ -2,213 +2,159 @@
 
 from __future__ import annotations
 
-import mmap
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+import tempfile
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from acquisition.arrays import AnyArray
 from acquisition.errors import InputError
-from acquisition.uff.blocks import Block, header_end, split_blocks
+from acquisition.uff.blocks import split_blocks
 from acquisition.uff.content import DatasetInfo, UffContent
-from acquisition.uff.header58 import parse_header
+from acquisition.uff.datasets import Finds, read_file, without_copies
 from acquisition.uff.hits import assemble_tests
-from acquisition.uff.measurements import FUNCTION_TYPES, Measurement, measure, quantity_of
-from acquisition.uff.modes_in import Mode, join_modes, read_mode
-from acquisition.uff.nodes import merge_nodes
+from acquisition.uff.measurements import Measurement
+from acquisition.uff.modes_in import describe, join_modes, solve_modes
+from acquisition.uff.nodes import merge_nodes, turned
 from acquisition.uff.responses import assemble_frfs
-from acquisition.uff.text_sets import read_nodes, read_units
-from acquisition.uff.units import Units
+from acquisition.uff.source import opened
 from acquisition.uff.values58 import Function58, read_function
 
-KINDS = {
-    15: "nodes",
-    18: "coordinate systems",
-    55: "modes",
-    58: "function",
-    82: "trace lines",
-    151: "header",
-    164: "units",
-    2411: "nodes",
-    2412: "elements",
-    2414: "analysis data",
-    2420: "coordinate systems",
-}
-USED = (1, 4, 6)
+_SPOOL = 1 << 26  # bytes of numbers from text kept in memory before they go to a temporary file
+_FIRST_PASS = 0.6  # of the progress
 
 
-@dataclass
-class _Finds:
-    """What is collected while files are read, data set by data set."""
-
-    infos: list[DatasetInfo] = field(default_factory=list)
-    records: list[Measurement] = field(default_factory=list)
-    nodes: list[tuple[list[int], list[list[float]]]] = field(default_factory=list)
-    modes: list[Mode] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-    title: str = ""
-
-
-def read_uff(path: Path | str | Sequence[Path | str]) -> UffContent:
+def read_uff(
+    path: Path | str | Sequence[Path | str], *, progress: Callable[[float], None] | None = None
+) -> UffContent:
     """Read one or more universal files as one test.
 
     Parameters
     ----------
     path : path or sequence of paths
-        Files of data sets 15, 2411, 151, 164 and 58/58b; others are listed.
+        Files of data sets 15, 18, 55, 58/58b, 82, 151, 164, 2411, 2412, 2414 and 2420; others are listed.
+    progress : callable, optional
+        Called with the fraction that is done, from 0 to 1 [-].
 
     Returns
     -------
     UffContent
-        In SI units; a broken data set is listed with what is wrong with it and costs no other.
+        In SI units; a broken data set is listed with what is wrong with it and costs no other, and a broken
+        file costs none of the other files. Records keep the precision of the file.
 
     Raises
     ------
     InputError
-        If a file cannot be opened or holds no data set.
+        If no file can be opened or none holds a data set.
     """
     paths = [Path(path)] if isinstance(path, str | Path) else [Path(p) for p in path]
-    finds = _Finds()
-    for one in paths:
-        with _mapped(one) as data:
-            _read_file(data, one.name, finds)
-    geometry, remarks = merge_nodes(finds.nodes)
-    source = ", ".join(p.name for p in paths)
-    times = [m for m in finds.records if m.function_type == 1]
-    has_force = any(m.quantity == "force" for m in times)
-    tests, lost = assemble_tests(times, geometry, source) if has_force else ((), [])
-    if times and not has_force:
-        lost = [f"{source}: {len(times)} time records and no force among them; they are not used"]
-    frfs, odd = assemble_frfs(finds.records, geometry, source)
-    told = [f"{i.file}, data set {i.number} at line {i.line}: {i.message}" for i in finds.infos if i.message]
-    warnings = tuple(dict.fromkeys([*told, *finds.warnings, *remarks, *lost, *odd]))
-    modal = join_modes(finds.modes, geometry) if finds.modes else None
-    return UffContent(tests, frfs, modal, geometry, tuple(finds.infos), warnings, finds.title)
+    if not paths:
+        raise InputError("no file to read; name one at least")
+    report = _Report(progress, sum(_size(p) for p in paths))
+    finds = Finds(several=len(paths) > 1)
+    with ExitStack() as stack:
+        spool = stack.enter_context(tempfile.SpooledTemporaryFile(max_size=_SPOOL))
+        for one in paths:
+            _add_file(one, finds, stack, spool, report)
+        if not finds.usable:
+            raise InputError("; ".join(finds.warnings))
+        content = _content(finds, ", ".join(p.name for p in paths), report)
+    report.done()
+    return content
 
 
 def read_functions(path: Path | str) -> tuple[Function58, ...]:
     """Return the functions of a file as they stand there, in the file's units; broken ones are left out."""
     functions = []
-    with _mapped(Path(path)) as data:
-        for block in split_blocks(data):
+    with opened(Path(path)) as source, tempfile.SpooledTemporaryFile(max_size=_SPOOL) as spool:
+        for block in split_blocks(source):
             if block.number == 58:
                 try:
-                    functions.append(read_function(data, block))
+                    functions.append(read_function(source, block, spool))
                 except InputError:
                     continue
     return tuple(functions)
 
 
-def _mapped(path: Path) -> mmap.mmap:
-    """Return the bytes of a file without reading them yet."""
+@dataclass
+class _Report:
+    """How much has been done, in bytes; each byte is met twice, when it is checked and when it is kept."""
+
+    tell: Callable[[float], None] | None
+    total: int
+    passed: int = 0
+    kept: int = 0
+    told: float = -1.0
+
+    def checked(self, count: int) -> None:
+        """Take note of bytes that were found and checked."""
+        self.passed += count
+        self._say(min(_FIRST_PASS * self.passed / max(self.total, 1), _FIRST_PASS))
+
+    def read(self, record: Measurement, out: AnyArray) -> None:
+        """Read a record to its place."""
+        record.into(out)
+        self.kept += out.nbytes
+        self._say(min(_FIRST_PASS + (1 - _FIRST_PASS) * self.kept / max(self.total, 1), 0.999))
+
+    def done(self) -> None:
+        """Say that all is done."""
+        self._say(1.0)
+
+    def _say(self, fraction: float) -> None:
+        """Tell a fraction that is a thousandth more than the last one, and never less."""
+        if self.tell is not None and (fraction >= self.told + 1e-3 or fraction == 1):
+            self.told = fraction
+            self.tell(fraction)
+
+
+def _size(path: Path) -> int:
     try:
-        with path.open("rb") as file:
-            return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-    except ValueError:
-        raise InputError(f"{path}: the file is empty; export it again") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
+        return path.stat().st_size
+    except (OSError, ValueError):
+        return 0
 
 
-def _read_file(data: mmap.mmap, name: str, finds: _Finds) -> None:
-    blocks = list(split_blocks(data))
-    if not blocks:
-        raise InputError(
-            f"{name}: no data set found; a universal file has '    -1' lines around each data set"
-        )
-    units = _units(data, blocks, name, finds)
-    if not any(u.known for u in units) and any(b.number in (15, 55, 58, 2411) for b in blocks):
-        finds.warnings.append(f"{name}: no data set 164; SI units are assumed where labels say nothing else")
-    for block, unit in zip(blocks, units, strict=True):
-        info = DatasetInfo(name, block.number, KINDS.get(block.number, "not used"), block.line, "")
-        try:
-            finds.infos.append(_read_block(data, block, unit, info, finds))
-        except InputError as error:
-            finds.infos.append(_broken(data, block, unit, replace(info, ok=False, message=str(error)), finds))
-
-
-def _units(data: mmap.mmap, blocks: Sequence[Block], name: str, finds: _Finds) -> list[Units]:
-    """Return the units in force at each data set: those stated last before it, else the first in the file."""
-    stated: list[Units | None] = []
-    for block in blocks:
-        try:
-            found, remark = read_units(data[block.start : block.stop]) if block.number == 164 else (None, "")
-        except InputError:
-            found, remark = None, ""
-        if remark:
-            finds.warnings.append(f"{name}, data set 164 at line {block.line}: {remark}")
-        stated.append(found)
-    current = next((u for u in stated if u is not None), Units())
-    return list(_running(stated, current))
-
-
-def _running(stated: Sequence[Units | None], current: Units) -> Iterator[Units]:
-    for units in stated:
-        current = current if units is None else units
-        yield current
-
-
-def _read_block(data: mmap.mmap, block: Block, units: Units, info: DatasetInfo, finds: _Finds) -> DatasetInfo:
-    if block.number == 58:
-        return _read_58(data, block, units, info, finds)
-    body = data[block.start : block.stop]
-    if block.number == 164:
-        found, remark = read_units(body)
-        text = f"1 m = {found.length:g}, 1 N = {found.force:g} in the file's units"
-        return replace(info, description=text, message=remark)
-    if not block.closed:
-        raise InputError("its closing delimiter -1 is missing: the file is cut off here")
-    if block.number in (15, 2411):
-        nodes, coordinates = read_nodes(block.number, body, units)
-        finds.nodes.append((nodes.tolist(), coordinates.tolist()))
-        return replace(info, description=f"{len(nodes)} nodes")
-    if block.number == 55:
-        mode = read_mode(body, units)
-        finds.modes.append(mode)
-        text = f"{abs(mode.pole) / 6.283185307179586:.6g} Hz, {len(mode.nodes)} nodes"
-        return replace(info, description=text, message=mode.note)
-    if block.number == 151:
-        title = body.decode("latin-1").partition("\n")[0].strip()
-        finds.title = finds.title or title
-        return replace(info, description=title)
-    return replace(info, description="present, not used")
-
-
-def _read_58(data: mmap.mmap, block: Block, units: Units, info: DatasetInfo, finds: _Finds) -> DatasetInfo:
-    function = read_function(data, block)
-    header = function.header
-    kind = FUNCTION_TYPES.get(header.function_type, f"function of type {header.function_type}")
-    text = f"{header.response} / {header.reference}, {header.points} points"
-    info = replace(info, kind=kind, description=text, message="; ".join(function.notes))
-    if header.function_type not in USED:
-        return replace(info, description=text + ", present, not used")
-    place = f"{info.file}, data set 58 at line {info.line}"
-    record, notes = measure(function, units, place)
-    finds.records.append(record)
-    return replace(info, message="; ".join([*function.notes, *notes]))
-
-
-def _broken(data: mmap.mmap, block: Block, units: Units, info: DatasetInfo, finds: _Finds) -> DatasetInfo:
-    """Keep the place of a broken time record in the count of hits, if its header can be read."""
-    if block.number != 58:
-        return info
+def _add_file(
+    path: Path, finds: Finds, stack: ExitStack, spool: tempfile.SpooledTemporaryFile[bytes], report: _Report
+) -> None:
+    """Read one file; what is no universal file is told, and costs the others nothing."""
     try:
-        header = parse_header(data[block.start : min(block.stop, header_end(data, block.start))])
-    except InputError:
-        return info
-    quantity = quantity_of(header, units)[0]
-    place = f"{info.file}, data set 58 at line {info.line}"
-    finds.records.append(
-        Measurement(
-            header.function_type,
-            quantity,
-            header.response,
-            header.reference,
-            0.0,
-            1.0,
-            None,
-            header.decay,
-            place,
+        source = stack.enter_context(opened(path))
+        read_file(source, finds, spool, report.checked)
+    except InputError as error:
+        finds.warnings.append(f"{error}" + ("; the file is left out" if finds.several else ""))
+        finds.infos.append(
+            DatasetInfo(path.name, 0, "no universal file", 0, "", ok=False, message=str(error))
         )
+
+
+def _content(finds: Finds, source: str, report: _Report) -> UffContent:
+    nodes = merge_nodes(finds.nodes, finds.lines)
+    records, copies = without_copies(finds.records)
+    records = [
+        replace(m, response=nodes.turn(m.response), reference=nodes.turn(m.reference)) for m in records
+    ]
+    remark = turned(nodes, [d for m in finds.records for d in (m.response, m.reference)])
+    times = [m for m in records if m.function_type == 1]
+    has_force = any(m.quantity == "force" for m in times)
+    tests, lost = assemble_tests(times, nodes.geometry, source, report.read) if has_force else ((), [])
+    if times and not has_force:
+        lost = [f"{source}: {len(times)} time records and no force among them; they are not used"]
+    frfs, odd = assemble_frfs(records, nodes.geometry, source, report.read)
+    solved, doubts = solve_modes(finds.modes)
+    modal = join_modes(solved, nodes.geometry) if solved else None
+    taken = {m.stated.place: describe(m) for m in solved}
+    infos = tuple(replace(info, description=taken.get(info.place, info.description)) for info in finds.infos)
+    told = [_told(info) for info in finds.infos if info.message and info.number]
+    remarks = [remark] if remark else []
+    warnings = dict.fromkeys(
+        [*told, *finds.warnings, *copies, *nodes.remarks, *remarks, *lost, *odd, *doubts]
     )
-    kind = FUNCTION_TYPES.get(header.function_type, f"function of type {header.function_type}")
-    return replace(info, kind=kind, description=f"{header.response} / {header.reference}")
+    return UffContent(tests, frfs, modal, nodes.geometry, infos, tuple(warnings), finds.title)
+
+
+def _told(info: DatasetInfo) -> str:
+    end = "" if info.ok else "; it is left out, export it again if it is needed"
+    return f"{info.place}: {info.message}{end}"

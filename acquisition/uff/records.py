@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
-from acquisition.arrays import AnyArray, FloatArray
+from acquisition.arrays import AnyArray, FloatArray, IntArray
 from acquisition.dof import Dof
 from acquisition.frf import Form
+from acquisition.geometry import Geometry
 
 Format = Literal["binary", "ascii"]
 Precision = Literal["double", "single"]
@@ -56,21 +59,23 @@ class Record58:
     axes: tuple[tuple[int, str, str], tuple[int, str, str], tuple[int, str, str]]
 
 
-def function_set(record: Record58, *, form: Format, precision: Precision) -> bytes:
-    """Return a data set 58 (text) or 58b (binary) with its delimiters."""
+def function_set(record: Record58, *, form: Format, precision: Precision) -> Iterator[bytes | memoryview]:
+    """Yield the parts of a data set 58 (text) or 58b (binary) with its delimiters."""
     is_complex = np.iscomplexobj(record.values)
-    plain = np.ascontiguousarray(record.values, dtype=np.complex128 if is_complex else np.float64).view(
-        np.float64
-    )
-    numbers = plain.astype("<f4" if precision == "single" else "<f8")
+    double = np.complex128 if is_complex else np.float64
+    plain = np.ascontiguousarray(record.values)
     header = _header58(record, is_complex, precision)
     if form == "binary":
+        kind = {(False, "single"): "<f4", (False, "double"): "<f8", (True, "single"): "<c8"}
+        numbers = plain.astype(kind.get((is_complex, precision), "<c16"), copy=False)
         identity = f"{58:6d}b{1:6d}{2:6d}{11:12d}{numbers.nbytes:12d}{0:6d}{0:6d}{0:12d}{0:12d}"
-        return (
-            b"    -1\n" + f"{identity}\n{header}".encode("ascii", "replace") + numbers.tobytes() + b"    -1\n"
-        )
-    text = _table(plain, *((6, "%13.5e") if precision == "single" else (4, "%20.12e")))
-    return f"    -1\n    58\n{header}{text}    -1\n".encode("ascii", "replace")
+        yield b"    -1\n" + f"{identity}\n{header}".encode("ascii", "replace")
+        yield numbers.data.cast("B")
+        yield b"    -1\n"
+        return
+    flat = plain.astype(double, copy=False).view(np.float64)
+    text = _table(flat, *((6, "%13.5e") if precision == "single" else (4, "%20.12e")))
+    yield f"    -1\n    58\n{header}{text}    -1\n".encode("ascii", "replace")
 
 
 def _header58(record: Record58, is_complex: bool, precision: Precision) -> str:
@@ -85,11 +90,19 @@ def _header58(record: Record58, is_complex: bool, precision: Precision) -> str:
     )
     spacing = "".join(field13(v) for v in (record.minimum, record.increment, 0.0))
     lines.append(f"{kind[is_complex, precision]:10d}{len(record.values):10d}{1:10d}{spacing}")
-    for number, label, unit in (*record.axes, NOTHING):
-        lines.append(f"{number:10d}{0:5d}{0:5d}{0:5d} {label:20.20s} {unit:20.20s}")
-    return "".join(line + "\n" for line in lines)
+    return "".join(line + "\n" for line in lines) + _axes(record.axes)
 
 
+@lru_cache(maxsize=64)
+def _axes(axes: tuple[tuple[int, str, str], ...]) -> str:
+    """Return records 8 to 11."""
+    return "".join(
+        f"{number:10d}{0:5d}{0:5d}{0:5d} {label:20.20s} {unit:20.20s}\n"
+        for number, label, unit in (*axes, NOTHING)
+    )
+
+
+@lru_cache(maxsize=256)
 def field13(value: float) -> str:
     """Return a number in thirteen columns, a leading blank among them, with all the digits that fit."""
     texts = [f"{value:.{digits}e}" for digits in range(5, 11)]
@@ -124,13 +137,49 @@ def units_set() -> bytes:
     )
 
 
-def nodes_set(nodes: tuple[int, ...], coordinates: FloatArray) -> bytes:
-    """Return a data set 2411 with coordinates in double precision [m]."""
+def nodes_sets(geometry: Geometry) -> Iterator[bytes]:
+    """Yield data set 2411 in double precision [m], the lines, and the systems of nodes with axes of their own."""
+    systems: dict[bytes, int] = {np.eye(3).tobytes(): 1}
+    axes = np.broadcast_to(np.eye(3), (len(geometry.nodes), 3, 3)) if geometry.axes is None else geometry.axes
     lines = []
-    for node, place in zip(nodes, coordinates.tolist(), strict=True):
-        lines.append(f"{node:10d}{1:10d}{1:10d}{11:10d}")
-        lines.append("".join(f"{x:25.16E}".replace("E", "D") for x in place))
-    return _text_set(2411, lines)
+    for node, place, own in zip(geometry.nodes, geometry.coordinates.tolist(), axes, strict=True):
+        system = systems.setdefault(own.tobytes(), len(systems) + 10)
+        lines.append(f"{node:10d}{1:10d}{system:10d}{11:10d}")
+        lines.append(_row25(place))
+    if len(systems) > 1:
+        yield _systems_set(systems)
+    yield _text_set(2411, lines)
+    yield from trace_sets(geometry.lines)
+
+
+def _systems_set(systems: dict[bytes, int]) -> bytes:
+    """Return a data set 2420 with Cartesian systems at the origin."""
+    lines = [f"{1:10d}", f"{'modalkit':<80s}"]
+    for axes, label in systems.items():
+        rows = np.frombuffer(axes, dtype=np.float64).reshape(3, 3).tolist()
+        lines += [f"{label:10d}{0:10d}{8:10d}", f"{'CS' + str(label):<80s}"]
+        lines += [_row25(row) for row in [*rows, [0.0, 0.0, 0.0]]]
+    return _text_set(2420, lines)
+
+
+def _row25(values: list[float]) -> str:
+    return "".join(f"{x:25.16E}".replace("E", "D") for x in values)
+
+
+def trace_sets(lines: IntArray) -> Iterator[bytes]:
+    """Yield the lines of a geometry as data sets 82, in pieces of at most 249 entries."""
+    way: list[int] = []
+    number = 0
+    for first, second in [*lines.tolist(), (0, 0)]:
+        step = [second] if way and way[-1] == first else [0, first, second] if way else [first, second]
+        if first == 0 or len(way) + len(step) > 249:
+            if way:
+                number += 1
+                head = [f"{number:10d}{len(way):10d}{0:10d}", f"{'NONE':<80s}"]
+                rows = ["".join(f"{n:10d}" for n in way[i : i + 8]) for i in range(0, len(way), 8)]
+                yield _text_set(82, [*head, *rows])
+            way, step = [], [first, second]
+        way += step
 
 
 def _text_set(number: int, lines: list[str]) -> bytes:

@@ -1,4 +1,4 @@
-"""Data sets in text other than functions, read with pyuff and counted again."""
+"""Units and nodes: data sets 164, 15 and 2411, read with pyuff where it reads rightly and counted again."""
 
 from __future__ import annotations
 
@@ -12,6 +12,26 @@ import pyuff
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import InputError
 from acquisition.uff.units import Units, units_of
+from acquisition.uff.values58 import numbers_of
+
+
+def read_units(body: bytes) -> tuple[Units, str]:
+    """Return the units of a data set 164, and a remark if something was odd.
+
+    Raises
+    ------
+    InputError
+        If neither factors nor a known code stand there.
+    """
+    lines = body.decode("latin-1").splitlines()
+    try:
+        code = int(float(lines[0][:10] or 0))
+        words = " ".join(lines[1:]).upper().replace("D", "E").split()
+        factors = [float(word) for word in words[:2]]
+    except (ValueError, IndexError, OverflowError):
+        raise InputError("data set 164 cannot be read: units code or factors are no numbers") from None
+    length, force = (*factors, 0.0, 0.0)[:2]
+    return units_of(code, length, force)
 
 
 def read_with_pyuff(number: int, body: bytes) -> dict[str, Any]:
@@ -33,39 +53,54 @@ def read_with_pyuff(number: int, body: bytes) -> dict[str, Any]:
     return dict(found)
 
 
-def read_units(body: bytes) -> tuple[Units, str]:
-    """Return the units of a data set 164, and a remark if something was odd.
+def read_nodes(number: int, body: bytes) -> tuple[IntArray, FloatArray]:
+    """Return the nodes of a data set 15 or 2411.
 
-    Raises
-    ------
-    InputError
-        If neither factors nor a known code stand there.
-    """
-    lines = body.decode("latin-1").splitlines()
-    try:
-        code = int(float(lines[0][:10] or 0))
-        words = " ".join(lines[1:]).upper().replace("D", "E").split()
-        factors = [float(word) for word in words[:2]]
-    except (ValueError, IndexError):
-        raise InputError("data set 164 cannot be read: units code or factors are no numbers") from None
-    length, force = (*factors, 0.0, 0.0)[:2]
-    return units_of(code, length, force)
+    Parameters
+    ----------
+    number : int
+        Data set number.
+    body : bytes
+        What stands between the delimiters.
 
-
-def read_nodes(number: int, body: bytes, units: Units) -> tuple[IntArray, FloatArray]:
-    """Return node numbers (n,) and coordinates (n, 3) [m] of a data set 15 or 2411.
+    Returns
+    -------
+    labels : (n, 3) int array
+        Node, system of its coordinates, system of its displacements.
+    coordinates : (n, 3) array
+        As in the file [file's unit].
 
     Raises
     ------
     InputError
         If entries are missing or are no numbers.
     """
-    words = len(body.split())
-    if words % 7:
-        raise InputError(f"data set {number} holds {words} entries, not a multiple of seven: it is cut off")
-    found = read_with_pyuff(number, body)
-    nodes = np.asarray(found["node_nums"], dtype=np.float64)
-    coordinates = np.stack([np.asarray(found[axis], dtype=np.float64) for axis in "xyz"], axis=-1)
-    if len(nodes) != words // 7 or not np.isfinite(coordinates).all() or np.any(nodes % 1):
+    entries = numbers_of(body)
+    if len(entries) % 7 or len(entries) == 0:
+        raise InputError(
+            f"data set {number} holds {len(entries)} entries, not a multiple of seven: it is cut off or garbled"
+        )
+    if len(body.split()) == len(entries):
+        labels, coordinates = _nodes_of_pyuff(number, body)
+    else:  # columns that touch, which pyuff does not part
+        table = entries.reshape(-1, 7)
+        labels, coordinates = table[:, :3], table[:, 4:]
+    if (
+        len(labels) != len(entries) // 7
+        or not np.isfinite(labels).all()
+        or not np.isfinite(coordinates).all()
+    ):
         raise InputError(f"data set {number}: node numbers or coordinates are no numbers")
-    return nodes.astype(np.int64), coordinates / units.length
+    if np.any(labels % 1) or np.any(np.abs(labels) > 1e15) or np.any(np.abs(coordinates) > 1e15):
+        raise InputError(f"data set {number}: node numbers or coordinates that cannot be meant")
+    return labels.astype(np.int64), coordinates
+
+
+def _nodes_of_pyuff(number: int, body: bytes) -> tuple[FloatArray, FloatArray]:
+    found = read_with_pyuff(number, body)
+    names = ("node_nums", "def_cs", "disp_cs", "x", "y", "z")
+    columns = [np.asarray(found[name], dtype=np.float64) for name in names]
+    if len({len(column) for column in columns}) > 1:
+        raise InputError(f"data set {number}: columns of different lengths")
+    table = np.stack(columns, axis=-1)
+    return table[:, :3], table[:, 3:]

@@ -64,6 +64,8 @@ def units_of(code: int, length: float, force: float) -> tuple[Units, str]:
         If factors are missing or not positive and the code does not help.
     """
     if length > 0 and force > 0:
+        if not (1e-9 < length < 1e9 and 1e-9 < force < 1e9):
+            raise InputError(f"factors of length {length:g} and force {force:g} belong to no unit system")
         named = _SYSTEMS.get(code)
         agrees = named is None or (abs(length / named[0] - 1) < 1e-2 and abs(force / named[1] - 1) < 1e-2)
         remark = (
@@ -98,6 +100,8 @@ def to_si(axis: Axis, units: Units, *, rotation: bool = False) -> tuple[Quantity
         quantity, length, force = _KINDS[13]
     if rotation and quantity != "other":
         length, force = (1, 1) if quantity == "force" else (0, 0)
+    if max(abs(length), abs(force)) > 20:
+        return "other", 1.0
     agrees = stated is not None and stated[0] == quantity
     if (
         stated is not None
@@ -133,6 +137,45 @@ def ratio_of(label: str) -> tuple[Quantity, float] | None:
     if force is None or force[0] != "force" or motion is None or motion[0] == "force":
         return None
     return motion[0], motion[1] / force[1]
+
+
+def square_of(label: str) -> tuple[Quantity, float, str] | None:
+    """Return the quantity, the SI factor and the unit itself of a square such as ``N^2/Hz``, ``(m/s^2)^2``, ``g2``."""
+    text = re.sub(r"(?:rms|pk)$", "", _without_hertz(label))
+    powers = re.fullmatch(r"([A-Za-z]+)2(?:/s(2|4))?", text)
+    root = f"{powers[1]}{'/s2' if powers[2] == '4' else '/s' if powers[2] else ''}" if powers else ""
+    for unit in (root, text.removesuffix("2") if text.endswith("22") else "", text):
+        found = unit_of(unit) if unit else None
+        if found is not None:
+            return *found, unit
+    return None
+
+
+def product_of(label: str) -> tuple[Quantity, float] | None:
+    """Return the motion and the SI factor of a product with a force such as ``(m/s^2)*N`` or ``g N/Hz``."""
+    text = re.sub(r"\*\*", "^", label)
+    parts = [
+        unit_of(part) for part in re.split(r"[*.·]|(?<=[\w)])\s+(?=[\w(])", _cut_hertz(text)) if part.strip()
+    ]
+    if len(parts) != 2 or parts[0] is None or parts[1] is None:
+        return None
+    motion, force = parts if parts[1][0] == "force" else parts[::-1]
+    if motion is None or force is None or force[0] != "force" or motion[0] == "force":
+        return None
+    return motion[0], motion[1] * force[1]
+
+
+def is_density(label: str) -> bool | None:
+    """Tell whether a spectrum is per hertz; None if its label says nothing."""
+    return None if not _bare(label) else _without_hertz(label) != _bare(label)
+
+
+def _without_hertz(label: str) -> str:
+    return _bare(_cut_hertz(label))
+
+
+def _cut_hertz(label: str) -> str:
+    return re.sub(r"/\s*\(?\s*hz\s*\)?\s*$", "", label.strip(), flags=re.IGNORECASE)
 
 
 def abscissa_factor(axis: Axis) -> float:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from mmap import mmap
+from typing import IO
 
 import numpy as np
 
@@ -13,9 +15,13 @@ from acquisition.arrays import AnyArray, FloatArray
 from acquisition.errors import InputError
 from acquisition.uff.blocks import Block, header_end
 from acquisition.uff.header58 import Header58, parse_header
+from acquisition.uff.source import Source
+from acquisition.uff.stored import Stored
 
 _TOUCHING = re.compile(rb"(?<=[\d.])(?=[+-])")
 _FORTRAN = re.compile(rb"[dD](?=[+\-\d ])")
+_NO_LETTER = re.compile(rb"(?<=\d)([+-]\d{3})(?=[\s+-]|\Z)")  # Fortran's 1.00000-105
+_CHUNK = 1 << 22
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +35,7 @@ class Function58:
     abscissa : (n,) array
         Abscissa [file's unit].
     values : (n,) array
-        Ordinate, real or complex [file's unit].
+        Ordinate, real or complex, in the file's precision [file's unit].
     notes : tuple of str
         What was odd but could be read.
     """
@@ -40,72 +46,124 @@ class Function58:
     notes: tuple[str, ...] = ()
 
 
-def read_function(data: bytes | mmap, block: Block) -> Function58:
-    """Read one data set 58 or 58b.
+@dataclass(frozen=True, eq=False)
+class Located:
+    """A function whose numbers have been counted but not yet read into memory."""
+
+    header: Header58
+    stored: Stored
+    notes: tuple[str, ...]
+    raw_header: bytes
+
+    def abscissa(self) -> FloatArray:
+        """Return the abscissa [file's unit]."""
+        if not self.header.even:
+            with np.errstate(invalid="ignore"):  # nan is looked for later
+                return np.asarray(self.stored.read("x"), dtype=np.float64)
+        steps = np.arange(self.header.points, dtype=np.float64)
+        return np.asarray(self.header.minimum + self.header.increment * steps)
+
+
+def locate(source: Source, block: Block, spool: IO[bytes]) -> Located:
+    """Find the numbers of one data set 58 or 58b and count them; those in text go to a temporary file.
 
     Raises
     ------
     InputError
         If the header cannot be read, values are missing or are no numbers, or the number format is unknown.
     """
+    data = source.data
     body = header_end(data, block.start)
-    header = parse_header(data[block.start : min(body, block.stop)])
+    raw = data[block.start : min(body, block.stop)]
+    header = parse_header(raw)
     notes: list[str] = []
-    numbers = (
-        _binary(data, block, body, header, notes) if block.binary else _text(data, block, body, header, notes)
-    )
-    abscissa, values = numbers
-    if not header.even and len(abscissa) > 1 and np.any(np.diff(abscissa) <= 0):
-        notes.append("its abscissa does not rise from point to point")
+    if block.binary is None:
+        stored = _text(data, (body, block.stop), header, spool, notes)
+    else:
+        stored = _binary(source, block, body, header, notes)
     if not block.closed:
         notes.append("its closing delimiter -1 is missing")
-    return Function58(header, abscissa, values, tuple(notes))
+    return Located(header, stored, tuple(notes), raw)
 
 
-def _binary(
-    data: bytes | mmap, block: Block, body: int, header: Header58, notes: list[str]
-) -> tuple[FloatArray, AnyArray]:
+def read_function(source: Source, block: Block, spool: IO[bytes]) -> Function58:
+    """Read one data set 58 or 58b; raises as `locate` does."""
+    located = locate(source, block, spool)
+    return Function58(located.header, located.abscissa(), located.stored.read(), located.notes)
+
+
+def _binary(source: Source, block: Block, body: int, header: Header58, notes: list[str]) -> Stored:
     order, number_format = (*(block.binary or ()), 0, 0)[:2]
     if number_format != 2 or order not in (1, 2):
         raise InputError(
             f"binary number format {number_format}, byte order {order}; only IEEE 754 (2), little (1) "
             "or big (2) endian, can be read: export it again as text"
         )
-    mark = "<" if order == 1 else ">"
-    columns = 2 if header.is_complex else 1
-    fields = [] if header.even else [("x", f"{mark}f4")]
-    layout = np.dtype([*fields, ("y", f"{mark}f{header.item_size}", (columns,))])
+    layout = _layout(header, "<" if order == 1 else ">", "f4", f"f{header.item_size}")
     _enough((block.stop - body) // layout.itemsize, header.points)
-    surplus = block.stop - body - header.points * layout.itemsize
+    end = body + header.points * layout.itemsize
+    surplus = block.stop - end
     announced = (*(block.binary or ()), 0, 0, 0, 0)[3]
-    if surplus and np.frombuffer(data[block.stop - surplus : block.stop], np.uint8).any():
+    if surplus and _any_set(source.data, end, block.stop):
         if body + announced != block.stop:
             raise InputError(
                 f"it announces {announced} bytes and holds {block.stop - body}: bytes are missing or lost"
             )
         notes.append(f"{surplus} bytes after its {header.points} points are left out")
-    table = np.frombuffer(data, layout, count=header.points, offset=body)
-    values = np.ascontiguousarray(table["y"]).astype(np.float64)
-    return _abscissa(header, None if header.even else table["x"]), _ordinate(values, header)
+    return Stored(source.file, body, layout, header.points)
 
 
-def _text(
-    data: bytes | mmap, block: Block, body: int, header: Header58, notes: list[str]
-) -> tuple[FloatArray, AnyArray]:
-    columns = (2 if header.is_complex else 1) + (not header.even)
-    numbers = _numbers(data[body : block.stop])
-    _enough(len(numbers) // columns, header.points)
-    surplus = numbers[header.points * columns :]
-    if surplus.any():
-        notes.append(f"{len(surplus)} numbers after its {header.points} points are left out")
-    table = numbers[: header.points * columns].reshape(header.points, columns)
-    abscissa = _abscissa(header, None if header.even else table[:, 0])
-    return abscissa, _ordinate(table if header.even else table[:, 1:], header)
+def _layout(header: Header58, mark: str, x: str, y: str) -> np.dtype[np.void]:
+    values = ("y", mark + y, (2 if header.is_complex else 1,))
+    return np.dtype([values] if header.even else [("x", mark + x), values])
 
 
-def _numbers(text: bytes) -> FloatArray:
-    """Return all numbers of a text, which may touch each other or carry Fortran's D."""
-    text = _FORTRAN.sub(b"E", _TOUCHING.sub(b" ", text))
+def _any_set(data: mmap, start: int, stop: int) -> bool:
+    return any(data[i : min(i + _CHUNK, stop)].strip(b"\x00") for i in range(start, stop, _CHUNK))
+
+
+def _text(data: mmap, place: tuple[int, int], header: Header58, spool: IO[bytes], notes: list[str]) -> Stored:
+    """Put the numbers of a text into the temporary file, as doubles."""
+    layout = _layout(header, "=", "f8", "f8")
+    wanted = header.points * layout.itemsize // 8
+    offset, found, surplus, lost = spool.seek(0, 2), 0, 0, False
+    for numbers in _pieces(data, *place):
+        keep = numbers[: max(wanted - found, 0)]
+        spool.write(keep.tobytes())
+        surplus += len(numbers) - len(keep)
+        lost = lost or bool(numbers[len(keep) :].any())
+        found += len(numbers)
+    if found < wanted:
+        spool.truncate(offset)
+    _enough(found * 8 // layout.itemsize, header.points)
+    if lost:
+        notes.append(f"{surplus} numbers after its {header.points} points are left out")
+    return Stored(spool, offset, layout, header.points)
+
+
+def _pieces(data: mmap, start: int, stop: int) -> Iterator[FloatArray]:
+    """Yield the numbers of a text, some whole lines at a time."""
+    while start < stop:
+        end = stop
+        if stop - start > _CHUNK:
+            newline = data.rfind(b"\n", start, start + _CHUNK)
+            end = newline + 1 if newline >= 0 else min(start + 64 * _CHUNK, stop)
+        yield numbers_of(data[start:end])
+        start = end
+
+
+def numbers_of(text: bytes) -> FloatArray:
+    """Return all numbers of a text, which may touch each other or carry Fortran's D.
+
+    Raises
+    ------
+    InputError
+        If something else stands among them.
+    """
+    if _signs_touch(text):
+        text = _TOUCHING.sub(b" ", _NO_LETTER.sub(rb"E\1", text))
+    if b"D" in text or b"d" in text:
+        text = _FORTRAN.sub(b"E", text)
     if not text.strip():
         return np.zeros(0)
     try:
@@ -114,6 +172,15 @@ def _numbers(text: bytes) -> FloatArray:
             return np.asarray(np.fromstring(text, dtype=np.float64, sep=" "))
     except (DeprecationWarning, ValueError):
         raise InputError(f"{_first_bad(text)!r} stands among its values and is no number") from None
+
+
+def _signs_touch(text: bytes) -> bool:
+    """Tell whether a sign follows a digit or a point somewhere."""
+    code = np.frombuffer(text, np.uint8)
+    after, before = code[1:], code[:-1]
+    sign = np.flatnonzero((after == ord("+")) | (after == ord("-")))
+    ahead = before[sign]
+    return bool((((ahead >= ord("0")) & (ahead <= ord("9"))) | (ahead == ord("."))).any())
 
 
 def _first_bad(text: bytes) -> str:
@@ -130,15 +197,3 @@ def _enough(found: int, announced: int) -> None:
         raise InputError(
             f"it announces {announced} points and holds {found}: the file is cut off or wrong here"
         )
-
-
-def _abscissa(header: Header58, column: AnyArray | None) -> FloatArray:
-    if column is not None:
-        return np.asarray(column, dtype=np.float64)
-    return np.asarray(header.minimum + header.increment * np.arange(header.points), dtype=np.float64)
-
-
-def _ordinate(table: FloatArray, header: Header58) -> AnyArray:
-    if header.is_complex:
-        return np.asarray(np.ascontiguousarray(table).view(np.complex128)[:, 0])
-    return np.ascontiguousarray(table[:, 0])

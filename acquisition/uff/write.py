@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 from acquisition.errors import InputError
@@ -25,7 +26,7 @@ from acquisition.uff.records import (
     Record58,
     function_set,
     header_set,
-    nodes_set,
+    nodes_sets,
     units_set,
 )
 
@@ -54,7 +55,8 @@ def write_uff(
     modal : ModalData, optional
         Modes as data sets 55.
     geometry : Geometry, optional
-        Nodes as data set 2411 [m]; by default those of what is written.
+        Nodes as data set 2411 [m], its lines as data sets 82; by default those of what is written. Axes of
+        nodes that are turned go with them as data set 2420.
     title : str
         Title of data set 151.
     form : {"binary", "ascii"}
@@ -77,14 +79,16 @@ def write_uff(
     parts = [
         header_set(title),
         units_set(),
-        *([nodes_set(nodes.nodes, nodes.coordinates)] if nodes.nodes else []),
+        *(nodes_sets(nodes) if nodes.nodes else ()),
     ]
-    functions = (function_set(r, form=form, precision=precision) for r in _records(tests, sets))
+    functions = chain.from_iterable(
+        function_set(r, form=form, precision=precision) for r in _records(tests, sets)
+    )
     modes = mode_sets(modal) if modal is not None else iter(())
     _write_whole(target, parts, functions, modes)
 
 
-def _write_whole(target: Path, *chunks: Sequence[bytes] | Iterator[bytes]) -> None:
+def _write_whole(target: Path, *chunks: Iterable[bytes | memoryview]) -> None:
     """Write beside the target and move into place; leave nothing behind if that fails."""
     beside = ""
     try:

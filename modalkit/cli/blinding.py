@@ -12,7 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from acquisition.errors import StudyError
 from modalkit.blind import BlindResult, Score, run_blind, score
 from modalkit.cli.common import out, progress, show_figures, show_table
-from modalkit.cli.look import Figures
+from modalkit.cli.options import Figures
 from modalkit.write import write_json
 
 

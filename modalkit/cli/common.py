@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,9 +11,12 @@ from typing import Any
 
 import pandas as pd
 from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-out = Console(highlight=False, soft_wrap=True)
+_PIPE_WIDTH = 160  # characters a table may take where no terminal says how wide it is
+
+out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else _PIPE_WIDTH)
 progress = Console(stderr=True)
 
 
@@ -26,6 +30,33 @@ def working(what: str) -> Iterator[None]:
     """Show that something is going on, on stderr and only in a terminal."""
     with progress.status(what):
         yield
+
+
+@contextmanager
+def reading(then: str = "reading") -> Iterator[Callable[[float], None]]:
+    """Show a progress bar while files are read, and after that what is done with them.
+
+    Parameters
+    ----------
+    then : str
+        What is done once the files are read.
+    """
+    columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn()
+    with Progress(*columns, console=progress, transient=True, disable=not progress.is_terminal) as bar:
+        task = bar.add_task("reading", total=1.0)
+
+        def told(part: float) -> None:
+            if part >= 1.0:
+                bar.update(task, description=then, total=None)
+            else:
+                bar.update(task, completed=part)
+
+        yield told
+
+
+def several(count: int, noun: str) -> str:
+    """Return a count with its noun, in the plural where it is one: ``3 modes``."""
+    return f"{count} {noun}" + ("" if count == 1 else "s")
 
 
 def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] | None = None) -> None:

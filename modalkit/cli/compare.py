@@ -11,7 +11,7 @@ import typer
 
 from acquisition.errors import StudyError
 from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
-from modalkit.cli.look import Figures
+from modalkit.cli.options import Figures
 from modalkit.json_update import to_json
 from modalkit.process import Session, open_study
 from modalkit.study import read_study

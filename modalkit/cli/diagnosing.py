@@ -9,7 +9,7 @@ import pandas as pd
 import typer
 
 from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
-from modalkit.cli.look import Figures
+from modalkit.cli.options import Figures
 from modalkit.letter import letter
 from modalkit.process import Session, open_study
 from modalkit.records import diagnosis_record, effects_record

@@ -54,7 +54,7 @@ def frf_figure(frfs: FrfSet, model: ModalModel | None = None, *, count: int = 4)
     blocks = math.ceil(len(chosen) / columns)
     shown = frfs if model is None else _within(frfs, *model.band)
     fitted = "with the fit " if model else ""
-    title = f"{NAMES[frfs.form]} {fitted}at {len(chosen)} of {len(frfs.responses)} pairs of points"
+    title = f"{NAMES[frfs.form]} {fitted}{_where(len(chosen), len(frfs.responses))}"
     note = _note(frfs, model)
     top = caption_height(title, note) + 0.35
     figure = new_figure(top + blocks * BLOCK - 0.2)
@@ -64,6 +64,12 @@ def frf_figure(frfs: FrfSet, model: ModalModel | None = None, *, count: int = 4)
         left = MARGIN + 0.75 + (i % columns) * (width + 0.95)
         _block(figure, shown, model, row, left=left, top=top + (i // columns) * BLOCK, width=width)
     return figure
+
+
+def _where(shown: int, whole: int) -> str:
+    if whole == 1:
+        return "at the one pair of points"
+    return f"at all {whole} pairs of points" if shown == whole else f"at {shown} of {whole} pairs of points"
 
 
 def pick(frfs: FrfSet, count: int) -> list[int]:

@@ -31,6 +31,7 @@ from modalkit.figures.style import (
     shortened,
     tidy,
 )
+from modalkit.figures.words import counted
 
 REASONS = 10
 """Most rejected hits listed with their reason."""
@@ -68,7 +69,7 @@ def hits_figure(test: HammerTest, verdicts: Sequence[HitVerdict] = ()) -> Figure
     hits = _gather(test, verdicts)
     bad = np.flatnonzero(~hits.used)
     n = len(hits.used)
-    title = f"{n} hits at {len(test.points)} points, {'all' if not len(bad) else n - len(bad)} of them used"
+    title = f"{counted(n, 'hit')} at {counted(len(test.points), 'point')}, {_used(n, len(bad))}"
     note = f"{test.rate:g} samples/s, records of {test.duration:.3g} s  ·  blue: used, orange: not to be used"
     lines = min(len(bad), REASONS) + (1 if len(bad) > REASONS else 0)
     top = caption_height(title, note) + 0.55
@@ -86,6 +87,14 @@ def hits_figure(test: HammerTest, verdicts: Sequence[HitVerdict] = ()) -> Figure
         heading(figure, MARGIN, listed - 0.1, "Not to be used")
         _list(figure, hits, bad, listed, LINE * lines)
     return figure
+
+
+def _used(count: int, bad: int) -> str:
+    if bad == count:
+        return "none of them used" if count > 1 else "not used"
+    if count == 1:
+        return "used"
+    return "all of them used" if not bad else f"{count - bad} of them used"
 
 
 def _gather(test: HammerTest, verdicts: Sequence[HitVerdict]) -> _Row:

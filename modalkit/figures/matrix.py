@@ -27,6 +27,9 @@ from modalkit.figures.words import hertz
 WRITTEN = 14
 """Up to so many rows or columns the values are written into the cells."""
 
+CONFUSED = 0.3
+"""From this MAC on two modes are said to look alike."""
+
 
 def mac_figure(
     matrix: FloatArray,
@@ -118,14 +121,24 @@ def auto_mac_figure(modal: ModalData) -> Figure:
         raise InputError("these modes have no shapes to compare; identify them from FRFs at several points")
     matrix = np.asarray(auto_mac(modal.shapes), dtype=float)
     names = [f"{i + 1}: {hertz(f)}" for i, f in enumerate(modal.frequency)]
-    apart = matrix - np.eye(len(modal))
-    i, j = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
-    points = f"shapes at {len(modal.dofs)} points"
-    if len(modal) < 2 or apart[i, j] < 0.1:
-        title = "Every mode looks like itself alone" if len(modal) > 1 else "One mode"
-    else:
-        first, second = sorted((int(i) + 1, int(j) + 1))
-        title = f"Modes {first} and {second} look alike by {100 * apart[i, j]:.0f} %"
+    count = len(modal.dofs)
+    note = f"auto-MAC, shapes at {count} degree{'s' if count != 1 else ''} of freedom"
     return mac_figure(
-        matrix, names, names, title=title, note=f"auto-MAC, {points}", row_name="mode", column_name="mode"
+        matrix, names, names, title=_alike(matrix), note=note, row_name="mode", column_name="mode"
     )
+
+
+def _alike(matrix: FloatArray) -> str:
+    """Say which modes look most alike."""
+    if len(matrix) < 2:
+        return "One mode"
+    if not np.isfinite(matrix).all():
+        return "One degree of freedom: there is no shape to compare"
+    apart = matrix - np.eye(len(matrix))
+    i, j = np.unravel_index(int(apart.argmax()), apart.shape)
+    first, second = sorted((int(i) + 1, int(j) + 1))
+    if apart[i, j] < 0.1:
+        return "Every mode looks like itself alone"
+    if apart[i, j] < CONFUSED:
+        return f"All modes differ; {first} and {second} are the most alike, by {100 * apart[i, j]:.0f} %"
+    return f"Modes {first} and {second} look alike by {100 * apart[i, j]:.0f} %"

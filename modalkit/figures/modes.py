@@ -8,6 +8,9 @@ from matplotlib.axes import Axes
 from acquisition.arrays import FloatArray
 from modalkit.figures.style import BLUE, SMALL, grouped, numbers
 
+ROOM = (0.17, 0.25)
+"""Width that a number of one digit and of two takes [in]."""
+
 
 def mark_modes(axes: Axes, frequency: FloatArray, *, width: float, label: bool = True) -> None:
     """Draw a thin line at every mode and number it over the panel.
@@ -30,7 +33,8 @@ def mark_modes(axes: Axes, frequency: FloatArray, *, width: float, label: bool =
     if not label:
         return
     places = frequency[order]
-    for group in grouped(places.tolist(), 0.34 * (high - low) / width):
+    needed = ROOM[len(frequency) > 9]
+    for group in grouped(places.tolist(), needed * (high - low) / width):
         middle = float(np.mean(places[group]))
         axes.annotate(
             numbers([int(order[i]) for i in group]),

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
-from acquisition import InputError, ModalData
+from acquisition import Geometry, InputError, ModalData
 from acquisition.arrays import FloatArray, IntArray
 from modalkit.figures.style import (
     BLUE,
@@ -30,7 +30,8 @@ from modalkit.figures.style import (
     place,
     tidy,
 )
-from modalkit.figures.words import hertz
+from modalkit.figures.surfaces import grid_values, spans
+from modalkit.figures.words import counted, hertz
 from updating import Measured, Predictor
 from updating.matching import pair_modes
 
@@ -58,6 +59,10 @@ class Shapes:
         The model's frequencies [Hz].
     placed : bool
         Whether the points are known; if not, ``points`` are their numbers.
+    lines : (n_lines, 2) int array, optional
+        Pairs of points that the test's geometry joins.
+    names : tuple of str
+        Names of the points, where they are not placed.
     """
 
     frequency: FloatArray
@@ -68,6 +73,8 @@ class Shapes:
     model: FloatArray | None = None
     model_frequency: FloatArray | None = None
     placed: bool = True
+    lines: IntArray | None = None
+    names: tuple[str, ...] = ()
 
 
 def shapes_figure(source: ModalData | Measured, predictor: Predictor | None = None) -> Figure:
@@ -90,7 +97,16 @@ def shapes_figure(source: ModalData | Measured, predictor: Predictor | None = No
         If there are no shapes.
     """
     shapes = _from_modal(source) if isinstance(source, ModalData) else _from_measured(source, predictor)
-    return _draw(shapes)
+    return _draw(shapes) if len(shapes.points) > 1 else _nothing(shapes)
+
+
+def _nothing(shapes: Shapes) -> Figure:
+    """Say that there is no shape at a single point."""
+    title = f"{counted(len(shapes.frequency), 'mode')} at one test point: there is no shape to draw"
+    note = "measure, or hit, more points"
+    figure = new_figure(caption_height(title, note) + 0.25)
+    caption(figure, title, note)
+    return figure
 
 
 def _from_modal(modal: ModalData) -> Shapes:
@@ -106,7 +122,18 @@ def _from_modal(modal: ModalData) -> Shapes:
     points = _principal(modal.geometry.at(nodes)) if placed else np.arange(1.0, len(rows) + 1)[:, None]
     sigma = np.full(values.shape, np.nan) if modal.shape_sigma is None else modal.shape_sigma[rows]
     size = _sizes(values)
-    return Shapes(modal.frequency, points, values / size, sigma / np.abs(size), placed=placed)
+    lines = _lines(modal.geometry, nodes) if placed else None
+    names = () if placed else tuple(str(modal.dofs[i]) for i in rows)
+    scaled = values / size, sigma / np.abs(size)
+    return Shapes(modal.frequency, points, *scaled, placed=placed, lines=lines, names=names)
+
+
+def _lines(geometry: Geometry, nodes: list[int]) -> IntArray | None:
+    """Return the lines of the geometry between points that were measured, as pairs of rows; None without."""
+    row = {node: i for i, node in enumerate(nodes)}
+    drawn = geometry.lines
+    pairs = [(row[int(a)], row[int(b)]) for a, b in drawn if int(a) in row and int(b) in row]
+    return np.array(pairs, dtype=np.int64) if pairs else None
 
 
 def _principal(points: FloatArray) -> FloatArray:
@@ -179,7 +206,7 @@ def _evaluate(predictor: Predictor, vectors: FloatArray) -> tuple[tuple[FloatArr
 def _draw(shapes: Shapes) -> Figure:
     n, flat = len(shapes.frequency), shapes.points.shape[1] == 2
     columns = min(4 if flat else 3, n)
-    title = f"{n} mode shape{'s' if n != 1 else ''} at {len(shapes.points)} test points"
+    title = f"{counted(n, 'mode shape')} at {len(shapes.points)} test points"
     note = "each scaled to its largest component" + (
         "; bars are 2σ" if np.isfinite(shapes.sigma).any() and not flat else ""
     )
@@ -232,12 +259,18 @@ def _line(axes: Axes, shapes: Shapes, k: int, *, first: bool, last: bool) -> Non
     x, y = shapes.points[order, 0], shapes.values[order, k]
     if shapes.model is not None and shapes.fine is not None:
         axes.plot(shapes.fine[0], shapes.model[:, k], color=BLUE, linewidth=1.8, zorder=2)
+    elif shapes.lines is not None:
+        ends = shapes.points[shapes.lines, 0].T, shapes.values[shapes.lines, k].T
+        axes.plot(*ends, color=ORANGE, linewidth=0.9, alpha=0.5, zorder=2)
     else:
         axes.plot(x, y, color=ORANGE, linewidth=0.9, alpha=0.5, zorder=2)
     error = 2 * np.nan_to_num(shapes.sigma[order, k])
     axes.errorbar(x, y, yerr=error, fmt="o", color=ORANGE, markersize=5, capsize=2.5, linewidth=1.1, zorder=3)
     axes.set_ylim(-1.35, 1.35)
     axes.set_yticks([-1, 0, 1])
+    if shapes.names:
+        every = max(1, -(-len(x) // 6))
+        axes.set_xticks(x[::every], [shapes.names[i] for i in order[::every]])
     axes.tick_params(labelleft=first, labelbottom=last)
 
 
@@ -253,15 +286,13 @@ def _map(axes: Axes, shapes: Shapes, k: int) -> None:
         if values.min() < 0 < values.max():
             x_in, y_in = (grid[1:-1] for grid in shapes.fine)  # a clamped edge is no nodal line
             axes.contour(x_in, y_in, values[1:-1, 1:-1], levels=[0.0], colors=MUTED, linewidths=0.9)
-    elif _spans(shapes.points):
+    elif (grid := grid_values(shapes.points, shapes.values[:, k])) is not None:
+        axes.contourf(grid[0], grid[1], np.clip(grid[2], -1.2, 1.2), levels=levels, **limits)
+    elif spans(shapes.points):
         mesh = Triangulation(x, y)
         axes.tricontourf(mesh, np.clip(shapes.values[:, k], -1.2, 1.2), levels=levels, **limits)
+    if shapes.lines is not None and shapes.model is None:
+        axes.plot(x[shapes.lines].T, y[shapes.lines].T, color=INK, linewidth=0.7, alpha=0.45, zorder=3)
     axes.scatter(
         x, y, c=shapes.values[:, k], s=34, edgecolor=INK, linewidth=0.9, clip_on=False, zorder=4, **limits
     )
-
-
-def _spans(points: FloatArray) -> bool:
-    """Tell whether the points can be triangulated."""
-    distinct = np.unique(points, axis=0)
-    return len(distinct) >= 3 and bool(np.linalg.matrix_rank(distinct - distinct[0], tol=1e-9) == 2)

@@ -6,11 +6,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from identification import ModalModel
+from acquisition.arrays import BoolArray
+from identification import ModalModel, StabilisationChart
 from modalkit.figures.modes import mark_modes
 from modalkit.figures.style import (
     BLUE,
     FAINT,
+    GREEN,
     MARGIN,
     MUTED,
     SMALL,
@@ -21,7 +23,10 @@ from modalkit.figures.style import (
     place,
     tidy,
 )
-from modalkit.figures.words import hertz
+from modalkit.figures.words import counted, hertz
+
+NEAR = 0.01
+"""Poles of two orders within this relative distance are taken for stable in frequency."""
 
 
 def stabilisation_figure(model: ModalModel) -> Figure:
@@ -36,7 +41,7 @@ def stabilisation_figure(model: ModalModel) -> Figure:
     -------
     Figure
     """
-    title = f"{len(model)} mode{'s' if len(model) != 1 else ''} selected from {len(model.chart.poles)} poles"
+    title = f"{counted(len(model), 'mode')} selected from {counted(len(model.chart.poles), 'pole')}"
     listed = [hertz(f) for f in model.modal.frequency]
     note = (
         ", ".join(f.removesuffix(" Hz") for f in listed) + " Hz"
@@ -80,14 +85,27 @@ def _sum(axes: Axes, model: ModalModel) -> None:
         axes.spines[side].set_visible(False)
 
 
+def _near_one_before(chart: StabilisationChart) -> BoolArray:
+    """Tell which poles have one of the order below close in frequency, whatever its damping."""
+    near = np.zeros(len(chart.poles), dtype=bool)
+    for level in range(1, len(chart.orders)):
+        here, before = chart.level == level, chart.frequency[chart.level == level - 1]
+        if before.size:
+            distance = np.abs(chart.frequency[here][:, None] / before[None, :] - 1.0)
+            near[here] = distance.min(axis=1) < NEAR
+    return near
+
+
 def _poles(axes: Axes, model: ModalModel) -> None:
     chart = model.chart
     tidy(axes, x="frequency [Hz]", y="model order", grid="y")
     axes.patch.set_alpha(0.0)
     order, stable = chart.orders[chart.level], chart.stable
+    near = _near_one_before(chart)
     inside = (chart.frequency >= model.band[0]) & (chart.frequency <= model.band[1])
     for keep, marker, size, colour, name in (
-        (inside & ~stable, "x", 16, FAINT, "new at this order"),
+        (inside & ~stable & ~near, "x", 16, FAINT, "new"),
+        (inside & ~stable & near, "+", 26, GREEN, f"within {100 * NEAR:g} % of one before"),
         (inside & stable, "o", 13, BLUE, "stable in frequency, damping and participation"),
     ):
         axes.scatter(
@@ -103,7 +121,7 @@ def _poles(axes: Axes, model: ModalModel) -> None:
     axes.legend(
         loc="lower right",
         bbox_to_anchor=(1.0, 1.065),
-        ncols=2,
+        ncols=3,
         frameon=False,
         fontsize=SMALL,
         handletextpad=0.2,

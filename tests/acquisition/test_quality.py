@@ -19,9 +19,10 @@ from acquisition import (
     hits_table,
     judge_hits,
     modal_system,
+    read_uff,
     rejected_points,
 )
-from acquisition.pulse_checks import clipped, pulse_width, second_hits
+from acquisition.hit_checks import clipped, pulse_width, second_hits
 
 SYSTEM = modal_system(
     frequency=np.array([60.0, 140.0, 300.0]),
@@ -164,3 +165,13 @@ def test_pulse_width_does_not_depend_on_the_rate():
         time = np.arange(0, 0.1, 1 / rate) - 0.0301
         widths.append(pulse_width(np.where(np.abs(time) < 2e-3, np.cos(np.pi * time / 4e-3) ** 2, 0.0), rate))
     assert np.ptp(widths) < 0.02 * widths[0]
+
+
+def test_real_hits_are_used_and_their_bands_are_those_reported(shared_data):
+    """Five hits with a pulse that falls in two steps; 10 dB down at 3.7 kHz and 20 dB at 7.2 kHz over all."""
+    (test,) = read_uff(shared_data("impacts/pyFRF/hits.uff")).tests
+    verdicts = judge_hits(test)
+    assert [v.used for v in verdicts] == [True] * 5
+    assert all(69 - 1 < v.peak < 89 + 1 for v in verdicts)
+    assert np.mean([v.band10 for v in verdicts]) == pytest.approx(3700, rel=0.08)
+    assert np.mean([v.band20 for v in verdicts]) == pytest.approx(7200, rel=0.04)

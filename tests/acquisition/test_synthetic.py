@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.linalg
 import scipy.signal
 from numpy.typing import NDArray
 
-from acquisition import Dof, HammerPlan, InputError, ModalSystem, estimate_frfs, hammer_test, modal_system
+from acquisition import (
+    Dof,
+    HammerPlan,
+    InputError,
+    ModalSystem,
+    estimate_frfs,
+    hammer_test,
+    modal_system,
+    read_uff,
+    write_uff,
+)
 
 FREQUENCY = np.array([80.0, 200.0, 403.0, 405.5, 700.0])
 DAMPING = np.array([0.02, 0.01, 0.01, 0.008, 0.01])
@@ -183,3 +195,72 @@ def test_position_scatter_needs_gradients_and_uses_them(system, rng):
 def test_senseless_plans_are_refused(wrong):
     with pytest.raises(InputError):
         HammerPlan(**wrong)
+
+
+@pytest.mark.parametrize("slope", [-1.0, 0.0, 2.0])
+def test_noise_has_the_colour_and_the_strength_asked_for(slope):
+    still = modal_system(
+        frequency=np.array([80.0]),
+        damping=np.array([0.02]),
+        response_shapes=np.zeros((1, 1)),
+        point_shapes=np.zeros((1, 1)),
+        responses=DOFS[:1],
+        points=DOFS[:1],
+    )
+    plan = HammerPlan(samples=4096, hits=200, response_floor=3.0, noise_slope=slope, adc_bits=None)
+    noise = hammer_test(still, plan, rng=np.random.default_rng(2)).points[0].motion[:, 0]
+    assert np.sqrt(np.mean(noise**2)) == pytest.approx(3.0, rel=0.01)
+    power = np.mean(np.abs(np.fft.rfft(noise, axis=-1)) ** 2, axis=0)[8:2000]
+    octaves = np.log(np.arange(8, 2000))
+    assert np.polyfit(octaves, np.log(power), 1)[0] == pytest.approx(slope, abs=0.02)
+
+
+def test_a_hit_in_the_wrong_place_excites_the_next_point(system):
+    plan = HammerPlan(samples=8192, hits=2, bad={(0, 1): "wrong place"}, **QUIET)
+    test = hammer_test(system, plan, rng=np.random.default_rng(1))
+    force, motion = (np.fft.rfft(r, axis=-1) for r in (test.points[0].force, test.points[0].motion))
+    lines = slice(200, 1600)  # 100 to 800 Hz
+    laplace = 2j * np.pi * np.fft.rfftfreq(8192, 1 / plan.rate)[lines]
+    for hit, place in ((0, 0), (1, 1)):
+        exact = system.receptance(laplace, place) * laplace**2
+        found = (motion[hit] / force[hit])[:, lines]
+        assert np.abs(found - exact).max() < 0.01 * np.abs(exact).max()
+    with pytest.raises(InputError, match="second point"):
+        hammer_test(
+            ModalSystem(system.poles, system.residues[:, :1], system.responses, system.points[:1]),
+            replace(plan, bad={(0, 0): "wrong place"}),
+            rng=np.random.default_rng(1),
+        )
+
+
+def test_the_converter_saturates_at_its_range(system, rng):
+    plan = HammerPlan(samples=512, adc_bits=12, force_range=64.0, level_scatter=0.2)
+    force = hammer_test(system, plan, rng=rng).points[0].force
+    step = 64.0 / 2**11
+    assert force.max() == 64.0 - step
+    assert np.array_equal(force, np.round(force / step) * step)
+    with pytest.raises(InputError, match="force_range"):
+        HammerPlan(force_range=-1.0)
+
+
+def test_pulses_fall_between_samples_and_are_jittered(system, rng):
+    """Where pulses begin is spread as asked, to a fraction of a sample: seen in the phase of the force."""
+    plan = HammerPlan(samples=1024, hits=300, jitter=2e-3, width_scatter=0.0, **QUIET)
+    force = np.fft.rfft(hammer_test(system, plan, rng=rng).points[0].force, axis=-1)
+    low = 2 * np.pi * np.fft.rfftfreq(1024, 1 / plan.rate)[1:8]
+    start = -np.array([np.polyfit(low, np.unwrap(np.angle(f[1:8])), 1)[0] for f in force]) - plan.width / 2
+    spread = np.sqrt(plan.jitter**2 + 1 / (12 * plan.rate**2))
+    assert start.std() == pytest.approx(spread, rel=0.13)  # 300 draws: 4 %
+    assert start.mean() == pytest.approx(plan.pre_trigger + 0.5 / plan.rate, abs=4 * spread / np.sqrt(300))
+    fraction = (start * plan.rate) % 1.0
+    assert np.abs(np.histogram(fraction, bins=4, range=(0, 1))[0] - 75).max() < 35
+
+
+def test_hits_survive_a_file_bit_for_bit(system, rng, tmp_path):
+    test = hammer_test(system, HammerPlan(samples=512, response_noise=1e-3, decay=5.0), rng=rng)
+    write_uff(tmp_path / "hits.uff", tests=test)
+    (back,) = read_uff(tmp_path / "hits.uff").tests
+    assert back.rate == pytest.approx(test.rate) and back.form == test.form
+    for one, two in zip(test.points, back.points, strict=True):
+        assert one.reference == two.reference and one.responses == two.responses
+        assert np.array_equal(one.force, two.force) and np.array_equal(one.motion, two.motion)

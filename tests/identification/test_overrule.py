@@ -39,7 +39,7 @@ def test_what_is_dropped_stays_in_the_fit_and_out_of_the_result(truth, frfs):
 
 
 def test_frequencies_that_mean_nothing_are_refused(frfs):
-    with pytest.raises(InputError, match=r"no mode near 90 Hz.*at 60, 1.* Hz"):
+    with pytest.raises(InputError, match=r"no mode near 90 Hz.*at 60.*170 Hz"):
         identify(frfs, drop=(90.0,))
     with pytest.raises(InputError, match="400 Hz was asked for, outside"):
         identify(frfs, add=(400.0,))

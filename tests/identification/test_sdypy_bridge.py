@@ -10,6 +10,7 @@ from identification_cases import bench, column, lines, structure
 
 from acquisition.errors import InputError
 from identification import from_sdypy, identify, mac, second_opinion, to_sdypy
+from identification.sdypy_bridge import frfs_from_sdypy, frfs_to_sdypy, opinion_warnings
 
 
 @pytest.fixture
@@ -37,7 +38,8 @@ def test_there_and_back(case):
     np.testing.assert_allclose(modes.damping, model.modal.damping)
     np.testing.assert_allclose(np.diag(mac(modes.shapes, model.modal.shapes)), 1.0, rtol=1e-9)
     assert np.isnan(modes.frequency_sigma).all()
-    assert not modes.scaled
+    assert modes.scaled
+    np.testing.assert_allclose(np.abs(modes.shapes), np.abs(model.modal.shapes), rtol=1e-6)
 
 
 def test_a_model_without_modes_is_refused(case):
@@ -67,3 +69,55 @@ def test_order_of_the_chart_is_the_polynomial_order(case):
     _, frfs, _ = case
     few = second_opinion(frfs, band=(10.0, 300.0), order=4)
     assert len(few) <= 2
+
+
+def test_frfs_survive_there_and_back_line_by_line(case):
+    _, frfs, model = case
+    there = frfs_to_sdypy(frfs)
+    back = frfs_from_sdypy(there, frfs.responses, frfs.references)
+    np.testing.assert_array_equal(back.values, frfs.values)
+    np.testing.assert_array_equal(back.frequency, frfs.frequency)
+    assert back.form == frfs.form
+    fitted = frfs_from_sdypy(to_sdypy(model), frfs.responses, frfs.references, fitted=True)
+    np.testing.assert_array_equal(fitted.values, model.synthesise().values)
+    with pytest.raises(InputError, match="no reconstructed FRFs"):
+        frfs_from_sdypy(there, frfs.responses, frfs.references, fitted=True)
+
+
+def test_poles_and_residues_handed_over_make_the_same_frfs(case):
+    _, _, model = case
+    other = to_sdypy(model)
+    s = 2j * np.pi * other.freq
+    poles = 2 * np.pi * other.nat_freq * (-other.nat_xi + 1j * np.sqrt(1 - other.nat_xi**2))
+    terms = [a[:, None] / (s - p) for a, p in ((other.A[:, r], poles[r]) for r in range(len(poles)))]
+    mirror = [
+        a.conj()[:, None] / (s - p.conj()) for a, p in ((other.A[:, r], poles[r]) for r in range(len(poles)))
+    ]
+    whole = s**2 * (sum(terms) + sum(mirror) + other.LR[:, None] / s**2 + other.UR[:, None])
+    np.testing.assert_allclose(whole, other.H, atol=0.02 * np.abs(other.H).max())
+
+
+def test_several_references_come_back_scaled(rng):
+    truth = structure((60.0, 140.0, 210.0), (0.01, 0.008, 0.006), 6, seed=12)
+    pairs = column(6) + column(6, reference=2)
+    frfs = truth.frfs(lines(low=10.0, high=300.0), pairs, noise=0.001, rng=rng)
+    modes = from_sdypy(to_sdypy(identify(frfs)), frfs)
+    assert modes.scaled
+    np.testing.assert_allclose(np.abs(modes.shapes), np.abs(truth.shapes), atol=0.02)
+
+
+def test_it_is_said_when_its_answer_is_known_to_be_unreliable(case):
+    _, frfs, _ = case
+    assert opinion_warnings(frfs, (50.0, 300.0)) == ()
+    assert second_opinion(frfs, band=(50.0, 300.0), order=20).attrs["warnings"] == ()
+    cut = frfs.band(100.0, 300.0)
+    assert "loses and shifts modes" in opinion_warnings(cut, (100.0, 300.0))[0]
+    assert "loses and shifts" in second_opinion(cut, band=(100.0, 300.0), order=20).attrs["warnings"][0]
+
+
+def test_a_band_from_zero_is_given_without_its_first_line(rng):
+    truth = structure((60.0, 140.0, 210.0), (0.01, 0.008, 0.006), 6, seed=12)
+    frfs = truth.frfs(lines(low=0.0, high=300.0), column(6), noise=0.001, rng=rng)
+    table = second_opinion(frfs, band=(0.0, 300.0), order=30)
+    for hertz in truth.hertz:
+        assert np.abs(table["frequency [Hz]"] / hertz - 1).min() < 1e-3

@@ -9,7 +9,8 @@ import pytest
 from acquisition import FrfSet, Geometry, HammerTest, InputError, ModalData, StudyError, write_uff
 from acquisition.dof import Dof
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
-from modalkit.process import open_study, process, read
+from modalkit.process import open_study, process
+from modalkit.reading import read
 from modalkit.study import read_study
 
 NODES = (1, 2, 3)
@@ -212,5 +213,5 @@ def test_files_that_are_missing_or_hold_something_else_are_named(folder: Path) -
     for text, name in (('files = ["gone.uff"]', "gone.uff"), ('modes = "gone.csv"', "gone.csv")):
         with pytest.raises(InputError, match=name):
             open_study(read_study(study(folder, text)))
-    with pytest.raises(InputError, match=r"frfs\.uff: no modes"):
+    with pytest.raises(InputError, match=r"frfs\.uff: holds no modes"):
         open_study(read_study(study(folder, 'modes = "frfs.uff"')))

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from acquisition import read_modes
-from modalkit.process import open_study, read
+from modalkit.process import open_study
+from modalkit.reading import read
 from modalkit.study import read_study
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"

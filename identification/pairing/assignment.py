@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +9,10 @@ from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import AnyArray, FloatArray
 from acquisition.errors import InputError
+from identification.pairing.sequence import in_order
 
 _RANGE = np.log(1.6)
+_SLACK = 0.25
 
 
 @dataclass(frozen=True)
@@ -45,11 +46,12 @@ def pair(
 ) -> tuple[Pair, ...]:
     """Pair modes by the best assignment of all at once.
 
-    With a MAC matrix the assignment minimises (1 - MAC) + a bounded price of the distance in frequency. All
-    frequencies may be off by one factor: water, or a wrong modulus. So the distance counts from the factor
-    that pairs of good MAC have in common. A mode whose best price is higher than that of staying alone stays
-    alone. Without shapes the pairs keep the order of frequency, and dynamic programming finds the factor and
-    the gaps of the cheapest sequence.
+    With a MAC matrix the assignment minimises (1 - MAC) + a price of the distance in frequency of 0.6 at the
+    most. All frequencies may be off by one factor: water, or a wrong modulus. So the distance counts from the
+    factor that pairs of good MAC have in common. Two modes that stay alone cost (1 - ``min_mac``) + 0.25
+    together: a pair of doubtful MAC must agree in frequency, one of MAC 0.85 (at the default) need not.
+    Without shapes, or with nan for every MAC, the pairs keep the order of frequency, and dynamic programming
+    finds the factor and the gaps of the cheapest sequence.
 
     Parameters
     ----------
@@ -86,8 +88,8 @@ def pair(
     shift = np.log(model)[None, :] - np.log(test)[:, None]
     if test.size == 0 or model.size == 0:
         return ()
-    if mac_matrix is None:
-        found = _in_order(test, model, np.log(max_factor), spread)
+    if mac_matrix is None or np.all(np.isnan(np.asarray(mac_matrix, dtype=float))):
+        found = in_order(test, model, np.log(max_factor), spread)
         values = np.full(shift.shape, np.nan)
     else:
         values = np.asarray(mac_matrix, dtype=float)
@@ -125,19 +127,36 @@ def common_shift(shift: FloatArray, weight: FloatArray, limit: float, spread: fl
     return float(np.sum(close * shift) / max(np.sum(close), np.finfo(float).tiny))
 
 
+def common_factor(
+    shift: FloatArray, values: FloatArray, min_mac: float, limit: float, spread: float
+) -> float:
+    """Return the logarithm of the factor that pairs which are each other's best by MAC have in common.
+
+    Parameters
+    ----------
+    shift : (n_test, n_model) array
+        ln(model / test) of the frequencies [-].
+    values : (n_test, n_model) array
+        MAC [-].
+    min_mac, limit, spread : float
+        Least MAC, largest logarithm either way, width of the kernel [-].
+    """
+    strong = (values == values.max(axis=1, keepdims=True)) & (values == values.max(axis=0, keepdims=True))
+    weight = np.where(strong & (values >= min_mac), values**2, 0.0)
+    return common_shift(shift.ravel(), weight.ravel(), limit, spread)
+
+
 def _by_shape(
     shift: FloatArray, values: FloatArray, min_mac: float, limit: float, spread: float
 ) -> list[tuple[int, int]]:
     """Assign by MAC and by distance from the common factor, each mode free to stay alone."""
-    strong = (values == values.max(axis=1, keepdims=True)) & (values == values.max(axis=0, keepdims=True))
-    weight = np.where(strong & (values >= min_mac), values**2, 0.0)
-    centre = common_shift(shift.ravel(), weight.ravel(), limit, spread)
+    centre = common_factor(shift, values, min_mac, limit, spread)
     distance = ((shift - centre) / (2.0 * spread)) ** 2
     price = (1.0 - values) + 0.5 * distance / (1.0 + distance)
     price = price + 0.1 * (1.0 - np.exp(-np.abs(shift - centre) / spread))
     allowed = (values >= min_mac) & (np.abs(shift - centre) <= limit)
-    alone = 1.6 - min_mac
-    return _assign(np.where(allowed, price, 4.0 * alone), alone)
+    alone = 1.0 - min_mac + _SLACK
+    return _assign(np.where(allowed, price, 4.0 * alone + 4.0), alone)
 
 
 def _assign(price: FloatArray, alone: float) -> list[tuple[int, int]]:
@@ -149,49 +168,3 @@ def _assign(price: FloatArray, alone: float) -> list[tuple[int, int]]:
     full[n_test:, :n_model] = alone / 2
     rows, columns = linear_sum_assignment(full)
     return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True) if i < n_test and j < n_model]
-
-
-def _in_order(test: FloatArray, model: FloatArray, limit: float, spread: float) -> list[tuple[int, int]]:
-    """Pair without shapes: the cheapest order-keeping sequence over a range of common factors."""
-    rows, columns = np.argsort(test), np.argsort(model)
-    shift = np.log(model[columns])[None, :] - np.log(test[rows])[:, None]
-    best: tuple[float, list[tuple[int, int]]] = (np.inf, [])
-    for centre in _centres(shift, limit):
-        cost, found = _monotone(((shift - centre) / spread) ** 2)
-        cost += 0.05 * (centre / limit) ** 2
-        if cost < best[0]:
-            best = (cost, found)
-    return [(int(rows[i]), int(columns[j])) for i, j in best[1]]
-
-
-def _centres(shift: FloatArray, limit: float) -> FloatArray:
-    """Return the common factors worth trying: those that bring some pair to agree, and none."""
-    flat: Sequence[float] | FloatArray = shift[np.abs(shift) <= limit]
-    return np.unique(np.round(np.append(flat, 0.0), 3))
-
-
-def _monotone(price: FloatArray, *, alone: float = 2.0) -> tuple[float, list[tuple[int, int]]]:
-    """Find the cheapest order-keeping pairing with gaps: sequence alignment by dynamic programming.
-
-    Needleman and Wunsch, J. Mol. Biol. 48 (1970) 443-453. A test mode left alone costs ``alone``; a model
-    mode between two paired ones a tenth of that, one beyond them nothing: a model has more modes than a test.
-    """
-    n, m = price.shape
-    gap = 0.1 * alone
-    table = np.full((n + 1, m + 1), np.inf)
-    table[:, 0], table[0] = alone * np.arange(n + 1), 0.0
-    for i in range(1, n + 1):
-        step = np.minimum(table[i - 1, :-1] + price[i - 1], table[i - 1, 1:] + alone)
-        cost = gap if i < n else 0.0
-        ramp = cost * np.arange(1, m + 1)
-        table[i, 1:] = np.minimum.accumulate(np.minimum(step - ramp, table[i, 0])) + ramp
-    found, i, j = [], n, m
-    while i > 0 and j > 0:
-        if np.isclose(table[i, j], table[i - 1, j - 1] + price[i - 1, j - 1], rtol=1e-12, atol=1e-12):
-            i, j = i - 1, j - 1
-            found.append((i, j))
-        elif np.isclose(table[i, j], table[i - 1, j] + alone, rtol=1e-12, atol=1e-12):
-            i -= 1
-        else:
-            j -= 1
-    return float(table[n, m]), found[::-1]

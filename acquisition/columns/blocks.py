@@ -1,0 +1,249 @@
+"""From the text of a file to blocks of numbers with headings."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.columns.layout import Layout
+from acquisition.errors import InputError
+
+SEPARATORS = {"tab": "\t", "space": None, "comma": ",", "semicolon": ";"}
+
+
+@dataclass(frozen=True)
+class Style:
+    """How numbers are separated and written; separator None is any run of blanks."""
+
+    separator: str | None
+    decimal: str
+
+    def split(self, line: str) -> list[str]:
+        """Return the fields of a line, without quotes and blanks around them."""
+        return [field.strip().strip('"') for field in line.split(self.separator)]
+
+    def number(self, field: str) -> float:
+        """Return the number in a field; ValueError if it is none."""
+        return float(field.replace(self.decimal, ".")) if self.decimal != "." else float(field)
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Lines of numbers under one heading: one hit, or one table of FRFs.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    names : tuple of str
+        Headings of the columns; empty where there are none.
+    lines : tuple of str
+        The lines of numbers.
+    first : int
+        Number of the first of them in the file, from 1.
+    style : Style
+        How they are written.
+    rate : float or None
+        Sampling rate that the file states [Hz].
+    units : mapping of int to str
+        Units that the file states, by column.
+    strict : bool
+        Whether every line must have as many fields as the first.
+    """
+
+    path: Path
+    names: tuple[str, ...]
+    lines: tuple[str, ...]
+    first: int
+    style: Style
+    rate: float | None
+    units: dict[int, str]
+    strict: bool = True
+
+    def index_of(self, column: int | str | None, label: str) -> int:
+        """Return the number of a column given by number or heading.
+
+        Raises
+        ------
+        InputError
+            If there is no such column, or several.
+        """
+        width = len(self.style.split(self.lines[0]))
+        if isinstance(column, int):
+            if not 0 <= column < width:
+                raise InputError(
+                    f"{self.path}, line {self.first}: {label} is not there; "
+                    f"the line has {width} columns, counted from 0"
+                )
+            return column
+        places = [i for i, name in enumerate(self.names) if name == column]
+        if len(places) != 1:
+            found = "twice there" if places else "not there"
+            heads = ", ".join(repr(n) for n in self.names if n) or "none"
+            raise InputError(
+                f"{self.path}, line {self.first - 1}: {label} is {found}; the headings are {heads}"
+            )
+        return places[0]
+
+    def numbers(self, index: Sequence[int]) -> FloatArray:
+        """Return columns as numbers, shape (n_lines, len(index)).
+
+        Raises
+        ------
+        InputError
+            If a line is short, a field is no number, or a number is not finite.
+        """
+        lines: Sequence[str] = [line.replace('"', "") for line in self.lines]
+        if self.style.decimal != ".":
+            lines = [line.replace(self.style.decimal, ".") for line in lines]
+        try:
+            values = np.loadtxt(
+                lines, delimiter=self.style.separator, usecols=list(index), comments=None, ndmin=2
+            )
+        except ValueError:
+            values = None
+        if values is None or not np.isfinite(values).all() or (self.strict and self._ragged()):
+            raise self._first_fault(index)
+        return np.asarray(values, dtype=np.float64)
+
+    def _ragged(self) -> bool:
+        separator = self.style.separator
+        if separator is None:
+            return len({len(line.split()) for line in self.lines}) > 1
+        return len({line.count(separator) for line in self.lines}) > 1
+
+    def _first_fault(self, index: Sequence[int]) -> InputError:
+        """Return the error for the first line that cannot be used."""
+        width = len(self.style.split(self.lines[0]))
+        for number, line in enumerate(self.lines, start=self.first):
+            fields = self.style.split(line)
+            if len(fields) <= max(index) or (self.strict and len(fields) != width):
+                return InputError(
+                    f"{self.path}, line {number}: {len(fields)} columns where the block began with {width}; "
+                    "mend the line, or set separator and decimal in the layout"
+                )
+            for i in index:
+                try:
+                    value = self.style.number(fields[i])
+                except ValueError:
+                    value = np.nan
+                if not np.isfinite(value):
+                    return InputError(
+                        f"{self.path}, line {number}, column {i}: {fields[i]!r} is no number; mend or remove "
+                        "the line, or set separator and decimal in the layout"
+                    )
+        return InputError(
+            f"{self.path}, line {self.first}: the numbers cannot be read; check separator and decimal"
+        )
+
+
+def read_text(path: Path) -> list[str]:
+    """Return the lines of a text file in UTF-8, UTF-16 with a mark, or Latin-1.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or holds no text.
+    """
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path") from error
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return raw.decode("utf-16", errors="replace").splitlines()
+    if b"\0" in raw[:4096]:
+        raise InputError(
+            f"{path}: binary, no column text; export it as text, or write a reader (docs/readers.md)"
+        )
+    try:
+        return raw.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        return raw.decode("latin-1").splitlines()
+
+
+def plain_blocks(
+    path: Path, lines: Sequence[str], layout: Layout, least: int, wanted: Collection[str] = ()
+) -> list[Block]:
+    """Return the blocks of a plain text file; blank lines part them, headings and remarks may precede each.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    lines : sequence of str
+        Its lines.
+    layout : Layout
+        What is said of separator, decimal and lines to skip.
+    least : int
+        Columns that a line of numbers must have.
+    wanted : collection of str
+        Headings that are asked for; they tell which line above the numbers is the heading.
+
+    Raises
+    ------
+    InputError
+        If there is no line of numbers.
+    """
+    blocks: list[Block] = []
+    above: list[str] = []
+    style: Style | None = None
+    body: list[str] = []
+    first = 0
+    for number, line in enumerate([*lines[layout.skip :], ""], start=layout.skip + 1):
+        blank = not line.strip(" \t;,\r")
+        if body and not blank:
+            body.append(line)
+        elif body and style is not None:
+            names = _heading(above, style, wanted) or (blocks[-1].names if blocks else ())
+            blocks.append(Block(path, names, tuple(body), first, style, layout.rate, {}))
+            body, above = [], []
+        elif not blank:
+            found = _style(line, layout, least) if style is None else _same(line, style, least)
+            if found is None:
+                above.append(line)
+            else:
+                style, body, first = found, [line], number
+    if not blocks:
+        raise InputError(
+            f"{path}: no line of {least} or more numbers in it; check skip, separator and decimal in the layout"
+        )
+    return blocks
+
+
+def _heading(above: Sequence[str], style: Style, wanted: Collection[str]) -> tuple[str, ...]:
+    """Return the headings among the lines above numbers: the last line that holds what is asked for, or the last."""
+    rows = [tuple(style.split(line.lstrip("#% "))) for line in above]
+    fitting = [row for row in rows if set(wanted) <= set(row)]
+    return (fitting or rows or [()])[-1]
+
+
+def _style(line: str, layout: Layout, least: int) -> Style | None:
+    """Return the style in which a line is all numbers, at least ``least`` of them; None if there is none."""
+    separators: list[str | None] = ["\t", ";", ",", None]
+    if layout.separator != "auto":
+        separators = [SEPARATORS.get(layout.separator, layout.separator)]
+    decimals = [".", ","] if layout.decimal == "auto" else [layout.decimal]
+    for separator in separators:
+        for decimal in decimals:
+            style = None if separator == decimal else _same(line, Style(separator, decimal), least)
+            if style is not None:
+                return style
+    return None
+
+
+def _same(line: str, style: Style, least: int) -> Style | None:
+    fields = style.split(line)
+    numbers = 0
+    for field in fields:
+        if not field:
+            continue
+        try:
+            style.number(field)
+        except ValueError:
+            return None
+        numbers += 1
+    return style if len(fields) >= least and numbers else None

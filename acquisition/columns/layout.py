@@ -1,0 +1,243 @@
+"""The layout file: which column of a text file is what, in which unit and at which point."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from acquisition.columns.units import QUANTITIES
+from acquisition.dof import Dof
+from acquisition.errors import InputError
+
+DIRECTIONS = {"x": 1, "y": 2, "z": 3, "rx": 4, "ry": 5, "rz": 6}
+PARTS = ("real", "imag", "magnitude", "phase")
+
+
+@dataclass(frozen=True)
+class Column:
+    """What one column holds.
+
+    Parameters
+    ----------
+    quantity : str
+        "force", "acceleration", "velocity" or "displacement"; of FRFs "accelerance", "mobility" or
+        "receptance".
+    node : int
+        Node at which the transducer sits, or the hammer hits.
+    direction : str
+        "+x", "-z", ...: which way the transducer points.
+    index : int or None
+        Number of the column, from 0.
+    name : str or None
+        Heading of the column; instead of ``index``.
+    unit : str
+        Unit of the numbers; "" for SI, or for what a LabVIEW header says.
+    scale : float
+        Factor by which the numbers are multiplied first [-].
+    part : str
+        Of FRFs: "real", "imag", "magnitude" or "phase" (in degrees).
+    reference_node : int
+        Of FRFs: where the force acted.
+    reference_direction : str
+        Of FRFs: which way the force acted.
+    """
+
+    quantity: str
+    node: int = 1
+    direction: str = "+z"
+    index: int | None = None
+    name: str | None = None
+    unit: str = ""
+    scale: float = 1.0
+    part: str = "real"
+    reference_node: int = 1
+    reference_direction: str = "+z"
+
+    @property
+    def label(self) -> str:
+        """Return how messages call the column."""
+        return f"column {self.index}" if self.name is None else f"column {self.name!r}"
+
+    @property
+    def dof(self) -> Dof:
+        """Degree of freedom of the transducer."""
+        return dof_of(self.node, self.direction)
+
+    @property
+    def reference(self) -> Dof:
+        """Degree of freedom of the force of an FRF."""
+        return dof_of(self.reference_node, self.reference_direction)
+
+
+@dataclass(frozen=True)
+class FileRule:
+    """Another point for a column in some of the files: the hammer that roves from file to file.
+
+    Parameters
+    ----------
+    match : str
+        Pattern of file names, as ``point_07_*.csv``.
+    node : int
+        Node in these files.
+    direction : str
+        Direction in these files; "" for that of the column.
+    column : str or int
+        Heading or number of the column; "" for the force.
+    """
+
+    match: str
+    node: int
+    direction: str = ""
+    column: str | int = ""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How to read column text.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+        What is in the columns.
+    files : tuple of FileRule
+        Points that differ from file to file.
+    rate : float or None
+        Sampling rate [Hz]; None to take it from a time column or a LabVIEW header.
+    time_column, frequency_column : int, str or None
+        Number or heading of the column of times [s], or frequencies of FRFs [Hz].
+    separator : str
+        "auto", "tab", "space" or the character itself.
+    decimal : str
+        "auto", "." or ",".
+    skip : int
+        Lines before the headings.
+    samples : int or None
+        Cut every record to this length.
+    decay : float
+        Decay rate of an exponential window in the records [1/s].
+    source : str
+        Where the layout came from, for messages.
+    """
+
+    columns: tuple[Column, ...]
+    files: tuple[FileRule, ...] = ()
+    rate: float | None = None
+    time_column: int | str | None = None
+    frequency_column: int | str | None = None
+    separator: str = "auto"
+    decimal: str = "auto"
+    skip: int = 0
+    samples: int | None = None
+    decay: float = 0.0
+    source: str = "layout"
+
+
+def dof_of(node: int, direction: str) -> Dof:
+    """Return the degree of freedom of a node and a direction as written, "+z" or "-X".
+
+    Raises
+    ------
+    InputError
+        If the direction is none.
+    """
+    text = direction.strip().lower()
+    code = DIRECTIONS.get(text.lstrip("+-"))
+    if code is None or len(text) - len(text.lstrip("+-")) > 1:
+        raise InputError(f"direction {direction!r} is none; write +x, -x, +y, -y, +z, -z or +rx ... -rz")
+    return Dof(int(node), -code if text.startswith("-") else code)
+
+
+def read_layout(path: Path | str) -> Layout:
+    """Read a layout file (TOML); see docs/readers.md.
+
+    Raises
+    ------
+    InputError
+        If it is not there, is not TOML, or has keys that mean nothing.
+    """
+    try:
+        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); give the layout file") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not a TOML file: {error}") from error
+    return layout_from(table, source=str(path))
+
+
+def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
+    """Return the layout that a table (as read from TOML) describes.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or has a value of the wrong kind.
+    """
+    top = {k: v for k, v in table.items() if k not in ("column", "file")}
+    columns = tuple(
+        _built(Column, entry, f"{source}: [[column]] {n + 1}")
+        for n, entry in enumerate(table.get("column", ()))
+    )
+    files = tuple(
+        _built(FileRule, entry, f"{source}: [[file]] {n + 1}")
+        for n, entry in enumerate(table.get("file", ()))
+    )
+    layout: Layout = _built(Layout, {**top, "columns": columns, "files": files, "source": source}, source)
+    if not columns:
+        raise InputError(f"{source}: no [[column]]; add one for the force and one for each response")
+    for n, column in enumerate(columns):
+        _check_column(column, f"{source}: [[column]] {n + 1}")
+    if layout.rate is not None and layout.rate <= 0:
+        raise InputError(f"{source}: rate = {layout.rate:g}; give the sampling rate in Hz")
+    return layout
+
+
+def _check_column(column: Column, where: str) -> None:
+    if (column.index is None) == (column.name is None):
+        raise InputError(f"{where}: give either index (from 0) or name (the heading)")
+    for key, allowed in (("quantity", tuple(QUANTITIES)), ("part", PARTS)):
+        value = getattr(column, key)
+        if value not in allowed:
+            raise InputError(f"{where}: {key} = {value!r}{_meant(value, allowed)}; use {', '.join(allowed)}")
+    try:
+        _ = column.dof, column.reference
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
+_KINDS: dict[str, tuple[type, ...]] = {
+    "int": (int,),
+    "float": (int, float),
+    "str": (str,),
+    "int | None": (int,),
+    "float | None": (int, float),
+    "str | None": (str,),
+    "str | int": (int, str),
+    "int | str | None": (int, str),
+}
+
+
+def _built(kind: type, entry: Mapping[str, Any], where: str) -> Any:
+    known = {f.name: str(f.type) for f in fields(kind)}
+    for key, value in entry.items():
+        if key not in known:
+            names = tuple(k for k in known if k not in ("source", "columns", "files"))
+            raise InputError(f"{where}: unknown key {key!r}{_meant(key, names)}; keys are {', '.join(names)}")
+        allowed = _KINDS.get(known[key])
+        if allowed and (not isinstance(value, allowed) or isinstance(value, bool)):
+            raise InputError(
+                f"{where}: {key} = {value!r} is not of the kind {known[key].split(' | None')[0]}"
+            )
+    try:
+        return kind(**entry)
+    except TypeError as error:
+        missing = str(error).split("argument")[-1].lstrip("s: ")
+        raise InputError(f"{where}: {missing} is missing") from error
+
+
+def _meant(word: str, known: tuple[str, ...]) -> str:
+    close = difflib.get_close_matches(str(word), known, n=1)
+    return f" (is {close[0]!r} meant?)" if close else ""

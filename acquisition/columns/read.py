@@ -1,0 +1,219 @@
+"""Hammer tests from column text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fnmatch import fnmatch
+from pathlib import Path
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.columns.blocks import Block, plain_blocks, read_text
+from acquisition.columns.layout import Column, Layout, dof_of, read_layout
+from acquisition.columns.lvm import is_lvm, lvm_blocks
+from acquisition.columns.units import QUANTITIES, factor_to_si
+from acquisition.dof import Dof
+from acquisition.errors import InputError
+from acquisition.frf import Form
+from acquisition.geometry import Geometry
+from acquisition.hammer import HammerTest, Hits
+
+UNEVEN = 0.5  # of the usual step: times that miss their place by more are uneven
+SAME_RATE = 1e-4  # relative difference of rates that are the same
+
+
+@dataclass(frozen=True, eq=False)
+class _Record:
+    """One hit as read: force, motion, where, and at which rate."""
+
+    reference: Dof
+    responses: tuple[Dof, ...]
+    force: FloatArray
+    motion: FloatArray
+    rate: float
+    where: str
+
+
+def read_columns(
+    paths: Path | str | Sequence[Path | str], layout: Layout | Path | str, *, geometry: Geometry | None = None
+) -> HammerTest:
+    """Read column text files as one hammer test.
+
+    Every file, and every block or segment in it, is one hit (or one long record: see
+    `acquisition.splitting.split_hits`); hits at the same point are put together.
+
+    Parameters
+    ----------
+    paths : path or sequence of paths
+        CSV files, tab- or blank-separated text, LabVIEW ``.lvm``.
+    layout : Layout or path
+        Which column is what; see docs/readers.md.
+    geometry : Geometry, optional
+        Nodes of the test.
+
+    Returns
+    -------
+    HammerTest
+        In SI units.
+
+    Raises
+    ------
+    InputError
+        If a file, line or column cannot be used; the message says which and what to do.
+    """
+    plan = layout if isinstance(layout, Layout) else read_layout(layout)
+    files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
+    if not files:
+        raise InputError(f"{plan.source}: no files to read")
+    form = _form(plan)
+    records = [record for path in files for record in _records(path, plan)]
+    rates = np.array([r.rate for r in records])
+    if np.ptp(rates) > SAME_RATE * rates.max():
+        other = int(np.abs(rates - rates[0]).argmax())
+        raise InputError(
+            f"{records[other].where}: sampled at {rates[other]:g} Hz, but {records[0].where} at {rates[0]:g} Hz; "
+            "read them as separate tests"
+        )
+    return HammerTest(
+        rate=float(np.median(rates)),
+        points=_points(records, plan),
+        form=form,
+        decay=plan.decay,
+        geometry=Geometry.empty() if geometry is None else geometry,
+        source=", ".join(str(f) for f in files[:3]) + (", ..." if len(files) > 3 else ""),
+    )
+
+
+def blocks_of(path: Path, layout: Layout) -> list[Block]:
+    """Return the blocks of numbers of a file.
+
+    Raises
+    ------
+    InputError
+        If there are none.
+    """
+    lines = read_text(path)
+    if is_lvm(lines):
+        return lvm_blocks(path, lines)
+    axes = [c for c in (layout.time_column, layout.frequency_column) if c is not None]
+    keys = [c.index if c.name is None else c.name for c in layout.columns] + axes
+    numbers = [k for k in keys if isinstance(k, int)]
+    least = max(len(set(keys)), max(numbers, default=0) + 1 if not layout.skip else 1)
+    return plain_blocks(path, lines, layout, least, [k for k in keys if isinstance(k, str)])
+
+
+def scaled(block: Block, columns: Sequence[Column], more: Sequence[int] = ()) -> FloatArray:
+    """Return columns of a block in SI units, shape (n_columns + n_more, n_lines); ``more`` are left as they are.
+
+    Raises
+    ------
+    InputError
+        If a column or unit is not there.
+    """
+    index = [block.index_of(c.index if c.name is None else c.name, c.label) for c in columns]
+    factors = []
+    for place, c in zip(index, columns, strict=True):
+        unit = c.unit or block.units.get(place, "")
+        factors.append(c.scale * factor_to_si(unit, c.quantity, f"{block.path}: {c.label}"))
+    values = block.numbers([*index, *more]).T
+    values[: len(index)] *= np.array(factors)[:, None]
+    return values
+
+
+def _form(layout: Layout) -> Form:
+    forces = [c for c in layout.columns if c.quantity == "force"]
+    responses = [c for c in layout.columns if c.quantity != "force"]
+    kinds = sorted({c.quantity for c in responses})
+    if len(forces) != 1 or not responses:
+        raise InputError(
+            f"{layout.source}: {len(forces)} columns of force and {len(responses)} of response; "
+            "a hammer test has one force and one response or more"
+        )
+    form = QUANTITIES[kinds[0]]
+    if len(kinds) > 1 or form is None or kinds[0] in ("accelerance", "mobility", "receptance"):
+        raise InputError(
+            f"{layout.source}: responses of {', '.join(kinds)}; a hammer test has all acceleration, "
+            "all velocity or all displacement: read others as a test of their own"
+        )
+    return form
+
+
+def _records(path: Path, layout: Layout) -> list[_Record]:
+    columns = [_in_file(c, path, layout) for c in layout.columns]
+    force = next(c for c in columns if c.quantity == "force")
+    responses = [c for c in columns if c.quantity != "force"]
+    records = []
+    for block in blocks_of(path, layout):
+        timed = layout.rate is None and layout.time_column is not None
+        more = [block.index_of(layout.time_column, f"time_column {layout.time_column!r}")] if timed else []
+        values = scaled(block, [force, *responses], more)
+        rate = _even_rate(values[-1], block) if timed else _stated_rate(block, layout)
+        where = f"{path}, line {block.first}"
+        if layout.samples is not None and values.shape[1] < layout.samples:
+            raise InputError(f"{where}: {values.shape[1]} samples; the layout asks for {layout.samples}")
+        values = values[:, : layout.samples]
+        records.append(
+            _Record(
+                force.dof, tuple(c.dof for c in responses), values[0], values[1 : len(columns)], rate, where
+            )
+        )
+    return records
+
+
+def _in_file(column: Column, path: Path, layout: Layout) -> Column:
+    """Return the column with the point that it has in this file."""
+    for rule in layout.files:
+        named = (
+            column.quantity == "force" if rule.column == "" else rule.column in (column.name, column.index)
+        )
+        if named and fnmatch(path.name, rule.match):
+            direction = rule.direction or column.direction
+            dof_of(rule.node, direction)
+            return replace(column, node=rule.node, direction=direction)
+    return column
+
+
+def _stated_rate(block: Block, layout: Layout) -> float:
+    stated, given = block.rate, layout.rate
+    if stated is None and given is None:
+        raise InputError(
+            f"{block.path}: no sampling rate; add rate = ... [Hz] or time_column = ... to {layout.source}"
+        )
+    if stated is not None and given is not None and abs(stated - given) > SAME_RATE * given:
+        raise InputError(
+            f"{block.path}: sampled at {stated:g} Hz by its header, at {given:g} Hz by {layout.source}; "
+            "take the wrong one out"
+        )
+    return float(stated if given is None else given)  # type: ignore[arg-type]
+
+
+def _even_rate(time: FloatArray, block: Block) -> float:
+    """Return the rate of times that are even, as far as they are written out [Hz]."""
+    steps = np.diff(time)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    if usual <= 0:
+        raise InputError(f"{block.path}, line {block.first}: the times do not increase; check time_column")
+    odd = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
+    if len(odd):
+        raise InputError(
+            f"{block.path}, line {block.first + int(odd[0]) + 1}: uneven time, a step of {steps[odd[0]]:g} s where "
+            f"{usual:g} s is usual; samples are missing: resample the record or cut it before the gap"
+        )
+    return float((len(time) - 1) / (time[-1] - time[0]))
+
+
+def _points(records: Sequence[_Record], layout: Layout) -> tuple[Hits, ...]:
+    lengths = {len(r.force): r.where for r in records}
+    if len(lengths) > 1:
+        told = "; ".join(f"{where}: {n} samples" for n, where in sorted(lengths.items())[:3])
+        raise InputError(
+            f"records of different lengths ({told}); add samples = {min(lengths)} to {layout.source}"
+        )
+    keys = dict.fromkeys((r.reference, r.responses) for r in records)
+    groups = {key: [r for r in records if (r.reference, r.responses) == key] for key in keys}
+    return tuple(
+        Hits(reference, responses, np.stack([r.force for r in rs]), np.stack([r.motion for r in rs]))
+        for (reference, responses), rs in groups.items()
+    )

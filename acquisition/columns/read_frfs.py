@@ -1,0 +1,95 @@
+"""FRFs from column text: a column of frequencies beside real and imaginary parts, or magnitude and phase."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.columns.layout import Column, Layout, read_layout
+from acquisition.columns.read import blocks_of, scaled
+from acquisition.columns.units import QUANTITIES
+from acquisition.errors import InputError
+from acquisition.frf import FrfSet
+
+SAME_AXIS = 1e-6  # of the highest frequency
+
+
+def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | Path | str) -> FrfSet:
+    """Read FRFs from column text.
+
+    Parameters
+    ----------
+    paths : path or sequence of paths
+        The files; all on one frequency axis.
+    layout : Layout or path
+        Which column is what: ``frequency_column``, and for every FRF two columns, "real" and "imag" or
+        "magnitude" and "phase" [degrees]; see docs/readers.md.
+
+    Raises
+    ------
+    InputError
+        If a file, line or column cannot be used.
+    """
+    plan = layout if isinstance(layout, Layout) else read_layout(layout)
+    files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
+    forms = {QUANTITIES[c.quantity] for c in plan.columns}
+    form = next(iter(forms))
+    if len(forms) != 1 or form is None or plan.frequency_column is None or not files:
+        raise InputError(
+            f"{plan.source}: FRFs need frequency_column, and columns of one quantity: accelerance, mobility or "
+            "receptance"
+        )
+    pairs = _pairs(plan)
+    axes, rows = [], []
+    for block in (block for path in files for block in blocks_of(path, plan)):
+        axis = block.index_of(plan.frequency_column, f"frequency_column {plan.frequency_column!r}")
+        values = scaled(block, [c for pair in pairs for c in pair], [axis])
+        axes.append(values[-1])
+        rows += [_complex(pair[0], values[2 * k], values[2 * k + 1]) for k, pair in enumerate(pairs)]
+        same = len(axes[0]) == len(axes[-1]) and np.allclose(
+            axes[0], axes[-1], rtol=0, atol=SAME_AXIS * axes[0].max()
+        )
+        if not same:
+            raise InputError(f"{block.path}, line {block.first}: another frequency axis than {files[0]}")
+    times = len(axes)
+    return FrfSet(
+        frequency=axes[0],
+        values=np.stack(rows),
+        responses=tuple(pair[0].dof for pair in pairs) * times,
+        references=tuple(pair[0].reference for pair in pairs) * times,
+        form=form,
+        decay=plan.decay,
+        source=", ".join(str(f) for f in files[:3]),
+    )
+
+
+def _pairs(layout: Layout) -> list[tuple[Column, Column]]:
+    """Return the two columns of every FRF: real and imaginary part, or magnitude and phase."""
+    groups: dict[object, dict[str, Column]] = {}
+    for c in layout.columns:
+        group = groups.setdefault((c.dof, c.reference), {})
+        if c.part in group:
+            raise InputError(f"{layout.source}: FRF {c.dof}/{c.reference} has two columns of part {c.part!r}")
+        group[c.part] = c
+    pairs = []
+    for group in groups.values():
+        for one, two in (("real", "imag"), ("magnitude", "phase")):
+            if set(group) == {one, two}:
+                pairs.append((group[one], group[two]))
+                break
+        else:
+            c = next(iter(group.values()))
+            raise InputError(
+                f"{layout.source}: FRF {c.dof}/{c.reference} has the parts {', '.join(group)}; "
+                'give "real" and "imag", or "magnitude" and "phase"'
+            )
+    return pairs
+
+
+def _complex(column: Column, one: FloatArray, two: FloatArray) -> ComplexArray:
+    if column.part == "real":
+        return np.asarray(one + 1j * two, dtype=np.complex128)
+    return np.asarray(one * np.exp(1j * np.deg2rad(two)), dtype=np.complex128)

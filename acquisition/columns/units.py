@@ -1,0 +1,78 @@
+"""Units of the numbers in column text, to SI."""
+
+from __future__ import annotations
+
+import re
+
+from acquisition.errors import InputError
+from acquisition.frf import Form
+
+GRAVITY = 9.80665
+INCH, FOOT, POUND = 0.0254, 0.3048, 4.4482216152605
+
+QUANTITIES: dict[str, Form | None] = {
+    "force": None,
+    "acceleration": "accelerance",
+    "velocity": "mobility",
+    "displacement": "receptance",
+    "accelerance": "accelerance",
+    "mobility": "mobility",
+    "receptance": "receptance",
+}
+_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": INCH, "ft": FOOT}
+_FORCES = {
+    "n": 1.0,
+    "newton": 1.0,
+    "newtons": 1.0,
+    "kn": 1e3,
+    "mn": 1e-3,
+    "lbf": POUND,
+    "lb": POUND,
+    "kgf": GRAVITY,
+}
+_ACCELERATIONS = {f"{name}/s2": factor for name, factor in _LENGTHS.items()} | {
+    "g": GRAVITY,
+    "mg": 1e-3 * GRAVITY,
+}
+_VELOCITIES = {f"{name}/s": factor for name, factor in _LENGTHS.items()}
+_TABLES = {
+    "force": _FORCES,
+    "acceleration": _ACCELERATIONS,
+    "velocity": _VELOCITIES,
+    "displacement": _LENGTHS,
+}
+_RESPONSES = {"accelerance": "acceleration", "mobility": "velocity", "receptance": "displacement"}
+
+
+def factor_to_si(unit: str, quantity: str, where: str) -> float:
+    """Return what numbers in a unit are multiplied by to be in SI units [-].
+
+    Parameters
+    ----------
+    unit : str
+        "N", "g", "m/s^2", "mm/s", ...; of an FRF "m/s2/N", "g/lbf", "1/kg"; "" for SI.
+    quantity : str
+        What is measured, see `Column`.
+    where : str
+        File and column, for messages.
+
+    Raises
+    ------
+    InputError
+        If the unit is not one of the quantity.
+    """
+    text = (
+        re.sub(r"[\s()\[\]]|\^|\*\*", "", unit).lower().replace("²", "2").replace("µ", "u").replace("μ", "u")
+    )
+    text = text.replace("/s/s", "/s2").replace("m/sec", "m/s")
+    if text in ("", "1/kg") and (not text or quantity == "accelerance"):
+        return 1.0
+    if quantity in _RESPONSES:
+        response, _, force = text.rpartition("/")
+        return factor_to_si(response, _RESPONSES[quantity], where) / factor_to_si(force, "force", where)
+    table = _TABLES[quantity]
+    if text not in table:
+        raise InputError(
+            f"{where}: {unit!r} is no unit of {quantity} known here; use one of {', '.join(table)}"
+        )
+    return table[text]

@@ -1,0 +1,115 @@
+"""One door for every kind of file: readers by file ending, the user's own among them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from importlib.metadata import entry_points
+from pathlib import Path
+
+from acquisition.columns import Layout, read_columns, read_frf_columns, read_layout
+from acquisition.errors import InputError
+from acquisition.frf import FrfSet
+from acquisition.hammer import HammerTest
+from acquisition.uff import read_uff
+
+Reader = Callable[[Path], HammerTest | FrfSet]
+GROUP = "modalkit.readers"
+UFF = frozenset({".uff", ".unv", ".uf", ".bunv"})
+"""Endings of universal files."""
+COLUMNS = frozenset({".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm"})
+"""Endings of column text."""
+
+
+def installed_readers() -> dict[str, Reader]:
+    """Return the readers that installed packages offer, by file ending.
+
+    A package offers one as an entry point of the group ``modalkit.readers`` whose name is the ending, as
+    ``".abc"``, and whose object is a function from a path to a `HammerTest` or `FrfSet`.
+    """
+    return {point.name.lower(): point.load() for point in entry_points(group=GROUP)}
+
+
+def read_test(
+    paths: Path | str | Sequence[Path | str],
+    *,
+    layout: Layout | Path | str | None = None,
+    readers: Mapping[str, Reader] | None = None,
+) -> list[HammerTest | FrfSet]:
+    """Read files of any known kind.
+
+    Parameters
+    ----------
+    paths : path or sequence of paths
+        The files. UFF files are read together as one test, and so are files of column text.
+    layout : Layout or path, optional
+        Rate, units and points of column text; see docs/readers.md. It makes any file without a reader of its
+        own column text.
+    readers : mapping of str to function, optional
+        Further readers by file ending (``{".abc": read_abc}``); they come before all others.
+
+    Returns
+    -------
+    list of HammerTest or FrfSet
+        What the files hold, in the order own readers, UFF, column text.
+
+    Raises
+    ------
+    InputError
+        If no reader is known for a file, or it cannot be read.
+    """
+    files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
+    own = {**installed_readers(), **{_ending(k): v for k, v in (readers or {}).items()}}
+    special = [f for f in files if f.suffix.lower() in own]
+    rest = [f for f in files if f not in special]
+    uff = [f for f in rest if f.suffix.lower() in UFF or written_as_uff(f)]
+    text = [f for f in rest if f not in uff]
+    unknown = [f for f in text if layout is None]
+    if unknown:
+        raise InputError(f"{unknown[0]}: {_advice(unknown[0], own)}")
+    found: list[HammerTest | FrfSet] = [_checked(own[f.suffix.lower()], f) for f in special]
+    if uff:
+        content = read_uff(uff)
+        found += [*content.tests, *([] if content.frfs is None else [content.frfs])]
+    if text and layout is not None:
+        plan = layout if isinstance(layout, Layout) else read_layout(layout)
+        found.append(
+            read_frf_columns(text, plan) if plan.frequency_column is not None else read_columns(text, plan)
+        )
+    return found
+
+
+def written_as_uff(path: Path) -> bool:
+    """Tell whether a file is a universal file: by its ending, or because it starts as one does.
+
+    A file that cannot be opened counts as one, so that it is refused with its name.
+    """
+    if path.suffix.lower() in UFF:
+        return True
+    if path.suffix.lower() in installed_readers():
+        return False
+    try:
+        with path.open("rb") as file:
+            start = file.read(400)
+    except OSError:
+        return True
+    return start.strip().startswith(b"-1")
+
+
+def _ending(name: str) -> str:
+    return name.lower() if name.startswith(".") else f".{name.lower()}"
+
+
+def _advice(path: Path, own: Mapping[str, Reader]) -> str:
+    if path.suffix.lower() in COLUMNS:
+        return "column text needs a layout file with rate, units and points; see docs/readers.md"
+    known = ", ".join(sorted({*UFF, *COLUMNS, *own}))
+    return f"no reader for {path.suffix or 'files without ending'}; known are {known}; see docs/readers.md"
+
+
+def _checked(reader: Reader, path: Path) -> HammerTest | FrfSet:
+    result = reader(path)
+    if not isinstance(result, HammerTest | FrfSet):
+        raise InputError(
+            f"{path}: its reader returned {type(result).__name__}; a reader returns a HammerTest or an FrfSet"
+        )
+    return result

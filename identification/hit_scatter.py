@@ -1,0 +1,172 @@
+"""From the scatter of the hits to the scatter of poles and constants, whatever ties lines and FRFs together.
+
+A hit's share in the error of the FRFs moves the fit by J^+ W s, so the sum of squares over the hits is the
+covariance of the fit: the sandwich estimator (White, Econometrica 48 (1980) 817-838; for groups of related
+data Liang and Zeger, Biometrika 73 (1986) 13-22). It knows of a hit that missed its point, of responses that
+share a force, and of lines tied together by a window. What it does not know it cannot have seen: there are as
+many terms as hits. So it is used for the ratio to the covariance the weights give, and few hits are shrunk to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.frf import FrfSet
+from identification import basis, grams
+from identification.refine import Fit, evaluate, pole_turns
+
+_PRIOR_FREEDOM = 10.0
+_ALIKE_POLES, _ALIKE_CONSTANTS = (
+    40.0,
+    10.0,
+)  # what raises the noise of a pole raises that of all; not so a constant's
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseFactors:
+    """By what factor true variances exceed those of independent noise of the weights' size.
+
+    Parameters
+    ----------
+    poles : (n_modes,) array
+        For each pole [-].
+    constants : (n_frf, n_modes) array
+        For each modal constant [-].
+    """
+
+    poles: FloatArray
+    constants: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Sums:
+    """Sums over the hits of one group, (Re, Im) of poles interleaved.
+
+    Parameters
+    ----------
+    steps : (n_hits, 2 n_modes) array
+        What each hit moves the poles by [rad/s].
+    constants : (n_rows, n_modes) array
+        Sum of squares of what it moves Im of the residues by, less that by the poles alone.
+    rows : (n_rows,) int array
+        Which FRFs.
+    """
+
+    steps: FloatArray
+    constants: FloatArray
+    rows: IntArray
+
+
+def factors(frfs: FrfSet, fit: Fit, weights: grams.Weights, prior: NoiseFactors) -> NoiseFactors | None:
+    """Return the noise factors the hits tell, or None where no scatter of hits came with the FRFs.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs in the band.
+    fit : Fit
+        The fit.
+    weights : Weights
+        Reciprocal variances it was made with.
+    prior : NoiseFactors
+        What is taken where hits are few: it counts as ten degrees of freedom.
+    """
+    if frfs.scatter is None:
+        return None
+    n = len(fit.poles)
+    columns = basis.build(frfs.laplace, fit.poles, frfs.form, fit.linear.powers)
+    normal = evaluate(frfs, fit.poles, weights, fit.linear.powers).normal
+    inverse: FloatArray = np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
+    groups = [
+        _moved(frfs, fit, weights, columns, inverse, np.asarray(g.rows), np.asarray(g.deviations))
+        for g in frfs.scatter.groups
+    ]
+    steps = [g.steps for g in groups]
+    spread = sum((s.T @ s for s in steps), np.zeros((2 * n, 2 * n)))
+    plain: FloatArray = np.asarray(0.5 * inverse)
+    ratio = np.diag(spread) / np.maximum(np.diag(plain), np.finfo(float).tiny)
+    freedom = 2 * _freedom(steps, n)
+    of_poles = prior.poles * _shrunk(ratio.reshape(n, 2).mean(axis=1) / prior.poles, freedom, _ALIKE_POLES)
+    return NoiseFactors(of_poles, _of_constants(fit, groups, spread, plain, prior.constants))
+
+
+def _moved(
+    frfs: FrfSet,
+    fit: Fit,
+    weights: grams.Weights,
+    columns: basis.Basis,
+    inverse: FloatArray,
+    rows: IntArray,
+    deviations: ComplexArray,
+) -> _Sums:
+    """Return what the hits of one group move."""
+    n, k = len(fit.poles), columns.linear.shape[1]
+    lines = weights.lines if len(weights.lines) == 1 else weights.lines[rows]
+    real = np.concatenate([columns.linear, columns.slopes], axis=1)
+    moved = deviations.astype(np.complex128) * lines
+    cross = moved.real @ real.real + moved.imag @ real.imag  # (n_hits, n_rows, k + 2 n)
+    gram = grams.form(
+        real, np.zeros((len(lines), len(real)), np.complex128), grams.Weights(lines[:, 0], lines)
+    ).gram
+    follow = grams.solve(gram[:, :k, :k], gram[:, :k, k:])
+    hits = len(cross)
+    alone = np.stack([grams.solve(gram[:, :k, :k], cross[h, :, :k, None])[:, :, 0] for h in range(hits)])
+    left = cross[:, :, k:] - np.einsum(
+        "hjk,jkm->hjm", cross[:, :, :k], np.broadcast_to(follow, (len(rows), *follow.shape[1:]))
+    )
+    residues = fit.linear.residues[rows]
+    turns = pole_turns(np.stack([residues.real, residues.imag], axis=2).reshape(len(rows), -1), n)
+    gradient = np.einsum(
+        "j,hjni,jnia->hna", weights.level[rows], left.reshape(hits, len(rows), n, 2), turns, optimize=True
+    )
+    steps = gradient.reshape(hits, 2 * n) @ inverse
+    gain = fit.pole_gain[rows, 1 : 2 * n : 2]
+    own, by_poles = alone[:, :, 1 : 2 * n : 2], np.einsum("jnp,hp->hjn", gain, steps)
+    return _Sums(steps, np.sum(own**2 + 2.0 * own * by_poles, axis=0), rows)
+
+
+def _freedom(steps: list[FloatArray], n_modes: int) -> FloatArray:
+    """Return the degrees of freedom behind each pole's variance (Satterthwaite), shape (n_modes,) [-]."""
+    share = np.stack([np.sum(s**2, axis=0) for s in steps])
+    count = np.array([max(len(s) - 1.0, 0.5) for s in steps])[:, None]
+    tiny = np.finfo(float).tiny
+    total = share.sum(axis=0) ** 2 / np.maximum(np.sum(share**2 / count, axis=0), tiny)
+    return np.asarray(total.reshape(n_modes, 2).mean(axis=1))
+
+
+def _shrunk(ratio: FloatArray, freedom: FloatArray, alike: float) -> FloatArray:
+    """Shrink each ratio of true to expected variance to that of all, and that to one.
+
+    ``alike`` is how many degrees of freedom the ratio of all counts as, in each [-]. A variance from few
+    degrees of freedom makes errors Student's: it is raised so that 1.96 standard deviations still are a 95 %
+    interval.
+    """
+    total = float(freedom.sum())
+    pooled = (float(np.sum(freedom * ratio)) + _PRIOR_FREEDOM) / (total + _PRIOR_FREEDOM)
+    borrowed = min(alike, total + _PRIOR_FREEDOM)
+    known = freedom + borrowed
+    wider = (stats.t.ppf(0.975, known) / stats.norm.ppf(0.975)) ** 2
+    return np.asarray(wider * (freedom * ratio + borrowed * pooled) / known)
+
+
+def _of_constants(
+    fit: Fit, groups: list[_Sums], spread: FloatArray, plain: FloatArray, prior: FloatArray
+) -> FloatArray:
+    """Return the factor of each constant, those of a mode being shrunk to one another."""
+    n = len(fit.poles)
+    gain = fit.pole_gain[:, 1 : 2 * n : 2]
+    found = np.einsum("jnp,pq,jnq->jn", gain, spread, gain, optimize=True)
+    expected = fit.linear_inverse[:, 1 : 2 * n : 2] + np.einsum(
+        "jnp,pq,jnq->jn", gain, plain, gain, optimize=True
+    )
+    freedom = np.zeros(len(found))
+    for group in groups:
+        np.add.at(found, group.rows, group.constants)
+        np.add.at(freedom, group.rows, len(group.steps) - 1.0)
+    ratio = np.maximum(found, 0.0) / np.maximum(expected * prior, np.finfo(float).tiny)
+    modes = [_shrunk(column, freedom, _ALIKE_CONSTANTS) for column in ratio.T]
+    return np.asarray(prior * np.stack(modes, axis=1))

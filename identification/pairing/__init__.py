@@ -1,0 +1,7 @@
+"""Which mode of the test is which mode of the model; 'none' is an answer."""
+
+from identification.pairing.assignment import Pair, common_shift, pair
+from identification.pairing.correlation import Correlation, correlate
+from identification.pairing.turned import Subspace, turned_subspaces
+
+__all__ = ["Correlation", "Pair", "Subspace", "common_shift", "correlate", "pair", "turned_subspaces"]

@@ -1,0 +1,104 @@
+"""What is said of the scale of mode shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.frf import FrfSet
+from identification.arrangement import Arrangement
+
+_CERTAIN = 5.0
+_DELAYED = np.radians(20.0)
+
+
+def no_drive_point(frfs: FrfSet) -> str:
+    """Say that no FRF gives the scale, and how near the nearest came."""
+    return (
+        f"no drive point: no point was both hit and measured at one node and axis{_nearest(frfs)}, so the mode "
+        "shapes are not mass-normalised; measure one drive point to scale them"
+    )
+
+
+def _nearest(frfs: FrfSet) -> str:
+    """Name the FRF along one axis whose ends lie nearest to each other."""
+    same = [
+        i
+        for i, (a, b) in enumerate(zip(frfs.responses, frfs.references, strict=True))
+        if a.axis == b.axis and a.node in frfs.geometry and b.node in frfs.geometry
+    ]
+    if not same:
+        return ""
+    ends = [frfs.geometry.at([side[i].node for i in same]) for side in (frfs.responses, frfs.references)]
+    distance = np.linalg.norm(ends[0] - ends[1], axis=1)
+    best = int(distance.argmin())
+    name = f"{frfs.responses[same[best]]}/{frfs.references[same[best]]}"
+    return f" (the nearest are {name}, {1e3 * distance[best]:.3g} mm apart)"
+
+
+def not_tied(points: Sequence[str]) -> str:
+    """Say which points are left out of the shapes."""
+    listed = ", ".join(points[:5]) + (f" and {len(points) - 5} more" if len(points) > 5 else "")
+    return (
+        f"no FRF ties {listed} to the other points; their scale and sign relative to the others are unknown, and "
+        "they are left out of the mode shapes: measure one point in common"
+    )
+
+
+def about_scale(
+    plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray, certainty: FloatArray
+) -> tuple[str, ...]:
+    """Say where the scale is uncertain and where a drive point contradicts a passive structure.
+
+    Parameters
+    ----------
+    plan : Arrangement
+        The FRFs as a matrix.
+    constants : tuple of (n_frf, n_modes) arrays
+        Modal constants and their standard deviations [1/kg].
+    column : (n_rows,) int array
+        Column with the degree of freedom of each row, -1 where there is none.
+    certainty : (n_modes,) array
+        Scale over its standard deviation [-].
+    """
+    rows = [i for i in np.flatnonzero(column >= 0) if plan.index[i, column[i]] >= 0]
+    names = ", ".join(str(plan.rows[i]) for i in rows)
+    told = []
+    weak = np.flatnonzero(certainty < _CERTAIN) + 1
+    if len(weak):
+        place = f"the drive point {names}" if rows else "the references"
+        told.append(f"mode(s) {_listed(weak)} hardly move at {place}: their scale is uncertain")
+    for i in rows:
+        frf = plan.index[i, column[i]]
+        value, spread = constants[0][frf], np.maximum(constants[1][frf], 1e-300)
+        angle = np.abs(np.angle(value))
+        negative = value.real < -_CERTAIN * spread
+        wrong = np.flatnonzero(negative) + 1
+        if len(wrong):
+            told.append(_negative(str(plan.rows[i]), wrong, np.any(value.real > _CERTAIN * spread)))
+        doubt = spread / np.maximum(np.abs(value), 1e-300)
+        late = np.flatnonzero((doubt < 1.0 / _CERTAIN) & (angle - 3.0 * doubt > _DELAYED) & ~negative) + 1
+        if len(late):
+            told.append(
+                f"the modal constant of the drive point {plan.rows[i]} is turned by up to "
+                f"{np.degrees(angle[late - 1].max()):.0f} degrees in mode(s) {_listed(late)}: strongly complex modes, "
+                "or a delay between the channels"
+            )
+    return tuple(told)
+
+
+def _negative(point: str, wrong: IntArray, others: np.bool_) -> str:
+    """Say what a negative drive-point constant means: a passive structure has none."""
+    said = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
+    if others:
+        return (
+            f"{said} and a positive one in others: hit and sensor cannot have been at one place, and the scale of "
+            "the mode shapes is not to be trusted; check the node numbers"
+        )
+    return f"{said}: check the direction signs of hammer and sensor"
+
+
+def _listed(numbers: IntArray) -> str:
+    return ", ".join(str(int(n)) for n in numbers)

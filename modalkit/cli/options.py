@@ -1,0 +1,62 @@
+"""Options that several commands share: how files and hits are to be treated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal, cast
+
+import typer
+
+from acquisition import Estimator, InputError
+from modalkit.handling import Handling, hit_name
+
+Files = Annotated[list[Path], typer.Argument(help="file(s) of one test: UFF, or column text with --layout")]
+Figures = Annotated[Path | None, typer.Option("--figures", help="folder for figures")]
+Layout = Annotated[Path | None, typer.Option(help="layout of column text (docs/readers.md)")]
+Decay = Annotated[
+    float, typer.Option(help="decay of an exponential window applied before the file was written [1/s]")
+]
+WindowOn = Annotated[
+    str | None,
+    typer.Option(help="'both' or 'responses': what that window was applied to; left out: as heard"),
+]
+Window = Annotated[
+    str, typer.Option(help="decay of an exponential window to apply [1/s]; 'auto': where modes still ring")
+]
+Estimate = Annotated[str, typer.Option("--estimator", help="H1, H2 or Hv")]
+Use = Annotated[list[str] | None, typer.Option(help="hit to use against the proposal, as 12+Z:3; repeat")]
+Leave = Annotated[list[str] | None, typer.Option(help="hit to leave out, as 12+Z:3; repeat")]
+
+
+def handling(
+    *,
+    decay: float,
+    window_on: str | None,
+    window: str,
+    estimator: str,
+    use: list[str] | None,
+    leave: list[str] | None,
+    layout: Path | None,
+) -> Handling:
+    """Return what the options say.
+
+    Raises
+    ------
+    InputError
+        If one of them cannot be understood.
+    """
+    if window_on not in (None, "both", "responses"):
+        raise InputError(f"--window-on {window_on}: write both or responses")
+    try:
+        rate: Literal["auto"] | float = "auto" if window == "auto" else float(window)
+    except ValueError:
+        raise InputError(f"--window {window}: write a decay rate in 1/s, or auto") from None
+    return Handling(
+        decay=decay,
+        window_on=cast("Literal['both', 'responses'] | None", window_on),
+        window=rate,
+        estimator=cast("Estimator", estimator),
+        use=tuple(hit_name(h) for h in use or ()),
+        leave=tuple(hit_name(h) for h in leave or ()),
+        layout=layout,
+    )

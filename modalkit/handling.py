@@ -1,0 +1,69 @@
+"""What the user may say about how records are to be treated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from acquisition import ESTIMATORS, Estimator, InputError
+
+HitName = tuple[str, int]
+
+
+@dataclass(frozen=True)
+class Handling:
+    """How files become FRFs.
+
+    Parameters
+    ----------
+    decay : float
+        Decay rate of an exponential window applied before the files were written, where they do not say it
+        themselves [1/s].
+    window_on : {"both", "responses"}, optional
+        Which records that window was applied to; left out: as the noise of the force tells.
+    window : "auto", or float
+        Decay rate of a further exponential window applied here, 0 for none [1/s]; ``"auto"`` applies one where
+        modes are found that have not decayed by the end of the records.
+    estimator : {"H1", "H2", "Hv"}
+        FRF estimator.
+    use, leave : tuples of (str, int)
+        Hits to use or to leave out against the proposal: the point as printed, ``"12+Z"``, and the number of
+        the hit at it, from 1.
+    layout : Path, optional
+        Rate, units and points of column text.
+
+    Raises
+    ------
+    InputError
+        If a decay is negative or the estimator unknown.
+    """
+
+    decay: float = 0.0
+    window_on: Literal["both", "responses"] | None = None
+    window: Literal["auto"] | float = "auto"
+    estimator: Estimator = "H1"
+    use: tuple[HitName, ...] = ()
+    leave: tuple[HitName, ...] = ()
+    layout: Path | None = None
+
+    def __post_init__(self) -> None:
+        """Check the entries."""
+        if self.decay < 0 or (self.window != "auto" and self.window < 0):
+            raise InputError(f"windows of {self.decay} and {self.window} 1/s: decay rates are not negative")
+        if self.estimator not in ESTIMATORS:
+            raise InputError(f"unknown estimator {self.estimator!r}; use {', '.join(ESTIMATORS)}")
+
+
+def hit_name(text: str) -> HitName:
+    """Return point and number of a hit written ``12+Z:3``.
+
+    Raises
+    ------
+    InputError
+        If it is written otherwise.
+    """
+    point, colon, number = text.rpartition(":")
+    if not colon or not number.strip().isdecimal():
+        raise InputError(f"a hit is written POINT:NUMBER, as 12+Z:3, not {text!r}")
+    return point.strip(), int(number)

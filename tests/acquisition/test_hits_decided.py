@@ -1,0 +1,47 @@
+"""The program proposes, the user decides."""
+
+from __future__ import annotations
+
+import pytest
+
+from acquisition import Dof, HitVerdict, InputError
+from acquisition.quality import decide, rejected_points
+
+
+def verdict(point, hit, used=True, reasons=()):
+    return HitVerdict(point, hit, used, tuple(reasons), 100.0, 1e-3, 500.0, 800.0)
+
+
+VERDICTS = (
+    verdict(Dof(12, 3), 1),
+    verdict(Dof(12, 3), 2, False, ["double hit: 20 % of the peak, +9.0 ms from it"]),
+    verdict(Dof(3, -1), 1, True, ["force has an offset of 3 N"]),
+)
+
+
+def test_decisions_replace_proposals_and_reasons_stay():
+    one, two, three = decide(VERDICTS, use=[("12+z", 2)], leave=[(Dof(3, -1), 1)])
+    assert one is VERDICTS[0]
+    assert two.used and two.reasons == (*VERDICTS[1].reasons, "used by the user's decision")
+    assert not three.used and three.reasons == (*VERDICTS[2].reasons, "left out by the user")
+    assert rejected_points((one, two, three)) == (Dof(3, -1),)
+
+
+def test_agreeing_with_the_proposal_changes_only_what_is_said():
+    decided = decide(VERDICTS, use=[(Dof(12, 3), 1)], leave=[("12+Z", 2)])
+    assert decided[0] == VERDICTS[0]
+    assert not decided[1].used and decided[1].reasons[-1] == "left out by the user"
+    assert decide(VERDICTS) == VERDICTS
+
+
+@pytest.mark.parametrize(
+    ("use", "leave", "message"),
+    [
+        ([("12+Z", 3)], [], r"no hit 3 at 12\+Z; hits there: 1 to 2"),
+        ([], [("99+Z", 1)], r"no hit 1 at 99\+Z; points hit are 12\+Z, 3-X"),
+        ([("12+Z", 2)], [(Dof(12, 3), 2)], "both to use and to leave out"),
+    ],
+)
+def test_hits_that_do_not_exist_are_named(use, leave, message):
+    with pytest.raises(InputError, match=message):
+        decide(VERDICTS, use=use, leave=leave)

@@ -1,0 +1,115 @@
+"""Long records are cut into hits; what cannot be cut out is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from acquisition import Dof, HammerPlan, HammerTest, Hits, InputError, hammer_test, judge_hits, modal_system
+from acquisition.splitting import looks_long, propose_trigger, split_hits
+
+RATE = 4096.0
+SYSTEM = modal_system(
+    frequency=np.array([60.0, 140.0, 300.0]),
+    damping=np.array([0.02, 0.015, 0.01]),
+    response_shapes=np.array([[1.0, 0.7, 0.3], [0.4, -0.8, 0.5]]),
+    point_shapes=np.array([[1.0, 0.7, 0.3]]),
+    responses=(Dof(1, 3), Dof(2, 3)),
+    points=(Dof(1, 3),),
+)
+
+
+def long_test(rng, times, *, length=14.0, levels=None, noise=0.05, offset=0.0):
+    """Superpose single hits of a synthetic test at the given times; the structure is linear."""
+    plan = HammerPlan(rate=RATE, samples=8192, hits=len(times), level_scatter=0.2)
+    single = hammer_test(SYSTEM, plan, rng=rng).points[0]
+    n = int(length * RATE)
+    force, motion = np.zeros(n + 8192), np.zeros((2, n + 8192))
+    for k, at in enumerate(times):
+        start = int((at - plan.pre_trigger) * RATE)
+        gain = 1.0 if levels is None else levels[k]
+        force[start : start + 8192] += gain * single.force[k]
+        motion[:, start : start + 8192] += gain * single.motion[k]
+    force = force[:n] + offset + noise * rng.standard_normal(n)
+    return HammerTest(RATE, (Hits(Dof(1, 3), single.responses, force[None], motion[None, :, :n]),)), single
+
+
+TIMES = (1.0, 3.2, 5.1, 7.6, 9.9, 12.0)
+
+
+@pytest.mark.parametrize("offset", [0.0, -8.0])
+def test_every_hit_gets_a_record_with_its_own_samples(rng, offset):
+    test, _ = long_test(rng, TIMES, offset=offset)
+    assert looks_long(test)
+    cut, messages = split_hits(test)
+    (point,) = cut.points
+    assert point.count == 6 and cut.samples < 1.9 * RATE and cut.samples > 1.8 * RATE
+    assert len(messages) == 1 and "6 hits" in messages[0]
+    peaks = point.force.argmax(axis=1)
+    assert np.ptp(peaks) <= 2  # triggered, so all pulses stand at one place
+    for k, at in enumerate(TIMES):
+        start = int(test.points[0].force[0][int((at - 0.1) * RATE) : int((at + 0.1) * RATE)].argmax())
+        start += int((at - 0.1) * RATE) - int(peaks[k])
+        np.testing.assert_array_equal(point.force[k], test.points[0].force[0, start : start + cut.samples])
+        np.testing.assert_array_equal(
+            point.motion[k], test.points[0].motion[0, :, start : start + cut.samples]
+        )
+    assert not looks_long(cut)
+    assert all(v.used for v in judge_hits(cut))
+
+
+def test_a_bounce_stays_one_hit_and_is_found_as_double(rng):
+    times = (*TIMES, 5.13)
+    test, _ = long_test(rng, times, levels=[1, 1, 1, 1, 1, 1, 0.4])
+    cut, _ = split_hits(test)
+    refused = [v for v in judge_hits(cut) if not v.used]
+    assert cut.points[0].count == 6
+    assert [v.hit for v in refused] == [3] and "double hit" in refused[0].reasons[0]
+
+
+def test_hits_too_close_to_each_other_or_to_the_end_are_said(rng):
+    test, _ = long_test(rng, (1.0, 3.2, 3.7, 6.0, 8.0, 10.0, 13.5))
+    cut, messages = split_hits(test)
+    told = "\n".join(messages[1:])
+    assert cut.points[0].count == 4 and len(messages) == 4
+    assert "3.2 s was left out: the next hit follows after 0.5 s" in told
+    assert "3.7 s was left out: the hit 0.5 s before it still rings" in told
+    assert "13.5 s is too close to the end" in told
+
+
+def test_given_trigger_pre_and_duration_are_taken(rng):
+    test, _ = long_test(rng, TIMES, levels=[1, 1, 0.05, 1, 1, 1])
+    cut, _ = split_hits(test, trigger=30.0, pre=0.125, duration=1.5)
+    assert cut.points[0].count == 5 and cut.samples == 6144
+    above = (cut.points[0].force >= 30).argmax(axis=1)
+    assert above.tolist() == [512] * 5
+    assert split_hits(test, trigger=1.0, duration=1.5)[0].points[0].count == 6
+
+
+def test_a_proposed_trigger_lies_between_noise_and_peaks(rng):
+    for noise in (0.01, 0.5):
+        test, single = long_test(rng, TIMES, noise=noise)
+        assert 8 * noise < propose_trigger(test) < 0.3 * single.force.max(axis=1).min()
+
+
+def test_ordinary_records_are_not_long_even_with_a_late_double(rng):
+    plan = HammerPlan(rate=RATE, samples=8192, hits=5, bad={(0, 2): "double"})
+    test = hammer_test(SYSTEM, plan, rng=rng)
+    assert not looks_long(test)
+    force = np.array(test.points[0].force)
+    force[1] += 0.5 * np.roll(force[1], int(0.8 * RATE))
+    assert not looks_long(replace(test, points=(replace(test.points[0], force=force),)))
+
+
+def test_what_cannot_be_split_says_why(rng):
+    test, _ = long_test(rng, TIMES)
+    with pytest.raises(InputError, match="reaches the trigger of 10000 N"):
+        split_hits(test, trigger=1e4)
+    with pytest.raises(InputError, match="shorter duration"):
+        split_hits(test, duration=5.0)
+    with pytest.raises(InputError, match="shorter duration or pre"):
+        split_hits(test, duration=50.0)
+    with pytest.raises(InputError, match="split first"):
+        split_hits(replace(test, decay=3.0))
