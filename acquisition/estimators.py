@@ -11,7 +11,7 @@ import numpy as np
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError
-from acquisition.frf import FrfSet
+from acquisition.frf import FrfSet, Record
 from acquisition.hammer import HammerTest, Hits
 from acquisition.quality import HitVerdict
 from acquisition.scatter import HitGroup, HitScatter
@@ -87,8 +87,18 @@ def estimate_frfs(
         decay=test.decay,
         geometry=test.geometry,
         source=test.source,
+        record=Record(test.duration, _trigger(kept, test.rate), test.form),
         scatter=_scatter(parts) if several and keep_scatter else None,
     )
+
+
+def _trigger(kept: Sequence[tuple[Hits, BoolArray]], rate: float) -> float:
+    """Return the mean time of the hits in their records [s]."""
+    places = []
+    for hits, keep in kept:
+        power = (hits.force[keep] - np.median(hits.force[keep], axis=-1, keepdims=True)) ** 2
+        places.append(power @ np.arange(power.shape[-1]) / power.sum(axis=-1))
+    return float(np.concatenate(places).mean()) / rate
 
 
 def random_error(frfs: FrfSet) -> FloatArray:

@@ -19,6 +19,25 @@ FORMS: tuple[Form, ...] = ("receptance", "mobility", "accelerance")
 UNITS: dict[Form, str] = {"receptance": "m/N", "mobility": "m/(N s)", "accelerance": "1/kg"}
 
 
+@dataclass(frozen=True)
+class Record:
+    """The records that FRFs were estimated from, whose end cuts off what still rings.
+
+    Parameters
+    ----------
+    duration : float
+        Length of a record [s].
+    trigger : float
+        Mean time of the hit in it, the centroid of the force [s].
+    form : {"receptance", "mobility", "accelerance"}
+        What the responses recorded were.
+    """
+
+    duration: float
+    trigger: float
+    form: Form
+
+
 @dataclass(frozen=True, eq=False)
 class FrfSet:
     """A set of FRFs on one frequency axis, each between a response and a reference.
@@ -43,6 +62,9 @@ class FrfSet:
     decay : float
         Decay rate of an exponential window that is still in the FRFs [1/s]: they are samples of
         H(i omega + decay).
+    record : Record, optional
+        The records the FRFs come from, where these are known to be cut at their ends; lines must then be
+        multiples of 1 / duration.
     geometry : Geometry
         Nodes of the test.
     source : str
@@ -66,6 +88,7 @@ class FrfSet:
     variance: FloatArray | None = None
     averages: IntArray | None = None
     decay: float = 0.0
+    record: Record | None = None
     geometry: Geometry = field(default_factory=Geometry.empty)
     source: str = "arrays"
     scatter: HitScatter | None = None

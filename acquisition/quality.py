@@ -265,7 +265,7 @@ def _notes(force: FloatArray, motion: FloatArray, wave: FloatArray, test: Hammer
     notes = []
     left = float(left_at_end(motion).max())
     if left > UNDECAYED and test.decay == 0:
-        notes.append(f"response has {100 * left:.0f} % left at the end: longer record or exponential window")
+        notes.append(f"response has {100 * left:.0f} % left at the end, which identification allows for")
     offset = float(np.median(force))
     if abs(offset) > OFFSET * wave.max():
         notes.append(f"force has an offset of {offset:.3g} N")

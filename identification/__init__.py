@@ -1,6 +1,6 @@
 """From FRFs to modes with uncertainties."""
 
-from identification.identify import identify, undecayed
+from identification.identify import identify
 from identification.mac import (
     auto_mac,
     comac,
@@ -63,5 +63,4 @@ __all__ = [
     "stabilise",
     "subspace_mac",
     "to_sdypy",
-    "undecayed",
 ]

@@ -34,8 +34,8 @@ def gains(
     """
     shared = grams.Weights(weights.level, weights.lines.mean(axis=0, keepdims=True))
     lines, shared = thinned(frfs, np.append(poles, trials), shared)
-    columns = basis.build(lines.laplace, poles, lines.form, powers).linear
-    extra = basis.build(lines.laplace, trials, lines.form, ()).modes
+    columns = basis.build(lines.axis, poles, powers).linear
+    extra = basis.build(lines.axis, trials, ()).modes
     k = columns.shape[1]
     products = grams.form(np.hstack([columns, extra]), lines.values, shared)
     g = products.gram

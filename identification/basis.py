@@ -7,9 +7,37 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.frf import FORMS, Form
+from acquisition.frf import FORMS, Form, FrfSet, Record
 
 BASIC_TERMS: tuple[int, ...] = (-2, 0)
+_NOTHING = 1e-9  # what is cut off is worth its cost from here on [-]
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """Where FRFs were sampled, and how.
+
+    Parameters
+    ----------
+    laplace : (n_lines,) complex array
+        Where the lines lie: i omega + decay, none of them 0 [1/s].
+    form : {"receptance", "mobility", "accelerance"}
+        What the FRFs are.
+    decay : float
+        Decay of the exponential window still in the FRFs [1/s].
+    record : Record, optional
+        Records whose ends cut off what still rings.
+    """
+
+    laplace: ComplexArray
+    form: Form
+    decay: float = 0.0
+    record: Record | None = None
+
+    @classmethod
+    def of(cls, frfs: FrfSet) -> Axis:
+        """Return the axis of a set."""
+        return cls(frfs.laplace, frfs.form, frfs.decay, frfs.record)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,17 +70,15 @@ class Basis:
         return np.hstack([self.modes, self.terms])
 
 
-def build(laplace: ComplexArray, poles: ComplexArray, form: Form, terms: tuple[int, ...]) -> Basis:
+def build(axis: Axis, poles: ComplexArray, terms: tuple[int, ...]) -> Basis:
     """Evaluate the basis.
 
     Parameters
     ----------
-    laplace : (n_lines,) complex array
-        Where the lines lie: i omega + decay, none of them 0 [1/s].
+    axis : Axis
+        Where the lines lie, and what the FRFs are.
     poles : (n_modes,) complex array
         Poles [rad/s].
-    form : {"receptance", "mobility", "accelerance"}
-        What the FRFs are.
     terms : tuple of int
         Powers of s of the residual terms of the receptance; -2 is a mass below, 0 a flexibility above.
 
@@ -60,18 +86,41 @@ def build(laplace: ComplexArray, poles: ComplexArray, form: Form, terms: tuple[i
     -------
     Basis
         Columns and slopes.
+
+    Notes
+    -----
+    A record of length T with the hit at t0 ends before a mode does. On the lines of its transform, which are
+    multiples of 1/T, what is cut off is a term of its own: with q the power of s of what was recorded, the
+    mode's s^q / (s - p) becomes (s^q - p^q exp((p - d) T) exp((s - p) t0)) / (s - p). So FRFs of records
+    that were not at rest, with no window or a weak one, are fitted without bias.
     """
-    power = FORMS.index(form)
-    front = (laplace**power)[:, None]
-    upper = 1.0 / (laplace[:, None] - poles[None, :])
-    lower = 1.0 / (laplace[:, None] - poles.conj()[None, :])
+    s, power = axis.laplace, FORMS.index(axis.form)
+    front = (s**power)[:, None]
+    upper, upper_slope = _column(axis, front, poles)
+    lower, lower_slope = _column(axis, front, poles.conj())
     modes = np.stack([upper + lower, 1j * (upper - lower)], axis=2)
-    slopes = np.stack([upper**2 + lower**2, 1j * (upper**2 - lower**2)], axis=2)
+    slopes = np.stack([upper_slope + lower_slope, 1j * (upper_slope - lower_slope)], axis=2)
     exponents = np.array(terms, dtype=float) + power
-    unit = np.exp(np.mean(np.log(np.abs(laplace))))
+    unit = np.exp(np.mean(np.log(np.abs(s))))
     return Basis(
-        (front[:, :, None] * modes).reshape(len(laplace), -1),
-        (laplace[:, None] / unit) ** exponents[None, :],
+        modes.reshape(len(s), -1),
+        (s[:, None] / unit) ** exponents[None, :],
         unit**-exponents,
-        (front[:, :, None] * slopes).reshape(len(laplace), -1),
+        slopes.reshape(len(s), -1),
     )
+
+
+def _column(axis: Axis, front: ComplexArray, poles: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return what each pole adds to FRFs, and its derivative by the pole, both (n_lines, n_modes)."""
+    inverse = 1.0 / (axis.laplace[:, None] - poles[None, :])
+    column = front * inverse
+    if axis.record is None:
+        return column, column * inverse
+    q, rest = FORMS.index(axis.record.form), axis.record.duration - axis.record.trigger
+    left = np.exp((poles - axis.decay) * rest)
+    if not np.abs(left).max(initial=0.0) > _NOTHING:
+        return column, column * inverse
+    phase = np.exp((axis.laplace - axis.decay) * axis.record.trigger)
+    turned = phase * axis.laplace ** (FORMS.index(axis.form) - q)
+    lost = turned[:, None] * (left * poles**q)[None, :]
+    return column - lost * inverse, (front - lost) * inverse**2 - lost * (rest + q / poles) * inverse

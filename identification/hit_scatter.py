@@ -20,6 +20,7 @@ from identification import basis, grams
 from identification.refine import Fit, evaluate, pole_turns
 
 _PRIOR_FREEDOM = 10.0
+_UNSEEN, _LARGEST = 1e-100, 1e8
 _ALIKE_POLES, _ALIKE_CONSTANTS = (
     40.0,
     10.0,
@@ -78,7 +79,7 @@ def factors(frfs: FrfSet, fit: Fit, weights: grams.Weights, prior: NoiseFactors)
     if frfs.scatter is None:
         return None
     n = len(fit.poles)
-    columns = basis.build(frfs.laplace, fit.poles, frfs.form, fit.linear.powers)
+    columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers)
     normal = evaluate(frfs, fit.poles, weights, fit.linear.powers).normal
     inverse: FloatArray = np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
     groups = [
@@ -88,7 +89,7 @@ def factors(frfs: FrfSet, fit: Fit, weights: grams.Weights, prior: NoiseFactors)
     steps = [g.steps for g in groups]
     spread = sum((s.T @ s for s in steps), np.zeros((2 * n, 2 * n)))
     plain: FloatArray = np.asarray(0.5 * inverse)
-    ratio = np.diag(spread) / np.maximum(np.diag(plain), np.finfo(float).tiny)
+    ratio = _ratio(np.diag(spread), np.diag(plain))
     freedom = 2 * _freedom(steps, n)
     of_poles = prior.poles * _shrunk(ratio.reshape(n, 2).mean(axis=1) / prior.poles, freedom, _ALIKE_POLES)
     return NoiseFactors(of_poles, _of_constants(fit, groups, spread, plain, prior.constants))
@@ -138,6 +139,13 @@ def _freedom(steps: list[FloatArray], n_modes: int) -> FloatArray:
     return np.asarray(total.reshape(n_modes, 2).mean(axis=1))
 
 
+def _ratio(found: FloatArray, expected: FloatArray) -> FloatArray:
+    """Return found over expected variances; 1 for what the data say nothing of, and never beyond reason."""
+    known = expected > _UNSEEN * expected.max(initial=0.0)
+    ratio = np.divide(found, expected, out=np.ones_like(found), where=known)
+    return np.asarray(np.minimum(ratio, _LARGEST))
+
+
 def _shrunk(ratio: FloatArray, freedom: FloatArray, alike: float) -> FloatArray:
     """Shrink each ratio of true to expected variance to that of all, and that to one.
 
@@ -167,6 +175,6 @@ def _of_constants(
     for group in groups:
         np.add.at(found, group.rows, group.constants)
         np.add.at(freedom, group.rows, len(group.steps) - 1.0)
-    ratio = np.maximum(found, 0.0) / np.maximum(expected * prior, np.finfo(float).tiny)
+    ratio = _ratio(np.maximum(found, 0.0), expected * prior)
     modes = [_shrunk(column, freedom, _ALIKE_CONSTANTS) for column in ratio.T]
     return np.asarray(prior * np.stack(modes, axis=1))

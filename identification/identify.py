@@ -204,21 +204,11 @@ def _warnings(fitted: Fitted) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def undecayed(model: ModalModel) -> FloatArray:
-    """Return which part of each mode is left at the end of records as long as the lines are fine.
-
-    The record is taken to be 1/df long, the exponential window in the FRFs included, shape (n_modes,) [-].
-    """
-    return _left(model.frfs, model.poles)
-
-
-def _left(data: FrfSet, poles: ComplexArray) -> FloatArray:
-    return np.asarray(np.exp(-(data.decay - poles.real) / data.df))
-
-
 def _ringing(data: FrfSet, poles: ComplexArray) -> tuple[str, ...]:
     """Say which modes are not at rest when a record of 1/df ends."""
-    left = _left(data, poles)
+    if data.record is not None:  # the fit knows what was cut off
+        return ()
+    left = np.exp(-(data.decay - poles.real) / data.df)
     names = ", ".join(str(i + 1) for i in np.flatnonzero(left > _AT_REST))
     if not names:
         return ()

@@ -11,6 +11,7 @@ from acquisition.arrays import ComplexArray, FloatArray, frozen_array
 from acquisition.dof import Dof
 from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
+from identification import basis
 from identification.arrangement import signs
 from identification.residues import Residues, synthesise
 from identification.stabilisation import StabilisationChart
@@ -104,7 +105,9 @@ class ModalModel:
         residues = self.constants * signs(self.frfs)[:, None] / (2j * self.poles.imag)
         linear = replace(self.background, residues=np.hstack([residues, self.background.residues]))
         poles = np.concatenate([self.poles, self.background_poles])
-        values = synthesise(laplace, poles, linear, self.frfs.form)
+        values = synthesise(
+            basis.Axis(laplace, self.frfs.form, self.frfs.decay, self.frfs.record), poles, linear
+        )
         return replace(
             self.frfs, frequency=lines, values=values, coherence=None, variance=None, averages=None
         )

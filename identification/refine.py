@@ -112,8 +112,8 @@ def refine(
     """
     few, few_weights = thinned(frfs, poles, weights)
     poles, converged = _iterate(few, poles, few_weights, powers, iterations, tolerance)
-    if tolerance < _POLISHED and len(few.laplace) < len(frfs.frequency):
-        every = Lines(frfs.laplace, frfs.values, frfs.form, frfs.decay)
+    if tolerance < _POLISHED and len(few.axis.laplace) < len(frfs.frequency):
+        every = Lines.of(frfs)
         poles, converged = _iterate(every, poles, weights, powers, iterations, tolerance)
     return _finish(frfs, poles, weights, powers, converged)
 
@@ -130,7 +130,7 @@ def _iterate(
     state, damping = _evaluate(lines, poles, weights, powers), 1e-3
     for _ in range(iterations):
         trial_poles = poles + _solve_step(state, damping)
-        trial_poles = decaying(trial_poles, poles, lines.decay)
+        trial_poles = decaying(trial_poles, poles, lines.axis.decay)
         trial = _evaluate(lines, trial_poles, weights, powers)
         if trial.cost <= state.cost:
             gain = (state.cost - trial.cost) / max(state.cost, np.finfo(float).tiny)
@@ -160,11 +160,11 @@ def decaying(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexA
 
 
 def _pieces(
-    frfs: FrfSet | Lines, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
+    lines: Lines, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
 ) -> tuple[basis.Basis, grams.Grams, FloatArray, FloatArray]:
     """Return the basis, its products, the linear solution and how the linear unknowns follow the slopes."""
-    columns = basis.build(frfs.laplace, poles, frfs.form, powers)
-    products = grams.form(np.hstack([columns.linear, columns.slopes]), frfs.values, weights)
+    columns = basis.build(lines.axis, poles, powers)
+    products = grams.form(np.hstack([columns.linear, columns.slopes]), lines.values, weights)
     k = columns.linear.shape[1]
     solution = grams.solve(products.gram[:, :k, :k], products.cross[:, :k, None])[:, :, 0]
     follow = grams.solve(products.gram[:, :k, :k], products.gram[:, :k, k:])
@@ -183,7 +183,7 @@ def scores(
     normal : (n_frf, n_modes, 2, 2) array
         J^T J of the same [s^2/rad^2].
     """
-    _, products, solution, follow = _pieces(frfs, poles, weights, powers)
+    _, products, solution, follow = _pieces(Lines.of(frfs), poles, weights, powers)
     n, k = len(poles), solution.shape[1]
     between = np.broadcast_to(products.gram[:, :k, k:], (len(solution), k, 2 * n))
     projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
@@ -252,7 +252,7 @@ def _finish(
     order = np.argsort(np.abs(poles))
     poles = poles[order]
     n = len(poles)
-    columns, products, solution, follow = _pieces(frfs, poles, weights, powers)
+    columns, products, solution, follow = _pieces(Lines.of(frfs), poles, weights, powers)
     state = _step(products, solution, follow, weights, n)
     k = solution.shape[1]
     turns = pole_turns(solution, n)

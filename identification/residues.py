@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.frf import Form, FrfSet
+from acquisition.frf import FrfSet
 from identification import basis, grams
 
 
@@ -64,7 +64,7 @@ def fit_residues(
     Residues
         Residues and residual terms.
     """
-    columns = basis.build(frfs.laplace, poles, frfs.form, powers)
+    columns = basis.build(basis.Axis.of(frfs), poles, powers)
     products = grams.form(columns.linear, frfs.values, weights or uniform_weights(frfs))
     solution = grams.solve(products.gram, products.cross[:, :, None])[:, :, 0]
     return unpack(solution, len(poles), columns.term_scale, powers)
@@ -76,9 +76,9 @@ def unpack(solution: FloatArray, n_modes: int, term_scale: FloatArray, powers: t
     return Residues(parts[:, :, 0] + 1j * parts[:, :, 1], solution[:, 2 * n_modes :] * term_scale, powers)
 
 
-def synthesise(laplace: ComplexArray, poles: ComplexArray, linear: Residues, form: Form) -> ComplexArray:
+def synthesise(axis: basis.Axis, poles: ComplexArray, linear: Residues) -> ComplexArray:
     """Return the FRFs of a modal model, shape (n_frf, n_lines) [by ``form``]."""
-    columns = basis.build(laplace, poles, form, linear.powers)
+    columns = basis.build(axis, poles, linear.powers)
     parts = np.stack([linear.residues.real, linear.residues.imag], axis=2).reshape(len(linear.residues), -1)
     solution = np.hstack([parts, linear.terms / columns.term_scale])
     return np.asarray(solution @ columns.linear.T)

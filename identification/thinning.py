@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from acquisition.arrays import ComplexArray, IntArray
-from acquisition.frf import Form, FrfSet
+from acquisition.frf import FrfSet
+from identification.basis import Axis
 from identification.grams import Weights
 
 _ENOUGH = 4000
@@ -22,20 +23,19 @@ class Lines:
 
     Parameters
     ----------
-    laplace : (n_lines,) complex array
-        Where the lines lie: i omega + decay [1/s].
+    axis : Axis
+        Where the lines lie, and what the FRFs are.
     values : (n_frf, n_lines) complex array
         FRF values [unit of the FRFs].
-    form : {"receptance", "mobility", "accelerance"}
-        What the FRFs are.
-    decay : float
-        Decay of the exponential window still in the FRFs [1/s].
     """
 
-    laplace: ComplexArray
+    axis: Axis
     values: ComplexArray
-    form: Form
-    decay: float
+
+    @classmethod
+    def of(cls, frfs: FrfSet) -> Lines:
+        """Return all lines of a set."""
+        return cls(Axis.of(frfs), frfs.values)
 
 
 def thinned(frfs: FrfSet, poles: ComplexArray, weights: Weights) -> tuple[Lines, Weights]:
@@ -56,7 +56,7 @@ def thinned(frfs: FrfSet, poles: ComplexArray, weights: Weights) -> tuple[Lines,
     """
     n_lines = len(frfs.frequency)
     if n_lines < _ENOUGH:
-        return Lines(frfs.laplace, frfs.values, frfs.form, frfs.decay), weights
+        return Lines.of(frfs), weights
     start = _starts(frfs, poles)
     count = np.diff(np.append(start, n_lines))
     lines = np.add.reduceat(weights.lines, start, axis=1)
@@ -64,7 +64,7 @@ def thinned(frfs: FrfSet, poles: ComplexArray, weights: Weights) -> tuple[Lines,
         np.add.reduceat(frfs.values * weights.lines, start, axis=1) / lines, complex
     )
     laplace: ComplexArray = np.asarray(np.add.reduceat(frfs.laplace, start) / count, complex)
-    return Lines(laplace, values, frfs.form, frfs.decay), Weights(weights.level, lines, weights.fade)
+    return Lines(replace(Axis.of(frfs), laplace=laplace), values), Weights(weights.level, lines, weights.fade)
 
 
 def _starts(frfs: FrfSet, poles: ComplexArray) -> IntArray:

@@ -16,7 +16,7 @@ from identification.residues import synthesise
 
 def left_over(frfs: FrfSet, fit: Fit) -> ComplexArray:
     """Return data minus model, shape (n_frf, n_lines) [unit of the FRFs]."""
-    return np.asarray(frfs.values - synthesise(frfs.laplace, fit.poles, fit.linear, frfs.form))
+    return np.asarray(frfs.values - synthesise(basis.Axis.of(frfs), fit.poles, fit.linear))
 
 
 def search_weights(frfs: FrfSet, fit: Fit) -> Weights:
@@ -65,6 +65,6 @@ def noise_weights(
 
 def absorbed_by(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
     """Return which part of each line's power a fit absorbs, shape (n_frf or 1, n_lines) [-]."""
-    columns = basis.build(frfs.laplace, fit.poles, frfs.form, fit.linear.powers).linear
+    columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers).linear
     poles_too = 1.0 + 1.0 / len(frfs.values)
     return np.asarray(np.minimum(poles_too * noise.leverage(columns, weights), 0.98))

@@ -22,9 +22,8 @@ class Handling:
         themselves [1/s].
     window_on : {"both", "responses"}, optional
         Which records that window was applied to; left out: as the noise of the force tells.
-    window : "auto", or float
-        Decay rate of a further exponential window applied here, 0 for none [1/s]; ``"auto"`` applies one where
-        modes are found that have not decayed by the end of the records.
+    window : float
+        Decay rate of a further exponential window, applied here; 0 for none [1/s].
     estimator : {"H1", "H2", "Hv"}
         FRF estimator.
     use, leave : tuples of (str, int)
@@ -41,7 +40,7 @@ class Handling:
 
     decay: float = 0.0
     window_on: Literal["both", "responses"] | None = None
-    window: Literal["auto"] | float = "auto"
+    window: float = 0.0
     estimator: Estimator = "H1"
     use: tuple[HitName, ...] = ()
     leave: tuple[HitName, ...] = ()
@@ -49,7 +48,7 @@ class Handling:
 
     def __post_init__(self) -> None:
         """Check the entries."""
-        if self.decay < 0 or (self.window != "auto" and self.window < 0):
+        if self.decay < 0 or self.window < 0:
             raise InputError(f"windows of {self.decay} and {self.window} 1/s: decay rates are not negative")
         if self.estimator not in ESTIMATORS:
             raise InputError(f"unknown estimator {self.estimator!r}; use {', '.join(ESTIMATORS)}")

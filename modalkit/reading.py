@@ -26,13 +26,11 @@ from acquisition import (
     state_window,
     written_as_uff,
 )
-from identification import ModalModel, identify, undecayed
+from identification import ModalModel, identify
 from modalkit.handling import Handling
 
 MAX_UNCOMMON = 1e-6
 """Frequency axes that differ by more than this, relative to their end, do not go together."""
-RINGING, AT_REST = 0.01, 1e-3
-"""A mode that has more left at the end of the record is given a window, which leaves it this much [-]."""
 
 Progress = Callable[[float], None]
 AS_READ = Handling()
@@ -91,35 +89,8 @@ class Processed:
         add: Sequence[float] = (),
         drop: Sequence[float] = (),
     ) -> ModalModel:
-        """Identify the modes of a band; see :func:`identification.identify`.
-
-        Modes that still ring when the records end leak into the lines about them. Where the hits are at hand
-        and nothing else was asked for, they are then given an exponential window, whose decay is taken out of
-        the damping like any other.
-        """
-        found = identify(self.frfs, band=band, order=order, add=add, drop=drop)
-        left = float(undecayed(found).max())
-        if not self.judged or self.handling.window != "auto" or left <= RINGING:
-            return found
-        rate = float(np.log(left / AT_REST)) * self.frfs.df
-        windowed = self.windowed(rate)
-        again = identify(windowed.frfs, band=band, order=order, add=add, drop=drop)
-        said = (
-            f"{100 * left:.2g} % of a mode was left at the end of the records: an exponential window of "
-            f"{rate:.3g} 1/s was applied to force and responses, and its decay taken out of the damping"
-        )
-        return replace(again, warnings=(said, *again.warnings))
-
-    def windowed(self, decay: float) -> Processed:
-        """Return the test with an exponential window applied to force and responses.
-
-        Parameters
-        ----------
-        decay : float
-            Decay rate [1/s].
-        """
-        frfs = _estimated(self.judged, self.handling, Windows(decay=decay))
-        return replace(self, frfs=frfs, handling=replace(self.handling, window=decay))
+        """Identify the modes of a band; see :func:`identification.identify`."""
+        return identify(self.frfs, band=band, order=order, add=add, drop=drop)
 
 
 def read(
@@ -158,8 +129,7 @@ def read(
     warnings = list(content.warnings)
     judged = _judged(content.tests, handling, warnings)
     if judged:
-        window = None if handling.window == "auto" else Windows(decay=handling.window)
-        frfs = _estimated(judged, handling, window)
+        frfs = _estimated(judged, handling)
         if content.frfs is not None:
             warnings.append("the files hold raw hits and FRFs; the FRFs were made afresh from the hits")
     elif content.frfs is not None:
@@ -216,7 +186,8 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
     )
 
 
-def _estimated(judged: Sequence[Judged], handling: Handling, windows: Windows | None) -> FrfSet:
+def _estimated(judged: Sequence[Judged], handling: Handling) -> FrfSet:
+    windows = Windows(decay=handling.window) if handling.window else None
     return together(
         [
             estimate_frfs(j.test, estimator=handling.estimator, verdicts=j.verdicts, windows=windows)

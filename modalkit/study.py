@@ -38,7 +38,7 @@ class MeasurementTable(_Strict):
     band: tuple[float, float] | None = None
     exponential_window: float = Field(0.0, ge=0.0)
     window_on: Literal["both", "responses"] | None = None
-    window: Literal["auto"] | float = "auto"
+    window: float = Field(0.0, ge=0.0)
     estimator: Literal["H1", "H2", "Hv"] = "H1"
     use: list[tuple[str, int]] = []
     leave: list[tuple[str, int]] = []

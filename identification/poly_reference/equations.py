@@ -90,7 +90,7 @@ class _Projected:
 
 def _project(problem: Problem, poles: ComplexArray, n_held: int) -> _Projected:
     few, weights = thinned(problem.frfs, poles, problem.weights)
-    columns = basis.build(few.laplace, poles, few.form, problem.powers)
+    columns = basis.build(few.axis, poles, problem.powers)
     shared, own = columns.modes[:, : 2 * n_held], columns.modes[:, 2 * n_held :]
     both = np.hstack([shared, columns.slopes, own, columns.terms])
     data = few.values * problem.places.sign[:, None]

@@ -20,9 +20,7 @@ WindowOn = Annotated[
     str | None,
     typer.Option(help="'both' or 'responses': what that window was applied to; left out: as heard"),
 ]
-Window = Annotated[
-    str, typer.Option(help="decay of an exponential window to apply [1/s]; 'auto': where modes still ring")
-]
+Window = Annotated[float, typer.Option(help="decay of a further exponential window, applied here [1/s]")]
 Estimate = Annotated[str, typer.Option("--estimator", help="H1, H2 or Hv")]
 Use = Annotated[list[str] | None, typer.Option(help="hit to use against the proposal, as 12+Z:3; repeat")]
 Leave = Annotated[list[str] | None, typer.Option(help="hit to leave out, as 12+Z:3; repeat")]
@@ -32,7 +30,7 @@ def handling(
     *,
     decay: float,
     window_on: str | None,
-    window: str,
+    window: float,
     estimator: str,
     use: list[str] | None,
     leave: list[str] | None,
@@ -47,14 +45,10 @@ def handling(
     """
     if window_on not in (None, "both", "responses"):
         raise InputError(f"--window-on {window_on}: write both or responses")
-    try:
-        rate: Literal["auto"] | float = "auto" if window == "auto" else float(window)
-    except ValueError:
-        raise InputError(f"--window {window}: write a decay rate in 1/s, or auto") from None
     return Handling(
         decay=decay,
         window_on=cast("Literal['both', 'responses'] | None", window_on),
-        window=rate,
+        window=window,
         estimator=cast("Estimator", estimator),
         use=tuple(hit_name(h) for h in use or ()),
         leave=tuple(hit_name(h) for h in leave or ()),
