@@ -73,16 +73,19 @@ def merge_nodes(sets: Iterable[NodeSet], lines: Sequence[IntArray]) -> Nodes:
     places: dict[int, FloatArray] = {}
     axes: dict[int, FloatArray] = {}
     remarks: list[str] = []
+    twice: dict[int, str] = {}
     for one in sets:
         where = _global_places(one, remarks)
         for row in np.flatnonzero(np.isfinite(where).all(axis=-1)):
             node, place = int(one.nodes[row]), where[row]
             known = places.setdefault(node, place)
             if not np.allclose(known, place, rtol=1e-6, atol=1e-9):
-                remarks.append(
-                    f"node {node} is given at {known.tolist()} and at {place.tolist()} [m]; the first is used"
-                )
+                twice.setdefault(node, f"{known.tolist()} and at {place.tolist()}")
         _gather_axes(one, places, axes, remarks)
+    if twice:
+        first, where_else = next(iter(twice.items()))
+        others = f"; so are nodes {_named([n for n in twice if n != first])}" if len(twice) > 1 else ""
+        remarks.append(f"node {first} is given at {where_else} [m]; the first is used{others}")
     right = {n: a for n, a in axes.items() if np.array_equal(np.abs(a), np.abs(a).round())}
     skew = {n: a for n, a in axes.items() if n not in right}
     own = np.array([skew.get(n, np.eye(3)) for n in places]).reshape(-1, 3, 3) if skew else None

@@ -59,7 +59,7 @@ def read_uff(
             _add_file(one, finds, stack, spool, report)
         if not finds.usable:
             raise InputError("; ".join(finds.warnings))
-        content = _content(finds, ", ".join(p.name for p in paths), report)
+        content = _content(finds, _named(paths), report)
     report.done()
     return content
 
@@ -128,6 +128,11 @@ def _add_file(
         finds.infos.append(
             DatasetInfo(path.name, 0, "no universal file", 0, "", ok=False, message=str(error))
         )
+
+
+def _named(paths: Sequence[Path]) -> str:
+    shown = ", ".join(p.name for p in paths[:3])
+    return shown if len(paths) <= 3 else f"{shown} and {len(paths) - 3} others"
 
 
 def _content(finds: Finds, source: str, report: _Report) -> UffContent:

@@ -57,13 +57,17 @@ def add_commands(app: typer.Typer) -> None:
     app.command()(identify)
 
 
-def inspect(files: Files, layout: Layout = None) -> None:
+def inspect(
+    files: Files,
+    layout: Layout = None,
+    every: Annotated[bool, typer.Option("--all", help="a row for every data set")] = False,
+) -> None:
     """List what is in a file, and what is wrong with it."""
     with reading() as progress:
         content = read_files(files, layout=layout, progress=progress)
     out.print(f"{', '.join(map(str, files))}: {content.title or 'no title'}", markup=False)
     if content.datasets:
-        show_table(content.table())
+        show_table(content.table() if every else _in_short(content))
     out.print("usable: " + ("; ".join(_usable(content)) or "nothing"))
     for test in content.tests:
         if looks_long(test):
@@ -74,6 +78,19 @@ def inspect(files: Files, layout: Layout = None) -> None:
     bad = [d for d in content.datasets if not d.ok]
     if content.datasets and len(bad) == len(content.datasets):
         raise InputError(f"{bad[0].place}: {bad[0].message}")
+
+
+def _in_short(content: UffContent) -> pd.DataFrame:
+    """Return the table of data sets with those of a kind in one row, unless there is something to say of them."""
+    table = content.table()
+    plain = table["ok"] & (table["message"] == "")
+    rows = [table[~plain]]
+    for _, group in table[plain].groupby(["file", "data set", "kind"], sort=False):
+        row = group.iloc[[0]].copy()
+        if len(group) > 1:
+            row["description"] = f"{len(group)} of them, the first: " + row["description"]
+        rows.append(row)
+    return pd.concat(rows).sort_values(["file", "line"], kind="stable")
 
 
 def _usable(content: UffContent) -> list[str]:
