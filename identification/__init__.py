@@ -22,7 +22,7 @@ from identification.pairing import Correlation, Pair, Subspace, correlate, pair
 from identification.poles import ESTIMATORS, PoleEstimator, PoleSets, lsce, lscf
 from identification.residues import Residues, fit_residues
 from identification.scaling import Shapes, modal_constants, mode_shapes, real_modes
-from identification.sdypy_bridge import from_sdypy, second_opinion, to_sdypy
+from identification.sdypy_bridge import beside, from_sdypy, second_opinion, to_sdypy
 from identification.stabilisation import StabilisationChart, stabilise
 
 __all__ = [
@@ -37,6 +37,7 @@ __all__ = [
     "StabilisationChart",
     "Subspace",
     "auto_mac",
+    "beside",
     "comac",
     "common_dofs",
     "coordinate_table",

@@ -17,10 +17,12 @@ from acquisition.geometry import Geometry
 from acquisition.modal_data import ModalData
 from identification.arrangement import signs
 from identification.model import ModalModel
+from identification.pairing import pair
 from identification.scaling import modal_constants, mode_shapes
 
 _FREQUENCY = 1e-3
 _DAMPING = 0.05
+_BESIDE = 0.01
 
 
 def frfs_to_sdypy(frfs: FrfSet, *, order: int = 60) -> Any:
@@ -214,6 +216,36 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     table = table.set_index(pd.RangeIndex(1, len(table) + 1, name="pole"))
     table.attrs["warnings"] = opinion_warnings(frfs, band)
     return table
+
+
+def beside(modal: ModalData, opinion: pd.DataFrame) -> pd.DataFrame:
+    """Return modes and the poles of a second opinion side by side.
+
+    Each pole stands beside the mode nearest to it within 1 %; what has no counterpart has a row of its own.
+
+    Parameters
+    ----------
+    modal : ModalData
+        Our modes.
+    opinion : DataFrame
+        As from :func:`second_opinion`.
+
+    Returns
+    -------
+    DataFrame
+        Frequencies [Hz] and damping ratios [%] of both, rising in frequency.
+    """
+    ours = pd.DataFrame({"frequency [Hz]": modal.frequency})
+    ours["damping [%]"] = np.nan if modal.damping is None else 100 * modal.damping
+    theirs = opinion.rename(columns=lambda name: f"sdypy-EMA {name}").reset_index(drop=True)
+    hertz = opinion["frequency [Hz]"].to_numpy()
+    found = pair(modal.frequency, hertz, max_factor=1.0 + _BESIDE, spread=_BESIDE) if len(hertz) else ()
+    partners = {p.test: p.model for p in found if abs(p.error) < _BESIDE}
+    left = ours.assign(partner=[partners.get(i, -1 - i) for i in range(len(ours))])
+    right = theirs.assign(partner=range(len(theirs)))
+    both = left.merge(right, on="partner", how="outer").drop(columns="partner")
+    order = both["frequency [Hz]"].fillna(both["sdypy-EMA frequency [Hz]"]).argsort()
+    return both.iloc[order].reset_index(drop=True)
 
 
 def opinion_warnings(frfs: FrfSet, band: tuple[float, float]) -> tuple[str, ...]:

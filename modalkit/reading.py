@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from acquisition import (
     FrfSet,
@@ -18,6 +19,7 @@ from acquisition import (
     Windows,
     decide,
     estimate_frfs,
+    hits_table,
     judge_hits,
     looks_long,
     read_test,
@@ -80,6 +82,10 @@ class Processed:
     def hits(self) -> tuple[HitVerdict, ...]:
         """What is thought of every hit."""
         return tuple(v for judged in self.judged for v in judged.verdicts)
+
+    def hits_table(self) -> pd.DataFrame:
+        """Return one row per hit, with its verdict."""
+        return hits_table(self.hits)
 
     def identify(
         self,

@@ -225,11 +225,13 @@ def _show_hits(hits: tuple[HitVerdict, ...]) -> None:
 
 
 def _show_second_opinion(processed: Processed, model: ModalModel) -> None:
-    from identification import second_opinion
+    from identification import beside, second_opinion
 
     with working("asking sdypy-EMA"):
         table = second_opinion(processed.frfs, band=model.band)
-    show_table(table, "Second opinion: sdypy-EMA (LSCF)")
+    both = beside(model.modal, table)
+    title = "Second opinion, beside ours: sdypy-EMA (LSCF)"
+    show_table(both, title, digits=dict.fromkeys(both.columns, 4))
     show_warnings(table.attrs.get("warnings", ()))
 
 

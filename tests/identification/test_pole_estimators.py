@@ -7,8 +7,10 @@ import pytest
 from identification_cases import bench, column, lines, structure
 
 from acquisition.errors import EstimationError
-from identification.poles import ESTIMATORS, lsce, lscf
+from identification.poles import ESTIMATORS, lscf
 from identification.poles.lsce import prediction_normal
+from identification.poles.lscf import _reduced_normal
+from identification.poles.stable import stable_roots
 
 
 def nearest_error(found, wanted):
@@ -67,7 +69,52 @@ def test_prediction_normal_equals_the_product_of_its_windows(rng):
     )
 
 
-def test_lsce_says_when_there_are_too_few_lines():
+@pytest.mark.parametrize("n_references", [1, 3])
+def test_reduced_normal_equals_what_a_projection_leaves(rng, n_references):
+    order, circle = 7, 48
+    data = rng.standard_normal((4, n_references, 40)) + 1j * rng.standard_normal((4, n_references, 40))
+    z = np.exp(2j * np.pi / circle * (np.arange(40) - 19.5))
+    powers = np.vander(z, order + 1, increasing=True)
+    onto, _ = np.linalg.qr(powers)
+    wanted = 0.0
+    for row in data:
+        columns = (powers[:, :, None] * row.T[:, None, :]).reshape(40, -1)
+        left = columns - onto @ (onto.conj().T @ columns)
+        wanted = wanted + left.conj().T @ left
+    np.testing.assert_allclose(_reduced_normal(data, order, circle), wanted, rtol=1e-10, atol=1e-10)
+
+
+def drawn(rng, n, low, high):
+    return rng.uniform(low, high, n) * np.exp(2j * np.pi * (np.arange(n) + 0.3 * rng.random(n)) / n)
+
+
+@pytest.mark.parametrize("n_stable", [0, 1, 12])
+def test_stable_roots_are_those_inside_the_unit_circle(rng, n_stable):
+    inside, outside = drawn(rng, n_stable, 0.6, 0.9995), drawn(rng, 40, 1.1, 1.5)
+    coefficients = np.poly(np.concatenate([inside, outside]))[::-1]
+    found = stable_roots(coefficients / coefficients[0])
+    assert found is not None
+    assert len(found) == n_stable
+    assert np.abs(found[:, None] - inside).min(axis=0, initial=1.0).max(initial=0.0) < 1e-8
+
+
+def test_stable_roots_part_a_close_pair(rng):
+    pair = 0.99 * np.exp(1j * np.array([1.0, 1.001]))
+    coefficients = np.poly(np.concatenate([pair, drawn(rng, 30, 1.1, 1.5)]))[::-1]
+    found = stable_roots(coefficients)
+    assert found is not None
+    np.testing.assert_allclose(np.sort(np.angle(found)), [1.0, 1.001], atol=1e-9)
+
+
+def test_stable_roots_does_not_guess(rng):
+    twice = np.poly(np.concatenate([[0.9, 0.9], drawn(rng, 30, 1.1, 1.5)]))[::-1]
+    assert stable_roots(twice) is None
+    beside_every_circle = np.poly([1.003, 1.006, 1.012])[::-1]
+    assert stable_roots(beside_every_circle) is None
+
+
+@pytest.mark.parametrize("name", sorted(ESTIMATORS))
+def test_says_when_there_are_too_few_lines(name):
     frfs = bench().frfs(lines(low=390.0, high=420.0), column())
-    with pytest.raises(EstimationError, match="61 lines cannot carry LSCE of order 40"):
-        lsce(frfs, orders=[40])
+    with pytest.raises(EstimationError, match=f"61 lines cannot carry {name.upper()} of order 40"):
+        ESTIMATORS[name](frfs, orders=[40])

@@ -5,11 +5,12 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
+import pandas as pd
 import pytest
 from identification_cases import bench, column, lines, structure
 
 from acquisition.errors import InputError
-from identification import from_sdypy, identify, mac, second_opinion, to_sdypy
+from identification import beside, from_sdypy, identify, mac, second_opinion, to_sdypy
 from identification.sdypy_bridge import frfs_from_sdypy, frfs_to_sdypy, opinion_warnings
 
 
@@ -121,3 +122,14 @@ def test_a_band_from_zero_is_given_without_its_first_line(rng):
     table = second_opinion(frfs, band=(0.0, 300.0), order=30)
     for hertz in truth.hertz:
         assert np.abs(table["frequency [Hz]"] / hertz - 1).min() < 1e-3
+
+
+def test_both_opinions_stand_side_by_side_and_neither_is_lost(rng):
+    truth = structure((60.0, 110.0, 170.0), (0.01, 0.008, 0.006), 6, seed=31)
+    model = identify(truth.frfs(lines(high=250.0), column(6), noise=0.01, rng=rng))
+    opinion = pd.DataFrame({"frequency [Hz]": [60.1, 109.9, 200.0], "damping [%]": [1.0, 0.8, 2.0]})
+    table = beside(model.modal, opinion)
+    theirs = table["sdypy-EMA frequency [Hz]"].to_numpy()
+    np.testing.assert_allclose(theirs, [60.1, 109.9, np.nan, 200.0])
+    ours = table["frequency [Hz]"].to_numpy()
+    np.testing.assert_allclose(ours, [60.0, 110.0, 170.0, np.nan], rtol=1e-3)
