@@ -32,24 +32,29 @@ def _tracks(chart: StabilisationChart) -> list[IntArray]:
 
 
 def _merged(chart: StabilisationChart, tracks: list[IntArray]) -> list[IntArray]:
-    """Join the pieces of broken chains, longest first."""
-    groups: list[IntArray] = []
-    for track in sorted(tracks, key=len, reverse=True):
-        for i, group in enumerate(groups):
-            if np.intersect1d(chart.level[group], chart.level[track]).size == 0 and _same(
-                chart, group, track
-            ):
-                groups[i] = np.concatenate([group, track])
+    """Join the pieces of broken chains, longest first; a joined chain is compared by its highest pole."""
+    tracks = sorted(tracks, key=len, reverse=True)
+    top = np.array([track[np.argmax(chart.level[track])] for track in tracks], dtype=np.int64)
+    alike = (
+        separation(chart.poles[top], chart.participation[top], chart.poles[top], chart.participation[top])
+        < 1.0
+    )
+    levels = np.zeros((len(tracks), len(chart.orders)), dtype=bool)
+    for i, track in enumerate(tracks):
+        levels[i, chart.level[track]] = True
+    groups: list[list[int]] = []
+    head = np.arange(len(tracks))
+    for i in range(len(tracks)):
+        for group in groups:
+            first = group[0]
+            if alike[head[first], i] and not (levels[first] & levels[i]).any():
+                group.append(i)
+                levels[first] |= levels[i]
+                head[first] = max(head[first], i, key=lambda k: chart.level[top[k]])
                 break
         else:
-            groups.append(track)
-    return groups
-
-
-def _same(chart: StabilisationChart, a: IntArray, b: IntArray) -> bool:
-    near_a, near_b = a[np.argmax(chart.level[a])], b[np.argmax(chart.level[b])]
-    u, v = chart.participation[[near_a]], chart.participation[[near_b]]
-    return bool(separation(chart.poles[[near_a]], u, chart.poles[[near_b]], v)[0, 0] < 1.0)
+            groups.append([i])
+    return [np.concatenate([tracks[i] for i in group]) for group in groups]
 
 
 def _representative(chart: StabilisationChart, members: IntArray) -> complex:

@@ -190,6 +190,7 @@ def _read_block(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
         return _read_mode(here, info, finds)
     if number == 151:
         title = here.body.decode("latin-1").partition("\n")[0].strip()
+        title = "" if title.upper() == "NONE" else title
         finds.title = finds.title or title
         return replace(info, description=title)
     return replace(info, description="present, not used")

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
+from scipy import fft
 
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.errors import EstimationError
 from acquisition.frf import FrfSet
+from identification.poles import nested
 from identification.poles.base import Baseband, PoleSets, row_scale
-from identification.poles.nested import denominators, roots
 
 _TAPER = 0.06  # part of the band over which each edge is faded
 
@@ -52,7 +52,7 @@ def lsce(frfs: FrfSet, *, orders: Sequence[int]) -> PoleSets:
     responses = _impulse_responses(frfs)
     normal = prediction_normal(responses[:, skip : n_lines - skip], order)
     baseband = Baseband.of(frfs, n_lines)
-    found = [roots(block) for block in denominators(normal, orders, 1)]
+    found = [nested.roots(block) for block in nested.denominators(normal, orders, 1)]
     return PoleSets(tuple(orders), tuple(baseband.poles(z) for z, _ in found), tuple(p for _, p in found))
 
 
@@ -73,14 +73,14 @@ def _impulse_responses(frfs: FrfSet) -> ComplexArray:
     n_lines = len(frfs.frequency)
     data = frfs.values * row_scale(frfs)[:, None] * _taper(n_lines)
     shift = np.exp(-1j * np.pi * (n_lines - 1) * np.arange(n_lines) / n_lines)
-    return np.asarray(np.fft.ifft(data, axis=1) * shift)
+    return np.asarray(fft.ifft(data, axis=1) * shift)
 
 
 def prediction_normal(signals: ComplexArray, order: int) -> ComplexArray:
     """Return sum over signals and t of conj(h(t + a)) h(t + b), shape (order + 1, order + 1).
 
-    The first row is a correlation; every other element follows along its diagonal from what enters and
-    leaves the window.
+    The first row is a correlation, made by FFT; every other element follows along its diagonal from what
+    enters and leaves the window.
 
     Parameters
     ----------
@@ -90,13 +90,9 @@ def prediction_normal(signals: ComplexArray, order: int) -> ComplexArray:
         Highest lag [-].
     """
     span = signals.shape[1] - order
-    windows = sliding_window_view(signals, span, axis=1)
-    first = np.einsum("ot,okt->k", signals[:, :span].conj(), windows, optimize=True)
-    first_column = first.conj()
+    length = int(fft.next_fast_len(signals.shape[1]))
+    kept = fft.fft(signals[:, :span], length, axis=1)
+    whole = fft.fft(signals, length, axis=1)
+    first = fft.ifft(np.einsum("ok,ok->k", kept.conj(), whole))[: order + 1]
     head, tail = signals[:, :order], signals[:, span : span + order]
-    change = tail.conj().T @ tail - head.conj().T @ head
-    normal = np.empty((order + 1, order + 1), complex)
-    normal[0], normal[:, 0] = first, first_column
-    for a in range(order):
-        normal[a + 1, 1:] = normal[a, :-1] + change[a]
-    return normal
+    return nested.along_diagonals(first[None, :], tail.conj().T @ tail - head.conj().T @ head)

@@ -8,6 +8,27 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import ComplexArray, FloatArray
+from identification.poles.stable import stable_roots
+
+_SHORT = 24  # order up to which the eigenvalues of the companion matrix are quicker
+
+
+def along_diagonals(first: ComplexArray, change: ComplexArray) -> ComplexArray:
+    """Return a Hermitian matrix of blocks from its first row and what is added down every diagonal.
+
+    Parameters
+    ----------
+    first : (m, (n + 1) m) complex array
+        First row of blocks.
+    change : (n m, n m) complex array
+        Blocks [a + 1, b + 1] less blocks [a, b].
+    """
+    m, width = first.shape
+    matrix = np.empty((width, width), complex)
+    matrix[:m], matrix[:, :m] = first, first.conj().T
+    for a in range(0, width - m, m):
+        matrix[a + m : a + 2 * m, m:] = matrix[a : a + m, :-m] + change[a : a + m]
+    return np.asarray(0.5 * (matrix + matrix.conj().T))
 
 
 def denominators(normal: ComplexArray, orders: Sequence[int], n_references: int) -> list[ComplexArray]:
@@ -74,16 +95,26 @@ def roots(coefficients: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         Participation vectors of unit length [-].
     """
     order, m, _ = coefficients.shape
+    if m > 1:
+        inverse, full = linalg.eig(_companion(coefficients), overwrite_a=True, check_finite=False)
+        stable = np.abs(inverse) > 1.0
+        return _with_unit_vectors(inverse[stable], full[-m:, stable])
+    z = stable_roots(np.append(1.0, coefficients)) if order > _SHORT else None
+    if z is None:
+        inverse = linalg.eigvals(_companion(coefficients), overwrite_a=True, check_finite=False)
+        z = np.asarray(1.0 / inverse[np.abs(inverse) > 1.0], complex)
+    return z, np.asarray(np.ones((len(z), 1)), complex)
+
+
+def _companion(coefficients: ComplexArray) -> ComplexArray:
+    """Return the matrix whose eigenvalues are the reciprocals of the roots."""
+    order, m, _ = coefficients.shape
     companion = np.zeros((order * m, order * m), complex)
     companion[:m] = -coefficients.transpose(2, 0, 1).reshape(m, order * m)
     companion[np.arange(m, order * m), np.arange((order - 1) * m)] = 1.0
-    if m == 1:
-        inverse = linalg.eigvals(companion, overwrite_a=True, check_finite=False)
-        vectors: ComplexArray = np.ones((1, len(inverse)), complex)
-    else:
-        inverse, full = linalg.eig(companion, overwrite_a=True, check_finite=False)
-        vectors = full[-m:]
-    stable = np.abs(inverse) > 1.0
-    tail = vectors[:, stable]
-    length: FloatArray = np.maximum(np.linalg.norm(tail, axis=0), np.finfo(float).tiny)
-    return np.asarray(1.0 / inverse[stable], complex), np.asarray((tail / length).T, complex)
+    return companion
+
+
+def _with_unit_vectors(inverse: ComplexArray, vectors: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    length: FloatArray = np.maximum(np.linalg.norm(vectors, axis=0), np.finfo(float).tiny)
+    return np.asarray(1.0 / inverse, complex), np.asarray((vectors / length).T, complex)
