@@ -1,86 +1,80 @@
-"""Poles, chart and residues: modalkit beside sdypy-EMA on the same synthetic FRFs, as ratios of one run."""
+"""Poles, chart and residues: modalkit beside sdypy-EMA on the same synthetic FRFs, as ratios of one run.
+
+sdypy-EMA's ``pol_order_high`` counts pairs of poles: at 100 its polynomials have real coefficients and degrees 2, 4 ...
+200. Complex coefficients of degree n hold n poles of the band, so that its n-th polynomial compares with our degree n.
+"""
 
 from __future__ import annotations
 
-import contextlib
-import io
-import time
-import warnings
-from collections.abc import Callable
+from collections.abc import Sequence
 
+import common
 import numpy as np
+from scipy import fft, linalg
 from sdypy import EMA
 
-from acquisition import Dof, FrfSet
+from acquisition import FrfSet
 from identification import fit_residues, lscf, stabilise
+from identification.selection import candidates
 
-HERTZ = np.array([62.0, 118, 187, 243, 310, 402, 405.5, 478, 566, 655, 763, 884])
-DAMPING = np.array([2.0, 1.2, 0.9, 0.7, 0.6, 0.5, 0.4, 0.35, 0.3, 0.28, 0.24, 0.2]) / 100
-
-
-def synthetic(outputs: int, rng: np.random.Generator) -> FrfSet:
-    """Accelerances of twelve modes, 0-1000 Hz in steps of 1 Hz, with 1 % noise."""
-    frequency = np.arange(1.0, 1001.0)
-    s = 2j * np.pi * frequency
-    omega = 2 * np.pi * HERTZ
-    poles = omega * (-DAMPING + 1j * np.sqrt(1 - DAMPING**2))
-    shapes = rng.standard_normal((outputs, len(HERTZ)))
-    terms = (1 / (s[:, None] - poles) - 1 / (s[:, None] - poles.conj())) / (2j * poles.imag)
-    values = (shapes * shapes[0]) @ terms.T * s**2
-    noise = rng.standard_normal((2, *values.shape)) * 0.01 * np.sqrt(np.mean(np.abs(values) ** 2) / 2)
-    responses = tuple(Dof(i + 1, 3) for i in range(outputs))
-    return FrfSet(frequency, values + noise[0] + 1j * noise[1], responses, (Dof(1, 3),) * outputs)
+LINES = 1001
 
 
-def ours(frfs: FrfSet) -> None:
-    """Poles at 49 orders up to 100, the chart, and residues of the twelve modes nearest the truth."""
-    sets = lscf(frfs, orders=list(range(4, 101, 2)))
-    stabilise(sets, band=(float(frfs.frequency[0]), float(frfs.frequency[-1])))
-    omega = 2 * np.pi * HERTZ
-    fit_residues(frfs, omega * (-DAMPING + 1j * np.sqrt(1 - DAMPING**2)))
+def ours(frfs: FrfSet, orders: Sequence[int]) -> int:
+    """Poles at every order, the chart, the poles chosen from it, and their residues."""
+    sets = lscf(frfs, orders=orders)
+    chosen = candidates(stabilise(sets, band=(float(frfs.frequency[0]), float(frfs.frequency[-1]))))
+    fit_residues(frfs, chosen)
+    return common.modes_found(chosen)
 
 
-def theirs(frfs: FrfSet, order: int) -> None:
-    """The same with sdypy-EMA."""
-    with (
-        warnings.catch_warnings(),
-        contextlib.redirect_stdout(io.StringIO()),
-        contextlib.redirect_stderr(io.StringIO()),
-    ):
-        warnings.simplefilter("ignore")
+def theirs(frfs: FrfSet, order: int) -> int:
+    """The same with sdypy-EMA, which is told where the modes are."""
+    with common.quiet():
         model = EMA.Model(
-            frf=frfs.values,
-            freq=frfs.frequency,
+            frf=np.array(frfs.values),
+            freq=np.array(frfs.frequency),
             lower=10,
             upper=1000,
             pol_order_high=order,
             frf_form="accelerance",
         )
         model.get_poles(method="lscf", show_progress=False)
-        model.select_closest_poles(list(HERTZ))
+        model.select_closest_poles(list(common.HERTZ))
         model.get_constants(method="lsfd")
+        chosen = 2 * np.pi * np.asarray(model.nat_freq) * (1j - np.asarray(model.nat_xi))
+        return common.modes_found(chosen)
 
 
-def seconds(run: Callable[[], None], repeats: int) -> float:
-    """Best of some runs [s]."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        run()
-        times.append(time.perf_counter() - start)
-    return min(times)
+def transforms(frfs: FrfSet) -> None:
+    """Transform the data twice, and solve for the residues."""
+    for _ in range(2):
+        fft.ifft(frfs.values, int(fft.next_fast_len(round(1.08 * len(frfs.frequency)))), axis=1)
+    unknowns = 2 * len(common.HERTZ) + 2
+    linalg.lapack.dposv(np.eye(unknowns), np.ones((unknowns, len(frfs.values))))
+
+
+def compare(frfs: FrfSet, order: int, orders: Sequence[int], note: str) -> None:
+    """Print one line."""
+    own = common.seconds(lambda: ours(frfs, orders), 9)
+    peer = common.seconds(lambda: theirs(frfs, order), 2)
+    classic = common.classic_floor(orders, lambda: transforms(frfs))
+    least = common.own_floor(orders, lambda: transforms(frfs))
+    print(
+        f"{len(frfs.values):3d} outputs, pol_order_high {order:3d}, {note}: {own:.3f} s, sdypy-EMA {peer:.2f} s, "
+        f"ratio {peer / own:5.1f}; {own / classic:.2f} of the classic floor {classic:.3f} s, "
+        f"{own / least:.1f} of our own {least:.3f} s; modes {ours(frfs, orders)} and {theirs(frfs, order)} of 12"
+    )
 
 
 def main() -> None:
-    """Print the ratios; sdypy-EMA's order counts pairs of poles, so that its 50 compares with our 100 as well."""
     rng = np.random.default_rng(1)
     for outputs in (25, 250):
-        frfs = synthetic(outputs, rng)
-        own = seconds(lambda f=frfs: ours(f), 5)
+        frfs = common.synthetic(outputs, LINES, rng).band(1.0, 1000.0)
         for order in (50, 100):
-            peer = seconds(lambda f=frfs, n=order: theirs(f, n), 2)
-            label = f"{outputs} outputs, pol_order_high {order}"
-            print(f"{label}: {own:.3f} s, sdypy-EMA {peer:.3f} s, ratio {peer / own:.1f}")
+            compare(frfs, order, range(1, order + 1), f"the same {order} orders")
+        compare(frfs, 50, range(2, 101, 2), "the same 50 degrees")
+        compare(frfs, 100, [int(n) for n in np.linspace(16, 100, 25)], "25 orders as identify tries")
 
 
 if __name__ == "__main__":

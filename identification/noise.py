@@ -11,6 +11,7 @@ from identification.grams import Weights
 
 _WINDOW = 48  # lines over which a local variance is averaged at the least
 _QUIET = 1e-6  # noise is never taken to be below this part of an FRF's r.m.s.
+_PIECE = 16  # lines over which the scatter is averaged before the median
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / np.sqrt(70.0)
 
 
@@ -45,8 +46,9 @@ def scatter(residual: ComplexArray) -> FloatArray:
     if n_lines < 3 * len(_DIFFERENCE):
         return np.asarray(np.mean(np.abs(residual) ** 2, axis=1))
     rough = ndimage.convolve1d(residual, _DIFFERENCE, axis=1, mode="reflect")[:, 2:-2]
-    pieces = np.array_split(np.abs(rough) ** 2, max(1, n_lines // 16), axis=1)
-    return np.asarray(np.median(np.stack([p.mean(axis=1) for p in pieces]), axis=0))
+    pieces = max(1, rough.shape[1] // _PIECE)
+    power = np.abs(rough[:, : pieces * (rough.shape[1] // pieces)]) ** 2
+    return np.asarray(np.median(power.reshape(len(power), pieces, -1).mean(axis=2), axis=1))
 
 
 def leverage(columns: ComplexArray, weights: Weights) -> FloatArray:

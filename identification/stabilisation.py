@@ -99,15 +99,14 @@ def stabilise(sets: PoleSets, *, band: tuple[float, float]) -> StabilisationChar
     StabilisationChart
         The plausible poles: Im > 0, damping ratio between -5 and 35 %.
     """
-    kept = [_plausible(poles) for poles in sets.poles]
-    poles = [p[k] for p, k in zip(sets.poles, kept, strict=True)]
-    parts = [v[k] for v, k in zip(sets.participation, kept, strict=True)]
-    level = np.repeat(np.arange(len(poles)), [len(p) for p in poles])
-    all_poles, all_parts = np.concatenate(poles), np.concatenate(parts)
+    found, parts = np.concatenate(sets.poles), np.concatenate(sets.participation)
+    kept = _plausible(found)
+    level = np.repeat(np.arange(len(sets.poles)), [len(p) for p in sets.poles])[kept]
+    all_poles, all_parts = found[kept], parts[kept]
     track = np.full(len(all_poles), -1, dtype=np.int64)
-    starts = np.concatenate([[0], np.cumsum([len(p) for p in poles])])
+    starts = np.searchsorted(level, np.arange(len(sets.poles) + 1))
     n_tracks = 0
-    for i in range(len(poles)):
+    for i in range(len(sets.poles)):
         here = np.arange(starts[i], starts[i + 1])
         for back in (1, 2):
             if i >= back:
@@ -129,7 +128,9 @@ def _continue(
     poles: ComplexArray, parts: ComplexArray, track: IntArray, here: IntArray, below: IntArray
 ) -> None:
     """Hand on the track numbers of ``below`` to their mutual nearest neighbours in ``here``, in place."""
-    here, below = here[track[here] < 0], below[~np.isin(track[below], track[here])]
+    free = np.ones(len(track) + 1, dtype=bool)
+    free[track[here]] = False
+    here, below = here[track[here] < 0], below[free[track[below]]]
     if len(here) == 0 or len(below) == 0:
         return
     distance = separation(poles[here], parts[here], poles[below], parts[below])
