@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import BoolArray, FloatArray
 from acquisition.frf import FrfSet
 from identification import fading
 from identification.disagreement import Disagreement, between_frfs
@@ -35,16 +35,28 @@ def misfit_factor(frfs: FrfSet, fitted: Fitted) -> FloatArray:
     return np.asarray(np.where(excess > 1.0 + 3.0 * np.sqrt(spread) / under, excess, 1.0))
 
 
-def noise_factors(frfs: FrfSet, fitted: Fitted) -> NoiseFactors:
+def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactors:
     """Return by what factor the errors exceed those of independent noise of the weights' size.
 
-    The hits tell where they came with the FRFs; otherwise the misfit does, and noise that fades.
+    The hits tell where they came with the FRFs, noise that fades otherwise. What all hits have in common is
+    not in their scatter, so the factor is never under what the fit leaves about a mode.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs in the band.
+    fitted : Fitted
+        The fit.
+    modes : (n_modes,) bool array
+        Which of its poles are modes.
     """
     fit, misfit = fitted.fit, misfit_factor(frfs, fitted)
     _, free, pole = fading.inflation(fitted.weights.fade, (frfs.decay - fit.poles.real) / frfs.df)
-    every = np.broadcast_to(misfit * free, fit.linear.residues.shape)
-    prior = NoiseFactors(misfit * pole, every)
-    return hit_factors(frfs, fit, fitted.weights, prior) or prior
+    noise = NoiseFactors(pole, np.broadcast_to(free, fit.linear.residues.shape))
+    told = hit_factors(frfs, fit, fitted.weights, modes, noise)
+    if told is None:
+        return NoiseFactors(misfit * noise.poles, misfit * noise.constants)
+    return NoiseFactors(np.maximum(told.poles, misfit), np.maximum(told.constants, misfit))
 
 
 def pole_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:

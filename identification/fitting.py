@@ -58,6 +58,11 @@ class Fitted:
     held: RankOne | None = None
     rank_excess: float = 0.0
 
+    def excess(self) -> float:
+        """Return the power the fit leaves over that of the noise, the middle one of all FRFs [-]."""
+        ratio = np.abs(self.residual) ** 2 / self.variance
+        return float(np.median(ratio.mean(axis=1) / np.maximum(1.0 - self.absorbed, 0.02).mean(axis=1)))
+
 
 def fit_modes(
     frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float], add: Sequence[float] = ()
@@ -99,16 +104,17 @@ def fit_modes(
     fitted = _weighted(frfs, _without_halves(frfs, fit), band)
     while halves(frfs, fitted.fit) is not None:
         fitted = _weighted(frfs, _without_halves(frfs, fitted.fit), band)
-    return _held(frfs, _with_added(frfs, fitted, add), band)
+    return _held(frfs, _with_added(frfs, fitted, add, band), band)
 
 
-def _with_added(frfs: FrfSet, fitted: Fitted, hertz: Sequence[float]) -> Fitted:
+def _with_added(frfs: FrfSet, fitted: Fitted, hertz: Sequence[float], band: tuple[float, float]) -> Fitted:
     """Add a mode at each frequency the user names, and do not ask whether it is significant."""
     fit = fitted.fit
     for value in hertz:
         pole = overrule.best_start(frfs, fit.poles, fit.linear.powers, fitted.weights, value)
         poles = np.append(fit.poles, pole)
         fit = refine(frfs, poles, fitted.weights, powers=fit.linear.powers, iterations=_LONG)
+        overrule.must_have_stayed(fit.poles, value, inside(fit.poles, band, frfs.df), frfs.df)
     if fit is fitted.fit:
         return fitted
     return replace(

@@ -14,9 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frf import FrfSet
+from acquisition.scatter import variance_of_groups
 from identification import basis, grams
+from identification.pruning import inverse_information
 from identification.refine import Fit, evaluate, pole_turns
 
 _PRIOR_FREEDOM = 10.0
@@ -62,7 +64,9 @@ class _Sums:
     rows: IntArray
 
 
-def factors(frfs: FrfSet, fit: Fit, weights: grams.Weights, prior: NoiseFactors) -> NoiseFactors | None:
+def factors(
+    frfs: FrfSet, fit: Fit, weights: grams.Weights, modes: BoolArray, prior: NoiseFactors
+) -> NoiseFactors | None:
     """Return the noise factors the hits tell, or None where no scatter of hits came with the FRFs.
 
     Parameters
@@ -73,6 +77,8 @@ def factors(frfs: FrfSet, fit: Fit, weights: grams.Weights, prior: NoiseFactors)
         The fit.
     weights : Weights
         Reciprocal variances it was made with.
+    modes : (n_modes,) bool array
+        Which poles are modes; background poles do not count where factors are pooled.
     prior : NoiseFactors
         What is taken where hits are few: it counts as ten degrees of freedom.
     """
@@ -80,17 +86,15 @@ def factors(frfs: FrfSet, fit: Fit, weights: grams.Weights, prior: NoiseFactors)
         return None
     n = len(fit.poles)
     columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers)
-    normal = evaluate(frfs, fit.poles, weights, fit.linear.powers).normal
-    inverse: FloatArray = np.asarray(np.linalg.pinv(normal, hermitian=True), dtype=np.float64)
+    plain = inverse_information(2.0 * evaluate(frfs, fit.poles, weights, fit.linear.powers).normal)
     groups = [
-        _moved(frfs, fit, weights, columns, inverse, np.asarray(g.rows), np.asarray(g.deviations))
+        _moved(frfs, fit, weights, columns, 2.0 * plain, np.asarray(g.rows), np.asarray(g.deviations))
         for g in frfs.scatter.groups
     ]
     steps = [g.steps for g in groups]
     spread = sum((s.T @ s for s in steps), np.zeros((2 * n, 2 * n)))
-    plain: FloatArray = np.asarray(0.5 * inverse)
     ratio = _ratio(np.diag(spread), np.diag(plain))
-    freedom = 2 * _freedom(steps, n)
+    freedom = np.where(modes, 2 * _freedom(steps, n), 0.0)
     of_poles = prior.poles * _shrunk(ratio.reshape(n, 2).mean(axis=1) / prior.poles, freedom, _ALIKE_POLES)
     return NoiseFactors(of_poles, _of_constants(fit, groups, spread, plain, prior.constants))
 
@@ -131,12 +135,9 @@ def _moved(
 
 
 def _freedom(steps: list[FloatArray], n_modes: int) -> FloatArray:
-    """Return the degrees of freedom behind each pole's variance (Satterthwaite), shape (n_modes,) [-]."""
-    share = np.stack([np.sum(s**2, axis=0) for s in steps])
-    count = np.array([max(len(s) - 1.0, 0.5) for s in steps])[:, None]
-    tiny = np.finfo(float).tiny
-    total = share.sum(axis=0) ** 2 / np.maximum(np.sum(share**2 / count, axis=0), tiny)
-    return np.asarray(total.reshape(n_modes, 2).mean(axis=1))
+    """Return the degrees of freedom behind each pole's variance, shape (n_modes,) [-]."""
+    _, freedom = variance_of_groups(steps)
+    return np.asarray(np.where(np.isfinite(freedom), freedom, 0.0).reshape(n_modes, 2).mean(axis=1))
 
 
 def _ratio(found: FloatArray, expected: FloatArray) -> FloatArray:

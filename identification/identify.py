@@ -26,6 +26,8 @@ from identification.stabilisation import StabilisationChart, stabilise
 
 _ORDER = 60
 _LEVELS = 25
+_POOR_FIT = 4.0  # power left over that of the noise that is worth a word
+_HIGHEST = 400
 _AT_REST = 0.02  # part of a mode left at the end of a record that is worth a word
 
 
@@ -111,12 +113,14 @@ def order_list(frfs: FrfSet, order: int | None, method: str) -> list[int]:
     Raises
     ------
     InputError
-        If the order is under 2.
+        If the order is under 2 or beyond 400.
     """
     columns = len(arrange(frfs).columns) if method == "lscf" else 1
     wanted = _ORDER if order is None else order
     if wanted < 2:
         raise InputError(f"order {wanted} leaves no room for a mode; use 2 or more")
+    if wanted > _HIGHEST:
+        raise InputError(f"order {wanted} is beyond {_HIGHEST}; rather cut the band into pieces")
     carried = max(2, len(frfs.frequency) // 3)
     top = min(max(wanted // columns, min(wanted, 16)), carried)
     bottom = max(1, min(top - 1, max(top // 6, 2)))
@@ -136,7 +140,7 @@ def _assemble(
     sign = signs(data)
     poles: ComplexArray = fit.poles[own]
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
-    factors = covariance.noise_factors(data, fitted)
+    factors = covariance.noise_factors(data, fitted, modes)
     sigma = covariance.constant_statistics(data, fitted, factors)[:, own]
     spread = covariance.pole_statistics(data, fitted, factors)[own]
     shapes = mode_shapes(data, constants, _alone(data, fitted, own, sigma))
@@ -196,6 +200,12 @@ def _warnings(fitted: Fitted) -> tuple[str, ...]:
     notes = []
     if not fitted.fit.converged:
         notes.append("the refinement of the poles did not come to rest; standard deviations may be too small")
+    left = fitted.excess()
+    if fitted.measured and left > _POOR_FIT:
+        notes.append(
+            f"the fit leaves {left:.2g} times the power of the noise: modes are missing in it, or the FRFs do not "
+            "belong together; narrow the band or raise the order"
+        )
     if fitted.rank_excess > 1.0:
         notes.append(
             f"the references do not agree on the shapes: holding each mode to one shape raises the misfit to "

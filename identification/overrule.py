@@ -11,6 +11,7 @@ from acquisition.errors import InputError
 from acquisition.frf import FrfSet
 from identification import background, grams
 
+_NEAR = 0.01
 _WIDTHS = np.array([0.3, 1.0, 3.0, 10.0])
 _OFFSETS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 _RATIOS = np.array([0.0003, 0.001, 0.003, 0.01, 0.03])
@@ -40,11 +41,39 @@ def nearest_modes(poles: ComplexArray, hertz: Sequence[float], candidates: BoolA
     for value in hertz:
         distance = np.where(candidates, np.abs(frequency - value), np.inf)
         best = int(distance.argmin())
-        if distance[best] > max(0.01 * value, 3 * df):
+        if distance[best] > max(_NEAR * value, 3 * df):
             found = ", ".join(f"{f:.5g}" for f in frequency[candidates])
             raise InputError(f"no mode near {value:g} Hz to leave out; those found are at {found} Hz")
         meant[best] = True
     return meant
+
+
+def must_have_stayed(poles: ComplexArray, hertz: float, modes: BoolArray, df: float) -> None:
+    """Refuse a mode asked for whose pole the data drove away.
+
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        Poles of the fit [rad/s].
+    hertz : float
+        Where the mode was asked for [Hz].
+    modes : (n_modes,) bool array
+        Which poles are modes of the band.
+    df : float
+        Line spacing [Hz].
+
+    Raises
+    ------
+    InputError
+        If no mode is within 1 % or three lines of it.
+    """
+    frequency = np.abs(poles) / (2 * np.pi)
+    if np.any(np.abs(frequency[modes] - hertz) <= max(_NEAR * hertz, 3 * df)):
+        return
+    raise InputError(
+        f"no mode can be kept at {hertz:g} Hz: fitted to these FRFs, its pole leaves for another frequency or turns "
+        "into a background; narrow the band about it, or do without"
+    )
 
 
 def best_start(

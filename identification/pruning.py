@@ -9,6 +9,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from identification.refine import Fit
 
 _FALSE_ALARM = 1e-8
+_UNDAMPED = 1e-7  # damping ratio of nothing that vibrates
 
 
 def constant_variance(fit: Fit) -> FloatArray:
@@ -32,11 +33,16 @@ def pole_covariance(fit: Fit) -> FloatArray:
 
     Poles the data tell nothing about, to rounding, get the variance of that rounding and no correlation.
     """
-    diagonal = np.diag(fit.information)
+    return inverse_information(fit.information)
+
+
+def inverse_information(information: FloatArray) -> FloatArray:
+    """Return the inverse of an information matrix, unit columns first; as :func:`pole_covariance`."""
+    diagonal = np.diag(information)
     floor = 1e-16 * diagonal.max(initial=0.0) + np.finfo(float).tiny
     seen = np.flatnonzero(diagonal > floor)
     length = np.sqrt(diagonal[seen])
-    values, vectors = np.linalg.eigh(fit.information[np.ix_(seen, seen)] / np.outer(length, length))
+    values, vectors = np.linalg.eigh(information[np.ix_(seen, seen)] / np.outer(length, length))
     sure = values > 1e-13 * values[-1]
     half = vectors[:, sure] / np.sqrt(values[sure]) / length[:, None]
     covariance = np.diag(np.full(len(diagonal), 1.0 / floor))
@@ -81,11 +87,11 @@ def plausible(poles: ComplexArray, band: tuple[float, float]) -> BoolArray:
 def inside(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArray:
     """Tell which poles are modes of the band, shape (n_modes,).
 
-    Their damped frequency lies in it, they decay, their ratio is under 20 %, and their half-power band is
+    Their damped frequency lies in it, their ratio is above 1e-7 and under 20 %, and their half-power band is
     narrower than half the band: what is broader is a background.
     """
     frequency = poles.imag / (2 * np.pi)
     width = -2 * poles.real / (2 * np.pi)
     within = (frequency >= band[0] - 0.5 * df) & (frequency <= band[1] + 0.5 * df)
-    light = -poles.real < 0.2 * np.abs(poles)
+    light = (-poles.real < 0.2 * np.abs(poles)) & (-poles.real > _UNDAMPED * np.abs(poles))
     return np.asarray(within & light & (width > 0) & (width < 0.5 * (band[1] - band[0])))

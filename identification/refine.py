@@ -115,7 +115,7 @@ def refine(
     if tolerance < _POLISHED and len(few.axis.laplace) < len(frfs.frequency):
         every = Lines.of(frfs)
         poles, converged = _iterate(every, poles, weights, powers, iterations, tolerance)
-    return _finish(frfs, poles, weights, powers, converged)
+    return fit_at(frfs, poles, weights, powers, converged)
 
 
 def _iterate(
@@ -246,9 +246,10 @@ def _contract(projected: FloatArray, turns: FloatArray, level: FloatArray) -> Fl
     return np.asarray(normal.reshape(2 * n, 2 * n))
 
 
-def _finish(
+def fit_at(
     frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...], converged: bool
 ) -> Fit:
+    """Return the fit at given poles, rising in frequency; parameters as for :func:`refine`."""
     order = np.argsort(np.abs(poles))
     poles = poles[order]
     n = len(poles)

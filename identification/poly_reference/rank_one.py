@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frf import FrfSet
 from identification import grams
 from identification.poly_reference.blocks import inverses, paired
 from identification.poly_reference.equations import Problem, Step, evaluate, residue_gain
 from identification.poly_reference.places import Sorted
 from identification.poly_reference.starts import first_participations, untangled
-from identification.refine import Fit, decaying
+from identification.refine import Fit, decaying, fit_at
 from identification.residues import Residues
 
 _ITERATIONS = 50
@@ -96,7 +96,8 @@ def hold_to_rank_one(
     freed = 2 * share.shape[1] * (len(frfs.values) - places.shape[0] - places.shape[1] + 1)
     limit = float(stats.chi2.isf(_CHANCE, freed)) * inflation
     excess = 2.0 * (step.cost - fit.cost) / limit
-    return _result(problem, fit, front, (poles, share, step), excess, converged=converged)
+    there = fit_at(frfs, poles, weights, fit.linear.powers, fit.converged and converged)
+    return _result(problem, there, (poles, share, step), excess)
 
 
 def _iterate(
@@ -130,29 +131,25 @@ def _solve(state: Step, damping: float) -> FloatArray:
 
 def _result(
     problem: Problem,
-    fit: Fit,
-    front: IntArray,
+    free: Fit,
     found: tuple[ComplexArray, ComplexArray, Step],
     excess: float,
-    *,
-    converged: bool,
 ) -> RankOne:
-    """Return the fit with its statistics, poles rising in frequency."""
+    """Return the fit with its statistics, poles rising in frequency; ``free`` has free residues there."""
     poles, share, step = found
     places, n, h = problem.places, len(poles), share.shape[1]
     order = np.argsort(np.abs(poles))
     covariance = 0.5 * inverses(step.normal[None])[0]
     residue_variance, long_variance = _variances(problem, share, step, covariance)
     sign, both = places.sign[:, None], (2 * order[:, None] + np.arange(2)).ravel()
-    own = fit.linear_inverse[:, 2 * front[h:] + 1]
+    residue_variance = np.hstack([residue_variance, np.zeros((len(sign), n - h))])[:, order]
+    residue_variance = np.where(order < h, residue_variance, free.linear_inverse[:, 1 : 2 * n : 2])
     held_fit = replace(
-        fit,
-        poles=poles[order],
+        free,
         linear=Residues((step.residues * sign)[:, order], step.terms * sign, problem.powers),
         cost=step.cost,
         information=2.0 * _of_poles(step.normal, 2 * n)[np.ix_(both, both)],
-        converged=converged and fit.converged,
-        residue_variance=np.hstack([residue_variance, own])[:, order],
+        residue_variance=residue_variance,
     )
     spare = np.zeros((places.shape[0], n - h))
     one = np.ones((places.shape[1], n - h))
