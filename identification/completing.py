@@ -9,7 +9,7 @@ from scipy import stats
 
 from acquisition.errors import EstimationError
 from acquisition.frf import FrfSet
-from identification import background, fading, leftover
+from identification import background, drifting, fading, leftover
 from identification.grams import Weights
 from identification.poly_reference import sorted_frfs
 from identification.pruning import inside, plausible, significant, threshold
@@ -118,8 +118,24 @@ def _higher(
 
 
 def halves(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
-    """Return two poles of a fit that are the halves of one mode, the weaker first, or None."""
-    return leftover.split_halves(fit.poles, fit.linear.residues, sorted_frfs(frfs))
+    """Return two poles of a fit that are one mode, the weaker first, or None.
+
+    They are the halves of one by their shapes, or one pole for each FRF explains the FRFs as well.
+    """
+    places, residues = sorted_frfs(frfs), fit.linear.residues
+    found = leftover.split_halves(fit.poles, residues, places)
+    if found is not None or len(residues) < leftover.FEW:
+        return found
+    apart = None if places is None else leftover.two_by_references(residues, places)
+    groups = drifting.clusters(fit.poles, apart)
+    if not groups:
+        return None
+    residual, weights = left_over(frfs, fit), search_weights(frfs, fit)
+    for group in groups:
+        if drifting.is_one_mode(frfs, fit.poles, residues, residual, weights, group):
+            energy = np.sum(np.abs(residues[:, group]) ** 2, axis=0) / np.abs(fit.poles[group].real)
+            return int(group[energy.argmin()]), int(group[energy.argmax()])
+    return None
 
 
 def pruned(

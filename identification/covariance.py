@@ -52,11 +52,11 @@ def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactor
     """
     fit, misfit = fitted.fit, misfit_factor(frfs, fitted)
     _, free, pole = fading.inflation(fitted.weights.fade, (frfs.decay - fit.poles.real) / frfs.df)
-    noise = NoiseFactors(pole, np.broadcast_to(free, fit.linear.residues.shape))
+    noise = NoiseFactors(pole, np.broadcast_to(free, fit.linear.residues.shape), np.ones(len(pole)))
     told = hit_factors(frfs, fit, fitted.weights, modes, noise)
     if told is None:
-        return NoiseFactors(misfit * noise.poles, misfit * noise.constants)
-    return NoiseFactors(np.maximum(told.poles, misfit), np.maximum(told.constants, misfit))
+        return NoiseFactors(misfit * noise.poles, misfit * noise.constants, noise.shapes)
+    return NoiseFactors(np.maximum(told.poles, misfit), np.maximum(told.constants, misfit), told.shapes)
 
 
 def pole_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
@@ -68,7 +68,7 @@ def pole_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Floa
     poles = fitted.fit.poles
     full = pole_covariance(fitted.fit).reshape(len(poles), 2, len(poles), 2)
     own = np.einsum("rarb->rab", full)
-    own = own * factors.poles[:, None, None] + _disagreement(frfs, fitted, factors).mean
+    own = own * factors.poles[:, None, None] + disagreement(frfs, fitted, factors).mean
     a, b, size = poles.real, poles.imag, np.abs(poles)
     jacobian = np.stack(
         [
@@ -90,11 +90,12 @@ def constant_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> 
     noise = constant_variance(fit) * factors.constants
     gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(len(noise), n, n, 2)
     own = np.einsum("jnna->jna", gain)
-    shift = np.einsum("jna,nab,jnb->jn", own, _disagreement(frfs, fitted, factors).each, own)
+    shift = np.einsum("jna,nab,jnb->jn", own, disagreement(frfs, fitted, factors).each, own)
     return np.asarray(np.sqrt(noise + (2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0)))
 
 
-def _disagreement(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Disagreement:
+def disagreement(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Disagreement:
+    """Return how far the FRFs disagree on each pole, beyond what the noise factors allow."""
     fit = fitted.fit
     gradient, normal = scores(frfs, fit.poles, fitted.weights, fit.linear.powers)
     return between_frfs(gradient, normal, factors.poles)

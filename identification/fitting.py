@@ -22,6 +22,7 @@ from identification.weighing import absorbed_by, left_over, noise_weights, searc
 _LONG = 40
 _FINE = 1e-10
 _BROAD = 0.1
+_AT_REST = 1e-4  # gain in the misfit, there a chi-square
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +152,7 @@ def _without_broad(
     """Do without poles whose half-power band is a tenth of the band, if a background explains as much."""
     for pole in fit.poles[_broad(fit.poles, band, frfs.df)]:
         rest = fit.poles[np.abs(fit.poles - pole) > 1e-9 * abs(pole)]
-        if len(rest) == 0 or len(rest) == len(fit.poles):
+        if not inside(rest, band, frfs.df).any() or len(rest) == len(fit.poles):
             continue
         weights = search_weights(frfs, fit)
         limit = float(stats.chi2.isf(1e-6, 2 * len(frfs.values))) * fading.at_start(weights.fade)
@@ -178,6 +179,8 @@ def _weighted(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fitted:
         residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
         weights, variance, measured = noise_weights(frfs, residual, absorbed)
         powers = fit.linear.powers
-        fit = refine(frfs, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance)
+        fit = refine(
+            frfs, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance, enough=_AT_REST
+        )
         fit = pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=tolerance)
     return Fitted(fit, weights, variance, left_over(frfs, fit), absorbed_by(frfs, fit, weights), measured)

@@ -18,15 +18,14 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frf import FrfSet
 from acquisition.scatter import variance_of_groups
 from identification import basis, grams
+from identification.poly_reference import sorted_frfs
 from identification.pruning import inverse_information
 from identification.refine import Fit, evaluate, pole_turns
 
 _PRIOR_FREEDOM = 10.0
 _UNSEEN, _LARGEST = 1e-100, 1e8
-_ALIKE_POLES, _ALIKE_CONSTANTS = (
-    40.0,
-    10.0,
-)  # what raises the noise of a pole raises that of all; not so a constant's
+# what raises the noise of a pole raises that of all poles; a hit that misses its point, that point's constants
+_ALIKE_POLES, _ALIKE_CONSTANTS = 40.0, 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,10 +38,14 @@ class NoiseFactors:
         For each pole [-].
     constants : (n_frf, n_modes) array
         For each modal constant [-].
+    shapes : (n_modes,) array
+        Further, for a component of the shape that constants of several references give: their errors are not
+        independent if they come from the same hits [-].
     """
 
     poles: FloatArray
     constants: FloatArray
+    shapes: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,11 +60,16 @@ class _Sums:
         Sum of squares of what it moves Im of the residues by, less that by the poles alone.
     rows : (n_rows,) int array
         Which FRFs.
+    joint, apart : (n_modes,) arrays
+        Sums of squares of what it moves a shape's components by: as it is, and as if the FRFs were moved
+        independently.
     """
 
     steps: FloatArray
     constants: FloatArray
     rows: IntArray
+    joint: FloatArray
+    apart: FloatArray
 
 
 def factors(
@@ -84,11 +92,12 @@ def factors(
     """
     if frfs.scatter is None:
         return None
-    n = len(fit.poles)
+    n, places = len(fit.poles), sorted_frfs(frfs)
+    point = np.arange(len(frfs.values)) if places is None else places.row
     columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers)
     plain = inverse_information(2.0 * evaluate(frfs, fit.poles, weights, fit.linear.powers).normal)
     groups = [
-        _moved(frfs, fit, weights, columns, 2.0 * plain, np.asarray(g.rows), np.asarray(g.deviations))
+        _moved(frfs, fit, weights, columns, 2.0 * plain, np.asarray(g.rows), np.asarray(g.deviations), point)
         for g in frfs.scatter.groups
     ]
     steps = [g.steps for g in groups]
@@ -96,7 +105,15 @@ def factors(
     ratio = _ratio(np.diag(spread), np.diag(plain))
     freedom = np.where(modes, 2 * _freedom(steps, n), 0.0)
     of_poles = prior.poles * _shrunk(ratio.reshape(n, 2).mean(axis=1) / prior.poles, freedom, _ALIKE_POLES)
-    return NoiseFactors(of_poles, _of_constants(fit, groups, spread, plain, prior.constants))
+    return NoiseFactors(
+        of_poles, _of_constants(fit, groups, spread, plain, prior.constants), _of_shapes(groups)
+    )
+
+
+def _of_shapes(groups: list[_Sums]) -> FloatArray:
+    """Return the variance of shape components over that of independent constants, 1 or more."""
+    joint, apart = sum(g.joint for g in groups), sum(g.apart for g in groups)
+    return np.asarray(np.maximum(_ratio(np.asarray(joint), np.asarray(apart)), 1.0))
 
 
 def _moved(
@@ -107,6 +124,7 @@ def _moved(
     inverse: FloatArray,
     rows: IntArray,
     deviations: ComplexArray,
+    point: IntArray,
 ) -> _Sums:
     """Return what the hits of one group move."""
     n, k = len(fit.poles), columns.linear.shape[1]
@@ -131,7 +149,26 @@ def _moved(
     steps = gradient.reshape(hits, 2 * n) @ inverse
     gain = fit.pole_gain[rows, 1 : 2 * n : 2]
     own, by_poles = alone[:, :, 1 : 2 * n : 2], np.einsum("jnp,hp->hjn", gain, steps)
-    return _Sums(steps, np.sum(own**2 + 2.0 * own * by_poles, axis=0), rows)
+    joint, apart = _shared(own + by_poles, residues.imag * weights.level[rows, None], point[rows])
+    return _Sums(steps, np.sum(own**2 + 2.0 * own * by_poles, axis=0), rows, joint, apart)
+
+
+def _shared(moved: FloatArray, share: FloatArray, point: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return sums of squares of weighted means over the FRFs of a point, and as if these were independent.
+
+    Parameters
+    ----------
+    moved : (n_hits, n_rows, n_modes) array
+        What each hit moves the constants by.
+    share : (n_rows, n_modes) array
+        Weight of each constant in its point's component.
+    point : (n_rows,) int array
+        Which point each FRF is of.
+    """
+    weighted = moved * share
+    means = np.zeros((int(point.max()) + 1, len(moved), moved.shape[2]))
+    np.add.at(means, point, weighted.transpose(1, 0, 2))
+    return np.sum(means**2, axis=(0, 1)), np.sum(weighted**2, axis=(0, 1))
 
 
 def _freedom(steps: list[FloatArray], n_modes: int) -> FloatArray:

@@ -11,7 +11,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
-from identification import covariance
+from identification import covariance, doubts
 from identification.arrangement import arrange, signs, unsigned
 from identification.fitting import Fitted, fit_modes
 from identification.model import ModalModel
@@ -28,7 +28,6 @@ _ORDER = 60
 _LEVELS = 25
 _POOR_FIT = 4.0  # power left over that of the noise that is worth a word
 _HIGHEST = 400
-_AT_REST = 0.02  # part of a mode left at the end of a record that is worth a word
 
 
 def identify(
@@ -88,7 +87,8 @@ def identify(
     modes = inside(fitted.fit.poles, limits, data.df)
     modes &= ~nearest_modes(fitted.fit.poles, drop, modes, data.df)
     if not modes.any():
-        raise EstimationError(f"{frfs.source}: no mode is left once the modes named are dropped")
+        why = "once the modes named are dropped" if drop else "in the band: what was found is a background"
+        raise EstimationError(f"{frfs.source}: no mode is left {why}; widen the band")
     return _assemble(data, fitted, modes, chart, limits, points_rejected)
 
 
@@ -143,7 +143,10 @@ def _assemble(
     factors = covariance.noise_factors(data, fitted, modes)
     sigma = covariance.constant_statistics(data, fitted, factors)[:, own]
     spread = covariance.pole_statistics(data, fitted, factors)[own]
-    shapes = mode_shapes(data, constants, _alone(data, fitted, own, sigma))
+    alone = _alone(data, fitted, own, sigma) * np.sqrt(factors.shapes[own])
+    shapes = mode_shapes(data, constants, alone)
+    scatter = np.sqrt(covariance.disagreement(data, fitted, factors).each[own, 1, 1])
+    said = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
     return ModalModel(
         modal=_modal_data(data, poles, spread, shapes),
@@ -160,7 +163,7 @@ def _assemble(
         band=band,
         frfs=data,
         chart=chart,
-        warnings=shapes.warnings + _warnings(fitted) + _ringing(data, poles),
+        warnings=shapes.warnings + _warnings(fitted) + said,
         points_rejected=points_rejected,
     )
 
@@ -212,18 +215,3 @@ def _warnings(fitted: Fitted) -> tuple[str, ...]:
             f"{fitted.rank_excess:.2g} times what noise allows; check that nothing was moved between them"
         )
     return tuple(notes)
-
-
-def _ringing(data: FrfSet, poles: ComplexArray) -> tuple[str, ...]:
-    """Say which modes are not at rest when a record of 1/df ends."""
-    if data.record is not None:  # the fit knows what was cut off
-        return ()
-    left = np.exp(-(data.decay - poles.real) / data.df)
-    names = ", ".join(str(i + 1) for i in np.flatnonzero(left > _AT_REST))
-    if not names:
-        return ()
-    return (
-        f"mode(s) {names}: {100 * left.max():.2g} % is left at the end of a record of {1 / data.df:.3g} s (1/df). If "
-        "the FRFs come from records that long, leakage biases their damping and level: record longer, or use an "
-        "exponential window",
-    )

@@ -18,6 +18,7 @@ FEW = 4
 _TOGETHER = 0.6
 _SAME = 0.25
 _PURE, _ALIKE = 0.9, 0.8
+_FILLINGS = 40
 
 
 def trial_poles(
@@ -93,7 +94,7 @@ def split_halves(
     else:
         halves = (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
     if places is not None and halves.any():
-        halves &= ~_two_by_references(residues, places)
+        halves &= ~two_by_references(residues, places)
     first, second = np.nonzero(np.triu(halves, 1))
     if len(first) == 0:
         return None
@@ -104,11 +105,16 @@ def split_halves(
     return weaker, stronger
 
 
-def _two_by_references(residues: ComplexArray, places: Sorted) -> BoolArray:
+def two_by_references(residues: ComplexArray, places: Sorted) -> BoolArray:
     """Tell which pairs differ in shape and in participation, both residues being of rank one."""
     table = np.zeros((residues.shape[1], *places.shape), complex)
     table[:, places.row, places.column] = (residues * places.sign[:, None]).T
+    measured = np.zeros(places.shape, dtype=bool)
+    measured[places.row, places.column] = True
     left, values, right = np.linalg.svd(table, full_matrices=False)
+    for _ in range(0 if measured.all() else _FILLINGS):  # what was not measured is what rank one has there
+        filled = values[:, :1, None] * left[:, :, :1] * right[:, :1]
+        left, values, right = np.linalg.svd(np.where(measured, table, filled), full_matrices=False)
     pure = values[:, 0] ** 2 > _PURE * np.sum(values**2, axis=1)
     shapes, shares = left[:, :, 0], right[:, 0]
     alike = np.abs(shapes.conj() @ shapes.T) ** 2, np.abs(shares.conj() @ shares.T) ** 2

@@ -82,6 +82,7 @@ def refine(
     powers: tuple[int, ...] = basis.BASIC_TERMS,
     iterations: int = _ITERATIONS,
     tolerance: float = _CONVERGED,
+    enough: float = 0.0,
 ) -> Fit:
     """Minimise the weighted misfit over poles, residues and residual terms.
 
@@ -104,6 +105,8 @@ def refine(
         Upper limit of steps [-].
     tolerance : float
         Relative gain of a step at which the iteration rests [-].
+    enough : float
+        Gain at which it rests as well: small beside 1, with weights that are reciprocal variances [-].
 
     Returns
     -------
@@ -111,10 +114,10 @@ def refine(
         The refined model.
     """
     few, few_weights = thinned(frfs, poles, weights)
-    poles, converged = _iterate(few, poles, few_weights, powers, iterations, tolerance)
+    poles, converged = _iterate(few, poles, few_weights, powers, iterations, (tolerance, enough))
     if tolerance < _POLISHED and len(few.axis.laplace) < len(frfs.frequency):
         every = Lines.of(frfs)
-        poles, converged = _iterate(every, poles, weights, powers, iterations, tolerance)
+        poles, converged = _iterate(every, poles, weights, powers, iterations, (tolerance, enough))
     return fit_at(frfs, poles, weights, powers, converged)
 
 
@@ -124,7 +127,7 @@ def _iterate(
     weights: grams.Weights,
     powers: tuple[int, ...],
     iterations: int,
-    tolerance: float,
+    tolerance: tuple[float, float],
 ) -> tuple[ComplexArray, bool]:
     """Return the poles at which the steps come to rest, and whether they do."""
     state, damping = _evaluate(lines, poles, weights, powers), 1e-3
@@ -133,9 +136,9 @@ def _iterate(
         trial_poles = decaying(trial_poles, poles, lines.axis.decay)
         trial = _evaluate(lines, trial_poles, weights, powers)
         if trial.cost <= state.cost:
-            gain = (state.cost - trial.cost) / max(state.cost, np.finfo(float).tiny)
+            gain, rest = state.cost - trial.cost, max(tolerance[0] * state.cost, tolerance[1])
             poles, state, damping = trial_poles, trial, max(0.1 * damping, 1e-12)
-            if gain < tolerance:
+            if gain < rest:
                 return poles, True
         else:
             damping *= 10.0

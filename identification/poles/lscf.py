@@ -67,7 +67,7 @@ def _numerators(z: ComplexArray, order: int) -> ComplexArray:
     """Return polynomials of degree 0 ... order, orthonormal over the lines z, shape (order + 1, n_lines).
 
     Szego's recurrence: z times the last one, made orthogonal to its reversal (Simon, Orthogonal Polynomials on
-    the Unit Circle, 2005, Eq. 1.5.2).
+    the Unit Circle, 2005, Sec. 1.5).
     """
     rows = np.empty((order + 1, len(z)), complex)
     rows[0] = reversal = np.full(len(z), len(z) ** -0.5, complex)

@@ -17,8 +17,8 @@ def stable_roots(coefficients: ComplexArray) -> ComplexArray | None:
     """Return the roots inside the unit circle, or None if they cannot be told for certain.
 
     The argument of the polynomial along a circle a little larger counts the roots in it; the Fourier series of
-    the logarithm holds their power sums (Oppenheim and Schafer, Discrete-Time Signal Processing, 3rd ed., Sec.
-    13.4), that is, the factor whose roots they are; Newton's method on the whole polynomial gives them to
+    the logarithm holds their power sums (Oppenheim and Schafer, Discrete-Time Signal Processing, 3rd ed., Ch.
+    13), that is, the factor whose roots they are; Newton's method on the whole polynomial gives them to
     rounding. As many distinct roots as were counted are all there are.
 
     Parameters

@@ -47,10 +47,33 @@ def not_tied(points: Sequence[str]) -> str:
     )
 
 
-def about_scale(
-    plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray, certainty: FloatArray
-) -> tuple[str, ...]:
-    """Say where the scale is uncertain and where a drive point contradicts a passive structure.
+def about_scale(plan: Arrangement, column: IntArray, certainty: FloatArray) -> tuple[str, ...]:
+    """Say in which modes the scale is uncertain.
+
+    Parameters
+    ----------
+    plan : Arrangement
+        The FRFs as a matrix.
+    column : (n_rows,) int array
+        Column with the degree of freedom of each row, -1 where there is none.
+    certainty : (n_modes,) array
+        Scale over its standard deviation [-].
+    """
+    weak = np.flatnonzero(certainty < _CERTAIN) + 1
+    if not len(weak):
+        return ()
+    names = ", ".join(str(plan.rows[i]) for i in _measured(plan, column))
+    place = f"the drive point {names}" if names else "the references"
+    return (f"mode(s) {_listed(weak)} hardly move at {place}: their scale is uncertain",)
+
+
+def _measured(plan: Arrangement, column: IntArray) -> list[int]:
+    """Return the rows whose drive point was measured."""
+    return [int(i) for i in np.flatnonzero(column >= 0) if plan.index[i, column[i]] >= 0]
+
+
+def contradicted(plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray) -> IntArray:
+    """Return the rows whose drive point is none: its constants are negative in some modes, positive in others.
 
     Parameters
     ----------
@@ -60,17 +83,21 @@ def about_scale(
         Modal constants and their standard deviations [1/kg].
     column : (n_rows,) int array
         Column with the degree of freedom of each row, -1 where there is none.
-    certainty : (n_modes,) array
-        Scale over its standard deviation [-].
     """
-    rows = [i for i in np.flatnonzero(column >= 0) if plan.index[i, column[i]] >= 0]
-    names = ", ".join(str(plan.rows[i]) for i in rows)
+    false = []
+    for i in _measured(plan, column):
+        value, spread = (c[plan.index[i, column[i]]] for c in constants)
+        if np.any(value.real < -_CERTAIN * spread) and np.any(value.real > _CERTAIN * spread):
+            false.append(i)
+    return np.array(false, dtype=np.int64)
+
+
+def about_drive_points(
+    plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray
+) -> tuple[str, ...]:
+    """Say where a drive point contradicts a passive structure; parameters as for :func:`contradicted`."""
     told = []
-    weak = np.flatnonzero(certainty < _CERTAIN) + 1
-    if len(weak):
-        place = f"the drive point {names}" if rows else "the references"
-        told.append(f"mode(s) {_listed(weak)} hardly move at {place}: their scale is uncertain")
-    for i in rows:
+    for i in _measured(plan, column):
         frf = plan.index[i, column[i]]
         value, spread = constants[0][frf], np.maximum(constants[1][frf], 1e-300)
         angle = np.abs(np.angle(value))
@@ -94,8 +121,8 @@ def _negative(point: str, wrong: IntArray, others: np.bool_) -> str:
     said = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
     if others:
         return (
-            f"{said} and a positive one in others: hit and sensor cannot have been at one place, and the scale of "
-            "the mode shapes is not to be trusted; check the node numbers"
+            f"{said} and a positive one in others: hit and sensor cannot have been at one place, so it gives the mode "
+            "shapes no scale; check the node numbers"
         )
     return f"{said}: check the direction signs of hammer and sensor"
 

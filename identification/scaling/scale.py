@@ -51,15 +51,18 @@ def mode_shapes(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> Sha
     start = rank_one(values, weight)
     place = {d: j for j, d in enumerate(plan.columns)}
     column = np.array([place.get(d, -1) for d in plan.rows], dtype=np.int64)
+    about = notes.about_drive_points(plan, (constants, sigma), column)
+    false = notes.contradicted(plan, (constants, sigma), column)
+    column[false] = -1
     if np.all(column < 0):
         factors = _disagreement(values, weight, start, bonds=1)
-        told = (*lost, notes.no_drive_point(frfs))
+        told = (*lost, *about, *(() if len(false) else (notes.no_drive_point(frfs),)))
         return _shapes(plan, _times(factors, size), scaled=False, warnings=told)
     scaled, certainty = _scaled(start, weight, column)
     polished = symmetric(values, weight, scaled, column, steps=_STEPS if len(plan.columns) > 1 else 0)
     factors = _where(_sane(polished, scaled) & (certainty >= _CERTAIN), polished, scaled)
     factors = _disagreement(values, weight, factors, bonds=int(np.sum(column >= 0)))
-    told = (*lost, *notes.about_scale(plan, (constants, sigma), column, certainty))
+    told = (*lost, *about, *notes.about_scale(plan, column, certainty))
     return _shapes(plan, _times(factors, np.sqrt(size)), scaled=True, warnings=told)
 
 
