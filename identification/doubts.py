@@ -12,7 +12,7 @@ _AT_REST = 0.02  # part of a mode left at the end of a record that is worth a wo
 _NARROW = 0.1  # half-power bandwidth in lines under which a mode is rather a tone
 _UNDAMPED = 1e-7
 _MAINS = (50.0, 60.0)
-_DRIFT = 0.1
+_DRIFT = 0.3
 _ALONE, _ENOUGH = 0.99, 4
 _MANY_SIGMA = 3.0
 
@@ -97,7 +97,7 @@ def _ringing(frfs: FrfSet, poles: ComplexArray) -> tuple[str, ...]:
 
 
 def _drifting(poles: ComplexArray, scatter: FloatArray) -> tuple[str, ...]:
-    """Name modes whose frequency is another in every FRF, by a tenth of the half-power half-width or more."""
+    """Name modes whose frequency is another in every FRF, by a third of the half-power half-width or so."""
     which = np.flatnonzero(scatter > _DRIFT * np.abs(poles.real))
     if not len(which):
         return ()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage
+from scipy import ndimage, stats
 
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frf import FrfSet
 from identification.grams import Weights
 
+_CHANCE = 1e-4
 _WINDOW = 48  # lines over which a local variance is averaged at the least
 _QUIET = 1e-6  # noise is never taken to be below this part of an FRF's r.m.s.
 _PIECE = 16  # lines over which the scatter is averaged before the median
@@ -69,12 +70,13 @@ def leverage(columns: ComplexArray, weights: Weights) -> FloatArray:
 
 
 def from_residual(
-    residual: ComplexArray, absorbed: FloatArray, floor: FloatArray
+    residual: ComplexArray, absorbed: FloatArray, floor: FloatArray, model: ComplexArray
 ) -> tuple[Weights, FloatArray]:
     """Return weights and variances from what a fit leaves.
 
-    The simplest law the residuals support is taken: white in each FRF; one colour common to all; or each
-    its own colour. Degrees of freedom the fit absorbed are given back line by line.
+    The simplest law the residuals support is taken: white in each FRF; one colour common to all; each its own
+    colour; or, where that is more likely, white noise of the response and noise of the force, which grows with
+    the FRF. Degrees of freedom the fit absorbed are given back line by line.
 
     Parameters
     ----------
@@ -84,6 +86,8 @@ def from_residual(
         Part of each line's power the fit absorbs [-].
     floor : (n_frf, 1) array
         Smallest variance to believe [unit squared].
+    model : (n_frf, n_lines) complex array
+        The fit [unit of the FRFs].
 
     Returns
     -------
@@ -107,7 +111,36 @@ def from_residual(
     else:
         lines = np.exp(-colour)
     weights = Weights(1.0 / level, lines)
+    grown = np.maximum(_two_noises(power / free, np.abs(model) ** 2), floor)
+    white = np.broadcast_to(level[:, None], power.shape)
+    gain = _likelihood(power / free, grown) - _likelihood(power / free, white)
+    better = _likelihood(power / free, grown) > _likelihood(power / free, 1.0 / weights.full)
+    if better and 2.0 * gain > stats.chi2.isf(_CHANCE, len(power)):
+        mean = np.exp(np.mean(np.log(grown), axis=1))
+        weights = Weights(1.0 / mean, mean[:, None] / grown)
     return weights, 1.0 / weights.full
+
+
+def _likelihood(power: FloatArray, variance: FloatArray) -> float:
+    """Return the logarithm of the likelihood of circular Gaussian residuals of such power."""
+    return -float(np.sum(np.log(variance) + power / variance))
+
+
+def _two_noises(raw: FloatArray, power: FloatArray) -> FloatArray:
+    """Fit raw = a + b power with a, b >= 0 to all lines of each FRF, relative errors weighted alike."""
+    tiny = np.finfo(float).tiny
+    guess = np.maximum(np.broadcast_to(raw.mean(axis=1, keepdims=True), raw.shape), tiny)
+    for _ in range(6):
+        w = 1.0 / guess**2
+        s0, s1, s2 = (np.sum(w * m, axis=1, keepdims=True) for m in (np.ones_like(raw), power, power**2))
+        t0, t1 = np.sum(w * raw, axis=1, keepdims=True), np.sum(w * raw * power, axis=1, keepdims=True)
+        determinant = s0 * s2 - s1**2
+        safe = determinant > 1e-9 * s0 * s2
+        b = np.where(safe, (s0 * t1 - s1 * t0) / np.where(safe, determinant, 1.0), 0.0)
+        b = np.clip(b, 0.0, t1 / np.maximum(s2, tiny))
+        a = np.maximum((t0 - b * s1) / s0, 0.0)
+        guess = np.maximum(a + b * power, 1e-3 * np.maximum(raw.mean(axis=1, keepdims=True), tiny))
+    return np.asarray(guess)
 
 
 def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:

@@ -54,7 +54,7 @@ def noise_weights(
     known = noise.from_statistics(frfs, frfs.values - residual)
     floor = noise.quiet_floor(frfs.values)
     if known is None:
-        weights, variance = noise.from_residual(residual, absorbed, floor)
+        weights, variance = noise.from_residual(residual, absorbed, floor, frfs.values - residual)
         return replace(weights, fade=fade), variance, False
     if frfs.variance is None:
         excess = np.mean(np.abs(residual) ** 2 / known / np.maximum(1.0 - absorbed, 0.02), axis=1)

@@ -35,7 +35,7 @@ def test_a_drift_over_the_test_invents_no_mode(drift):
     model = identify(joined(parts), band=(20.0, 340.0))
     assert len(model) == 3, model.table()
     np.testing.assert_allclose(model.modal.frequency, HERTZ * (1 - drift / 2), rtol=0.5 * drift)
-    if drift > 0.001:
+    if drift > 0.003:
         assert any("differs from FRF to FRF" in w for w in model.warnings)
 
 

@@ -20,10 +20,27 @@ def test_scatter_is_blind_to_what_is_smooth(rng):
     np.testing.assert_allclose(noise.scatter(values), 0.09, rtol=0.2)
 
 
+def resonances(count):
+    """FRFs with narrow peaks, the same for all."""
+    x = np.linspace(0, 1, 3000)
+    return np.tile(sum(1 / (x - c + 0.002j) for c in (0.2, 0.5, 0.9)), (count, 1))
+
+
+def test_noise_of_the_force_grows_with_the_frf(rng):
+    model = resonances(6)
+    sigma = np.hypot(2.0, 0.02 * np.abs(model))
+    weights, variance = noise.from_residual(
+        sigma * dirt(rng, (6, 3000)), np.zeros((1, 3000)), np.zeros((6, 1)), model
+    )
+    assert weights.lines.shape == (6, 3000)
+    np.testing.assert_allclose(variance, sigma**2, rtol=0.35)
+    assert abs(np.mean(variance / sigma**2) - 1) < 0.03
+
+
 def test_white_noise_gives_one_weight_per_frf(rng):
     level = np.array([[1.0], [4.0], [0.1]])
     weights, variance = noise.from_residual(
-        level * dirt(rng, (3, 3000)), np.zeros((1, 3000)), np.zeros((3, 1))
+        level * dirt(rng, (3, 3000)), np.zeros((1, 3000)), np.zeros((3, 1)), resonances(3)
     )
     assert weights.lines.shape == (1, 3000)
     assert np.ptp(weights.lines) == 0
@@ -33,7 +50,7 @@ def test_white_noise_gives_one_weight_per_frf(rng):
 def test_a_colour_in_common_is_found(rng):
     colour = np.linspace(0.2, 3.0, 3000)
     weights, variance = noise.from_residual(
-        colour * dirt(rng, (8, 3000)), np.zeros((1, 3000)), np.zeros((8, 1))
+        colour * dirt(rng, (8, 3000)), np.zeros((1, 3000)), np.zeros((8, 1)), resonances(8)
     )
     assert weights.lines.shape == (1, 3000)
     middle = slice(300, 2700)
@@ -42,7 +59,9 @@ def test_a_colour_in_common_is_found(rng):
 
 def test_colours_of_their_own_are_found(rng):
     colour = np.stack([np.linspace(0.2, 3.0, 3000), np.linspace(3.0, 0.2, 3000)])
-    weights, _ = noise.from_residual(colour * dirt(rng, (2, 3000)), np.zeros((1, 3000)), np.zeros((2, 1)))
+    weights, _ = noise.from_residual(
+        colour * dirt(rng, (2, 3000)), np.zeros((1, 3000)), np.zeros((2, 1)), resonances(2)
+    )
     assert weights.lines.shape == (2, 3000)
 
 
