@@ -10,7 +10,7 @@ from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest, Hits
 from acquisition.modal_data import ModalData
 from acquisition.modal_files import read_modes
-from acquisition.quality import HitVerdict, decide, hits_table, judge_hits, rejected_points
+from acquisition.quality import judge_hits
 from acquisition.readers import installed_readers, read_test, written_as_uff
 from acquisition.reciprocity import reciprocity
 from acquisition.scatter import HitGroup, HitScatter, variance_of_groups
@@ -19,7 +19,16 @@ from acquisition.spectra import ESTIMATORS, Estimator
 from acquisition.splitting import looks_long, propose_trigger, split_hits
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
 from acquisition.uff import DatasetInfo, UffContent, read_functions, read_uff, write_uff
-from acquisition.windows import Windows, apply_windows, force_noise_decay, state_window
+from acquisition.verdicts import (
+    ForceRange,
+    HitVerdict,
+    decide,
+    force_range,
+    hits_table,
+    rejected_points,
+    verdicts_of,
+)
+from acquisition.windows import Windows, apply_windows, force_noise_decay, state_window, unstated_window
 
 __all__ = [
     "ESTIMATORS",
@@ -28,6 +37,7 @@ __all__ = [
     "Dof",
     "EstimationError",
     "Estimator",
+    "ForceRange",
     "FrfSet",
     "Geometry",
     "HammerPlan",
@@ -49,6 +59,7 @@ __all__ = [
     "decide",
     "estimate_frfs",
     "force_noise_decay",
+    "force_range",
     "hammer_test",
     "hits_table",
     "installed_readers",
@@ -70,7 +81,9 @@ __all__ = [
     "remove_sensor_mass",
     "split_hits",
     "state_window",
+    "unstated_window",
     "variance_of_groups",
+    "verdicts_of",
     "write_uff",
     "written_as_uff",
 ]

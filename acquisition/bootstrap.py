@@ -11,9 +11,9 @@ from acquisition.errors import EstimationError, InputError
 from acquisition.estimators import estimate_frfs, kept_hits
 from acquisition.frf import FrfSet
 from acquisition.hammer import HammerTest
-from acquisition.quality import HitVerdict
 from acquisition.spectra import ESTIMATORS, Estimator, Spectra, combine
-from acquisition.windows import Windows, apply_windows
+from acquisition.verdicts import HitVerdict
+from acquisition.windows import Windows, windowed
 
 
 def bootstrap_frfs(
@@ -61,7 +61,6 @@ def bootstrap_frfs(
     plain = estimate_frfs(
         test, estimator=estimator, verdicts=verdicts, windows=windows, band=band, keep_scatter=False
     )
-    test = test if windows is None else apply_windows(test, windows)
     kept = kept_hits(test, verdicts)
     single = [str(hits.reference) for hits, keep in kept if keep.sum() < 2]
     if single:
@@ -71,7 +70,8 @@ def bootstrap_frfs(
         )
     first = int(np.rint(plain.frequency[0] * test.samples / test.rate))
     lines = slice(first, first + len(plain.frequency))
-    return _draws(plain, [Spectra.of(hits, keep, test, lines) for hits, keep in kept], estimator, n, rng)
+    points = [Spectra.of(windowed(hits, windows, test.rate), keep, test, lines) for hits, keep in kept]
+    return _draws(plain, points, estimator, n, rng)
 
 
 def _draws(

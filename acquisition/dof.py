@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from acquisition.errors import InputError
 
 _LETTERS = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ", 0: "scalar"}
+_WRITTEN = re.compile(r"(\d+)([+-])(R?[XYZ])")
 
 
 @dataclass(frozen=True, order=True)
@@ -26,6 +29,22 @@ class Dof:
 
     node: int
     direction: int
+
+    @classmethod
+    def of(cls, text: str) -> Dof:
+        """Return the degree of freedom written as it prints, ``12-Z``.
+
+        Raises
+        ------
+        InputError
+            If it is written otherwise.
+        """
+        found = _WRITTEN.fullmatch(text.strip().upper())
+        if found is None:
+            raise InputError(f"{text!r} is no degree of freedom; write node, sign and axis, as 12+Z or 3-X")
+        node, sign, letter = found.groups()
+        code = next(code for code, name in _LETTERS.items() if name == letter)
+        return cls(int(node), -code if sign == "-" else code)
 
     @property
     def sign(self) -> int:

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
-from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet, Record
 from acquisition.hammer import HammerTest, Hits
-from acquisition.quality import HitVerdict
 from acquisition.scatter import HitGroup, HitScatter
 from acquisition.spectra import ESTIMATORS, Estimator, Spectra, coherence_of, combine, deviations, squared
-from acquisition.windows import Windows, apply_windows
+from acquisition.verdicts import HitVerdict, verdicts_of
+from acquisition.windows import Windows, windowed
 
 
 def estimate_frfs(
@@ -67,14 +65,15 @@ def estimate_frfs(
     """
     if estimator not in ESTIMATORS:
         raise InputError(f"unknown estimator {estimator!r}; use {', '.join(ESTIMATORS)}")
-    test = test if windows is None else apply_windows(test, windows)
     frequency = np.asarray(np.fft.rfftfreq(test.samples, 1 / test.rate), dtype=np.float64)
     lines = _lines(frequency, band, test)
     kept = kept_hits(test, verdicts)
     several = min(int(keep.sum()) for _, keep in kept) > 1
-    parts = [
-        _average(Spectra.of(hits, keep, test, lines), estimator, several, keep_scatter) for hits, keep in kept
-    ]
+    parts, places = [], []
+    for raw, keep in kept:
+        hits = windowed(raw, windows, test.rate)
+        places.append(_places(hits, keep))
+        parts.append(_average(Spectra.of(hits, keep, test, lines), estimator, several, keep_scatter))
     return FrfSet(
         frequency=frequency[lines],
         values=np.concatenate([part.values for part in parts]),
@@ -84,21 +83,20 @@ def estimate_frfs(
         coherence=np.concatenate([part.coherence for part in parts]) if several else None,
         variance=np.concatenate([part.variance for part in parts]) if several else None,
         averages=np.concatenate([np.full(len(hits.responses), keep.sum()) for hits, keep in kept]),
-        decay=test.decay,
+        decay=test.decay + (0.0 if windows is None else windows.decay),
         geometry=test.geometry,
         source=test.source,
-        record=Record(test.duration, _trigger(kept, test.rate), test.form),
+        record=Record(test.duration, float(np.concatenate(places).mean()) / test.rate, test.form),
         scatter=_scatter(parts) if several and keep_scatter else None,
     )
 
 
-def _trigger(kept: Sequence[tuple[Hits, BoolArray]], rate: float) -> float:
-    """Return the mean time of the hits in their records [s]."""
-    places = []
-    for hits, keep in kept:
-        power = (hits.force[keep] - np.median(hits.force[keep], axis=-1, keepdims=True)) ** 2
-        places.append(power @ np.arange(power.shape[-1]) / power.sum(axis=-1))
-    return float(np.concatenate(places).mean()) / rate
+def _places(hits: Hits, keep: BoolArray) -> FloatArray:
+    """Return where in their records the hits are, shape (n_kept,) [samples]."""
+    force = np.asarray(hits.force[keep], dtype=np.float64)
+    power = (force - np.median(force, axis=-1, keepdims=True)) ** 2
+    total = np.maximum(power.sum(axis=-1), np.finfo(float).tiny)
+    return np.asarray(power @ np.arange(power.shape[-1]) / total, dtype=np.float64)
 
 
 def random_error(frfs: FrfSet) -> FloatArray:
@@ -178,23 +176,16 @@ def kept_hits(test: HammerTest, verdicts: Sequence[HitVerdict] | None = None) ->
     test : HammerTest
         Raw records.
     verdicts : sequence of HitVerdict, optional
-        Which hits to use; where a degree of freedom was hit in several runs, its verdicts go to them in turn.
+        Which hits to use; for a point hit in several runs see `acquisition.verdicts.verdicts_of`.
 
     Raises
     ------
     EstimationError
         If no hit is left at any point.
     """
-    told: dict[tuple[Dof, int], list[bool]] = defaultdict(list)
-    for verdict in verdicts or ():
-        told[verdict.point, verdict.hit].append(verdict.used)
-    seen: dict[Dof, int] = defaultdict(int)
     kept = []
-    for point in test.points:
-        run = seen[point.reference]
-        seen[point.reference] += 1
-        answers = [told.get((point.reference, hit + 1), [True]) for hit in range(point.count)]
-        mask = np.array([used[min(run, len(used) - 1)] for used in answers], dtype=np.bool_)
+    for point, told in zip(test.points, verdicts_of(test, verdicts or ()), strict=True):
+        mask = np.array([verdict is None or verdict.used for verdict in told], dtype=np.bool_)
         if mask.any():
             kept.append((point, mask))
     if not kept:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 
 from acquisition.arrays import BoolArray, FloatArray
 from acquisition.dof import Dof
-from acquisition.errors import InputError
 from acquisition.hammer import HammerTest, Hits
 from acquisition.hit_checks import (
+    agreement,
     at_common_limit,
     clipped,
     dead_from,
@@ -27,6 +25,7 @@ from acquisition.hit_checks import (
     second_hits,
     upright,
 )
+from acquisition.verdicts import HitVerdict
 
 TOO_WEAK = 0.2  # of the median peak of the test
 TOO_STRONG = 4.0  # times the median peak of the test
@@ -34,41 +33,10 @@ ODD_WIDTH = 1.5  # times the median width at the point, or a part of it as small
 BURIED = 10.0  # times the noise: a peak below it is too weak by itself
 UNDECAYED = 0.02  # of the largest stretch of the response
 OFFSET = 0.01  # of the peak
+AGREEING = 0.8  # mean coherence that two hits at a point reach
 
 REGROWTH = 5.0
 """Most that the decay of an exponential window is taken back in a force record [-]."""
-
-
-@dataclass(frozen=True)
-class HitVerdict:
-    """What is thought of a hit.
-
-    Parameters
-    ----------
-    point : Dof
-        Where the hammer hit.
-    hit : int
-        Number of the hit at this point, from 1.
-    used : bool
-        Whether it should be used: the program's proposal, or the user's decision (see `decide`).
-    reasons : tuple of str
-        Why not, and what else to know of it.
-    peak : float
-        Largest force [N].
-    width : float
-        Length of the pulse above a tenth of its peak [s].
-    band10, band20 : float
-        Frequencies at which the force spectrum is 10 and 20 dB down [Hz].
-    """
-
-    point: Dof
-    hit: int
-    used: bool
-    reasons: tuple[str, ...]
-    peak: float
-    width: float
-    band10: float
-    band20: float
 
 
 def judge_hits(test: HammerTest) -> tuple[HitVerdict, ...]:
@@ -76,98 +44,29 @@ def judge_hits(test: HammerTest) -> tuple[HitVerdict, ...]:
 
     A hit is refused for a second hit, overload, a dead channel, a force that is too weak or far stronger than
     usual, a pulse of odd length, or a response that the other hits at the point do not explain. That the
-    response has not decayed at the end of the record, or that a record has an offset, is said but refuses
-    nothing.
+    response has not decayed at the end of the record, that a record has an offset, that one response of several
+    is dead, or that the only two hits at a point disagree, is said but refuses nothing.
 
     Parameters
     ----------
     test : HammerTest
         Raw records.
+
+    Returns
+    -------
+    tuple of HitVerdict
+        In the order of the hits; where a point was hit in several runs, these are numbered through.
     """
     peaks = np.concatenate([upright(p.force).max(axis=-1) for p in test.points])
     usual = float(np.median(peaks))
     limits = _at_limits(test)
-    return tuple(
-        verdict
-        for point, over in zip(test.points, limits, strict=True)
-        for verdict in _judge_point(point, test, usual, over)
-    )
-
-
-def decide(
-    verdicts: Iterable[HitVerdict],
-    *,
-    use: Iterable[tuple[Dof | str, int]] = (),
-    leave: Iterable[tuple[Dof | str, int]] = (),
-) -> tuple[HitVerdict, ...]:
-    """Return the verdicts with the user's decisions in place of the program's proposals.
-
-    Parameters
-    ----------
-    verdicts : iterable of HitVerdict
-        The proposals.
-    use, leave : iterables of (Dof or str, int)
-        Hits to use or to leave out whatever was proposed: the point, as a degree of freedom or as printed
-        (``"12+Z"``), and the number of the hit at it, from 1. The reasons stay listed.
-
-    Raises
-    ------
-    InputError
-        If there is no such hit, or one is named in both lists.
-    """
-    proposals = tuple(verdicts)
-    known = {(str(v.point), v.hit) for v in proposals}
-    wanted, unwanted = _named(use, known), _named(leave, known)
-    if wanted & unwanted:
-        point, hit = min(wanted & unwanted)
-        raise InputError(f"hit {hit} at {point} is named both to use and to leave out; decide for one")
-    decided = []
-    for v in proposals:
-        name = (str(v.point), v.hit)
-        if name in wanted:
-            reasons = v.reasons if v.used else (*v.reasons, "used by the user's decision")
-            decided.append(replace(v, used=True, reasons=reasons))
-        elif name in unwanted:
-            decided.append(replace(v, used=False, reasons=(*v.reasons, "left out by the user")))
-        else:
-            decided.append(v)
-    return tuple(decided)
-
-
-def _named(hits: Iterable[tuple[Dof | str, int]], known: set[tuple[str, int]]) -> set[tuple[str, int]]:
-    names = {(str(point).strip().upper(), int(hit)) for point, hit in hits}
-    for point, hit in sorted(names - known):
-        numbers = sorted(h for p, h in known if p == point)
-        points = ", ".join(sorted({p for p, _ in known})[:8])
-        there = f"hits there: 1 to {numbers[-1]}" if numbers else f"points hit are {points}"
-        raise InputError(f"there is no hit {hit} at {point}; {there}; write a point like 12+Z or 3-X")
-    return names
-
-
-def hits_table(verdicts: Iterable[HitVerdict]) -> pd.DataFrame:
-    """Return one row per hit: point, used, reasons, peak [N], width [ms], 10 and 20 dB bands [Hz]."""
-    return pd.DataFrame(
-        [
-            [str(v.point), v.hit, v.used, "; ".join(v.reasons), v.peak, 1e3 * v.width, v.band10, v.band20]
-            for v in verdicts
-        ],
-        columns=[
-            "point",
-            "hit",
-            "used",
-            "reasons",
-            "peak [N]",
-            "width [ms]",
-            "band 10 dB [Hz]",
-            "band 20 dB [Hz]",
-        ],
-    )
-
-
-def rejected_points(verdicts: Sequence[HitVerdict]) -> tuple[Dof, ...]:
-    """Return the points at which no hit is used."""
-    used = {v.point for v in verdicts if v.used}
-    return tuple(dict.fromkeys(v.point for v in verdicts if v.point not in used))
+    verdicts: list[HitVerdict] = []
+    seen: dict[Dof, int] = {}
+    for point, over in zip(test.points, limits, strict=True):
+        first = seen.get(point.reference, 0)
+        verdicts += [replace(v, hit=first + v.hit) for v in _judge_point(point, test, usual, over)]
+        seen[point.reference] = first + point.count
+    return tuple(verdicts)
 
 
 def _at_limits(test: HammerTest) -> list[tuple[BoolArray, BoolArray]]:
@@ -200,20 +99,25 @@ def _judge_point(
     over_force = clipped(force) | limits[0] | np.array([flat_pulse(wave) for wave in waves])
     flat = np.array([[flat_waves(record) for record in records] for records in motion])
     over_motion = clipped(motion) | limits[1] | flat
+    dead = np.asarray(np.ptp(hits.motion, axis=-1) == 0)
     for number, (over_f, over_m, alive, still) in enumerate(
         zip(over_force, over_motion, dead_from(motion), dropouts(motion), strict=True)
     ):
-        faults[number] += _channel_faults(hits, bool(over_f), over_m, alive, still)
-    _add_outliers(hits, faults, widths, max(force_bands(w, test.rate)[1] for w in waves) / test.rate)
+        faults[number] += _channel_faults(hits, bool(over_f), over_m, alive, still, dead[number])
+    bands = [force_bands(w, test.rate) for w in waves]
+    _add_outliers(hits, faults, widths, max(band[1] for band in bands) / test.rate)
+    notes = _odd_pair(hits, faults, min(band[0] for band in bands) / test.rate)
     return [
-        _verdict(hits, number, wave, fault, test)
+        _verdict(hits, number, wave, fault, notes.get(number, ()), test)
         for number, (wave, fault) in enumerate(zip(waves, faults, strict=True))
     ]
 
 
-def _verdict(hits: Hits, number: int, wave: FloatArray, faults: list[str], test: HammerTest) -> HitVerdict:
+def _verdict(
+    hits: Hits, number: int, wave: FloatArray, faults: list[str], more: tuple[str, ...], test: HammerTest
+) -> HitVerdict:
     bands = force_bands(wave, test.rate)
-    notes = _notes(hits.force[number], hits.motion[number], wave, test)
+    notes = [*_notes(hits, number, wave, test), *more]
     return HitVerdict(
         point=hits.reference,
         hit=number + 1,
@@ -244,12 +148,20 @@ def _force_faults(wave: FloatArray, usual: float, rate: float) -> list[str]:
 
 
 def _channel_faults(
-    hits: Hits, over_force: bool, over_motion: BoolArray, alive: FloatArray, still: FloatArray
+    hits: Hits,
+    over_force: bool,
+    over_motion: BoolArray,
+    alive: FloatArray,
+    still: FloatArray,
+    dead: BoolArray,
 ) -> list[str]:
     def named(which: BoolArray) -> str:
-        return ", ".join(str(d) for d, yes in zip(hits.responses, which, strict=True) if yes)
+        return _named(hits, which)
 
     faults = ["overload: the force has a flat top"] if over_force else []
+    over_motion = over_motion & ~dead
+    if dead.all():
+        faults.append(f"no response: {named(dead)} dead, the record is constant")
     if over_motion.any():
         faults.append(f"overload: flat tops at response {named(over_motion)}")
     if (alive < 1).any():
@@ -260,9 +172,29 @@ def _channel_faults(
     return faults
 
 
-def _notes(force: FloatArray, motion: FloatArray, wave: FloatArray, test: HammerTest) -> list[str]:
+def _named(hits: Hits, which: BoolArray) -> str:
+    return ", ".join(str(d) for d, yes in zip(hits.responses, which, strict=True) if yes)
+
+
+def _odd_pair(hits: Hits, faults: list[list[str]], band: float) -> dict[int, tuple[str, ...]]:
+    """Return a note on both of the only two good hits at a point where they disagree."""
+    good = [i for i, fault in enumerate(faults) if not fault]
+    if len(good) != 2 or len(faults) != 2:
+        return {}
+    seen = agreement(hits, good, band)
+    if seen >= AGREEING:
+        return {}
+    note = f"the two hits at this point disagree: coherence {seen:.2f}; hit again to tell which is wrong"
+    return dict.fromkeys(good, (note,))
+
+
+def _notes(hits: Hits, number: int, wave: FloatArray, test: HammerTest) -> list[str]:
     """Return what is worth knowing but refuses nothing."""
     notes = []
+    force, motion = hits.force[number], hits.motion[number]
+    dead = np.asarray(np.ptp(motion, axis=-1) == 0)
+    if dead.any() and not dead.all():
+        notes.append(f"response channel {_named(hits, dead)} is dead: the record is constant")
     left = float(left_at_end(motion).max())
     if left > UNDECAYED and test.decay == 0:
         notes.append(f"response has {100 * left:.0f} % left at the end, which identification allows for")

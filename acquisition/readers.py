@@ -10,7 +10,7 @@ from acquisition.columns import Layout, read_columns, read_frf_columns, read_lay
 from acquisition.errors import InputError
 from acquisition.frf import FrfSet
 from acquisition.hammer import HammerTest
-from acquisition.uff import read_uff
+from acquisition.uff import UffContent, read_uff
 
 Reader = Callable[[Path], HammerTest | FrfSet]
 GROUP = "modalkit.readers"
@@ -55,7 +55,7 @@ def read_test(
     Raises
     ------
     InputError
-        If no reader is known for a file, or it cannot be read.
+        If no reader is known for a file, it cannot be read, or nothing in the files can be used.
     """
     files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
     own = {**installed_readers(), **{_ending(k): v for k, v in (readers or {}).items()}}
@@ -66,6 +66,7 @@ def read_test(
     unknown = [f for f in text if layout is None]
     if unknown:
         raise InputError(f"{unknown[0]}: {_advice(unknown[0], own)}")
+    content = UffContent()
     found: list[HammerTest | FrfSet] = [_checked(own[f.suffix.lower()], f) for f in special]
     if uff:
         content = read_uff(uff)
@@ -75,7 +76,16 @@ def read_test(
         found.append(
             read_frf_columns(text, plan) if plan.frequency_column is not None else read_columns(text, plan)
         )
+    if not found:
+        raise InputError(_nothing(files, content))
     return found
+
+
+def _nothing(files: Sequence[Path], content: UffContent) -> str:
+    """Say why universal files gave neither hits nor FRFs."""
+    bad = [f"{d.place}: {d.message}" for d in content.datasets if not d.ok]
+    why = bad[0] if bad else next(iter(content.warnings), "no time records with a force, and no FRFs, in it")
+    return why if bad else f"{', '.join(map(str, files[:3]))}: {why}"
 
 
 def written_as_uff(path: Path) -> bool:
@@ -92,7 +102,7 @@ def written_as_uff(path: Path) -> bool:
             start = file.read(400)
     except OSError:
         return True
-    return start.strip().startswith(b"-1")
+    return [line.strip() for line in start.strip().splitlines()[:1]] == [b"-1"]
 
 
 def _ending(name: str) -> str:

@@ -14,6 +14,7 @@ from acquisition.hammer import HammerTest, Hits
 
 Estimator = Literal["H1", "H2", "Hv"]
 ESTIMATORS: tuple[Estimator, ...] = ("H1", "H2", "Hv")
+ALONE = 1e-9  # part of the power of a line that the other hits have, if one hit has it alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,10 +39,10 @@ class Spectra:
         Raises
         ------
         EstimationError
-            If the force is zero at a line.
+            If the force is zero.
         """
         force = scipy.fft.rfft(np.asarray(hits.force[keep], dtype=np.float64), axis=-1)[:, lines]
-        if not np.all(np.any(force != 0, axis=0)):
+        if not np.any(force):
             raise EstimationError(f"{test.source}: the force at {hits.reference} is zero; check its channel")
         motion = scipy.fft.rfft(np.asarray(hits.motion[keep], dtype=np.float64), axis=-1)[..., lines]
         return cls(force, motion)
@@ -62,7 +63,7 @@ def squared(values: ComplexArray) -> FloatArray:
 
 
 def combine(gff: FloatArray, gxx: FloatArray, gxf: ComplexArray, estimator: Estimator) -> ComplexArray:
-    """Return the FRF from averaged spectra.
+    """Return the FRF from averaged spectra; 0 at lines where there is no force.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def combine(gff: FloatArray, gxx: FloatArray, gxf: ComplexArray, estimator: Esti
     estimator : {"H1", "H2", "Hv"}
         Which.
     """
-    h1 = np.asarray(gxf / gff, dtype=np.complex128)
+    h1 = np.asarray(gxf / np.where(gff > 0, gff, 1.0), dtype=np.complex128)
     if estimator == "H1":
         return h1
     scale = 1 / np.maximum(coherence_of(gff, gxx, gxf), 1e-12)
@@ -83,9 +84,9 @@ def combine(gff: FloatArray, gxx: FloatArray, gxf: ComplexArray, estimator: Esti
 
 
 def coherence_of(gff: FloatArray, gxx: FloatArray, gxf: ComplexArray) -> FloatArray:
-    """Return |G_xf|^2 / (G_xx G_ff), 0 where there is no response [-]; arguments as for `combine`."""
-    safe = np.where(gxx > 0, gxx, 1.0)
-    return np.asarray(np.clip(squared(gxf) / (safe * gff), 0.0, 1.0), dtype=np.float64)
+    """Return |G_xf|^2 / (G_xx G_ff), 0 where there is no power [-]; arguments as for `combine`."""
+    power = gxx * gff
+    return np.asarray(np.clip(squared(gxf) / np.where(power > 0, power, 1.0), 0.0, 1.0), dtype=np.float64)
 
 
 def deviations(spectra: Spectra, frf: ComplexArray, estimator: Estimator = "H1") -> ComplexArray:
@@ -106,10 +107,22 @@ def deviations(spectra: Spectra, frf: ComplexArray, estimator: Estimator = "H1")
         sqrt(1 - h_k) (H - H without hit k), with the leverage h_k = |F_k|^2 / sum |F|^2: the weighted
         jackknife, without bias for noise equal in all hits (Wu, Annals of Statistics 14, 1986, section 5).
         For H1 this is conj(F_k) (X_k - H F_k) / (sum |F|^2 sqrt(1 - h_k)), the least-squares residuals of
-        hit k in the form HC2 of MacKinnon and White, Journal of Econometrics 29 (1985).
+        hit k in the form HC2 of MacKinnon and White, Journal of Econometrics 29 (1985). A line with
+        force in one hit at most says nothing of the scatter: the error there is taken for as large as the FRF
+        is at the other lines.
     """
+    moved = _moved(spectra, frf, estimator)
+    power = squared(spectra.force)
+    silent = power.max(axis=0) >= (1 - ALONE) * power.sum(axis=0)
+    if silent.any() and not silent.all():
+        moved[..., silent] = np.sqrt(squared(frf[:, ~silent]).mean(axis=-1) / len(moved))[:, None]
+    return moved
+
+
+def _moved(spectra: Spectra, frf: ComplexArray, estimator: Estimator) -> ComplexArray:
     power = squared(spectra.force)
     total = power.sum(axis=0)
+    total = np.where(total > 0, total, 1.0)
     root = np.sqrt(np.maximum(1 - power / total, 1e-12))[:, None]
     if estimator == "H1":
         weight = spectra.force.conj() / total

@@ -6,11 +6,14 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from scipy import stats
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
-from acquisition.hammer import HammerTest
+from acquisition.hammer import HammerTest, Hits
 from acquisition.hit_checks import pulse_ends, upright
+
+QUIET = 16  # samples before a hit that tell the offset of a response
 
 
 @dataclass(frozen=True)
@@ -47,8 +50,9 @@ class Windows:
 def apply_windows(test: HammerTest, windows: Windows) -> HammerTest:
     """Return the test with windows applied and its ``decay`` raised accordingly.
 
-    A force window acts about the offset of the record, which is taken off first: cut off behind the pulse, an
-    offset would become a step.
+    Windows act about the offset of the records, which is taken off first: cut off behind the pulse, an offset
+    would become a step, and windowed, a pulse of its own. The offset of a force is its median, that of a
+    response its mean before the hit, where there are 16 samples of it and it stands out of their noise.
 
     Parameters
     ----------
@@ -57,21 +61,50 @@ def apply_windows(test: HammerTest, windows: Windows) -> HammerTest:
     windows : Windows
         What to apply.
     """
-    time = np.arange(test.samples) / test.rate
-    points = []
-    for hits in test.points:
-        offset = np.median(hits.force, axis=-1, keepdims=True)
-        after = time - time[np.abs(hits.force - offset).argmax(axis=-1)][:, None]
-        decay = np.exp(-windows.decay * after)
-        force = hits.force if windows.force_length is None else hits.force - offset
-        points.append(
-            replace(
-                hits,
-                force=force * decay * force_window(after, windows.force_length),
-                motion=hits.motion * decay[:, None, :],
-            )
-        )
-    return replace(test, points=tuple(points), decay=test.decay + windows.decay)
+    points = tuple(windowed(hits, windows, test.rate) for hits in test.points)
+    return replace(test, points=points, decay=test.decay + windows.decay)
+
+
+def windowed(hits: Hits, windows: Windows | None, rate: float) -> Hits:
+    """Return the hits at one point with windows applied, see `apply_windows`; None leaves them as they are.
+
+    Parameters
+    ----------
+    hits : Hits
+        Raw records.
+    windows : Windows or None
+        What to apply.
+    rate : float
+        Sampling rate [Hz].
+    """
+    if windows is None:
+        return hits
+    time = np.arange(hits.force.shape[-1]) / rate
+    offset = np.median(hits.force, axis=-1, keepdims=True)
+    after = time - time[np.abs(hits.force - offset).argmax(axis=-1)][:, None]
+    decay = np.exp(-windows.decay * after)
+    plain = windows.decay == 0
+    force = hits.force if plain and windows.force_length is None else hits.force - offset
+    motion = hits.motion if plain else hits.motion - _offset_before(hits)
+    return replace(
+        hits,
+        force=force * decay * force_window(after, windows.force_length),
+        motion=motion if plain else motion * decay[:, None, :],
+    )
+
+
+def _offset_before(hits: Hits) -> FloatArray:
+    """Return the offset of each response as it is before the hit, shape (n_hits, n_responses, 1)."""
+    offset = np.zeros((*hits.motion.shape[:2], 1))
+    for number, wave in enumerate(upright(hits.force)):
+        first, last = pulse_ends(wave)
+        quiet = hits.motion[number, :, : max(first - 2 * (last - first + 1), 0)]
+        count = quiet.shape[-1]
+        if count >= QUIET:
+            mean = quiet.mean(axis=-1, dtype=np.float64)
+            heard = np.abs(mean) > 3 * quiet.std(axis=-1, dtype=np.float64) / np.sqrt(count)
+            offset[number, :, 0] = np.where(heard, mean, 0.0)
+    return offset
 
 
 def state_window(
@@ -152,25 +185,66 @@ def force_noise_decay(test: HammerTest) -> float | None:
     test : HammerTest
         Records as they were stored.
     """
-    rates, weights = [], []
-    for wave in (wave for point in test.points for wave in upright(point.force)):
-        first, last = pulse_ends(wave)
-        rest = wave[last + 12 * (last - first + 1) :]
-        if len(rest) < 200:
-            continue
-        parts = rest[: len(rest) // 10 * 10].reshape(10, -1)
-        level = np.sqrt(np.mean((parts - parts.mean(axis=1, keepdims=True)) ** 2, axis=1))
-        steps = np.abs(np.diff(rest))
-        step = float(steps[steps > 0].min(initial=np.inf))
-        if level[0] < 3 * step and level[0] < 1e-3 * wave.max():
-            continue
-        heard = level > max(step, 1e-6 * float(wave.max())) if step < level[0] / 30 else level > 3 * step
-        if heard.sum() < 3:
-            continue
-        time = (np.arange(10) * parts.shape[1] / test.rate)[heard]
-        rates.append(-float(np.polyfit(time, np.log(level[heard]), 1)[0]))
-        weights.append(float(np.ptp(time)) ** 2)
-    return float(np.average(rates, weights=weights)) if rates else None
+    heard = _rates(test)
+    return None if heard is None else heard[0]
+
+
+def unstated_window(test: HammerTest) -> float | None:
+    """Return the decay of an exponential window that nobody stated, as the noise of the force has it [1/s].
+
+    None if the test states a decay, or the noise decays no more than chance lets it seem to: the limit is
+    Student's t of probability 1e-5 times the standard error, and 0.5 1/s.
+
+    Parameters
+    ----------
+    test : HammerTest
+        Records as they were stored.
+    """
+    heard = None if test.decay else _rates(test)
+    if heard is None:
+        return None
+    rate, error, freedom = heard
+    limit = max(3.0, float(stats.t.isf(1e-5, freedom))) * error
+    return rate if rate > max(0.5, limit) else None
+
+
+def _rates(test: HammerTest) -> tuple[float, float, int] | None:
+    """Return the mean decay of the noise of all forces [1/s], its standard error, and degrees of freedom."""
+    found = [
+        one
+        for point in test.points
+        for wave in upright(point.force)
+        if (one := _rate(wave, test.rate)) is not None
+    ]
+    if not found:
+        return None
+    rates, spans, squares, freedom = (np.array(column) for column in zip(*found, strict=True))
+    share = spans / spans.sum()
+    return float(share @ rates), float(np.sqrt(share**2 @ squares)), int(freedom.sum())
+
+
+def _rate(wave: FloatArray, rate: float) -> tuple[float, float, float, int] | None:
+    """Return the decay of the noise of one force [1/s], its weight, squared error and degrees of freedom."""
+    first, last = pulse_ends(wave)
+    rest = wave[last + 12 * (last - first + 1) :]
+    if len(rest) < 200:
+        return None
+    parts = rest[: len(rest) // 10 * 10].reshape(10, -1)
+    level = np.sqrt(np.mean((parts - parts.mean(axis=1, keepdims=True)) ** 2, axis=1))
+    steps = np.abs(np.diff(rest))
+    step = float(steps[steps > 0].min(initial=np.inf))
+    if level[0] < 3 * step and level[0] < 1e-3 * wave.max():
+        return None
+    heard = level > max(step, 1e-6 * float(wave.max())) if step < level[0] / 30 else level > 3 * step
+    count = int(heard.sum())
+    if count < 3:
+        return None
+    time = (np.arange(10) * parts.shape[1] / rate)[heard]
+    line = np.polyfit(time, np.log(level[heard]), 1)
+    left = np.log(level[heard]) - np.polyval(line, time)
+    scatter = max(float(left @ left) / (count - 2), 0.5 / parts.shape[1])
+    spread = float(((time - time.mean()) ** 2).sum())
+    return -float(line[0]), float(np.ptp(time)) ** 2, scatter / spread, count - 2
 
 
 def force_window(after: FloatArray, length: float | None) -> FloatArray:

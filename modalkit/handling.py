@@ -31,6 +31,8 @@ class Handling:
         the hit at it, from 1.
     layout : Path, optional
         Rate, units and points of column text.
+    sensor_masses : tuple of (str, float)
+        Accelerometers whose mass is taken out of the FRFs: where, as printed, and its mass [kg].
 
     Raises
     ------
@@ -45,6 +47,7 @@ class Handling:
     use: tuple[HitName, ...] = ()
     leave: tuple[HitName, ...] = ()
     layout: Path | None = None
+    sensor_masses: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         """Check the entries."""
@@ -66,3 +69,21 @@ def hit_name(text: str) -> HitName:
     if not colon or not number.strip().isdecimal():
         raise InputError(f"a hit is written POINT:NUMBER, as 12+Z:3, not {text!r}")
     return point.strip(), int(number)
+
+
+def sensor_mass(text: str) -> tuple[str, float]:
+    """Return place and mass [kg] of an accelerometer written ``25+Z=0.0086``.
+
+    Raises
+    ------
+    InputError
+        If it is written otherwise.
+    """
+    place, equals, number = text.rpartition("=")
+    try:
+        mass = float(number)
+    except ValueError:
+        mass = float("nan")
+    if not equals or not mass >= 0 or mass == float("inf"):
+        raise InputError(f"a sensor is written POINT=MASS in kg, as 25+Z=0.0086, not {text!r}")
+    return place.strip(), mass

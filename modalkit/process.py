@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from acquisition import StudyError, read_modes
 from identification import ModalModel
+from modalkit.files import Progress
 from modalkit.handling import Handling
-from modalkit.reading import Processed, Progress, read
+from modalkit.reading import Processed, read
 from modalkit.study import MeasurementTable, Study
 from updating import Case, Measured, measured_from_identified, measured_from_modes
 
@@ -111,6 +112,7 @@ def _identified(
         use=tuple(table.use),
         leave=tuple(table.leave),
         layout=None if table.layout is None else study.file(table.layout),
+        sensor_masses=tuple(table.sensor_masses.items()),
     )
     files = [study.file(f) for f in table.files]
     processed = read(files, handling=handling, progress=progress)

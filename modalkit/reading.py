@@ -2,40 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
 from acquisition import (
+    Dof,
     FrfSet,
     HammerTest,
-    HitScatter,
     HitVerdict,
     InputError,
     UffContent,
     Windows,
     decide,
     estimate_frfs,
+    force_range,
     hits_table,
     judge_hits,
     looks_long,
-    read_test,
-    read_uff,
     split_hits,
     state_window,
-    written_as_uff,
 )
 from identification import ModalModel, identify
+from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
+from modalkit.joining import together
+from modalkit.remarks import on_hits, on_window
+from modalkit.sensors import without_sensors
 
-MAX_UNCOMMON = 1e-6
-"""Frequency axes that differ by more than this, relative to their end, do not go together."""
-
-Progress = Callable[[float], None]
 AS_READ = Handling()
+SAME_DECAY = 1e-3  # relative difference of decays that are the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +93,27 @@ class Processed:
         add: Sequence[float] = (),
         drop: Sequence[float] = (),
     ) -> ModalModel:
-        """Identify the modes of a band; see :func:`identification.identify`."""
-        return identify(self.frfs, band=band, order=order, add=add, drop=drop)
+        """Identify the modes of a band; see :func:`identification.identify`.
+
+        Left out, the band of FRFs made of hits ends where the force is 20 dB down.
+        """
+        reach = self._reach([*add, *drop]) if band is None else None
+        if reach is None:
+            return identify(self.frfs, band=band, order=order, add=add, drop=drop)
+        model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
+        said = (
+            f"the force is 20 dB down at {reach[1]:.4g} Hz: modes are looked for below that; give a band to go "
+            "further"
+        )
+        return replace(model, warnings=(*model.warnings, said))
+
+    def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
+        """Return the band that the force reaches, if it ends before the lines do and no mode is named beyond."""
+        force, lines = force_range(self.hits), self.frfs.frequency
+        low = float(lines[lines > 0][0])
+        if force is None or not low < force.band20 < lines[-1] or max(named, default=0.0) >= force.band20:
+            return None
+        return low, force.band20
 
 
 def read(
@@ -127,48 +144,60 @@ def read(
     Raises
     ------
     InputError
-        If the files hold neither raw hits nor FRFs.
+        If the files hold neither raw hits nor FRFs, or what is said of their treatment does not fit them.
     """
     handling = replace(handling, decay=decay) if decay else handling
+    if handling.window_on is not None and not handling.decay:
+        raise InputError(
+            f"a window on {handling.window_on} is told of without its decay; add --decay, or exponential_window in a "
+            "study"
+        )
     paths = [Path(p) for p in ([path] if isinstance(path, str | Path) else path)]
     content = read_files(paths, layout=handling.layout, progress=progress)
     warnings = list(content.warnings)
     judged = _judged(content.tests, handling, warnings)
     if judged:
+        warnings += on_hits([(j.test, j.verdicts) for j in judged])
         frfs = _estimated(judged, handling)
         if content.frfs is not None:
             warnings.append("the files hold raw hits and FRFs; the FRFs were made afresh from the hits")
     elif content.frfs is not None:
-        frfs = content.frfs
-        if handling.decay and not frfs.decay:
-            frfs = replace(frfs, decay=handling.decay)
+        frfs = _as_read(content.frfs, handling, warnings)
     else:
         names = ", ".join(str(p) for p in paths)
         raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
+    frfs = without_sensors(frfs, handling.sensor_masses, warnings)
     return Processed(content, frfs, judged, handling, tuple(dict.fromkeys(warnings)))
 
 
-def read_files(
-    paths: Sequence[Path], *, layout: Path | None = None, progress: Progress | None = None
-) -> UffContent:
-    """Read files of any known kind into one record of what they hold.
+def _as_read(frfs: FrfSet, handling: Handling, warnings: list[str]) -> FrfSet:
+    """Return FRFs that were read, with the window stated; what is said of hits has nothing to act on."""
+    said = {"--use": handling.use, "--leave": handling.leave, "--window": handling.window}
+    useless = [name for name, value in said.items() if value]
+    if useless:
+        raise InputError(
+            f"{frfs.source}: {', '.join(useless)} (or the same in a study) is for raw hits, but the files hold FRFs; "
+            "leave it out or give the time records"
+        )
+    if handling.estimator != "H1":
+        warnings.append(
+            f"{frfs.source}: the files hold FRFs, which stay as they are; estimator {handling.estimator} is not used"
+        )
+    if handling.window_on == "responses":
+        warnings.append(
+            f"{frfs.source}: the files hold FRFs; a window on the responses alone cannot be set right in them"
+        )
+    if handling.decay and frfs.decay:
+        _check_decay(frfs.source, frfs.decay, handling.decay)
+    return replace(frfs, decay=handling.decay) if handling.decay and not frfs.decay else frfs
 
-    Parameters
-    ----------
-    paths : sequence of paths
-        The files.
-    layout : path, optional
-        Layout of column text.
-    progress : function, optional
-        Called with the part of UFF files that is read, from 0 to 1.
-    """
-    if all(written_as_uff(p) for p in paths):
-        return read_uff(paths, progress=progress)
-    found = read_test(paths, layout=layout)
-    tests = tuple(t for t in found if isinstance(t, HammerTest))
-    sets = [f for f in found if isinstance(f, FrfSet)]
-    geometry = next(t.geometry for t in found)
-    return UffContent(tests=tests, frfs=together(sets) if sets else None, geometry=geometry)
+
+def _check_decay(source: str, stated: float, said: float) -> None:
+    if abs(stated - said) > SAME_DECAY * stated:
+        raise InputError(
+            f"{source}: the file states an exponential window of {stated:g} 1/s, but {said:g} 1/s is said; "
+            "leave one out or mend the other"
+        )
 
 
 def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]) -> tuple[Judged, ...]:
@@ -179,17 +208,39 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
         if looks_long(one):
             one, said = split_hits(one)
             warnings += said
-        if handling.decay and not one.decay:
+        if handling.decay and one.decay:
+            _check_decay(one.source, one.decay, handling.decay)
+        elif handling.decay:
             one, said = state_window(one, decay=handling.decay, on=handling.window_on)
             warnings += said
+        else:
+            warnings += on_window(one)
         split.append(one)
-    proposals = [judge_hits(test) for test in split]
+    proposals = numbered([judge_hits(test) for test in split])
     every = tuple(v for verdicts in proposals for v in verdicts)
-    decided = iter(decide(every, use=handling.use, leave=handling.leave))
+    decided = iter(decide(every, use=handling.use, leave=handling.leave) if every else ())
     return tuple(
         Judged(test, tuple(next(decided) for _ in verdicts))
         for test, verdicts in zip(split, proposals, strict=True)
     )
+
+
+def numbered(tests: Sequence[tuple[HitVerdict, ...]]) -> list[tuple[HitVerdict, ...]]:
+    """Return the verdicts on the hits of several tests, the hits at each point numbered through.
+
+    Parameters
+    ----------
+    tests : sequence of tuple of HitVerdict
+        What `judge_hits` says of each test.
+    """
+    seen: dict[Dof, int] = {}
+    answer = []
+    for verdicts in tests:
+        before = dict(seen)
+        answer.append(tuple(replace(v, hit=before.get(v.point, 0) + v.hit) for v in verdicts))
+        for v in verdicts:
+            seen[v.point] = seen.get(v.point, 0) + 1
+    return answer
 
 
 def _estimated(judged: Sequence[Judged], handling: Handling) -> FrfSet:
@@ -197,41 +248,6 @@ def _estimated(judged: Sequence[Judged], handling: Handling) -> FrfSet:
     return together(
         [
             estimate_frfs(j.test, estimator=handling.estimator, verdicts=j.verdicts, windows=windows)
-            for j in judged
+            for j in [j for j in judged if any(v.used for v in j.verdicts)] or judged[:1]
         ]
-    )
-
-
-def together(sets: Sequence[FrfSet]) -> FrfSet:
-    """Join FRF sets on one frequency axis.
-
-    Raises
-    ------
-    InputError
-        If their axes, forms or windows differ.
-    """
-    first = sets[0]
-    for other in sets[1:]:
-        same = len(other.frequency) == len(first.frequency) and np.allclose(
-            other.frequency, first.frequency, rtol=MAX_UNCOMMON, atol=0
-        )
-        if not same or other.form != first.form or other.decay != first.decay:
-            raise InputError(
-                f"{first.source}: the hits were recorded with different rates, lengths or quantities; "
-                "process them as separate tests"
-            )
-    if len(sets) == 1:
-        return first
-    joined = {
-        name: None
-        if any(getattr(s, name) is None for s in sets)
-        else np.concatenate([getattr(s, name) for s in sets])
-        for name in ("values", "coherence", "variance", "averages")
-    }
-    return replace(
-        first,
-        responses=tuple(d for s in sets for d in s.responses),
-        references=tuple(d for s in sets for d in s.references),
-        scatter=HitScatter.joined([s.scatter for s in sets], [len(s.responses) for s in sets]),
-        **joined,  # type: ignore[arg-type]
     )

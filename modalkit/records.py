@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from acquisition import HitVerdict
+from acquisition import HitVerdict, rejected_points
 from identification import ModalModel, mpc
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.result import Ranked
@@ -44,11 +44,16 @@ def modes_record(model: ModalModel, hits: Sequence[HitVerdict], warnings: Sequen
     return {
         "schema": "modalkit.modes/1",
         "modes": modes,
-        "points_rejected": list(model.points_rejected),
+        "points_rejected": [*without_hits(hits), *model.points_rejected],
         "hits": [hit_record(h) for h in hits],
         "window_decay_removed": model.frfs.decay,
         "warnings": list(warnings),
     }
+
+
+def without_hits(hits: Sequence[HitVerdict]) -> list[str]:
+    """Return the points of which no hit is used, with the reason."""
+    return [f"{point}: none of its hits is used" for point in rejected_points(hits)]
 
 
 def hit_record(hit: HitVerdict) -> dict[str, Any]:

@@ -45,6 +45,7 @@ class MeasurementTable(_Strict):
     add: list[float] = []
     drop: list[float] = []
     layout: str | None = None
+    sensor_masses: dict[str, float] = {}
     calibration: float = Field(0.02, gt=0.0)
     repeatability: float = Field(0.0005, ge=0.0)
     position_sigma: float = Field(0.001, ge=0.0)

@@ -5,13 +5,16 @@ from __future__ import annotations
 import difflib
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from acquisition.columns.units import QUANTITIES
 from acquisition.dof import Dof
 from acquisition.errors import InputError
+from acquisition.geometry import Geometry
 
 DIRECTIONS = {"x": 1, "y": 2, "z": 3, "rx": 4, "ry": 5, "rz": 6}
 PARTS = ("real", "imag", "magnitude", "phase")
@@ -119,6 +122,8 @@ class Layout:
         Cut every record to this length.
     decay : float
         Decay rate of an exponential window in the records [1/s].
+    nodes : Geometry
+        Where the nodes are.
     source : str
         Where the layout came from, for messages.
     """
@@ -133,6 +138,7 @@ class Layout:
     skip: int = 0
     samples: int | None = None
     decay: float = 0.0
+    nodes: Geometry = field(default_factory=Geometry.empty)
     source: str = "layout"
 
 
@@ -176,7 +182,7 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
     InputError
         If a key is unknown or has a value of the wrong kind.
     """
-    top = {k: v for k, v in table.items() if k not in ("column", "file")}
+    top = {k: v for k, v in table.items() if k not in ("column", "file", "nodes")}
     columns = tuple(
         _built(Column, entry, f"{source}: [[column]] {n + 1}")
         for n, entry in enumerate(table.get("column", ()))
@@ -185,7 +191,8 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
         _built(FileRule, entry, f"{source}: [[file]] {n + 1}")
         for n, entry in enumerate(table.get("file", ()))
     )
-    layout: Layout = _built(Layout, {**top, "columns": columns, "files": files, "source": source}, source)
+    parts = {"columns": columns, "files": files, "nodes": _nodes(table.get("nodes", {}), source)}
+    layout: Layout = _built(Layout, {**top, **parts, "source": source}, source)
     if not columns:
         raise InputError(f"{source}: no [[column]]; add one for the force and one for each response")
     for n, column in enumerate(columns):
@@ -193,6 +200,19 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
     if layout.rate is not None and layout.rate <= 0:
         raise InputError(f"{source}: rate = {layout.rate:g}; give the sampling rate in Hz")
     return layout
+
+
+def _nodes(table: Any, source: str) -> Geometry:
+    """Return the geometry of ``[nodes]``: node number = [x, y, z]."""
+    if not isinstance(table, Mapping):
+        raise InputError(f"{source}: nodes = {table!r}; write a table [nodes] with lines 3 = [0.1, 0.0, 0.0]")
+    for name, place in table.items():
+        numbers = isinstance(place, list) and all(type(c) in (int, float) for c in place)
+        if not str(name).isdecimal() or not numbers or len(place) != 3 or not np.all(np.isfinite(place)):
+            raise InputError(
+                f"{source}: [nodes] {name} = {place!r}; give node number = [x, y, z] in m, as 3 = [0.1, 0.0, 0.0]"
+            )
+    return Geometry(tuple(int(n) for n in table), np.array(list(table.values()), dtype=np.float64))
 
 
 def _check_column(column: Column, where: str) -> None:

@@ -51,7 +51,7 @@ def read_columns(
     layout : Layout or path
         Which column is what; see docs/readers.md.
     geometry : Geometry, optional
-        Nodes of the test.
+        Nodes of the test; left out: those of the layout.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def read_columns(
         points=_points(records, plan),
         form=form,
         decay=plan.decay,
-        geometry=Geometry.empty() if geometry is None else geometry,
+        geometry=plan.nodes if geometry is None else geometry,
         source=", ".join(str(f) for f in files[:3]) + (", ..." if len(files) > 3 else ""),
     )
 

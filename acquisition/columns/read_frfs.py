@@ -62,6 +62,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
         references=tuple(pair[0].reference for pair in pairs) * times,
         form=form,
         decay=plan.decay,
+        geometry=plan.nodes,
         source=", ".join(str(f) for f in files[:3]),
     )
 

@@ -63,3 +63,26 @@ def unexplained(hits: Hits, good: Sequence[int], band: float) -> FloatArray:
     energy = np.maximum((np.abs(motion) ** 2).sum(axis=-1), np.finfo(float).tiny)
     left = (np.abs(motion - predicted) ** 2).sum(axis=-1) / energy
     return np.asarray(left.mean(axis=-1), dtype=np.float64)
+
+
+def agreement(hits: Hits, good: Sequence[int], band: float) -> float:
+    """Return the mean coherence over hits at a point, of the responses that live [-].
+
+    Parameters
+    ----------
+    hits : Hits
+        Hits at one point.
+    good : sequence of int
+        Which hits are compared; two at least.
+    band : float
+        Upper end of the lines used, relative to the sampling rate [-].
+    """
+    lines = slice(1, max(3, int(band * hits.force.shape[-1])))
+    force = scipy.fft.rfft(hits.force[list(good)], axis=-1)[:, lines]
+    motion = scipy.fft.rfft(hits.motion[list(good)], axis=-1)[..., lines]
+    cross = np.abs((motion * force.conj()[:, None]).sum(axis=0)) ** 2
+    power = (np.abs(motion) ** 2).sum(axis=0) * (np.abs(force) ** 2).sum(axis=0)
+    alive = np.ptp(hits.motion[list(good)], axis=-1).min(axis=0) > 0
+    if not alive.any():
+        return 1.0
+    return float(np.mean(cross[alive] / np.maximum(power[alive], np.finfo(float).tiny)))

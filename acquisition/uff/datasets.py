@@ -172,7 +172,8 @@ def _read_block(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
         return _read_58(here, info, finds)
     if number == 164:
         found, remark = read_units(here.body)
-        text = f"1 m = {found.length:g}, 1 N = {found.force:g} in the file's units"
+        plain = found.length == 1 and found.force == 1
+        text = "SI" if plain else f"1 m = {found.length:g}, 1 N = {found.force:g} in the file's units"
         return replace(info, description=text, message=remark)
     if not here.block.closed:
         raise InputError("its closing delimiter -1 is missing: the file is cut off here")

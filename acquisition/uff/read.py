@@ -146,7 +146,8 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
     has_force = any(m.quantity == "force" for m in times)
     tests, lost = assemble_tests(times, nodes.geometry, source, report.read) if has_force else ((), [])
     if times and not has_force:
-        lost = [f"{source}: {len(times)} time records and no force among them; they are not used"]
+        count = f"{len(times)} time record" + ("s" if len(times) > 1 else "")
+        lost = [f"{source}: {count} and no force among them: not used"]
     frfs, odd = assemble_frfs(records, nodes.geometry, source, report.read)
     solved, doubts = solve_modes(finds.modes)
     modal = join_modes(solved, nodes.geometry) if solved else None

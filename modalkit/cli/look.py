@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import pandas as pd
 import typer
 
 from acquisition import (
-    HitVerdict,
     InputError,
     StudyError,
     UffContent,
-    hits_table,
     judge_hits,
     looks_long,
     reciprocity,
@@ -37,17 +36,26 @@ from modalkit.cli.options import (
     Files,
     Layout,
     Leave,
+    SensorMass,
     Use,
     Window,
     WindowOn,
     handling,
 )
+from modalkit.cli.showing import (
+    frf_figures,
+    mode_figures,
+    save_modes,
+    show_hits,
+    show_modes,
+    show_rejected,
+    show_second_opinion,
+)
+from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
 from modalkit.process import process
-from modalkit.reading import Processed, read, read_files
-from modalkit.records import modes_record
+from modalkit.reading import Processed, numbered, read
 from modalkit.study import read_study
-from modalkit.write import write_json
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -69,11 +77,14 @@ def inspect(
     if content.datasets:
         show_table(content.table() if every else _in_short(content))
     out.print("usable: " + ("; ".join(_usable(content)) or "nothing"))
-    for test in content.tests:
-        if looks_long(test):
-            out.print("records hold several hits each; they are split when they are used")
-        else:
-            _show_hits(judge_hits(test))
+    with working("judging the hits"):
+        long = [looks_long(test) for test in content.tests]
+        single = [test for test, several_hits in zip(content.tests, long, strict=True) if not several_hits]
+        judged = numbered([judge_hits(test) for test in single])
+    if any(long):
+        out.print("records hold several hits each; they are split when they are used")
+    for verdicts in judged:
+        show_hits(verdicts)
     show_warnings(content.warnings)
     bad = [d for d in content.datasets if not d.ok]
     if content.datasets and len(bad) == len(content.datasets):
@@ -118,6 +129,7 @@ def frf(
     use: Use = None,
     leave: Leave = None,
     layout: Layout = None,
+    sensor_mass: SensorMass = None,
     figures: Figures = None,
 ) -> None:
     """Turn hits into FRFs with coherence, and write them as UFF."""
@@ -129,18 +141,20 @@ def frf(
         use=use,
         leave=leave,
         layout=layout,
+        sensors=sensor_mass,
     )
     with reading("averaging the hits") as progress:
         processed = read(files, handling=said, progress=progress)
-    _show_hits(processed.hits)
+    show_hits(processed.hits)
     show_table(processed.frfs.table(), "FRFs")
+    show_rejected(processed.hits)
     pairs = reciprocity(processed.frfs)
     if len(pairs):
         show_table(pairs, "Reciprocity: H_ij beside H_ji")
     write_uff(output, frfs=processed.frfs, geometry=processed.frfs.geometry, title=processed.content.title)
     out.print(f"written: {output}", markup=False)
     show_warnings(processed.warnings)
-    show_figures(figures, lambda: _frf_figures(processed))
+    show_figures(figures, lambda: frf_figures(processed))
 
 
 def identify(
@@ -156,6 +170,7 @@ def identify(
     use: Use = None,
     leave: Leave = None,
     layout: Layout = None,
+    sensor_mass: SensorMass = None,
     json: Annotated[Path | None, typer.Option("--json", help="file for the modes as JSON")] = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="UFF file for the modes")] = None,
     check: Annotated[bool, typer.Option("--check", help="also show the poles of sdypy-EMA")] = False,
@@ -170,91 +185,34 @@ def identify(
         use=use,
         leave=leave,
         layout=layout,
+        sensors=sensor_mass,
     )
     with reading("identifying") as progress:
-        if len(files) == 1 and is_study(files[0]):
-            if said != Handling():
-                raise StudyError(
-                    f"{files[0]}: a study says in [test] how its files are treated; write it there"
-                )
-            processed, model = process(
-                read_study(files[0]),
-                band=band,
-                order=order,
-                add=add or (),
-                drop=drop or (),
-                progress=progress,
-            )
-        else:
-            processed = read(files, handling=said, progress=progress)
-            model = processed.identify(band=band, order=order, add=add or (), drop=drop or ())
-    _show_hits(processed.hits)
-    _show_modes(model)
+        processed, model = _identified(files, said, band, order, (add or (), drop or ()), progress)
+    show_hits(processed.hits)
+    show_modes(model)
+    show_rejected(processed.hits, model.points_rejected)
     if check:
-        _show_second_opinion(processed, model)
+        show_second_opinion(processed, model)
     warnings = [*processed.warnings, *model.warnings]
     show_warnings(warnings)
-    if json is not None:
-        write_json(json, modes_record(model, processed.hits, warnings))
-        out.print(f"written: {json}", markup=False)
-    if output is not None:
-        write_uff(output, modal=model.modal, geometry=model.modal.geometry, title=processed.content.title)
-        out.print(f"written: {output}", markup=False)
-    show_figures(figures, lambda: _mode_figures(processed, model))
+    save_modes(processed, model, warnings, json, output)
+    show_figures(figures, lambda: mode_figures(processed, model))
 
 
-def _show_modes(model: ModalModel) -> None:
-    digits = {"frequency [Hz]": 4, "sigma [Hz]": 5, "damping [%]": 4, "sigma [%]": 5, "MPC": 3}
-    title = f"{several(len(model), 'mode')} between {model.band[0]:g} and {model.band[1]:g} Hz"
-    show_table(model.table(), title, digits=digits)
-    scaled = "mass-normalised" if model.modal.scaled else "not mass-normalised: no drive point among the FRFs"
-    out.print(f"Shapes at {several(len(model.modal.dofs), 'degree')} of freedom, {scaled}.")
-    if model.frfs.decay:
-        out.print(f"Window: {model.frfs.decay:.4g} 1/s of decay was taken out of the damping.")
-
-
-def _show_hits(hits: tuple[HitVerdict, ...]) -> None:
-    if not hits:
-        return
-    left = [h for h in hits if not h.used]
-    out.print(f"{several(len(hits), 'hit')}, {len(left)} left out" + (":" if left else "."))
-    table = hits_table(hits)
-    noted: pd.DataFrame = table[[bool(h.reasons) for h in hits]]
-    if len(noted):
-        show_table(noted)
-
-
-def _show_second_opinion(processed: Processed, model: ModalModel) -> None:
-    from identification import beside, second_opinion
-
-    with working("asking sdypy-EMA"):
-        table = second_opinion(processed.frfs, band=model.band)
-    both = beside(model.modal, table)
-    title = "Second opinion, beside ours: sdypy-EMA (LSCF)"
-    show_table(both, title, digits=dict.fromkeys(both.columns, 4))
-    show_warnings(table.attrs.get("warnings", ()))
-
-
-def _frf_figures(processed: Processed) -> dict[str, Any]:
-    from modalkit.figures import frf_figure
-
-    return {"frf": frf_figure(processed.frfs), **_hit_figures(processed)}
-
-
-def _hit_figures(processed: Processed) -> dict[str, Any]:
-    from modalkit.figures import hits_figure
-
-    names = ["hits"] + [f"hits_{n}" for n in range(2, len(processed.judged) + 1)]
-    return {n: hits_figure(j.test, j.verdicts) for n, j in zip(names, processed.judged, strict=False)}
-
-
-def _mode_figures(processed: Processed, model: ModalModel) -> dict[str, Any]:
-    from modalkit.figures import auto_mac_figure, frf_figure, shapes_figure, stabilisation_figure
-
-    return {
-        "frf": frf_figure(model.frfs, model),
-        "stabilisation": stabilisation_figure(model),
-        "auto_mac": auto_mac_figure(model.modal),
-        "shapes": shapes_figure(model.modal),
-        **_hit_figures(processed),
-    }
+def _identified(
+    files: list[Path],
+    said: Handling,
+    band: tuple[float, float] | None,
+    order: int | None,
+    named: tuple[Sequence[float], Sequence[float]],
+    progress: Progress,
+) -> tuple[Processed, ModalModel]:
+    """Return FRFs and modes of files, or of a study's test."""
+    add, drop = named
+    if len(files) == 1 and is_study(files[0]):
+        if said != Handling():
+            raise StudyError(f"{files[0]}: a study says in [test] how its files are treated; write it there")
+        return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)
+    processed = read(files, handling=said, progress=progress)
+    return processed, processed.identify(band=band, order=order, add=add, drop=drop)

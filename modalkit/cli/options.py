@@ -7,8 +7,8 @@ from typing import Annotated, Literal, cast
 
 import typer
 
-from acquisition import Estimator, InputError
-from modalkit.handling import Handling, hit_name
+from acquisition import ESTIMATORS, Estimator, InputError
+from modalkit.handling import Handling, hit_name, sensor_mass
 
 Files = Annotated[list[Path], typer.Argument(help="file(s) of one test: UFF, or column text with --layout")]
 Figures = Annotated[Path | None, typer.Option("--figures", help="folder for figures")]
@@ -24,6 +24,10 @@ Window = Annotated[float, typer.Option(help="decay of a further exponential wind
 Estimate = Annotated[str, typer.Option("--estimator", help="H1, H2 or Hv")]
 Use = Annotated[list[str] | None, typer.Option(help="hit to use against the proposal, as 12+Z:3; repeat")]
 Leave = Annotated[list[str] | None, typer.Option(help="hit to leave out, as 12+Z:3; repeat")]
+SensorMass = Annotated[
+    list[str] | None,
+    typer.Option("--sensor-mass", help="take an accelerometer's mass [kg] out, as 25+Z=0.0086; repeat"),
+]
 
 
 def handling(
@@ -35,6 +39,7 @@ def handling(
     use: list[str] | None,
     leave: list[str] | None,
     layout: Path | None,
+    sensors: list[str] | None,
 ) -> Handling:
     """Return what the options say.
 
@@ -49,8 +54,9 @@ def handling(
         decay=decay,
         window_on=cast("Literal['both', 'responses'] | None", window_on),
         window=window,
-        estimator=cast("Estimator", estimator),
+        estimator=cast("Estimator", {e.lower(): e for e in ESTIMATORS}.get(estimator.lower(), estimator)),
         use=tuple(hit_name(h) for h in use or ()),
         leave=tuple(hit_name(h) for h in leave or ()),
         layout=layout,
+        sensor_masses=tuple(sensor_mass(s) for s in sensors or ()),
     )

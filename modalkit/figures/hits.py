@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from acquisition import HammerTest, HitVerdict
+from acquisition import Dof, HammerTest, HitVerdict, verdicts_of
 from acquisition.arrays import AnyArray, BoolArray, FloatArray
 from modalkit.figures.style import (
     BLUE,
@@ -98,16 +98,17 @@ def _used(count: int, bad: int) -> str:
 
 
 def _gather(test: HammerTest, verdicts: Sequence[HitVerdict]) -> _Row:
-    found = {(v.point, v.hit): v for v in verdicts}
+    seen: dict[Dof, int] = {}
     names: list[str] = []
     used: list[bool] = []
     reasons: list[str] = []
     start: list[int] = []
-    for point in test.points:
+    for point, told in zip(test.points, verdicts_of(test, verdicts), strict=True):
         start.append(len(names))
-        for hit in range(1, point.count + 1):
-            verdict = found.get((point.reference, hit))
-            names.append(f"{point.reference} hit {hit}")
+        first = seen.get(point.reference, 0)
+        seen[point.reference] = first + point.count
+        for number, verdict in enumerate(told, start=first + 1):
+            names.append(f"{point.reference} hit {number if verdict is None else verdict.hit}")
             used.append(verdict is None or verdict.used)
             reasons.append("" if verdict is None else "; ".join(verdict.reasons))
     force = np.concatenate([point.force for point in test.points])

@@ -131,7 +131,8 @@ def test_verdicts_of_two_runs_at_one_point_do_not_mix():
     told = [verdict(n, n > 1) for n in range(1, 6)] + [verdict(n, True) for n in range(1, 6)]
     frfs = estimate_frfs(runs, verdicts=told)
     assert frfs.averages.tolist() == [4, 4, 5, 5]
-    assert estimate_frfs(runs, verdicts=told[:1]).averages.tolist() == [4, 4, 4, 4]
+    assert estimate_frfs(runs, verdicts=told[:1]).averages.tolist() == [4, 4, 5, 5]
+    assert estimate_frfs(runs, verdicts=[verdict(6, False)]).averages.tolist() == [5, 5, 4, 4]
 
 
 def test_one_hit_has_no_coherence_and_no_variance():

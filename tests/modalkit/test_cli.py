@@ -61,6 +61,37 @@ def test_frf_writes_what_identify_reads_alike(run: Run, tmp_path: Path) -> None:
         assert one["damping_ratio"] == pytest.approx(other["damping_ratio"], rel=0.02)
 
 
+def test_inspect_tells_the_band_of_the_force(run: Run) -> None:
+    out = run("inspect", beam())[1]
+    line = next(row for row in out.splitlines() if row.startswith("Force: "))
+    assert "10 dB down at" in line and "20 dB down at" in line
+
+
+def test_a_sensor_and_an_estimator_in_small_letters_are_taken(run: Run, tmp_path: Path) -> None:
+    plain, light = tmp_path / "a.uff", tmp_path / "b.uff"
+    assert run("frf", beam(), "-o", plain)[0] == 0
+    code, out, _ = run("frf", beam(), "-o", light, "--estimator", "h1", "--sensor-mass", "5+Z=0.005")
+    assert code == 0
+    assert "mass of the accelerometers was taken out of the FRFs: 5 g at 5+Z" in out
+    found = []
+    for path in (plain, light):
+        target = tmp_path / "modes.json"
+        assert run("identify", path, "--band", "5", "500", "--json", target)[0] == 0
+        found.append(json.loads(target.read_text())["modes"][0]["frequency_hz"])
+    assert found[1] > 1.001 * found[0]
+    code, _, err = run("identify", beam(), "--sensor-mass", "25+Z")
+    assert (code, len(err.strip().splitlines())) == (2, 1)
+    assert "POINT=MASS" in err
+
+
+def test_options_for_hits_are_refused_for_frfs(run: Run, tmp_path: Path) -> None:
+    target = tmp_path / "frf.uff"
+    assert run("frf", beam(), "-o", target)[0] == 0
+    code, _, err = run("identify", target, "--leave", "1+Z:1")
+    assert code == 2
+    assert "--leave" in err and "the files hold FRFs" in err
+
+
 def test_diagnose_writes_the_contract(run: Run, tmp_path: Path) -> None:
     target, figures = tmp_path / "d.json", tmp_path / "figures"
     code, out, _ = run("diagnose", sample("beam_wet"), "--json", target, "--figures", figures)

@@ -157,11 +157,14 @@ def test_a_window_that_the_study_states_is_taken_out(folder: Path, name: str) ->
 
 def test_a_window_that_the_file_states_is_not_taken_out_twice(tmp_path: Path) -> None:
     write_uff(tmp_path / "w.uff", tests=hits(plan=replace(PLAN, decay=1.5)))
-    stated = read(tmp_path / "w.uff")
-    if stated.frfs.decay:  # a universal file has a field for it
-        assert read(tmp_path / "w.uff", decay=4.0).frfs.decay == stated.frfs.decay
-    else:
-        assert read(tmp_path / "w.uff", decay=1.5).frfs.decay == 1.5
+    assert read(tmp_path / "w.uff").frfs.decay == pytest.approx(1.5)
+    assert read(tmp_path / "w.uff", decay=1.5).frfs.decay == pytest.approx(1.5)
+    with pytest.raises(InputError, match=r"states an exponential window of 1\.5 1/s, but 4 1/s is said"):
+        read(tmp_path / "w.uff", decay=4.0)
+    write_uff(tmp_path / "f.uff", frfs=replace(frfs(), decay=1.5))
+    if read(tmp_path / "f.uff").frfs.decay:
+        with pytest.raises(InputError, match=r"1\.5 1/s, but 4 1/s"):
+            read(tmp_path / "f.uff", decay=4.0)
 
 
 def test_a_study_of_frfs_becomes_a_case(folder: Path) -> None:
@@ -215,3 +218,13 @@ def test_files_that_are_missing_or_hold_something_else_are_named(folder: Path) -
             open_study(read_study(study(folder, text)))
     with pytest.raises(InputError, match=r"frfs\.uff: holds no modes"):
         open_study(read_study(study(folder, 'modes = "frfs.uff"')))
+
+
+def test_a_study_takes_sensors_off(folder: Path) -> None:
+    path = study(folder, 'files = ["hits.uff"]\nband = [10.0, 250.0]\nsensor_masses = { "3+Z" = 0.001 }')
+    processed, light = process(read_study(path))
+    assert any("1 g at 3+Z" in w for w in processed.warnings)
+    heavy = read(folder / "hits.uff").identify(band=(10.0, 250.0))
+    # SHAPES are mass-normalised: a small mass m taken from where the shape is phi raises f by m phi^2 / 2
+    gain = light.modal.frequency / heavy.modal.frequency - 1
+    assert gain == pytest.approx(0.5e-3 * SHAPES[2] ** 2, rel=0.05)
