@@ -112,7 +112,7 @@ def _single(
         best = np.minimum(best, two)
         _, factors = _solved(columns, target, weight)
         step = factors[:, 2] / np.where(factors[:, 0] == 0, 1.0, factors[:, 0])
-        step *= np.minimum(1.0, limit / np.maximum(np.abs(step), np.finfo(float).tiny))
+        step *= limit / np.maximum(np.abs(step), limit)
         moved = poles + step
         poles = np.where(moved.real < decay, moved, 0.5 * (poles.real + decay) + 1j * moved.imag)
     return best

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy import ndimage, stats
 
@@ -10,6 +12,7 @@ from acquisition.frf import FrfSet
 from identification.grams import Weights
 
 _CHANCE = 1e-4
+_ROUNDS = 3
 _WINDOW = 48  # lines over which a local variance is averaged at the least
 _QUIET = 1e-6  # noise is never taken to be below this part of an FRF's r.m.s.
 _PIECE = 16  # lines over which the scatter is averaged before the median
@@ -111,7 +114,7 @@ def from_residual(
     else:
         lines = np.exp(-colour)
     weights = Weights(1.0 / level, lines)
-    grown = np.maximum(_two_noises(power / free, np.abs(model) ** 2), floor)
+    grown = np.maximum(_levelled(power / free, np.abs(model) ** 2, _over_all_lines), floor)
     white = np.broadcast_to(level[:, None], power.shape)
     gain = _likelihood(power / free, grown) - _likelihood(power / free, white)
     better = _likelihood(power / free, grown) > _likelihood(power / free, 1.0 / weights.full)
@@ -121,26 +124,13 @@ def from_residual(
     return weights, 1.0 / weights.full
 
 
+def _over_all_lines(values: FloatArray) -> FloatArray:
+    return np.asarray(np.mean(values, axis=1, keepdims=True))
+
+
 def _likelihood(power: FloatArray, variance: FloatArray) -> float:
     """Return the logarithm of the likelihood of circular Gaussian residuals of such power."""
     return -float(np.sum(np.log(variance) + power / variance))
-
-
-def _two_noises(raw: FloatArray, power: FloatArray) -> FloatArray:
-    """Fit raw = a + b power with a, b >= 0 to all lines of each FRF, relative errors weighted alike."""
-    tiny = np.finfo(float).tiny
-    guess = np.maximum(np.broadcast_to(raw.mean(axis=1, keepdims=True), raw.shape), tiny)
-    for _ in range(6):
-        w = 1.0 / guess**2
-        s0, s1, s2 = (np.sum(w * m, axis=1, keepdims=True) for m in (np.ones_like(raw), power, power**2))
-        t0, t1 = np.sum(w * raw, axis=1, keepdims=True), np.sum(w * raw * power, axis=1, keepdims=True)
-        determinant = s0 * s2 - s1**2
-        safe = determinant > 1e-9 * s0 * s2
-        b = np.where(safe, (s0 * t1 - s1 * t0) / np.where(safe, determinant, 1.0), 0.0)
-        b = np.clip(b, 0.0, t1 / np.maximum(s2, tiny))
-        a = np.maximum((t0 - b * s1) / s0, 0.0)
-        guess = np.maximum(a + b * power, 1e-3 * np.maximum(raw.mean(axis=1, keepdims=True), tiny))
-    return np.asarray(guess)
 
 
 def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
@@ -168,21 +158,36 @@ def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
         raw = np.abs(frfs.values) ** 2 * (1.0 - squared) / squared / count[:, None]
     else:
         return None
-    return np.maximum(_levelled(raw, np.abs(model) ** 2), quiet_floor(frfs.values))
-
-
-def _levelled(raw: FloatArray, power: FloatArray) -> FloatArray:
-    """Fit raw = a + b power with a, b >= 0 over neighbouring lines, relative errors weighted alike."""
     window = window_length(raw.shape[1])
-    guess = np.maximum(local_mean(raw, window), np.finfo(float).tiny)
-    for _ in range(3):
+    levelled = _levelled(raw, np.abs(model) ** 2, lambda m: local_mean(m, window))
+    return np.maximum(levelled, quiet_floor(frfs.values))
+
+
+def _levelled(raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Fit raw = a + b power with a, b >= 0, relative errors weighted alike.
+
+    Parameters
+    ----------
+    raw : (n_frf, n_lines) array
+        Powers of the noise, each of few degrees of freedom [unit squared].
+    power : (n_frf, n_lines) array
+        |H|^2 [unit squared].
+    mean : function
+        Mean over the lines that share a and b: those nearby, or all.
+    """
+    tiny = np.finfo(float).tiny
+    size = np.maximum(raw.mean(axis=1, keepdims=True), tiny)
+    raw, power = raw / size, power / np.maximum(power.mean(axis=1, keepdims=True), tiny)
+    least = np.maximum(1e-3 * mean(raw), _QUIET**2)
+    guess = np.maximum(mean(raw), least)
+    for _ in range(_ROUNDS):
         w = 1.0 / guess**2
-        s0, s1, s2 = (local_mean(w * m, window) for m in (np.ones_like(raw), power, power**2))
-        t0, t1 = local_mean(w * raw, window), local_mean(w * raw * power, window)
+        s0, s1, s2 = (mean(w * m) for m in (np.ones_like(raw), power, power**2))
+        t0, t1 = mean(w * raw), mean(w * raw * power)
         determinant = s0 * s2 - s1**2
         safe = determinant > 1e-9 * s0 * s2
         b = np.where(safe, (s0 * t1 - s1 * t0) / np.where(safe, determinant, 1.0), 0.0)
-        b = np.clip(b, 0.0, t1 / np.maximum(s2, np.finfo(float).tiny))
+        b = np.clip(b, 0.0, t1 / np.maximum(s2, tiny))
         a = np.maximum((t0 - b * s1) / s0, 0.0)
-        guess = np.maximum(a + b * power, 1e-3 * np.maximum(local_mean(raw, window), np.finfo(float).tiny))
-    return np.asarray(guess)
+        guess = np.maximum(a + b * power, least)
+    return np.asarray(guess * size)
