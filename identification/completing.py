@@ -18,7 +18,7 @@ from identification.weighing import decay_over_record, left_over, search_weights
 
 _ROUNDS = 12
 _EXTRA_POLES = 4
-_REJECTIONS = 2
+_REJECTIONS = 8
 SHORT = 12
 COARSE = 1e-6
 
