@@ -11,6 +11,7 @@ from acquisition.reciprocity import reciprocity
 _AT_REST = 0.02  # part of a mode left at the end of a record that is worth a word
 _NARROW = 0.1  # half-power bandwidth in lines under which a mode is rather a tone
 _UNDAMPED = 1e-7
+_SKIRT = 5.0  # half-widths about a mode in which such a pole rather mends the mode's fit
 _MAINS = (50.0, 60.0)
 _DRIFT = 0.3
 _ALONE, _ENOUGH = 0.99, 4
@@ -62,6 +63,8 @@ def _tones(frfs: FrfSet, poles: ComplexArray, others: ComplexArray) -> tuple[str
     told = []
     pure = np.abs(others[-others.real < _UNDAMPED * np.abs(others)]) / (2 * np.pi)
     pure = pure[(pure > frfs.frequency[0]) & (pure < frfs.frequency[-1])]
+    apart = np.abs(2 * np.pi * pure[:, None] - poles.imag[None, :]) / np.abs(poles.real)[None, :]
+    pure = pure[(apart > _SKIRT).all(axis=1)]
     if len(pure):
         named = ", ".join(f"{f:.5g} Hz" for f in pure)
         told.append(f"a tone at {named} that does not decay{_hum(frfs, pure)} was taken for no mode")
@@ -77,7 +80,8 @@ def _tones(frfs: FrfSet, poles: ComplexArray, others: ComplexArray) -> tuple[str
 
 def _hum(frfs: FrfSet, hertz: FloatArray) -> str:
     """Name the frequencies that are multiples of the mains."""
-    near = [f"{f:.4g} Hz" for f in hertz if any(abs(f / m - round(f / m)) * m < frfs.df for m in _MAINS)]
+    off = 0.1 * min(1.0, frfs.df)
+    near = [f"{f:.5g} Hz" for f in hertz if any(abs(f / m - round(f / m)) * m < off for m in _MAINS)]
     return f" ({', '.join(near)}: a multiple of the mains)" if near else ""
 
 

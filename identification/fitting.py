@@ -113,9 +113,10 @@ def _with_added(frfs: FrfSet, fitted: Fitted, hertz: Sequence[float], band: tupl
     fit = fitted.fit
     for value in hertz:
         pole = overrule.best_start(frfs, fit.poles, fit.linear.powers, fitted.weights, value)
-        poles = np.append(fit.poles, pole)
+        poles, before = np.append(fit.poles, pole), fit.poles
         fit = refine(frfs, poles, fitted.weights, powers=fit.linear.powers, iterations=_LONG)
-        overrule.must_have_stayed(fit.poles, value, inside(fit.poles, band, frfs.df), frfs.df)
+        modes = inside(fit.poles, band, frfs.df)
+        overrule.must_have_stayed(fit.poles, before, value, modes, frfs.df)
     if fit is fitted.fit:
         return fitted
     return replace(

@@ -48,13 +48,17 @@ def nearest_modes(poles: ComplexArray, hertz: Sequence[float], candidates: BoolA
     return meant
 
 
-def must_have_stayed(poles: ComplexArray, hertz: float, modes: BoolArray, df: float) -> None:
+def must_have_stayed(
+    poles: ComplexArray, before: ComplexArray, hertz: float, modes: BoolArray, df: float
+) -> None:
     """Refuse a mode asked for whose pole the data drove away.
 
     Parameters
     ----------
     poles : (n_modes,) complex array
         Poles of the fit [rad/s].
+    before : (n,) complex array
+        Poles without the mode asked for [rad/s].
     hertz : float
         Where the mode was asked for [Hz].
     modes : (n_modes,) bool array
@@ -67,8 +71,9 @@ def must_have_stayed(poles: ComplexArray, hertz: float, modes: BoolArray, df: fl
     InputError
         If no mode is within 1 % or three lines of it.
     """
-    frequency = np.abs(poles) / (2 * np.pi)
-    if np.any(np.abs(frequency[modes] - hertz) <= max(_NEAR * hertz, 3 * df)):
+    new = int(np.abs(poles[:, None] - before[None, :]).min(axis=1).argmax()) if len(before) else 0
+    off = abs(np.abs(poles[new]) / (2 * np.pi) - hertz)
+    if modes[new] and off <= max(_NEAR * hertz, 3 * df):
         return
     raise InputError(
         f"no mode can be kept at {hertz:g} Hz: fitted to these FRFs, its pole leaves for another frequency or turns "

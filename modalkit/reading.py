@@ -120,6 +120,7 @@ def read(
     path: Path | str | Sequence[Path | str],
     *,
     decay: float = 0.0,
+    layout: Path | str | None = None,
     handling: Handling = AS_READ,
     progress: Progress | None = None,
 ) -> Processed:
@@ -132,6 +133,8 @@ def read(
     decay : float
         Decay rate of an exponential window applied before the files were written, where they do not say it
         themselves; short for ``Handling(decay=...)`` [1/s].
+    layout : path, optional
+        Layout of column text; short for ``Handling(layout=...)``.
     handling : Handling
         All that may be said of how records are treated.
     progress : function, optional
@@ -147,6 +150,7 @@ def read(
         If the files hold neither raw hits nor FRFs, or what is said of their treatment does not fit them.
     """
     handling = replace(handling, decay=decay) if decay else handling
+    handling = handling if layout is None else replace(handling, layout=Path(layout))
     if handling.window_on is not None and not handling.decay:
         raise InputError(
             f"a window on {handling.window_on} is told of without its decay; add --decay, or exponential_window in a "

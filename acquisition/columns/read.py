@@ -67,6 +67,7 @@ def read_columns(
     files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
     if not files:
         raise InputError(f"{plan.source}: no files to read")
+    _check_rules(plan, files)
     form = _form(plan)
     records = [record for path in files for record in _records(path, plan)]
     rates = np.array([r.rate for r in records])
@@ -160,6 +161,17 @@ def _records(path: Path, layout: Layout) -> list[_Record]:
             )
         )
     return records
+
+
+def _check_rules(layout: Layout, files: Sequence[Path]) -> None:
+    """Refuse files that no rule of the layout places while a rule places no file: one of them is misspelt."""
+    lost = [f for f in files if not any(fnmatch(f.name, rule.match) for rule in layout.files)]
+    idle = [rule.match for rule in layout.files if not any(fnmatch(f.name, rule.match) for f in files)]
+    if lost and idle:
+        raise InputError(
+            f"{lost[0]}: no [[file]] rule of {layout.source} matches it, and the rule {idle[0]!r} matches no file; "
+            "correct the one or the other, or where it was hit is a guess"
+        )
 
 
 def _in_file(column: Column, path: Path, layout: Layout) -> Column:

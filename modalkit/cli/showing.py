@@ -39,7 +39,7 @@ def show_modes(model: ModalModel) -> None:
     digits = {"frequency [Hz]": 4, "sigma [Hz]": 5, "damping [%]": 4, "sigma [%]": 5, "MPC": 3}
     title = f"{several(len(model), 'mode')} between {model.band[0]:g} and {model.band[1]:g} Hz"
     show_table(model.table(), title, digits=digits)
-    scaled = "mass-normalised" if model.modal.scaled else "not mass-normalised: no drive point among the FRFs"
+    scaled = "mass-normalised" if model.modal.scaled else "not mass-normalised (no drive point to trust)"
     out.print(f"Shapes at {several(len(model.modal.dofs), 'degree')} of freedom, {scaled}.")
     if model.frfs.decay:
         out.print(f"Window: {model.frfs.decay:.4g} 1/s of decay was taken out of the damping.")

@@ -94,6 +94,9 @@ def test_blocks_and_files_are_hits_and_the_hammer_may_rove(tmp_path, records):
     test = read_columns([tmp_path / "point_3.csv", two], layout_file(tmp_path, text))
     assert [(p.reference, p.count) for p in test.points] == [(Dof(3, -3), 1), (Dof(4, 2), 3)]
     np.testing.assert_array_equal(test.points[1].force[2], test.points[0].force[0])
+    misspelt = layout_file(tmp_path, text.replace("point_4*", "pt_4*"))
+    with pytest.raises(InputError, match=r"point_3\.csv: no \[\[file\]\] rule .*'pt_4\*' matches no file"):
+        read_columns([tmp_path / "point_3.csv", two], misspelt)
 
 
 def test_a_time_column_gives_the_rate_even_with_few_digits(tmp_path, records):

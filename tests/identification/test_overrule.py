@@ -43,3 +43,5 @@ def test_frequencies_that_mean_nothing_are_refused(frfs):
         identify(frfs, drop=(90.0,))
     with pytest.raises(InputError, match="400 Hz was asked for, outside"):
         identify(frfs, add=(400.0,))
+    with pytest.raises(InputError, match=r"no mode can be kept at 60\.3 Hz"):
+        identify(frfs, add=(60.3,))  # beside a strong mode there is no second one
