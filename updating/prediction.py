@@ -12,11 +12,14 @@ from functools import cached_property
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from updating.environment import Environment
 from updating.measured import Measured
+from updating.models.complex_modes import ComplexModes, complex_modes
+from updating.models.damping import Matrices, damping_matrices
 from updating.models.reduced import Reduced, reduce_structure
-from updating.models.spec import Spec, Theory
+from updating.models.response import receptance
+from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State, combine
 from updating.models.structure import build_structure
 
@@ -126,8 +129,7 @@ class Predictor:
     @property
     def expects_damping(self) -> bool:
         """Whether the model, a region, or a baseline test says what damping to expect."""
-        own = any(r.alpha or r.beta or r.loss_factor for r in self.spec.regions)
-        return self.spec.damping.known or own or bool(self.base.damping)
+        return self.expects(self.base)
 
     def under(self, theory: Theory) -> Predictor:
         """Return the predictor of the same specimen under another theory, kept for the next call."""
@@ -271,40 +273,75 @@ class Predictor:
     def _damping(self, state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
         """Return modal damping ratios: what is expected of the specimen, plus what the state adds."""
         omega = np.sqrt(np.maximum(values, 1e-12))
-        expected = self.spec.damping
-        n = vectors.shape[0]
-        quadratic = np.zeros(len(values))
-        for matrix in state.damping:
-            quadratic += np.einsum("ir,ij,jr->r", vectors, matrix[:n, :n], vectors)
-        if not expected.known or state.damping:
-            base = np.full(len(values), 0.0 if state.damping else np.nan)
-        elif expected.ratios is not None:
-            given = np.asarray(expected.ratios, dtype=float)
-            base = given[np.minimum(np.arange(len(values)), len(given) - 1)]
-        else:
-            base = self._proportional(state, omega, vectors)
-        if any(region.alpha or region.beta or region.loss_factor for region in self.spec.regions):
-            base = np.nan_to_num(base) + self._regional(omega, vectors)
-        return np.asarray(base + quadratic / (2 * omega) + state.decay / omega)
+        if not self.expects(state):
+            return np.asarray(np.full(len(values), np.nan))
+        viscous, structural = self._damping_matrices(state)
+        c = np.einsum("ir,ij,jr->r", vectors, viscous, vectors)
+        d = np.einsum("ir,ij,jr->r", vectors, structural, vectors)
+        return np.asarray(
+            c / (2 * omega) + d / (2 * omega**2) + self._ratios(state, len(values)) + state.decay / omega
+        )
 
-    def _proportional(self, state: State, omega: FloatArray, vectors: FloatArray) -> FloatArray:
-        bare = replace(state, stiffness=(), mass=())
-        stiffness, mass = self.reduced.matrices(bare)
-        k = np.einsum("ir,ij,jr->r", vectors, stiffness, vectors)
-        m = np.einsum("ir,ij,jr->r", vectors, mass, vectors)
-        expected = self.spec.damping
-        alpha, beta, loss = (v or 0.0 for v in (expected.alpha, expected.beta, expected.loss_factor))
-        return np.asarray((alpha * m + beta * k) / (2 * omega) + loss * k / (2 * omega**2))
+    def expects(self, state: State) -> bool:
+        """Whether model, regions or the state say what damping to expect."""
+        own = any(v is not None for r in self.spec.regions for v in (r.alpha, r.beta, r.loss_factor))
+        return self.spec.damping.known or own or bool(state.damping) or bool(state.dampers)
 
-    def _regional(self, omega: FloatArray, vectors: FloatArray) -> FloatArray:
-        """Add the damping of regions with coefficients of their own, paper B Eq. 3."""
-        n = vectors.shape[0]
-        total = np.zeros(len(omega))
-        for i, region in enumerate(self.spec.regions):
-            quadratic = {"stiffness": np.zeros(len(omega)), "mass": np.zeros(len(omega))}
-            for term, parts in zip(self.reduced.structure.terms, self.reduced.parts, strict=True):
-                quadratic[term.kind] += np.einsum("ir,ij,jr->r", vectors, parts[i, :n, :n], vectors)
-            k, m = quadratic["stiffness"], quadratic["mass"]
-            viscous = (region.alpha or 0.0) * m + (region.beta or 0.0) * k
-            total += viscous / (2 * omega) + (region.loss_factor or 0.0) * k / (2 * omega**2)
-        return total
+    def _damping_matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
+        """Return C and D; damping matrices in the state replace what the model expects."""
+        expected = Damping() if state.damping else self.spec.damping
+        return damping_matrices(self.reduced, expected, state)
+
+    def _ratios(self, state: State, count: int) -> FloatArray:
+        """Return the damping ratios that the modeller gives mode by mode, the last for all above [-]."""
+        given = self.spec.damping.ratios
+        if not given or state.damping:
+            return np.zeros(count)
+        return np.asarray(given, dtype=float)[np.minimum(np.arange(count), len(given) - 1)]
+
+    def matrices(self, state: State = NOMINAL) -> Matrices:
+        """Return K, M, C and D of a state on top of ``base``; modal ratios enter C through the state's own modes.
+
+        Parameters
+        ----------
+        state : State
+            Departure from the nominal model, under the predictor's own theory.
+        """
+        total = self.base.plus(state)
+        stiffness, mass = self.reduced.matrices(total)
+        viscous, structural = self._damping_matrices(total)
+        if self.spec.damping.ratios and not total.damping:
+            values, vectors = self.reduced.eigen(total)
+            first = self.reduced.structure.rigid_modes
+            rates = np.zeros(len(values))
+            rates[first:] = (
+                2 * self._ratios(total, len(values) - first) * np.sqrt(np.maximum(values[first:], 0))
+            )
+            momenta = mass @ vectors
+            viscous = viscous + (momenta * rates) @ momenta.T
+        return Matrices(stiffness, mass, viscous, structural)
+
+    def complex_modes(self, state: State = NOMINAL) -> ComplexModes:
+        """Return the damped modes of a state, exact for damping that is not proportional."""
+        return complex_modes(self.matrices(state), rigid=self.reduced.structure.rigid_modes)
+
+    def frf_rows(self, state: State = NOMINAL) -> tuple[FloatArray, FloatArray]:
+        """Return the rows of the basis at the response and at the force of every FRF, each (n_frf, r)."""
+        rows = self._rows(self.base.plus(state))["w"][:, : self.reduced.ranks[self.base.plus(state).released]]
+        return rows[self.measured.seen], rows[self.measured.hit]
+
+    def receptance(self, laplace: ComplexArray, state: State = NOMINAL) -> ComplexArray:
+        """Return the model's receptances for the FRFs of the test, shape (n_frf, n_lines) [m/N].
+
+        Parameters
+        ----------
+        laplace : (n_lines,) complex array
+            Where in the Laplace plane, i omega + sigma [1/s].
+        state : State
+            Departure from the nominal model, on top of ``base``; its gain multiplies the FRFs.
+        """
+        total = self.base.plus(state)
+        if total.theory is not None and total.theory != self.spec.theory:
+            return self.under(total.theory).receptance(laplace, replace(state, theory=None))
+        seen, hit = self.frf_rows(state)
+        return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace))

@@ -25,6 +25,8 @@ class State:
         Factors on E, density, thickness, width and length of the whole structure [-].
     regional : mapping of (region index, factor name) to float
         Factors on one region [-].
+    dampers : mapping of (region index, coefficient) to float
+        Values that take the place of alpha [1/s], beta [s] or loss_factor [-]; index -1 is the whole structure.
     stiffness, mass, damping : tuple of (r, r) arrays
         Matrices added in the coordinates of the reduced basis [SI].
     released : frozenset of str
@@ -39,6 +41,7 @@ class State:
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
     regional: Mapping[tuple[int, str], float] = field(default_factory=lambda: MappingProxyType({}))
+    dampers: Mapping[tuple[int, str], float] = field(default_factory=lambda: MappingProxyType({}))
     stiffness: tuple[FloatArray, ...] = ()
     mass: tuple[FloatArray, ...] = ()
     damping: tuple[FloatArray, ...] = ()
@@ -48,7 +51,7 @@ class State:
     decay: float = 0.0
 
     def plus(self, other: State) -> State:
-        """Return both departures together: factors multiply, matrices add."""
+        """Return both departures together: factors multiply, matrices add, later dampers win."""
         factors = dict(self.factors)
         for name, value in other.factors.items():
             factors[name] = factors.get(name, 1.0) * value
@@ -58,6 +61,7 @@ class State:
         return State(
             MappingProxyType(factors),
             MappingProxyType(regional),
+            MappingProxyType({**self.dampers, **other.dampers}),
             self.stiffness + other.stiffness,
             self.mass + other.mass,
             self.damping + other.damping,

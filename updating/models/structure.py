@@ -22,8 +22,8 @@ from acquisition.errors import StudyError
 from updating.models.fields import Fields, Sparse, beam_fields, plate_fields, timoshenko_fields
 from updating.models.spec import Region, Spec
 
-FACTORS = ("E", "density", "thickness", "width", "length", "section")
-"""What a model can be scaled by; ``section`` scales stiffness and mass alike."""
+FACTORS = ("E", "density", "thickness", "width", "length", "section", "area", "inertia")
+"""What a model can be scaled by; ``section`` scales stiffness and mass alike, ``area`` and ``inertia`` are a beam's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,11 +247,11 @@ def _beam_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[Term, 
     modulus = _local(spec, region_of, "E", spec.material.E)
     density = _local(spec, region_of, "density", spec.material.density)
     w = fields.weights
-    bending = {"E": 1.0, "thickness": 3.0, "width": 1.0}
+    bending = {"E": 1.0, "thickness": 3.0, "width": 1.0, "inertia": 1.0}
     # r is the rotation per unit of stretched length, so that r = dw/dx stays r = dw/dx when the beam grows
-    shearing = {"E": 1.0, "thickness": 1.0, "width": 1.0, "length": -1.0}
-    inertial = {"density": 1.0, "thickness": 1.0, "width": 1.0, "length": 1.0}
-    rotary = {"density": 1.0, "thickness": 3.0, "width": 1.0}
+    shearing = {"E": 1.0, "thickness": 1.0, "width": 1.0, "length": -1.0, "area": 1.0}
+    inertial = {"density": 1.0, "thickness": 1.0, "width": 1.0, "length": 1.0, "area": 1.0}
+    rotary = {"density": 1.0, "thickness": 3.0, "width": 1.0, "inertia": 1.0}
     mass = Term("mass", "w", "w", w * density * area, inertial)
     if spec.theory != "timoshenko":
         terms = [Term("stiffness", "wxx", "wxx", w * modulus * inertia, bending | {"length": -3.0}), mass]

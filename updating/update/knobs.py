@@ -10,7 +10,8 @@ import numpy as np
 
 from acquisition.errors import StudyError
 from updating.effects import LIBRARY, Effect
-from updating.models.spec import Spec
+from updating.models.damping import WHOLE
+from updating.models.spec import Region, Spec
 from updating.models.state import State
 from updating.prediction import Predictor
 from updating.tolerances import Tolerances
@@ -18,14 +19,26 @@ from updating.tolerances import Tolerances
 UNITS = {"E": "Pa", "density": "kg/m^3", "thickness": "m", "width": "m"}
 """Properties that a factor of the whole structure can scale, and their units."""
 
-REGIONAL = ("E", "density", "thickness")
-"""Properties that a factor of one region can scale."""
+REGIONAL = {"E": "Pa", "density": "kg/m^3", "thickness": "m", "area": "m^2", "inertia": "m^4"}
+"""Properties that a factor of one region can scale, and their units; the last two of beams."""
+
+DAMPERS = {"alpha": "1/s", "beta": "s", "loss_factor": "-"}
+"""Coefficients of damping, of the whole or of one region, and their units."""
+
+DAMPER_START = {"alpha": 1.0, "beta": 1e-7, "loss_factor": 1e-3}
+"""Where a coefficient starts that the model gives no value [unit]."""
+
+DAMPER_RANGE = (1e-4, 1e4)
+"""Bounds of a coefficient of damping over its start [-]."""
 
 FACTOR_RANGE = (0.05, 20.0)
 """Bounds of every factor [-]."""
 
 UNTOLD = np.log(2.0)
 """1-sigma scale of the logarithm of a factor of which the study says no tolerance [-]."""
+
+UNTOLD_DAMPING = np.log(10.0)
+"""The same of a coefficient of damping, of which an order of magnitude is often all that is known [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +65,11 @@ class Knob:
     log : bool
         Whether the coordinate is a logarithm.
     factor : str, optional
-        Factor of the model that it is; None for an effect.
-    region : int, optional
-        Region that the factor acts on; None for the whole structure.
+        Factor of the model that it is; None for an effect and for damping.
+    damper : str, optional
+        Coefficient of damping that it is: the nominal value times a factor.
+    regions : tuple of int
+        Regions that it acts on, all of one name; empty for the whole structure.
     effect, parameter : str
         Effect and its parameter, empty for a factor.
     reach : float
@@ -71,7 +86,8 @@ class Knob:
     tolerated: bool
     log: bool
     factor: str | None = None
-    region: int | None = None
+    damper: str | None = None
+    regions: tuple[int, ...] = ()
     effect: str = ""
     parameter: str = ""
     reach: float = 0.0
@@ -79,7 +95,7 @@ class Knob:
     @property
     def is_factor(self) -> bool:
         """Whether the value is a nominal value times a factor."""
-        return self.factor is not None and not self.effect
+        return (self.factor is not None or self.damper is not None) and not self.effect
 
     def coordinate(self, value: float) -> float:
         """Take a factor or value to its coordinate."""
@@ -120,8 +136,11 @@ class Panel:
         for knob, value in zip(self.knobs, values, strict=True):
             if knob.effect:
                 effects.setdefault(knob.effect, dict(self.fixed.get(knob.effect, {})))[knob.parameter] = value
-            elif knob.region is not None:
-                state = state.plus(State(regional={(knob.region, str(knob.factor)): value}))
+            elif knob.damper is not None:
+                where = knob.regions or (WHOLE,)
+                state = state.plus(State(dampers={(i, knob.damper): knob.nominal * value for i in where}))
+            elif knob.regions:
+                state = state.plus(State(regional={(i, str(knob.factor)): value for i in knob.regions}))
             else:
                 state = state.plus(State(factors={str(knob.factor): value}))
         for name, given in effects.items():
@@ -148,8 +167,8 @@ def build_panel(
     Parameters
     ----------
     names : sequence of str
-        ``E``, ``density``, ``thickness``, ``width``; ``region.property``; ``effect`` (all its parameters) or
-        ``effect.parameter``.
+        ``E``, ``density``, ``thickness``, ``width``, ``alpha``, ``beta``, ``loss_factor``; ``region.property``,
+        where regions of one name are turned together; ``effect`` (all its parameters) or ``effect.parameter``.
     predictor : Predictor
         The specimen.
     tolerances : Tolerances
@@ -188,18 +207,24 @@ def _check_complete(panel: Panel, predictor: Predictor) -> None:
 
 def _knobs(name: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob]:
     spec = predictor.spec
-    head, _, tail = name.partition(".")
-    regions = {region.name: i for i, region in enumerate(spec.regions)}
-    if head in regions and tail:
-        return [_regional(name, regions[head], tail, spec, tolerances)]
+    head, _, tail = name.rpartition(".") if "." in name else (name, "", "")
+    places = tuple(i for i, region in enumerate(spec.regions) if region.name == head)
+    if places and tail in DAMPERS:
+        return [_damper(name, tail, spec, tolerances, places)]
+    if places and tail:
+        return [_regional(name, places, tail, spec, tolerances)]
+    if name in DAMPERS:
+        return [_damper(name, name, spec, tolerances, ())]
     if head in UNITS and tail in ("", "factor"):
         return [_whole(head, spec, tolerances)]
     if head in LIBRARY:
         return _effect(name, LIBRARY[head], tail, predictor, tolerances)
-    known = ", ".join([*UNITS, *(n for n in LIBRARY if n not in UNITS)])
+    known = ", ".join([*UNITS, *DAMPERS, *(n for n in LIBRARY if n not in UNITS)])
+    own = list(dict.fromkeys(region.name for region in spec.regions))
     raise StudyError(
-        f"update: no parameter {name!r}; known are {known}, and region.E, region.density, region.thickness with "
-        f"the regions {', '.join(list(regions)[:4])}..."
+        f"update: no parameter {name!r}; known are {known}, and region.E, region.density, region.thickness, "
+        f"region.area, region.inertia, region.alpha ... with the regions {', '.join(own[:4])}"
+        + ("..." if len(own) > 4 else "")
     )
 
 
@@ -210,23 +235,56 @@ def _whole(name: str, spec: Spec, tolerances: Tolerances) -> Knob:
         "thickness": spec.thickness,
         "width": spec.width,
     }[name]
-    return _factor(name, UNITS[name], nominal, tolerances.factors.get(name, 0.0), name, None)
+    return _factor(name, UNITS[name], nominal, tolerances.factors.get(name, 0.0), name, ())
 
 
-def _regional(name: str, index: int, prop: str, spec: Spec, tolerances: Tolerances) -> Knob:
-    if prop not in REGIONAL:
-        raise StudyError(f"update: {name}: a region has no {prop!r} to update; use {', '.join(REGIONAL)}")
-    region = spec.regions[index]
-    general = {"E": spec.material.E, "density": spec.material.density, "thickness": spec.thickness}[prop]
+def _regional(name: str, places: tuple[int, ...], prop: str, spec: Spec, tolerances: Tolerances) -> Knob:
+    if prop not in REGIONAL or (prop in ("area", "inertia") and spec.kind != "beam"):
+        choice = ", ".join(n for n in REGIONAL if spec.kind == "beam" or n not in ("area", "inertia"))
+        raise StudyError(
+            f"update: {name}: a region has no {prop!r} to update; use {choice}, {', '.join(DAMPERS)}"
+        )
+    region = spec.regions[places[0]]
     own = getattr(region, prop)
-    nominal = float(general if own is None else own)
-    return _factor(name, UNITS[prop], nominal, tolerances.factors.get(prop, 0.0), prop, index)
+    nominal = float(_general(prop, region, spec) if own is None else own)
+    return _factor(name, REGIONAL[prop], nominal, tolerances.factors.get(prop, 0.0), prop, places)
 
 
-def _factor(name: str, unit: str, nominal: float, tolerance: float, factor: str, region: int | None) -> Knob:
+def _general(prop: str, region: Region, spec: Spec) -> float:
+    """Return what a region has of a property that it does not give itself."""
+    thickness = spec.thickness if region.thickness is None else region.thickness
+    return {
+        "E": spec.material.E,
+        "density": spec.material.density,
+        "thickness": spec.thickness,
+        "area": spec.width * thickness,
+        "inertia": spec.width * thickness**3 / 12,
+    }[prop]
+
+
+def _damper(name: str, coefficient: str, spec: Spec, tolerances: Tolerances, places: tuple[int, ...]) -> Knob:
+    """Return a coefficient of damping; the tolerance of damping regularises where the study expects a value."""
+    given = getattr(spec.damping, coefficient)
+    if places:
+        own = getattr(spec.regions[places[0]], coefficient)
+        given = given if own is None else own
+    nominal = float(given) if given else DAMPER_START[coefficient]
+    low, high = DAMPER_RANGE
+    doubt = tolerances.damping if given else UNTOLD_DAMPING
+    return Knob(
+        name, DAMPERS[coefficient], nominal, 1.0, low, high, doubt, bool(given), log=True,
+        damper=coefficient, regions=places,
+    )  # fmt: skip
+
+
+def _factor(
+    name: str, unit: str, nominal: float, tolerance: float, factor: str, regions: tuple[int, ...]
+) -> Knob:
     low, high = FACTOR_RANGE
     doubt = tolerance or UNTOLD
-    return Knob(name, unit, nominal, 1.0, low, high, doubt, tolerance > 0, True, factor, region)
+    return Knob(
+        name, unit, nominal, 1.0, low, high, doubt, tolerance > 0, log=True, factor=factor, regions=regions
+    )
 
 
 def _effect(name: str, effect: Effect, tail: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob]:

@@ -11,7 +11,7 @@ from updating.prediction import Prediction
 
 
 def log_frequency_by(
-    reduced: Reduced, state: State, prediction: Prediction, factor: str, region: int | None = None
+    reduced: Reduced, state: State, prediction: Prediction, factor: str, regions: tuple[int, ...] = ()
 ) -> FloatArray:
     """Return d ln f / d ln factor of the modes of a prediction, shape (n_modes,) [-].
 
@@ -28,13 +28,10 @@ def log_frequency_by(
         The modes.
     factor : str
         E, density, thickness, width or length.
-    region : int, optional
-        Region on which the factor acts; left out, the whole structure.
+    regions : tuple of int
+        Regions on which the factor acts; empty is the whole structure.
     """
-    if region is None:
-        stiffness, mass = reduced.log_sensitivity(state, factor)
-    else:
-        stiffness, mass = _regional(reduced, state, factor, region)
+    stiffness, mass = change_by(reduced, state, factor, regions)
     n = len(stiffness)
     vectors = prediction.vectors[:n]
     k = np.einsum("ir,ij,jr->r", vectors, stiffness, vectors)
@@ -43,13 +40,17 @@ def log_frequency_by(
     return np.asarray((k / eigenvalue - m) / 2)
 
 
-def _regional(reduced: Reduced, state: State, factor: str, region: int) -> tuple[FloatArray, FloatArray]:
-    """Return dK and dM per unit of the logarithm of one region's factor [SI]."""
+def change_by(
+    reduced: Reduced, state: State, factor: str, regions: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return dK and dM per unit of the logarithm of a factor of some regions, of all where none is named [SI]."""
+    if not regions:
+        return reduced.log_sensitivity(state, factor)
     n = reduced.ranks[state.released]
     change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
     for term, parts in zip(reduced.structure.terms, reduced.parts, strict=True):
         power = term.powers.get(factor, 0.0)
-        if power:
+        for region in regions if power else ():
             own = {name: value for (index, name), value in state.regional.items() if index == region}
             scale = term.scale(state.factors) * term.scale(own)
             change[term.kind] += power * scale * parts[region][:n, :n]

@@ -98,7 +98,7 @@ class Specimen:
 
     def _analytic(self, knob: Knob, value: float, at: Look) -> FloatArray:
         total = self.predictor.base.plus(at.state)
-        by = log_frequency_by(self.predictor.reduced, total, at.prediction, str(knob.factor), knob.region)
+        by = log_frequency_by(self.predictor.reduced, total, at.prediction, str(knob.factor), knob.regions)
         return by * knob.chain(value)
 
     def _difference(self, index: int, values: Sequence[float]) -> FloatArray:

@@ -1,0 +1,132 @@
+"""Damping matrices of a state on the reduced basis: proportional by region, structural by region, added by effects.
+
+Paper B, Eqs. 1 and 3: C = sum_k alpha_k M_k + beta_k K_k over the regions; a structural loss factor eta_k adds
+the hysteretic part i eta_k K_k. A region's own coefficient takes the place of the model's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.models.reduced import Reduced
+from updating.models.spec import Damping
+from updating.models.state import State
+
+COEFFICIENTS = ("alpha", "beta", "loss_factor")
+"""Damping proportional to mass [1/s], to stiffness [s], and structural [-]."""
+
+WHOLE = -1
+"""The region number that stands for the whole structure."""
+
+
+@dataclass(frozen=True, eq=False)
+class Matrices:
+    """Everything in Z(s) = s^2 M + s C + K + i D on a reduced basis.
+
+    Parameters
+    ----------
+    stiffness, mass : (r, r) arrays
+        K and M [SI].
+    viscous : (r, r) array
+        C [SI].
+    structural : (r, r) array
+        D, stiffness times loss factor; zero for viscous damping alone [SI].
+    """
+
+    stiffness: FloatArray
+    mass: FloatArray
+    viscous: FloatArray
+    structural: FloatArray
+
+
+def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, FloatArray]:
+    """Return alpha, beta and loss factor of every region and of what lies in none.
+
+    Parameters
+    ----------
+    reduced : Reduced
+        The model, whose regions may have coefficients of their own.
+    damping : Damping
+        The model's coefficients.
+    state : State
+        Its ``dampers`` take the place of both.
+
+    Returns
+    -------
+    dict of str to (n_regions + 1,) array
+        Coefficients [1/s, s, -]; the last is that of the structure outside all regions.
+    """
+    regions = reduced.structure.spec.regions
+    found = {}
+    for name in COEFFICIENTS:
+        given = state.dampers.get((WHOLE, name), getattr(damping, name))
+        general = 0.0 if given is None else float(given)
+        values = np.full(len(regions) + 1, general)
+        for i, region in enumerate(regions):
+            own = state.dampers.get((i, name), getattr(region, name))
+            values[i] = general if own is None else float(own)
+        found[name] = values
+    return found
+
+
+def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[FloatArray, FloatArray]:
+    """Return the viscous and the structural damping of a state on the columns that its releases admit.
+
+    Masses that the modeller knows of take part with the model's alpha; springs and masses that effects add are
+    not damped by the coefficients.
+
+    Parameters
+    ----------
+    reduced : Reduced
+        The model.
+    damping : Damping
+        The model's coefficients; its ``ratios`` are modal and no matrix.
+    state : State
+        Factors, dampers and added damping.
+
+    Returns
+    -------
+    viscous, structural : (r, r) arrays
+        C and D of Z(s) = s^2 M + s C + K + i D [SI].
+    """
+    own = coefficients(reduced, damping, state)
+    n = reduced.ranks[state.released]
+    viscous, structural = np.zeros((n, n)), np.zeros((n, n))
+    if any(np.any(values) for values in own.values()):
+        if all(np.ptp(values) == 0 for values in own.values()):
+            stiffness, mass = reduced.matrices(replace(state, stiffness=(), mass=()))
+            viscous += own["alpha"][0] * mass + own["beta"][0] * stiffness
+            structural += own["loss_factor"][0] * stiffness
+        else:
+            stiff, heavy = region_matrices(reduced, state)
+            viscous += np.tensordot(own["alpha"], heavy, axes=1) + np.tensordot(own["beta"], stiff, axes=1)
+            viscous += own["alpha"][-1] * reduced.point_masses[:n, :n]
+            structural += np.tensordot(own["loss_factor"], stiff, axes=1)
+    for added in state.damping:
+        viscous += added[:n, :n]
+    return viscous, structural
+
+
+def region_matrices(reduced: Reduced, state: State) -> tuple[FloatArray, FloatArray]:
+    """Return stiffness and mass of every region under a state's factors, each (n_regions + 1, r, r) [SI].
+
+    The K_i and M_i of paper A, Eqs. 11-14; the last is what lies in no region, and no point mass is in them.
+    """
+    n = reduced.ranks[state.released]
+    count = len(reduced.parts[0])
+    total = {"stiffness": np.zeros((count, n, n)), "mass": np.zeros((count, n, n))}
+    for term, parts in zip(reduced.structure.terms, reduced.parts, strict=True):
+        scale = np.full(count, term.scale(state.factors))
+        for (region, factor), value in state.regional.items():
+            scale[region] *= value ** term.powers.get(factor, 0.0)
+        total[term.kind] += scale[:, None, None] * parts[:, :n, :n]
+    return total["stiffness"], total["mass"]
+
+
+def all_matrices(reduced: Reduced, damping: Damping, state: State) -> Matrices:
+    """Return K, M, C and D of a state [SI]."""
+    stiffness, mass = reduced.matrices(state)
+    return Matrices(stiffness, mass, *damping_matrices(reduced, damping, state))
