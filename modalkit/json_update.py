@@ -31,6 +31,8 @@ def to_json(update: Update) -> dict[str, Any]:
                 "at_bound": p.at_bound,
                 "low": _number(p.low),
                 "high": _number(p.high),
+                "initial": _number(p.initial),
+                "interval": None if p.interval is None else [_number(end) for end in p.interval],
             }
             for p in update.parameters
         ],
@@ -53,7 +55,38 @@ def to_json(update: Update) -> dict[str, Any]:
         "correlations": [[_number(c) for c in row] for row in update.correlations],
         "exact": update.exact,
         "rms_percent": {"before": update.rms_percent("before"), "after": update.rms_percent("after")},
+        "statistics": {
+            "data": update.data,
+            "chi2": _number(update.chi2),
+            "dof": update.dof,
+            "reduced_chi2": _number(update.reduced_chi2),
+            "inflation": _number(update.inflation),
+            "weights": update.weights,
+            "quantity": update.quantity,
+            "draws": update.draws,
+        },
+        "determinability": _determinability(update),
         "warnings": list(update.warnings),
+    }
+
+
+def _determinability(update: Update) -> dict[str, Any] | None:
+    told = update.determinability
+    if told is None:
+        return None
+    return {
+        "singular_values": [_number(v) for v in told.singular_values],
+        "alone": [_number(v) for v in told.alone],
+        "couplings": [
+            {
+                "parameters": list(c.parameters),
+                "determined": list(c.determined),
+                "sigma": [_number(v) for v in c.sigma],
+            }
+            for c in told.couplings
+        ],
+        "subset": list(told.subset),
+        "explained": [_number(v) for v in told.explained],
     }
 
 

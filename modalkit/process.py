@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 from acquisition import StudyError, read_modes
@@ -132,8 +133,22 @@ def _measure(
     }
     axes, spec = study.axes(table), study.spec()
     if table.modes is not None:
-        return measured_from_modes(read_modes(study.file(table.modes)), axes, spec, **options), None, None
+        modes = read_modes(study.file(table.modes))
+        with _naming(study):
+            return measured_from_modes(modes, axes, spec, **options), None, None
     if not table.files:
         raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
     processed, identified = _identified(study, table)
-    return measured_from_identified(identified, axes, spec, **options), processed, identified
+    with _naming(study):
+        return measured_from_identified(identified, axes, spec, **options), processed, identified
+
+
+@contextmanager
+def _naming(study: Study) -> Iterator[None]:
+    """Put the study's path before an error that does not name it."""
+    try:
+        yield
+    except StudyError as error:
+        if str(error).startswith(str(study.path)):
+            raise
+        raise StudyError(f"{study.path}: {error}") from error

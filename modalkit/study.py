@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import tomllib
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from acquisition.errors import StudyError
+from modalkit.matrices import matrices_of, matrices_spec
 from updating.axes import Axes
 from updating.effects import LIBRARY
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
+from updating.models.imported import Imported
 from updating.tolerances import Tolerances
 
 Vector = tuple[float, float, float]
+
+MATRICES_ONLY = ("stiffness", "mass_matrix", "stiffness_parts", "mass_parts", "nodes")
+"""Keys of ``[model]`` that are of imported matrices alone; ``mass = "file"`` is read as ``mass_matrix``."""
 
 
 class _Strict(BaseModel):
@@ -81,7 +87,7 @@ class RegionTable(_Strict):
     """``[[model.region]]``."""
 
     name: str
-    x: tuple[float, float]
+    x: tuple[float, float] | None = None
     y: tuple[float, float] | None = None
     E: float | None = None
     density: float | None = None
@@ -103,6 +109,11 @@ class ModelTable(_Strict):
     elements: int | list[int] | None = None
     clamped: list[str] = []
     theory: str | None = None
+    stiffness: str | None = None
+    mass_matrix: str | None = None
+    stiffness_parts: list[str] = []
+    mass_parts: list[str] = []
+    nodes: str | None = None
     material: MaterialTable | None = None
     damping: DampingTable = DampingTable()
     mass: list[MassTable] = []
@@ -134,10 +145,18 @@ class UpdateTable(_Strict):
     """``[update]``."""
 
     method: Literal["eigenvalue", "frf"] = "eigenvalue"
-    parameters: list[str] = ["E"]
+    parameters: list[str] | None = None
     weights: Literal["covariance", "relative", "eigenvalue"] | list[float] = "covariance"
     lines: int | list[float] | None = None
-    stages: list[Any] | None = None
+    stages: list[list[str]] | None = None
+    data: list[Literal["frequencies", "shapes"]] = ["frequencies"]
+
+    @property
+    def named(self) -> list[str]:
+        """Parameters to update: as listed; left out and without stages, the modulus."""
+        if self.parameters is None:
+            return [] if self.stages is not None else ["E"]
+        return self.parameters
 
 
 class Study(_Strict):
@@ -182,8 +201,20 @@ class Study(_Strict):
         model = self.model
         if model is None:
             raise StudyError("this command needs a [model]")
+        damping = Damping(
+            model.damping.alpha,
+            model.damping.beta,
+            model.damping.loss_factor,
+            None if model.damping.ratios is None else tuple(model.damping.ratios),
+        )
         if model.type == "matrices":
-            raise StudyError('[model] type = "matrices" is not read by this version; use beam or plate')
+            return matrices_spec(model, self._imported, damping)
+        if given := [key for key in MATRICES_ONLY if getattr(model, key)]:
+            raise StudyError(
+                f"[model] of type {model.type} takes no {', '.join(given)}; they are of type matrices"
+            )
+        if unplaced := [region.name for region in model.region if region.x is None]:
+            raise StudyError(f"[[model.region]] {unplaced[0]!r} needs x")
         for key in ("length", "width", "thickness", "material"):
             if getattr(model, key) is None:
                 raise StudyError(f"[model] of type {model.type} needs {key}")
@@ -202,13 +233,14 @@ class Study(_Strict):
             Material(model.material.E, model.material.density, model.material.poisson),
             tuple(Region(**region.model_dump()) for region in model.region),
             tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
-            Damping(
-                model.damping.alpha,
-                model.damping.beta,
-                model.damping.loss_factor,
-                None if model.damping.ratios is None else tuple(model.damping.ratios),
-            ),
+            damping,
         )
+
+    @cached_property
+    def _imported(self) -> Imported:
+        """The matrices of the model, read once."""
+        assert self.model is not None
+        return matrices_of(self.model, self.file)
 
     def _elements(self, model: ModelTable) -> tuple[int, ...]:
         if model.elements is None:
@@ -286,8 +318,9 @@ def read_study(path: Path) -> Study:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
     if "path" in content:
         raise StudyError(f"{path}: unknown key path; known here: {', '.join(_known(()))}")
-    if content.get("model", {}).get("type") == "matrices":
-        raise StudyError(f'{path}: [model] type = "matrices" is not in this version; use "beam" or "plate"')
+    model = content.get("model", {})
+    if isinstance(model, dict) and isinstance(model.get("mass"), str):
+        content["model"] = {"mass_matrix" if key == "mass" else key: value for key, value in model.items()}
     try:
         return Study(**content, path=path)
     except ValidationError as error:

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from acquisition import FrfSet, StudyError
-from acquisition.arrays import ComplexArray, FloatArray, IntArray
-from identification import frac
+from acquisition import Dof, FrfSet
+from acquisition.arrays import FloatArray, IntArray
 from updating.case import Case
+from updating.correlated_frfs import CorrelatedFrfs, correlate_frfs
 from updating.matching import Paired, mac_of_constants, pair_modes
 from updating.measured import Measured
 from updating.nominal import predictor_of
 from updating.prediction import Prediction
-
-UNKNOWN_DAMPING = 0.005
-"""Damping ratio of modes of which neither test nor model says any [-]."""
+from updating.simulation.identified import partners
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +39,8 @@ class Correlation:
         the modal constants over the paired modes.
     warnings : tuple of str
         What the user ought to know.
+    frfs : CorrelatedFrfs, optional
+        The FRFs themselves, measured and the model's.
     """
 
     table: pd.DataFrame
@@ -48,6 +49,7 @@ class Correlation:
     unpaired_model: pd.DataFrame
     frac: pd.DataFrame
     warnings: tuple[str, ...]
+    frfs: CorrelatedFrfs | None = None
 
     @property
     def rms_percent(self) -> float:
@@ -63,7 +65,7 @@ def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:
     case : Case
         Test beside model.
     frfs : FrfSet, optional
-        Measured FRFs; the model's are computed beside them, with the measured damping where the model says none.
+        Measured FRFs; the model's are computed beside them, with the identified damping where the model says none.
 
     Returns
     -------
@@ -79,16 +81,18 @@ def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:
     predictor = predictor_of(case)
     prediction = predictor.predict()
     paired = pair_modes(case.measured, prediction)
-    test, partner = _rows(case.measured, paired), _partners(paired, prediction)
+    test, partner = _rows(case.measured, paired), partners(paired, prediction)
+    both = None if frfs is None else correlate_frfs(frfs, case.measured, predictor, prediction, paired)
     return Correlation(
         _table(case.measured, prediction, test, partner),
         _mac_matrix(case.measured, prediction),
         _alone(case.measured.frequency, test, case.measured.frequency.max()),
         _alone(prediction.frequency, partner, prediction.frequency[partner].max()),
         _frac_of_constants(paired.measured, prediction.select(partner))
-        if frfs is None
-        else _frac_of_frfs(frfs, case.measured, prediction, test, partner),
+        if both is None
+        else _frac_table([(r.node, f.node) for r, f in _dofs(both.measured)], both.frac),
         (*case.measured.warnings, *paired.warnings),
+        both,
     )
 
 
@@ -96,8 +100,8 @@ def _rows(measured: Measured, paired: Paired) -> IntArray:
     return np.flatnonzero(np.isin(measured.frequency, paired.measured.frequency))
 
 
-def _partners(paired: Paired, prediction: Prediction) -> IntArray:
-    return paired.order if paired.measured.has_shapes else np.argsort(prediction.frequency)[paired.order]
+def _dofs(frfs: FrfSet) -> list[tuple[Dof, Dof]]:
+    return list(zip(frfs.responses, frfs.references, strict=True))
 
 
 def _table(measured: Measured, prediction: Prediction, test: IntArray, partner: IntArray) -> pd.DataFrame:
@@ -144,57 +148,5 @@ def _ends(measured: Measured) -> list[tuple[int, int | None]]:
     return [(measured.nodes[s], None if h < 0 else measured.nodes[h]) for s, h in pairs]
 
 
-def _frac_table(ends: list[tuple[int, int | None]], values: FloatArray) -> pd.DataFrame:
+def _frac_table(ends: Sequence[tuple[int, int | None]], values: FloatArray) -> pd.DataFrame:
     return pd.DataFrame({"response": [r for r, _ in ends], "force": [f for _, f in ends], "FRAC": values})
-
-
-def _frac_of_frfs(
-    frfs: FrfSet, measured: Measured, prediction: Prediction, test: IntArray, partner: IntArray
-) -> pd.DataFrame:
-    """Compare FRFs; signs of directions drop out of FRAC."""
-    known = {ends: i for i, ends in enumerate(_ends(measured))}
-    ends = [(r.node, f.node) for r, f in zip(frfs.responses, frfs.references, strict=True)]
-    rows = [i for i, e in enumerate(ends) if e in known]
-    if not rows:
-        raise StudyError(
-            f"{frfs.source}: none of these FRFs belongs to the test; hand in the FRFs of the same study"
-        )
-    chosen = [known[ends[i]] for i in rows]
-    damping = _damping(measured, prediction, test, partner)
-    part = frfs.select(rows)
-    model = model_frfs(prediction.frequency, damping, prediction.constants[chosen], part)
-    fine = np.abs(part.laplace) > 0
-    return _frac_table([ends[i] for i in rows], frac(part.values[:, fine], model[:, fine]))
-
-
-def _damping(measured: Measured, prediction: Prediction, test: IntArray, partner: IntArray) -> FloatArray:
-    """Return damping ratios for the model's modes: measured where paired, else expected, else the median."""
-    own = np.where(np.isfinite(prediction.damping), prediction.damping, np.nan)
-    found = measured.damping[test]
-    own[partner] = np.where(np.isfinite(found), found, own[partner])
-    finite = own[np.isfinite(own)]
-    return np.where(np.isfinite(own), own, np.median(finite) if len(finite) else UNKNOWN_DAMPING)
-
-
-def model_frfs(
-    frequency: FloatArray, damping: FloatArray, constants: FloatArray, like: FrfSet
-) -> ComplexArray:
-    """Sum a model's modes to FRFs in the form and on the lines of measured ones.
-
-    Parameters
-    ----------
-    frequency, damping : (n_modes,) arrays
-        Natural frequencies [Hz] and damping ratios [-].
-    constants : (n_frf, n_modes) array
-        Modal constants [1/kg].
-    like : FrfSet
-        Lines, form and window.
-
-    Returns
-    -------
-    (n_frf, n_lines) complex array [unit of ``like``]
-    """
-    omega, s = 2 * np.pi * frequency, like.laplace
-    modes = 1 / (s[None, :] ** 2 + 2 * (damping * omega)[:, None] * s[None, :] + (omega**2)[:, None])
-    order = ("receptance", "mobility", "accelerance").index(like.form)
-    return np.asarray((constants @ modes) * s**order, dtype=np.complex128)

@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from acquisition import Dof, Geometry, ModalData
+from acquisition import ModalData
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import StudyError
 from identification import ModalModel
 from updating.axes import Axes
 from updating.models import Spec
+from updating.placing import Key, check_among, place
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +31,11 @@ class Measured:
     points : (n_points, dim) array
         Test points in model axes [m].
     nodes : tuple of int
-        Their node numbers.
+        Their node numbers; one that moves in two directions stands twice.
     seen, hit : (n_frf,) int arrays
         Point of the response and of the force of each FRF; ``hit`` is -1 where only a shape is known.
     constants, constants_sigma : (n_frf, n_modes) arrays
-        Modal constants and standard deviations, positive along the model's z [1/kg, or - per mode].
+        Modal constants and standard deviations, positive along the points' directions [1/kg, or - per mode].
     absolute : bool
         Whether the constants carry absolute level.
     repeated : bool
@@ -47,6 +48,12 @@ class Measured:
         1-sigma uncertainty of the points hit [m].
     title, warnings : str, tuple of str
         For messages.
+    rows : (n_frf,) int array, optional
+        Row of each constant among the FRFs that were identified; None where there are only modes.
+    signs : (n_frf,) array, optional
+        Sign by which those FRFs, their transducers' directions made positive, point along the model's axes [-].
+    directions : (n_points, 3) array, optional
+        Which way each point moves in model axes; left out, along the model's z [-].
     """
 
     frequency: FloatArray
@@ -66,6 +73,9 @@ class Measured:
     position_sigma: float = 0.001
     title: str = ""
     warnings: tuple[str, ...] = ()
+    rows: IntArray | None = None
+    signs: FloatArray | None = None
+    directions: FloatArray | None = None
 
     @property
     def has_shapes(self) -> bool:
@@ -103,7 +113,7 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
     Measured
         Shapes are compared up to a factor per mode, even where they are called mass-normalised.
     """
-    placed = _place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
+    placed = place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
     rows = placed.rows
     shapes = (
         np.zeros((0, len(modes))) if modes.shapes is None else modes.shapes.real[rows] * placed.signs[:, None]
@@ -120,14 +130,15 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
         _column(modes.damping, len(modes)),
         _column(modes.damping_sigma, len(modes)),
         placed.points,
-        placed.nodes,
+        tuple(node for node, _ in placed.keys),
         placed.index,
         np.full(len(rows), -1),
         shapes,
         sigma,
         absolute=False,
         repeated=False,
-        warnings=placed.warnings,
+        warnings=(*placed.warnings, *check_among(placed.points, placed.keys, spec)),
+        directions=_directions(placed.keys, spec),
         **options,  # type: ignore[arg-type]
     )
 
@@ -143,8 +154,8 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         As in :func:`measured_from_modes`.
     """
     geometry = model.modal.geometry
-    responses = _place(model.responses, geometry, axes, spec)
-    references = _place(model.references, geometry, axes, spec)
+    responses = place(model.responses, geometry, axes, spec)
+    references = place(model.references, geometry, axes, spec)
     both = np.intersect1d(responses.rows, references.rows)
     if len(both) == 0:
         raise StudyError(
@@ -154,9 +165,10 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
     at_reference = {row: i for i, row in enumerate(references.rows.tolist())}
     left = np.array([at_response[row] for row in both.tolist()])
     right = np.array([at_reference[row] for row in both.tolist()])
-    nodes = tuple(dict.fromkeys(responses.nodes + references.nodes))
-    where = {node: i for i, node in enumerate(nodes)}
-    points = np.stack([_point(node, responses, references) for node in nodes])
+    keys = tuple(dict.fromkeys(responses.keys + references.keys))
+    where = {key: i for i, key in enumerate(keys)}
+    points = np.stack([(responses if k in responses.keys else references).point(k) for k in keys])
+    seen, hit = responses.index[left], references.index[right]
     signs = responses.signs[left] * references.signs[right]
     return Measured(
         model.modal.frequency,
@@ -164,14 +176,19 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         _column(model.modal.damping, len(model.modal)),
         _column(model.modal.damping_sigma, len(model.modal)),
         points,
-        nodes,
-        np.array([where[model.responses[row].node] for row in both.tolist()]),
-        np.array([where[model.references[row].node] for row in both.tolist()]),
+        tuple(node for node, _ in keys),
+        np.array([where[responses.keys[i]] for i in seen.tolist()]),
+        np.array([where[references.keys[i]] for i in hit.tolist()]),
         model.constants.real[both] * signs[:, None],
         _with_complexity(model.constants[both], model.constant_sigma[both]),
         absolute=True,
         repeated=model.frfs.variance is not None,
-        warnings=tuple(dict.fromkeys(responses.warnings + references.warnings)),
+        warnings=tuple(
+            dict.fromkeys(responses.warnings + references.warnings + check_among(points, keys, spec))
+        ),
+        rows=both,
+        signs=signs,
+        directions=_directions(keys, spec),
         **options,  # type: ignore[arg-type]
     )
 
@@ -188,48 +205,8 @@ def _with_complexity(constants: ComplexArray, sigma: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(sigma**2 + np.maximum(excess, 0.0)))
 
 
-@dataclass(frozen=True, eq=False)
-class _Placed:
-    rows: IntArray
-    index: IntArray
-    nodes: tuple[int, ...]
-    points: FloatArray
-    signs: FloatArray
-    warnings: tuple[str, ...]
-
-
-def _place(dofs: tuple[Dof, ...], geometry: Geometry, axes: Axes, spec: Spec) -> _Placed:
-    """Find the DOFs that move along the model's z, and their points on the model."""
-    dim = 1 if spec.kind == "beam" else 2
-    along = np.array([geometry.direction(d) @ axes.rotation[2] for d in dofs]).reshape(-1)
-    rows = np.flatnonzero(np.abs(along) > 0.9)
-    warnings = []
-    if len(rows) < len(dofs):
-        others = ", ".join(sorted({str(d) for i, d in enumerate(dofs) if i not in set(rows.tolist())})[:5])
-        warnings.append(f"left out: not along the model's z: {others}")
-    nodes = tuple(dict.fromkeys(dofs[i].node for i in rows))
-    points = axes.to_model(geometry.at(nodes))[:, :dim] if nodes else np.zeros((0, dim))
-    _check_on(points, nodes, spec)
-    where = {node: i for i, node in enumerate(nodes)}
-    index = np.array([where[dofs[i].node] for i in rows], dtype=int)
-    return _Placed(rows, index, nodes, points, np.sign(along[rows]), tuple(warnings))
-
-
-def _check_on(points: FloatArray, nodes: tuple[int, ...], spec: Spec) -> None:
-    size = np.array([spec.length, spec.width][: points.shape[1]])
-    slack = 0.02 * spec.length
-    off = ((points < -slack) | (points > size + slack)).any(axis=1)
-    if off.any():
-        first = int(np.flatnonzero(off)[0])
-        raise StudyError(
-            f"test point {nodes[first]} lies at {np.round(points[first], 4).tolist()} m in model axes, off the "
-            f"{spec.kind} of {size.tolist()} m; check axes in [test], the units of the file, and the dimensions"
-        )
-
-
-def _point(node: int, responses: _Placed, references: _Placed) -> FloatArray:
-    placed = responses if node in responses.nodes else references
-    return np.asarray(placed.points[placed.nodes.index(node)])
+def _directions(keys: tuple[Key, ...], spec: Spec) -> FloatArray | None:
+    return np.array([d for _, d in keys]).reshape(-1, 3) if spec.imported is not None else None
 
 
 def _column(values: FloatArray | None, count: int) -> FloatArray:

@@ -15,13 +15,13 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from updating.environment import Environment
 from updating.measured import Measured
+from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
 from updating.models.damping import Matrices, damping_matrices
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State, combine
-from updating.models.structure import build_structure
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,9 +112,11 @@ class Predictor:
     @cached_property
     def reduced(self) -> Reduced:
         """The nominal model on its reduced basis."""
-        points = self.measured.points if len(self.measured.points) else np.zeros((1, len(self.spec.elements)))
+        points, directions = self.measured.points, self.measured.directions
+        if not len(points) and self.spec.imported is None:
+            points = np.zeros((1, self.spec.dim))
         modes = 30 if self.spec.kind == "beam" else 40
-        return reduce_structure(build_structure(self.spec), points, modes=modes)
+        return reduce_structure(build_structure(self.spec), points, directions, modes=modes)
 
     def once(self, name: str, build: Callable[[], FloatArray]) -> FloatArray:
         """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""
@@ -200,7 +202,7 @@ class Predictor:
     @cached_property
     def nominal_rows(self) -> dict[str, FloatArray]:
         """Displacement and slopes of the basis at the test points, each (n_points, r)."""
-        return self.reduced.rows(self.measured.points)
+        return self.reduced.rows(self.measured.points, self.measured.directions)
 
     def _rows(self, state: State) -> dict[str, FloatArray]:
         stretch = state.factors.get("length", 1.0)
@@ -231,7 +233,7 @@ class Predictor:
         return np.asarray(np.where(bare, d_left, d_left * right + left * d_right))
 
     def _slopes(self, shapes: dict[str, FloatArray]) -> FloatArray:
-        names = ("wx", "wy")[: self.measured.points.shape[1]]
+        names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         bare = self.measured.hit[:, None] < 0
         seen = shapes["w"][self.measured.seen]
         slopes = [
@@ -240,7 +242,7 @@ class Predictor:
         return np.stack(slopes)
 
     def _sensor_slopes(self, shapes: dict[str, FloatArray]) -> FloatArray:
-        names = ("wx", "wy")[: self.measured.points.shape[1]]
+        names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         hit = np.where(self.measured.hit[:, None] < 0, 1.0, shapes["w"][self.measured.hit])
         return np.stack([shapes[n][self.measured.seen] * hit for n in names])
 
@@ -285,7 +287,8 @@ class Predictor:
     def expects(self, state: State) -> bool:
         """Whether model, regions or the state say what damping to expect."""
         own = any(v is not None for r in self.spec.regions for v in (r.alpha, r.beta, r.loss_factor))
-        return self.spec.damping.known or own or bool(state.damping) or bool(state.dampers)
+        told = bool(state.damping) or bool(state.dampers) or state.ratios is not None
+        return self.spec.damping.known or own or told
 
     def _damping_matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
         """Return C and D; damping matrices in the state replace what the model expects."""
@@ -293,11 +296,16 @@ class Predictor:
         return damping_matrices(self.reduced, expected, state)
 
     def _ratios(self, state: State, count: int) -> FloatArray:
-        """Return the damping ratios that the modeller gives mode by mode, the last for all above [-]."""
-        given = self.spec.damping.ratios
-        if not given or state.damping:
+        """Return the damping ratios that state or modeller give mode by mode, the last for all above [-]."""
+        given = self._given(state)
+        if given is None:
             return np.zeros(count)
         return np.asarray(given, dtype=float)[np.minimum(np.arange(count), len(given) - 1)]
+
+    def _given(self, state: State) -> tuple[float, ...] | None:
+        if state.ratios is not None:
+            return state.ratios
+        return None if state.damping else self.spec.damping.ratios or None
 
     def matrices(self, state: State = NOMINAL) -> Matrices:
         """Return K, M, C and D of a state on top of ``base``; modal ratios enter C through the state's own modes.
@@ -310,7 +318,7 @@ class Predictor:
         total = self.base.plus(state)
         stiffness, mass = self.reduced.matrices(total)
         viscous, structural = self._damping_matrices(total)
-        if self.spec.damping.ratios and not total.damping:
+        if self._given(total) is not None:
             values, vectors = self.reduced.eigen(total)
             first = self.reduced.structure.rigid_modes
             rates = np.zeros(len(values))
@@ -319,15 +327,27 @@ class Predictor:
             )
             momenta = mass @ vectors
             viscous = viscous + (momenta * rates) @ momenta.T
-        return Matrices(stiffness, mass, viscous, structural)
+        return Matrices(stiffness, mass, viscous, structural, self.reduced.structure.rigid_modes)
 
     def complex_modes(self, state: State = NOMINAL) -> ComplexModes:
         """Return the damped modes of a state, exact for damping that is not proportional."""
         return complex_modes(self.matrices(state), rigid=self.reduced.structure.rigid_modes)
 
+    def point_rows(self, state: State = NOMINAL) -> FloatArray:
+        """Return the rows of the basis at the points of the test, shape (n_points, r)."""
+        total = self.base.plus(state)
+        return self._rows(total)["w"][:, : self.reduced.ranks[total.released]]
+
+    def point_slopes(self, state: State = NOMINAL) -> FloatArray:
+        """Return the slopes of those rows along the in-plane axes, shape (dim, n_points, r)."""
+        total = self.base.plus(state)
+        rows, size = self._rows(total), self.reduced.ranks[total.released]
+        names = [n for n in ("wx", "wy")[: self.measured.points.shape[1]] if n in rows]
+        return np.array([rows[n][:, :size] for n in names]).reshape(len(names), -1, size)
+
     def frf_rows(self, state: State = NOMINAL) -> tuple[FloatArray, FloatArray]:
         """Return the rows of the basis at the response and at the force of every FRF, each (n_frf, r)."""
-        rows = self._rows(self.base.plus(state))["w"][:, : self.reduced.ranks[self.base.plus(state).released]]
+        rows = self.point_rows(state)
         return rows[self.measured.seen], rows[self.measured.hit]
 
     def receptance(self, laplace: ComplexArray, state: State = NOMINAL) -> ComplexArray:

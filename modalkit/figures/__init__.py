@@ -5,6 +5,7 @@ from modalkit.figures.diagnosis import diagnosis_figure
 from modalkit.figures.frf import frf_figure
 from modalkit.figures.hits import hits_figure
 from modalkit.figures.matrix import auto_mac_figure, mac_figure
+from modalkit.figures.overlay import overlay_figure
 from modalkit.figures.save import save_figures
 from modalkit.figures.shapes import shapes_figure
 from modalkit.figures.stabilisation import stabilisation_figure
@@ -17,6 +18,7 @@ __all__ = [
     "frf_figure",
     "hits_figure",
     "mac_figure",
+    "overlay_figure",
     "save_figures",
     "shapes_figure",
     "stabilisation_figure",

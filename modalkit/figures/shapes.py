@@ -13,6 +13,7 @@ from matplotlib.tri import Triangulation
 
 from acquisition import Geometry, InputError, ModalData
 from acquisition.arrays import FloatArray, IntArray
+from modalkit.figures.layout import principal
 from modalkit.figures.style import (
     BLUE,
     INK,
@@ -119,7 +120,7 @@ def _from_modal(modal: ModalData) -> Shapes:
     values = (shapes * np.exp(-1j * angle)).real
     nodes = [modal.dofs[i].node for i in rows]
     placed = all(node in modal.geometry for node in nodes)
-    points = _principal(modal.geometry.at(nodes)) if placed else np.arange(1.0, len(rows) + 1)[:, None]
+    points = principal(modal.geometry.at(nodes)) if placed else np.arange(1.0, len(rows) + 1)[:, None]
     sigma = np.full(values.shape, np.nan) if modal.shape_sigma is None else modal.shape_sigma[rows]
     size = _sizes(values)
     lines = _lines(modal.geometry, nodes) if placed else None
@@ -134,21 +135,6 @@ def _lines(geometry: Geometry, nodes: list[int]) -> IntArray | None:
     drawn = geometry.lines
     pairs = [(row[int(a)], row[int(b)]) for a, b in drawn if int(a) in row and int(b) in row]
     return np.array(pairs, dtype=np.int64) if pairs else None
-
-
-def _principal(points: FloatArray) -> FloatArray:
-    """Keep the one or two coordinates in which the points lie apart; one along their line if it is oblique."""
-    spread = np.ptp(points, axis=0)
-    keep = np.flatnonzero(spread > 1e-3 * max(spread.max(), 1e-12))
-    centred = points - points.mean(axis=0)
-    _, strength, directions = np.linalg.svd(centred, full_matrices=False)
-    if len(strength) > 1 and strength[1] > 1e-3 * max(strength[0], 1e-12):
-        chosen = keep if len(keep) == 2 else np.sort(np.argsort(spread)[-2:])
-        return np.asarray(points[:, chosen])
-    if len(keep) == 1:
-        return np.asarray(points[:, keep])
-    along = centred @ directions[0]
-    return np.asarray((along - along.min())[:, None])
 
 
 def _sizes(values: FloatArray) -> FloatArray:
@@ -166,16 +152,45 @@ def _from_measured(measured: Measured, predictor: Predictor | None) -> Shapes:
         prediction = predictor.predict()
         paired = pair_modes(measured, prediction)
         measured, prediction = paired.measured, prediction.select(paired.order)
-        fine, shape = _evaluate(predictor, prediction.vectors)
+        if predictor.spec.imported is None:
+            fine, shape = _evaluate(predictor, prediction.vectors)
         frequency = prediction.frequency
     rows, place_of = _rows(measured)
     values, sigma = measured.constants[rows], np.abs(measured.constants_sigma[rows])
     size = _sizes(values)
     values, sigma, points = values / size, sigma / np.abs(size), measured.points[place_of]
-    if shape is not None and predictor is not None:
+    w = None
+    if predictor is not None:
         w = predictor.nominal_rows["w"][place_of][:, : prediction.vectors.shape[0]] @ prediction.vectors
-        shape = shape * (np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300))
+        level = np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300)
+        w, shape = w * level, None if shape is None else shape * level
+    if points.shape[1] > 2:
+        return _in_space(measured, place_of, values, sigma, w, frequency)
     return Shapes(measured.frequency, points, values, sigma, fine, shape, frequency)
+
+
+def _in_space(
+    measured: Measured,
+    place_of: IntArray,
+    values: FloatArray,
+    sigma: FloatArray,
+    model: FloatArray | None,
+    frequency: FloatArray | None,
+) -> Shapes:
+    """Draw points of imported matrices on their plane; point by point if they lie or move in several directions."""
+    points = measured.points[place_of]
+    along = np.zeros((1, 3)) if measured.directions is None else measured.directions[place_of]
+    strength = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if np.ptp(along, axis=0).max() < 0.1 and (len(strength) < 3 or strength[2] < 1e-3 * strength[0]):
+        return Shapes(measured.frequency, principal(points), values, sigma, None, None, frequency)
+    names = tuple(
+        f"{measured.nodes[i]}{'XYZ'[int(np.abs(d).argmax())]}" for i, d in zip(place_of, along, strict=True)
+    )
+    number = np.arange(1.0, len(points) + 1)
+    return Shapes(
+        measured.frequency, number[:, None], values, sigma, None if model is None else (number,), model, frequency,
+        placed=False, names=names,
+    )  # fmt: skip
 
 
 def _rows(measured: Measured) -> tuple[IntArray, IntArray]:

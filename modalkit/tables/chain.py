@@ -11,7 +11,8 @@ import pandas as pd
 from acquisition import InputError
 from modalkit.process import Session, open_study
 from modalkit.study import read_study
-from modalkit.tables.printed_a import Printed, PrintedTable
+from modalkit.tables.printed_a import TABLES, Printed, PrintedTable
+from updating import Case
 from updating.update import Update, update
 
 
@@ -42,11 +43,43 @@ class Walked:
         Rows of the update's pairs, one for each of the paper's modes.
     result : Update
         The update with unit weights on relative frequency.
+    case : Case
+        The test beside the model.
     """
 
     identified: np.ndarray
     pairs: pd.DataFrame
     result: Update
+    case: Case
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """A table's test with all its models.
+
+    Parameters
+    ----------
+    table : PrintedTable
+        As printed.
+    session : Session
+        The test, identified.
+    models : tuple of Walked
+        The models, in the order of the table.
+    """
+
+    table: PrintedTable
+    session: Session
+    models: tuple[Walked, ...]
+
+
+def walk_all(folder: Path) -> tuple[Walk, ...]:
+    """Work out all tests of paper A."""
+    return tuple(_walk_table(table, folder) for table in TABLES)
+
+
+def _walk_table(table: PrintedTable, folder: Path) -> Walk:
+    session = open_test(table, folder)
+    return Walk(table, session, tuple(walk(table, printed, session) for printed in table.models))
 
 
 def open_test(table: PrintedTable, folder: Path) -> Session:
@@ -76,4 +109,4 @@ def walk(table: PrintedTable, printed: Printed, session: Session) -> Walked:
         raise InputError(
             f"{session.study.path}: mode(s) {missing or list(table.modes)} were not identified or paired"
         )
-    return Walked(frequency[nearest], by_mode.loc[nearest + 1].reset_index(), result)
+    return Walked(frequency[nearest], by_mode.loc[nearest + 1].reset_index(), result, case)

@@ -2,37 +2,32 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 
-from modalkit.tables.chain import Walked, open_test, sample_folder, walk
-from modalkit.tables.printed_a import COLUMN_FACTOR, TABLES, Column, Printed, PrintedTable
+from modalkit.tables.chain import Walk, Walked, sample_folder, walk_all
+from modalkit.tables.printed_a import COLUMN_FACTOR, Column, Printed, PrintedTable
 from modalkit.tables.render import PaperTable
 
 
-def tables_a(folder: Path | None = None) -> list[PaperTable]:
+def tables_a(walks: Sequence[Walk] | None = None) -> list[PaperTable]:
     """Work out paper A's tables from the sample tests.
 
     Parameters
     ----------
-    folder : Path, optional
-        Where the sample studies are; left out, those that come with the package.
+    walks : sequence of Walk, optional
+        The tests, worked out before; left out, those of the samples that come with the package.
     """
-    return [_table(table, folder or sample_folder()) for table in TABLES]
+    return [_table(one) for one in (walk_all(sample_folder()) if walks is None else walks)]
 
 
-def _table(table: PrintedTable, folder: Path) -> PaperTable:
-    session = open_test(table, folder)
-    walked = [walk(table, printed, session) for printed in table.models]
-    rows = [_rows(table, p, w) for p, w in zip(table.models, walked, strict=True)]
-    factors = pd.concat(
-        [_factors(table, p, w) for p, w in zip(table.models, walked, strict=True)], ignore_index=True
-    )
-    return PaperTable(
-        "A", table.number, table.title, pd.concat(rows, ignore_index=True), factors, table.notes
-    )
+def _table(one: Walk) -> PaperTable:
+    table, both = one.table, list(zip(one.table.models, one.models, strict=True))
+    rows = pd.concat([_rows(table, p, w) for p, w in both], ignore_index=True)
+    factors = pd.concat([_factors(table, p, w) for p, w in both], ignore_index=True)
+    return PaperTable("A", table.number, table.title, rows, factors, table.notes)
 
 
 def _rows(table: PrintedTable, printed: Printed, walked: Walked) -> pd.DataFrame:
@@ -81,11 +76,16 @@ def _remark(printed: Printed, mode: int, row: tuple[int, int]) -> str:
 
 def _factors(table: PrintedTable, printed: Printed, walked: Walked) -> pd.DataFrame:
     ours = walked.result.parameters[0]
+    power = (
+        2 if table.parameter == "E" else -2
+    )  # frequencies go with the root of E, and against that of density
+    before, after = (_numbers(column) for column in (printed.before, printed.after))
     columns = {
         "model": [printed.program],
         "parameter": [table.parameter],
         "factor": [printed.factor],
         "factor, ours": [ours.factor],
+        "factor of the printed column": [float(np.nanmean((after / before) ** power))],
         "r.m.s. error before, ours [%]": [walked.result.rms_percent("before")],
         "r.m.s. error after, ours [%]": [walked.result.rms_percent("after")],
     }

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, EstimationError, FrfSet, StudyError
-from updating import Case, Material, Measured, Predictor, Spec
-from updating.correlation import correlate, model_frfs
+from updating import Case, Damping, Material, Measured, Predictor, Region, Spec
+from updating.correlation import correlate
+from updating.simulation import frf_set, simulated
 
 BEAM = Spec("beam", 0.4, 0.03, 0.005, (12,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))
 POINTS = 0.4 * np.arange(1, 7)[:, None] / 6
@@ -68,24 +69,69 @@ def test_nothing_in_common_is_an_error(model) -> None:
         correlate(Case("none", BEAM, seen(np.array([100.0]), left[:, :1])))
 
 
+def own_frfs(measured: Measured, *, spec: Spec = BEAM, turn: float = 1.0, **options: object) -> FrfSet:
+    """The FRFs of a model at the points of a test; ``turn`` < 0 is a sensor upside down."""
+    seen = simulated(Predictor(spec, measured))
+    dofs = [Dof(n, 3) for n in measured.nodes]
+    frfs = frf_set(seen, np.arange(0.0, 600.0), seen=measured.seen, hit=measured.hit, dofs=dofs, **options)
+    if turn > 0:
+        return frfs
+    return replace(frfs.scaled(-1.0), responses=tuple(Dof(d.node, -3) for d in frfs.responses))
+
+
 def test_frac_of_frfs_is_one_for_the_models_own_and_less_for_others(model) -> None:
     case = Case("frfs", BEAM, seen(model.frequency, model.constants))
-    whole = Predictor(BEAM, case.measured).predict()
-    damping = np.full(len(whole.frequency), 0.01)
-    points = [Dof(n, 3) for n in case.measured.nodes]
-    blank = FrfSet(np.arange(0.0, 600.0), np.ones((6, 600)), (points[-1],) * 6, tuple(points))
-    own = replace(blank, values=model_frfs(whole.frequency, damping, whole.constants, blank))
-    shifted = replace(blank, values=model_frfs(1.1 * whole.frequency, damping, whole.constants, blank))
-    assert correlate(case, own).frac["FRAC"].to_numpy() == pytest.approx(np.ones(6))
-    assert (correlate(case, shifted).frac["FRAC"] < 0.5).all()
+    damped = replace(BEAM, damping=Damping(ratios=(0.01,)))
+    stiffer = replace(damped, material=replace(BEAM.material, E=1.21 * 210e9))
+    found = correlate(case, own_frfs(case.measured, spec=damped))
+    assert found.frac["FRAC"].to_numpy() == pytest.approx(np.ones(6))
+    assert found.frfs is not None
+    assert found.frfs.damping.startswith("identified")
+    assert found.frfs.model.values == pytest.approx(found.frfs.measured.values)
+    assert (correlate(case, own_frfs(case.measured, spec=stiffer)).frac["FRAC"] < 0.5).all()
 
 
-def test_a_model_frf_is_the_textbook_one() -> None:
-    like = FrfSet(np.array([5.0, 6.0]), np.ones((1, 2)), (Dof(1, 3),), (Dof(1, 3),), "accelerance")
-    f, zeta, a = 7.0, 0.02, 3.0
-    found = model_frfs(np.array([f]), np.array([zeta]), np.array([[a]]), like)
-    r = np.array([5.0, 6.0]) / f
-    assert found[0] == pytest.approx(-a * r**2 / (1 - r**2 + 2j * zeta * r))
+@pytest.mark.parametrize("form", ["receptance", "mobility"])
+def test_the_models_frfs_point_as_the_transducers_do_and_keep_form_and_window(model, form) -> None:
+    spec = replace(BEAM, damping=Damping(beta=2e-5))
+    case = Case("turned", spec, seen(model.frequency, model.constants))
+    frfs = own_frfs(case.measured, spec=spec, turn=-1.0, form=form, decay=7.0)
+    found = correlate(case, frfs).frfs
+    assert found is not None
+    assert found.damping == "the model's own damping"
+    assert found.model.values == pytest.approx(frfs.values)
+    assert found.model.decay == 7.0
+
+
+def test_damping_by_region_couples_the_models_modes() -> None:
+    halves = (Region("bare", (0.0, 0.2), alpha=1.0), Region("taped", (0.2, 0.4), alpha=40.0))
+    spec = replace(BEAM, regions=halves)
+    stub = seen(np.array([26.0, 160.0, 450.0, 900.0]), np.ones((6, 4)))
+    predicted = Predictor(spec, stub).predict(count=4)
+    case = Case("regions", spec, seen(predicted.frequency, predicted.constants))
+    found = correlate(case, own_frfs(case.measured, spec=spec)).frfs
+    assert found is not None
+    proportional = replace(spec, regions=(), damping=Damping(ratios=tuple(predicted.damping)))
+    assert found.model.values == pytest.approx(found.measured.values)
+    other = own_frfs(case.measured, spec=proportional).values[:, 1:]
+    assert np.abs(other - found.model.values).max() > 1e-3 * np.abs(other).max()
+
+
+def test_what_nobody_says_of_damping_is_said(model) -> None:
+    silent = replace(seen(model.frequency, model.constants), damping=np.full(4, np.nan))
+    found = correlate(Case("silent", BEAM, silent), own_frfs(silent, spec=BEAM)).frfs
+    assert found is not None
+    assert "0.5 %" in found.damping
+
+
+def test_an_accepted_window_and_gain_are_in_the_models_frfs(model) -> None:
+    spec = replace(BEAM, damping=Damping(alpha=3.0))
+    off = {"accepted": (("exponential_window", {"decay": 2.0}), ("calibration_gain", {"gain": 1.1}))}
+    case = Case("off", spec, seen(model.frequency, model.constants), **off)
+    found = correlate(case, own_frfs(case.measured, spec=spec)).frfs
+    assert found is not None
+    beside = own_frfs(case.measured, spec=spec, decay=2.0)
+    assert found.model.values == pytest.approx(1.1 * beside.values[:, 1:])
 
 
 def test_frfs_of_another_test_are_refused(model) -> None:

@@ -79,7 +79,7 @@ def test_every_effect_speaks_of_itself(name: str) -> None:
     assert effect.channel in ("stiffness", "mass", "damping", "measurement")
     for text in (effect.summary, effect.footprint, effect.separated_by, type(effect).__doc__ or ""):
         assert len(text) > 20
-    assert set(effect.models) <= {"beam", "plate"}
+    assert set(effect.models) <= {"beam", "plate", "matrices"}
     assert set(effect.equivalent_to) <= set(CONTRACT), "an equivalent that nobody knows"
     assert 0 <= effect.fidelity < 0.2
 

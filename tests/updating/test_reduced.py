@@ -11,10 +11,10 @@ from updating_cases import BEAM, PLATE, ExactBeam, blank
 
 from updating import Predictor, Region, Spec, build_structure
 from updating.effects.clamp import edge_slopes
+from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.reduced import Reduced
 from updating.models.state import NOMINAL, State, combine
-from updating.models.structure import Structure
 
 FINE = BEAM.with_elements(60)
 POINTS = np.linspace(0.0752, 0.376, 5)

@@ -18,8 +18,8 @@ from updating.diagnosis.before import Before
 from updating.effects.base import Effect
 from updating.matching import match
 from updating.measured import Measured
+from updating.models.base import FACTORS
 from updating.models.state import State
-from updating.models.structure import FACTORS
 from updating.prediction import Prediction, Predictor
 from updating.tolerances import Tolerances
 
@@ -113,8 +113,9 @@ class Problem:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Factors with a tolerance."""
-        return tuple(n for n in FACTORS if self.tolerances.factors.get(n, 0.0) > 0)
+        """Factors with a tolerance that the model knows."""
+        known = {name for term in self.predictor.reduced.structure.terms for name in term.powers}
+        return tuple(n for n in FACTORS if n in known and self.tolerances.factors.get(n, 0.0) > 0)
 
     @property
     def reach(self) -> int:

@@ -69,7 +69,7 @@ class Search:
 
 def examine(problem: Problem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
     """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
-    obstacles = {effect.name: effect.obstacle(problem.predictor) for effect in library}
+    obstacles = {effect.name: effect.why_not(problem.predictor) for effect in library}
     possible = [effect for effect in library if obstacles[effect.name] is None]
     return possible, {name: why for name, why in obstacles.items() if why is not None}
 

@@ -59,7 +59,7 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, float])
     there_already = (
         name == "shear" and predictor.spec.theory == "timoshenko"
     )  # the second look, on the better theory
-    if not there_already and (obstacle := effect.obstacle(predictor)) is not None:
+    if not there_already and (obstacle := effect.why_not(predictor)) is not None:
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
     takes = {parameter.name for parameter in effect.parameters(predictor)}
     if set(values) != takes:

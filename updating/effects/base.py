@@ -100,6 +100,13 @@ class Effect(ABC):
         """Return why the effect cannot be examined on this specimen and test, or None."""
         return None
 
+    def why_not(self, predictor: Predictor) -> str | None:
+        """Return why the effect is left out: it does not apply to this kind of model, or an obstacle; or None."""
+        kind = predictor.spec.kind
+        if kind == "matrices" and kind not in self.models:
+            return "not for imported matrices"
+        return self.obstacle(predictor)
+
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Return prior quantiles from which the search for the best values starts."""
         count = len(self.parameters(predictor))
@@ -123,4 +130,6 @@ def bending_stiffness(spec: Spec) -> float:
 
 def total_mass(spec: Spec) -> float:
     """Return the mass of the bare structure [kg]."""
+    if spec.imported is not None:
+        return spec.imported.total_mass
     return spec.material.density * spec.length * spec.width * spec.thickness

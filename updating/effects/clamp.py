@@ -8,9 +8,10 @@ from scipy import sparse
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, bending_stiffness
 from updating.effects.length import clamped_places
+from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.state import State
-from updating.models.structure import Structure
+from updating.models.structure import FieldStructure
 from updating.prediction import Predictor
 
 
@@ -58,6 +59,7 @@ def _edge_slopes(predictor: Predictor) -> FloatArray:
 
 def edge_slopes(structure: Structure) -> Sparse:
     """Integrate the square of the slope across every clamped edge of the full model [m in w]."""
+    assert isinstance(structure, FieldStructure)
     spec, fields = structure.spec, structure.fields
     total = Sparse((fields.n_dofs, fields.n_dofs))
     for edge in spec.clamped:

@@ -34,6 +34,7 @@ class Modulus(FactorEffect):
     channel = "stiffness"
     summary = "The modulus of elasticity differs from the model's by more than its tolerance."
     footprint = "All frequencies by one factor, shapes and modal constants unchanged."
+    models = ("beam", "plate", "matrices")
     equivalent_to = ("density", "thickness", "length")
     separated_by = "absolute level (calibrated FRFs), a known added mass, or a measured density"
     factors = ("E",)
@@ -50,6 +51,7 @@ class Density(FactorEffect):
     footprint = (
         "All frequencies by one factor; modal constants by the inverse square of that factor's inverse."
     )
+    models = ("beam", "plate", "matrices")
     equivalent_to = ("E", "thickness", "length", "fluid_added_mass")
     separated_by = "weigh the specimen; absolute level; a known added mass"
     factors = ("density",)
@@ -78,6 +80,7 @@ class SectionScale(FactorEffect):
     channel = "stiffness"
     summary = "Stiffness and mass are off by the same factor, as if the width were wrong."
     footprint = "Frequencies and shapes unchanged, modal constants in inverse proportion."
+    models = ("beam", "plate", "matrices")
     equivalent_to = ("calibration_gain",)
     separated_by = "a caliper; a calibration of the measurement chain with a known mass"
     factors = ("section",)

@@ -60,7 +60,7 @@ class LocalStiffness(Effect):
 
     def _softening(self, predictor: Predictor, values: Values) -> FloatArray:
         """Return the share of the stiffness lost at every quadrature point [-]: a box with soft edges."""
-        points = predictor.reduced.structure.fields.points
+        points = predictor.reduced.fields.points
         centre = np.array([values[name] for name in ("x", "y")[: points.shape[1]]])
         spacing = np.array([predictor.spec.length, predictor.spec.width])[: points.shape[1]]
         edge = np.maximum(values["extent"] / 8, 0.25 * spacing / np.array(predictor.spec.elements))
@@ -75,7 +75,7 @@ class LocalStiffness(Effect):
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return the compliance, the integral of EI0/EI - 1: what the data determine."""
         lost = self._softening(predictor, values)
-        weights = predictor.reduced.structure.fields.weights
+        weights = predictor.reduced.fields.weights
         across = 1.0 if predictor.spec.kind == "beam" else values["extent"]
         compliance = float(weights @ (1 / (1 - lost) - 1)) / across
         return {"compliance": (compliance, "m")}

@@ -19,6 +19,7 @@ class SensorMass(Effect):
     footprint = (
         "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
     )
+    models = ("beam", "plate", "matrices")
     equivalent_to = ("lumped_mass",)
     separated_by = "weigh the sensor, or add a second known mass beside it"
     fidelity = 0.01
@@ -42,19 +43,19 @@ class SensorMass(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the mass at every sensor."""
-        rows = predictor.once("sensors", lambda: predictor.reduced.rows(sensor_places(predictor))["w"])
-        return State(mass=(values["mass"] * rows.T @ rows,))
+        unit = predictor.once("sensors", lambda: predictor.reduced.unit_mass(sensor_places(predictor)))
+        return State(mass=(values["mass"] * unit,))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return the sensors."""
         points = sensor_places(predictor)
-        return tuple((float(p[0]), float(p[1]) if len(p) > 1 else 0.0, 0.0) for p in points)
+        padded = np.hstack([points, np.zeros((len(points), 3 - points.shape[1]))])
+        return tuple((float(x), float(y), float(z)) for x, y, z in padded)
 
 
 def sensor_places(predictor: Predictor) -> FloatArray:
     """Return where sensors sit, (n, dim) [m]: as the data say, else where the modeller put masses."""
     test, spec = predictor.measured, predictor.spec
     if test.sensors:
-        return np.asarray(test.points[list(test.sensors)])
-    dim = 1 if spec.kind == "beam" else 2
-    return np.array([mass.at[:dim] for mass in spec.masses], dtype=float).reshape(-1, dim)
+        return np.unique(test.points[list(test.sensors)], axis=0)
+    return np.array([mass.at[: spec.dim] for mass in spec.masses], dtype=float).reshape(-1, spec.dim)

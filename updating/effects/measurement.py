@@ -16,6 +16,7 @@ class ExponentialWindow(Effect):
     channel = "measurement"
     summary = "An exponential window is still in the damping: it adds one decay rate to every mode."
     footprint = "Damping ratios rise in inverse proportion to frequency; nothing else changes."
+    models = ("beam", "plate", "matrices")
     equivalent_to = ("uniform_damping",)
     separated_by = "the analyser's settings, or a repeat with another window or a longer record"
 
@@ -44,6 +45,7 @@ class CalibrationGain(Effect):
         "The calibration of the measurement chain is off: every FRF is too large or too small by one factor."
     )
     footprint = "Modal constants by one factor; frequencies, damping and shapes unchanged."
+    models = ("beam", "plate", "matrices")
     equivalent_to = ("section_scale",)
     separated_by = "a calibration with a known free mass"
 

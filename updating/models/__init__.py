@@ -1,6 +1,18 @@
 """Models of beams, plates and imported matrices, as sums over regions."""
 
+from updating.models.base import Structure, Term
+from updating.models.build import build_structure
 from updating.models.spec import Damping, Material, PointMass, Region, Spec
-from updating.models.structure import Structure, Term, build_structure
+from updating.models.structure import FieldStructure
 
-__all__ = ["Damping", "Material", "PointMass", "Region", "Spec", "Structure", "Term", "build_structure"]
+__all__ = [
+    "Damping",
+    "FieldStructure",
+    "Material",
+    "PointMass",
+    "Region",
+    "Spec",
+    "Structure",
+    "Term",
+    "build_structure",
+]

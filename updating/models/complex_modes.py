@@ -46,7 +46,7 @@ def complex_modes(matrices: Matrices, *, rigid: int = 0) -> ComplexModes:
     ComplexModes
         All elastic modes of the reduced model that oscillate.
     """
-    values, vectors = linalg.eigh(matrices.stiffness, matrices.mass)
+    values, vectors = matrices.undamped
     viscous = vectors.T @ matrices.viscous @ vectors
     structural = vectors.T @ matrices.structural @ vectors
     n = len(values)

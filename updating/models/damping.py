@@ -7,8 +7,10 @@ the hysteretic part i eta_k K_k. A region's own coefficient takes the place of t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from scipy import linalg
 
 from acquisition.arrays import FloatArray
 from updating.models.reduced import Reduced
@@ -17,6 +19,9 @@ from updating.models.state import State
 
 COEFFICIENTS = ("alpha", "beta", "loss_factor")
 """Damping proportional to mass [1/s], to stiffness [s], and structural [-]."""
+
+ROUNDING = 1e-4
+"""Eigenvalues of a free body under this share of its first elastic one are rounding [-]."""
 
 WHOLE = -1
 """The region number that stands for the whole structure."""
@@ -34,12 +39,24 @@ class Matrices:
         C [SI].
     structural : (r, r) array
         D, stiffness times loss factor; zero for viscous damping alone [SI].
+    rigid : int
+        Number of rigid-body modes, whose stiffness is rounding and is taken as none.
     """
 
     stiffness: FloatArray
     mass: FloatArray
     viscous: FloatArray
     structural: FloatArray
+    rigid: int = 0
+
+    @cached_property
+    def undamped(self) -> tuple[FloatArray, FloatArray]:
+        """Eigenvalues [rad^2/s^2] and mass-normalised vectors of K and M; what is rounding is 0 of a rigid body."""
+        values, vectors = linalg.eigh(self.stiffness, self.mass)
+        if self.rigid:
+            rounding = values[: self.rigid] < ROUNDING * values[min(self.rigid, len(values) - 1)]
+            values[: self.rigid][rounding] = 0.0
+        return values, vectors
 
 
 def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, FloatArray]:
@@ -52,7 +69,7 @@ def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, 
     damping : Damping
         The model's coefficients.
     state : State
-        Its ``dampers`` take the place of both.
+        Its ``dampers`` take the place of both, and its ``ratios`` that of all coefficients.
 
     Returns
     -------
@@ -60,8 +77,11 @@ def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, 
         Coefficients [1/s, s, -]; the last is that of the structure outside all regions.
     """
     regions = reduced.structure.spec.regions
-    found = {}
+    found: dict[str, FloatArray] = {}
     for name in COEFFICIENTS:
+        if state.ratios is not None:
+            found[name] = np.zeros(len(regions) + 1)
+            continue
         given = state.dampers.get((WHOLE, name), getattr(damping, name))
         general = 0.0 if given is None else float(given)
         values = np.full(len(regions) + 1, general)

@@ -14,12 +14,14 @@ from functools import cached_property
 import numpy as np
 from scipy import linalg as dense
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
-from acquisition.arrays import FloatArray, IntArray
-from updating.models.fields import Sparse
+from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
+from updating.models.base import FACTORS, Structure
+from updating.models.fields import Fields, Sparse
 from updating.models.state import State
-from updating.models.structure import FACTORS, Structure, Term
+from updating.models.structure import FieldStructure
+from updating.models.terms import product
 
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
@@ -46,23 +48,31 @@ class Reduced:
     @cached_property
     def sampled(self) -> dict[str, FloatArray]:
         """Fields of the basis at the quadrature points, each (n_points, r)."""
-        return {n: np.asarray(m @ self.basis) for n, m in self.structure.fields.sampled.items()}
+        return {n: np.asarray(m @ self.basis) for n, m in self._fielded.fields.sampled.items()}
+
+    @property
+    def fields(self) -> Fields:
+        """The fields of a structure that has some.
+
+        Raises
+        ------
+        StudyError
+            If the structure is given by imported matrices.
+        """
+        return self._fielded.fields
+
+    @property
+    def _fielded(self) -> FieldStructure:
+        if not isinstance(self.structure, FieldStructure):
+            raise StudyError(
+                "imported matrices have no fields: nothing can be changed at a place inside them"
+            )
+        return self.structure
 
     @cached_property
     def parts(self) -> tuple[FloatArray, ...]:
         """Matrix of every term and region, each term (n_regions + 1, r, r) [SI]; the last is no region."""
-        count = len(self.structure.spec.regions)
-        region = self.structure.region_of
-        masks = [np.flatnonzero(region == (i if i < count else -1)) for i in range(count + 1)]
-        return tuple(np.stack([self._product(t, rows) for rows in masks]) for t in self.structure.terms)
-
-    def _product(self, term: Term, rows: IntArray, weights: FloatArray | None = None) -> FloatArray:
-        left, right = self.sampled[term.left][rows], self.sampled[term.right][rows]
-        coefficient = term.coefficient[rows]
-        if weights is not None:
-            coefficient = coefficient * weights
-        part = left.T @ (coefficient[:, None] * right)
-        return np.asarray((part + part.T) / 2)
+        return self.structure.region_products(self.basis)
 
     def weighted(
         self, kind: str, weights: FloatArray, factors: Mapping[str, float] | None = None
@@ -84,9 +94,9 @@ class Reduced:
         """
         rows = np.flatnonzero(weights)
         total = np.zeros((self.basis.shape[1],) * 2)
-        for term in self.structure.terms:
+        for term in self._fielded.terms:
             if term.kind == kind:
-                total += self._product(term, rows, weights[rows]) * term.scale(factors or {})
+                total += product(term, self.sampled, rows, weights[rows]) * term.scale(factors or {})
         return total
 
     @cached_property
@@ -131,9 +141,22 @@ class Reduced:
                 change[term.kind] += power * term.scale(state.factors) * parts[:n, :n]
         return change["stiffness"], change["mass"]
 
-    def rows(self, points: FloatArray) -> dict[str, FloatArray]:
-        """Return displacement and slopes of the basis at points (n_points, dim) [m], each (n_points, r)."""
-        return {n: np.asarray(m @ self.basis) for n, m in self.structure.fields.at(points).items()}
+    def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, FloatArray]:
+        """Return displacement and slopes of the basis at points (n_points, dim) [m], each (n_points, r).
+
+        Parameters
+        ----------
+        points : (n_points, dim) array
+            Places in model axes [m].
+        directions : (n_points, 3) array, optional
+            Unit vectors along which the displacement is meant; left out, the model's z.
+        """
+        rows = self.structure.rows(points, directions)
+        return {n: np.asarray(m @ self.basis) for n, m in rows.items()}
+
+    def unit_mass(self, points: FloatArray) -> FloatArray:
+        """Return the mass matrix of 1 kg at each of some points (n_points, dim) [m], shape (r, r) [-]."""
+        return np.asarray(self.basis.T @ (self.structure.unit_mass(points) @ self.basis))
 
     def eigen(self, state: State) -> tuple[FloatArray, FloatArray]:
         """Return all eigenvalues [rad^2/s^2] and mass-normalised vectors of a state in the reduced basis."""
@@ -142,7 +165,9 @@ class Reduced:
         return values, vectors
 
 
-def reduce_structure(structure: Structure, points: FloatArray, *, modes: int = 30) -> Reduced:
+def reduce_structure(
+    structure: Structure, points: FloatArray, directions: FloatArray | None = None, *, modes: int = 30
+) -> Reduced:
     """Build the reduced basis of a structure.
 
     Parameters
@@ -151,6 +176,8 @@ def reduce_structure(structure: Structure, points: FloatArray, *, modes: int = 3
         The full model.
     points : (n_points, dim) array
         Test points, whose static answers join the basis [m].
+    directions : (n_points, 3) array, optional
+        Directions in which they move; left out, the model's z.
     modes : int
         Number of nominal modes kept beside the rigid-body modes.
 
@@ -160,14 +187,13 @@ def reduce_structure(structure: Structure, points: FloatArray, *, modes: int = 3
     """
     mass = structure.matrix("mass")
     stiffness = structure.matrix("stiffness")
-    unknowns = len(structure.free())
+    unknowns = structure.unknowns
     count = unknowns if unknowns <= SMALL else min(modes + structure.rigid_modes, unknowns)
     values, vectors = structure.eigen(count)
-    clamped = (
-        vectors
-        if count == unknowns
-        else _extend(vectors, _static_answers(structure, stiffness, mass, values, vectors, points), mass)
-    )
+    clamped = vectors
+    if count < unknowns:
+        loads = structure.rows(points, directions)["w"].toarray().T
+        clamped = _extend(vectors, _static_answers(structure, mass, values, vectors, loads), mass)
     ranks = {frozenset[str](): clamped.shape[1]}
     basis = clamped
     if structure.fixed:
@@ -191,42 +217,17 @@ def _extend(basis: FloatArray, extra: FloatArray, mass: Sparse, *, tolerance: fl
 
 
 def _static_answers(
-    structure: Structure,
-    stiffness: Sparse,
-    mass: Sparse,
-    values: FloatArray,
-    vectors: FloatArray,
-    points: FloatArray,
+    structure: Structure, mass: Sparse, values: FloatArray, vectors: FloatArray, loads: FloatArray
 ) -> FloatArray:
-    """Solve for the static answers to softening each region in the low modes and to a force at each point."""
-    free = structure.free()
+    """Solve for the static answers to softening each region in the low modes and to loads (n_dofs, n)."""
     elastic = vectors[:, structure.rigid_modes :]
-    shift = 1e-3 * values[structure.rigid_modes] if structure.rigid_modes else 0.0
-    solve = splu((stiffness + shift * mass)[free][:, free].tocsc())
-    loads = [structure.fields.at(points)["w"].toarray().T, _softenings(structure, elastic)]
-    load = np.hstack(loads)[free]
-    answer = np.zeros((structure.fields.n_dofs, load.shape[1]))
-    answer[free] = solve.solve(load)
+    shift = 1e-3 * float(values[structure.rigid_modes]) if structure.rigid_modes else 0.0
+    answer = structure.solve(np.hstack([loads, structure.softenings(elastic)]), shift)
     lengths = np.sqrt(np.einsum("ij,ij->j", answer, mass @ answer))
     moves = lengths > 0  # a force on a clamped edge moves nothing
     answer, lengths = answer[:, moves], lengths[moves]
     left, size, _ = np.linalg.svd(_remove(answer / lengths, vectors, mass), full_matrices=False)
-    return left[:, (size > 1e-8 * size.max()).nonzero()[0]]
-
-
-def _softenings(structure: Structure, elastic: FloatArray) -> FloatArray:
-    """Return the loads that a softened place feels: moments per element of a beam, modal forces per region."""
-    if structure.fields.dim == 1:
-        bending, n = structure.terms[0], structure.fields.n_dofs
-        elements = structure.fields.components[0].basis.nelems
-        field = (structure.fields.sampled[bending.left].T @ sparse.diags_array(bending.coefficient)).toarray()
-        slope = np.tile(structure.fields.components[0].basis.X[0] - 0.5, elements)
-        loads = [(field * shape).reshape(n, elements, -1).sum(axis=2) for shape in (1.0, slope)]
-        return np.hstack(loads)
-    low = elastic[:, : min(4, elastic.shape[1])]
-    regions = range(len(structure.spec.regions))
-    masks = [(structure.region_of == index).astype(float) for index in regions]
-    return np.hstack([structure.matrix("stiffness", mask) @ low for mask in masks])
+    return np.asarray(left[:, (size > 1e-8 * size.max()).nonzero()[0]])
 
 
 def _remove(answer: FloatArray, vectors: FloatArray, mass: Sparse) -> FloatArray:
@@ -241,7 +242,7 @@ def _released_shapes(
     count = min(12, modes)
     shapes = []
     for ratio in (1e-1, 1e-4):
-        spring = np.zeros(structure.fields.n_dofs)
+        spring = np.zeros(structure.n_dofs)
         spring[freed] = ratio * np.abs(stiffness.diagonal()[freed])
         held = Sparse(stiffness + sparse.diags_array(spring))
         shapes.append(structure.eigen(count, stiffness=held, released=released)[1])

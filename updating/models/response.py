@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import linalg
 
 from acquisition.arrays import ComplexArray, FloatArray
 from updating.models.damping import Matrices
@@ -31,20 +30,25 @@ def answers(matrices: Matrices, loads: FloatArray, laplace: ComplexArray) -> Com
     laplace : (n_lines,) complex array
         Where in the Laplace plane, i omega + sigma where a window's decay is in the data [1/s].
     """
-    values, vectors = linalg.eigh(matrices.stiffness, matrices.mass)
+    values, vectors = matrices.undamped
     viscous = vectors.T @ matrices.viscous @ vectors
     structural = vectors.T @ matrices.structural @ vectors
     forces = vectors.T @ loads
     if _diagonal(viscous) and _diagonal(structural):
         s = laplace[:, None]
         dynamic = s**2 + s * np.diag(viscous) + values + 1j * np.diag(structural)
-        return np.asarray(np.einsum("ir,lr,rk->lik", vectors, 1 / dynamic, forces, optimize=True))
+        return on_each_line(vectors, forces / dynamic[:, :, None])
     static = np.diag(values) + 1j * structural
     found = []
     for first in range(0, len(laplace), CHUNK):
         s = laplace[first : first + CHUNK, None, None]
         found.append(np.linalg.solve(s**2 * np.eye(len(values)) + s * viscous + static, forces[None]))
-    return np.asarray(vectors @ np.concatenate(found))
+    return on_each_line(vectors, np.concatenate(found))
+
+
+def on_each_line(matrix: FloatArray | ComplexArray, states: FloatArray | ComplexArray) -> ComplexArray:
+    """Multiply a matrix (m, r) with the states (n_lines, r, k) of every line, in one product of matrices."""
+    return np.asarray(np.moveaxis(np.tensordot(matrix.astype(complex), states, axes=(1, 1)), 0, 1))
 
 
 def _diagonal(matrix: FloatArray) -> bool:

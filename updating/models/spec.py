@@ -3,12 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from acquisition.errors import StudyError
 
-Kind = Literal["beam", "plate"]
-Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko", "kirchhoff"]
+if TYPE_CHECKING:
+    from updating.models.imported.matrices import Imported
+
+Kind = Literal["beam", "plate", "matrices"]
+Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko", "kirchhoff", "imported"]
+
+EDGES = {"beam": {"x0", "x1"}, "plate": {"x0", "x1", "y0", "y1"}, "matrices": set[str]()}
+"""Edges that can be clamped; imported matrices come with their supports."""
+
+THEORIES = {
+    "beam": {"euler-bernoulli", "rayleigh", "timoshenko"},
+    "plate": {"kirchhoff"},
+    "matrices": {"imported"},
+}
+"""Theories of each kind of model."""
+
+DIMENSIONS = {"beam": 1, "plate": 2, "matrices": 3}
+"""How many coordinates a place on the model has."""
 
 
 @dataclass(frozen=True)
@@ -105,20 +121,20 @@ class Damping:
 
 @dataclass(frozen=True)
 class Spec:
-    """A beam or a rectangular plate: x from 0 to length, y from 0 to width, hit along z.
+    """A beam or a rectangular plate: x from 0 to length, y from 0 to width, hit along z; or imported matrices.
 
     Parameters
     ----------
-    kind : {"beam", "plate"}
+    kind : {"beam", "plate", "matrices"}
         What it is.
     length, width, thickness : float
-        Dimensions along x, y and z [m].
+        Dimensions along x, y and z; of imported matrices the extents of their nodes [m].
     elements : tuple of int
-        Number of elements along x, and along y for a plate.
+        Number of elements along x, and along y for a plate; empty for matrices.
     clamped : tuple of str
         Clamped edges, of x0, x1 and for plates y0, y1; empty is free.
     theory : str
-        euler-bernoulli, rayleigh (with rotary inertia) or timoshenko for beams, kirchhoff for plates.
+        euler-bernoulli, rayleigh (with rotary inertia) or timoshenko for beams, kirchhoff for plates; imported.
     material : Material
         Material of everything that no region overrides.
     regions : tuple of Region
@@ -127,6 +143,8 @@ class Spec:
         Masses the modeller knows of.
     damping : Damping
         What the modeller expects.
+    imported : Imported, optional
+        The matrices, where they are given.
 
     Raises
     ------
@@ -145,25 +163,35 @@ class Spec:
     regions: tuple[Region, ...] = ()
     masses: tuple[PointMass, ...] = ()
     damping: Damping = field(default_factory=Damping)
+    imported: Imported | None = None
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "thickness"):
             if not getattr(self, name) > 0:
                 raise StudyError(f"model: {name} must be positive, found {getattr(self, name)}")
-        edges = {"beam": {"x0", "x1"}, "plate": {"x0", "x1", "y0", "y1"}}[self.kind]
+        edges = EDGES[self.kind]
         if unknown := set(self.clamped) - edges:
             raise StudyError(f"model: a {self.kind} has no edge {sorted(unknown)}; use {sorted(edges)}")
-        theories = {"beam": {"euler-bernoulli", "rayleigh", "timoshenko"}, "plate": {"kirchhoff"}}[self.kind]
+        theories = THEORIES[self.kind]
         if self.theory not in theories:
             raise StudyError(f"model: no theory {self.theory!r} for a {self.kind}; use {sorted(theories)}")
-        if len(self.elements) != (1 if self.kind == "beam" else 2) or min(self.elements) < 1:
+        if (
+            len(self.elements) != (0 if self.kind == "matrices" else self.dim)
+            or min(self.elements, default=1) < 1
+        ):
             raise StudyError(f"model: elements = {list(self.elements)} does not fit a {self.kind}")
-        if short := [list(m.at) for m in self.masses if len(m.at) < len(self.elements)]:
+        if short := [list(m.at) for m in self.masses if len(m.at) < self.dim]:
             raise StudyError(
-                f"model: mass at {short[0]} needs {len(self.elements)} coordinates on a {self.kind}"
+                f"model: mass at {short[0]} needs {self.dim} coordinates on "
+                + ("imported matrices" if self.kind == "matrices" else f"a {self.kind}")
             )
         if not self.regions:
             object.__setattr__(self, "regions", _default_regions(self))
+
+    @property
+    def dim(self) -> int:
+        """How many coordinates a place on the model has: 1 for a beam, 2 for a plate, 3 for matrices."""
+        return DIMENSIONS[self.kind]
 
     def with_theory(self, theory: Theory) -> Spec:
         """Return the same specimen under another theory."""

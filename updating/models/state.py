@@ -27,6 +27,9 @@ class State:
         Factors on one region [-].
     dampers : mapping of (region index, coefficient) to float
         Values that take the place of alpha [1/s], beta [s] or loss_factor [-]; index -1 is the whole structure.
+    ratios : tuple of float, optional
+        Damping ratios of the elastic modes in place of all coefficients, the last for all modes above: those
+        identified, for instance [-].
     stiffness, mass, damping : tuple of (r, r) arrays
         Matrices added in the coordinates of the reduced basis [SI].
     released : frozenset of str
@@ -42,6 +45,7 @@ class State:
     factors: Mapping[str, float] = field(default_factory=_nothing)
     regional: Mapping[tuple[int, str], float] = field(default_factory=lambda: MappingProxyType({}))
     dampers: Mapping[tuple[int, str], float] = field(default_factory=lambda: MappingProxyType({}))
+    ratios: tuple[float, ...] | None = None
     stiffness: tuple[FloatArray, ...] = ()
     mass: tuple[FloatArray, ...] = ()
     damping: tuple[FloatArray, ...] = ()
@@ -62,6 +66,7 @@ class State:
             MappingProxyType(factors),
             MappingProxyType(regional),
             MappingProxyType({**self.dampers, **other.dampers}),
+            self.ratios if other.ratios is None else other.ratios,
             self.stiffness + other.stiffness,
             self.mass + other.mass,
             self.damping + other.damping,

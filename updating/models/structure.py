@@ -15,52 +15,18 @@ from types import MappingProxyType
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse import linalg
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.errors import StudyError
+from updating.models.base import Structure
 from updating.models.fields import Fields, Sparse, beam_fields, plate_fields, timoshenko_fields
 from updating.models.spec import Region, Spec
-
-FACTORS = ("E", "density", "thickness", "width", "length", "section", "area", "inertia")
-"""What a model can be scaled by; ``section`` scales stiffness and mass alike, ``area`` and ``inertia`` are a beam's."""
-
-
-@dataclass(frozen=True, eq=False)
-class Term:
-    """One energy term of the model.
-
-    Parameters
-    ----------
-    kind : {"stiffness", "mass"}
-        Which matrix it belongs to.
-    left, right : str
-        Names of the two fields; the matrix is symmetrised when they differ.
-    coefficient : (n_points,) array
-        Physical coefficient at the quadrature points, times their weights [SI].
-    powers : mapping
-        Power of the term in each factor; what is missing is 0, but every term grows with ``section`` [-].
-    """
-
-    kind: str
-    left: str
-    right: str
-    coefficient: FloatArray
-    powers: Mapping[str, float]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "powers", MappingProxyType({"section": 1.0, **self.powers}))
-
-    def scale(self, factors: Mapping[str, float]) -> float:
-        """Return the product of the factors to their powers [-]."""
-        scale = 1.0
-        for name, value in factors.items():
-            scale *= value ** self.powers.get(name, 0.0)
-        return scale
+from updating.models.state import State
+from updating.models.terms import FieldTerm, beam_terms, plate_terms, product
 
 
 @dataclass(frozen=True, eq=False)
-class Structure:
+class FieldStructure(Structure):
     """A finite-element model of a beam or a plate, ready to be reduced or solved.
 
     Parameters
@@ -69,7 +35,7 @@ class Structure:
         What it is a model of.
     fields : Fields
         Its fields.
-    terms : tuple of Term
+    terms : tuple of FieldTerm
         Its stiffness and mass.
     region_of : (n_points,) int array
         Region in which each quadrature point lies, -1 for none.
@@ -79,9 +45,14 @@ class Structure:
 
     spec: Spec
     fields: Fields
-    terms: tuple[Term, ...]
+    terms: tuple[FieldTerm, ...]
     region_of: IntArray
     fixed: Mapping[str, IntArray] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def n_dofs(self) -> int:
+        """Number of degrees of freedom before any is fixed."""
+        return self.fields.n_dofs
 
     def matrix(self, kind: str, weights: FloatArray | float = 1.0) -> Sparse:
         """Assemble the stiffness or mass matrix over all degrees of freedom [SI].
@@ -116,12 +87,49 @@ class Structure:
                     total = total + mass.inertia * (rows[slope].T @ rows[slope])
         return total
 
-    def free(self, released: frozenset[str] = frozenset()) -> IntArray:
-        """Return the degrees of freedom that the clamps leave free, where some kinds are released."""
-        held = [dofs for kind, dofs in self.fixed.items() if kind not in released]
-        keep = np.ones(self.fields.n_dofs, dtype=bool)
-        keep[np.concatenate(held).astype(int) if held else np.zeros(0, dtype=int)] = False
-        return np.flatnonzero(keep)
+    def matrices(self, state: State) -> tuple[Sparse, Sparse]:
+        """Return stiffness and mass under a state's factors, of the whole and of regions, Eqs. 11-14 [SI]."""
+        n = self.n_dofs
+        total = {"stiffness": Sparse((n, n)), "mass": self.point_masses()}
+        for term in self.terms:
+            weights = term.coefficient * term.scale(state.factors)
+            for (region, factor), value in state.regional.items():
+                inside = self.region_of == region
+                weights = np.where(inside, weights * value ** term.powers.get(factor, 0.0), weights)
+            part = self.fields.sampled[term.left].T @ (self.fields.sampled[term.right] * weights[:, None])
+            total[term.kind] = total[term.kind] + (part if term.left == term.right else (part + part.T) / 2)
+        return Sparse(total["stiffness"]), Sparse(total["mass"])
+
+    def region_products(self, basis: FloatArray) -> tuple[FloatArray, ...]:
+        """Return every term on a basis, each (n_regions + 1, r, r); the last is what lies in no region [SI]."""
+        count = len(self.spec.regions)
+        sampled = {name: np.asarray(field @ basis) for name, field in self.fields.sampled.items()}
+        masks = [np.flatnonzero(self.region_of == (i if i < count else -1)) for i in range(count + 1)]
+        return tuple(np.stack([product(t, sampled, rows) for rows in masks]) for t in self.terms)
+
+    def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, Sparse]:
+        """Return displacement ``w`` along z and slopes at points (n_points, dim), each (n_points, n_dofs)."""
+        return self.fields.at(points)
+
+    def unit_mass(self, points: FloatArray) -> Sparse:
+        """Return the mass matrix of 1 kg at each of some points [kg in w]."""
+        rows = self.fields.at(points)["w"]
+        return Sparse(rows.T @ rows)
+
+    def softenings(self, elastic: FloatArray) -> FloatArray:
+        """Return the loads that a softened place feels: moments per element of a beam, modal forces per region."""
+        if self.fields.dim == 1:
+            bending = self.terms[0]
+            elements = self.fields.components[0].basis.nelems
+            loaded = (self.fields.sampled[bending.left].T @ sparse.diags_array(bending.coefficient)).toarray()
+            slope = np.tile(self.fields.components[0].basis.X[0] - 0.5, elements)
+            moments = [
+                (loaded * shape).reshape(self.n_dofs, elements, -1).sum(axis=2) for shape in (1.0, slope)
+            ]
+            return np.hstack(moments)
+        low = elastic[:, : min(4, elastic.shape[1])]
+        masks = [(self.region_of == index).astype(float) for index in range(len(self.spec.regions))]
+        return np.hstack([self.matrix("stiffness", mask) @ low for mask in masks])
 
     @cached_property
     def rigid_modes(self) -> int:
@@ -130,67 +138,9 @@ class Structure:
             return 0
         return 2 if self.fields.dim == 1 else 3
 
-    def eigen(
-        self,
-        count: int,
-        *,
-        stiffness: Sparse | None = None,
-        mass: Sparse | None = None,
-        released: frozenset[str] = frozenset(),
-    ) -> tuple[FloatArray, FloatArray]:
-        """Solve for the lowest modes of the full model, rigid-body modes included.
-
-        Parameters
-        ----------
-        count : int
-            Number of modes.
-        stiffness, mass : sparse arrays, optional
-            Matrices in place of the nominal ones [SI].
-        released : frozenset of str
-            Parts of the clamps that do not hold.
-
-        Returns
-        -------
-        eigenvalues : (count,) array
-            Squares of the angular frequencies [rad^2/s^2].
-        vectors : (n_dofs, count) array
-            Mass-normalised eigenvectors over all degrees of freedom [kg^-1/2].
-
-        Raises
-        ------
-        StudyError
-            If the model has fewer degrees of freedom than modes asked for.
-        """
-        free = self.free(released)
-        k = (self.matrix("stiffness") if stiffness is None else stiffness)[free][:, free]
-        m = (self.matrix("mass") if mass is None else mass)[free][:, free]
-        if count > len(free):
-            raise StudyError(
-                f"the model has {len(free)} degrees of freedom, too few for {count} modes; use more elements"
-            )
-        values, vectors = _lowest(k, m, count)
-        full = np.zeros((self.fields.n_dofs, count))
-        full[free] = vectors
-        return values, full
-
     def region_mask(self, region: Region) -> BoolArray:
         """Tell which quadrature points lie in a region, shape (n_points,)."""
         return region_mask(region, self.fields.points)
-
-
-def _lowest(k: Sparse, m: Sparse, count: int) -> tuple[FloatArray, FloatArray]:
-    """Solve dense where the model is small, by shift and invert where it is not."""
-    from scipy.linalg import eigh
-
-    n = k.shape[0]
-    if n <= 400 or count > n // 3:
-        values, vectors = eigh(k.toarray(), m.toarray(), subset_by_index=(0, count - 1))
-        return values, vectors
-    shift = -1e-3 * k.diagonal().sum() / m.diagonal().sum() * 1e-3
-    start = np.ones(n)
-    values, vectors = linalg.eigsh(k.tocsc(), count, m.tocsc(), sigma=shift, which="LM", v0=start)
-    order = np.argsort(values)
-    return values[order], vectors[:, order]
 
 
 def region_mask(region: Region, points: FloatArray) -> BoolArray:
@@ -201,7 +151,7 @@ def region_mask(region: Region, points: FloatArray) -> BoolArray:
     return np.asarray(inside)
 
 
-def build_structure(spec: Spec) -> Structure:
+def build_field_structure(spec: Spec) -> FieldStructure:
     """Build the finite-element model of a beam or plate.
 
     Raises
@@ -222,78 +172,9 @@ def build_structure(spec: Spec) -> Structure:
             raise StudyError(f"region {region.name!r} holds no part of the model; check its x and y")
         region_of[inside] = index
     terms = (
-        _plate_terms(spec, fields, region_of)
-        if spec.kind == "plate"
-        else _beam_terms(spec, fields, region_of)
+        plate_terms(spec, fields, region_of) if spec.kind == "plate" else beam_terms(spec, fields, region_of)
     )
-    return Structure(spec, fields, terms, region_of, _fixed(spec, fields))
-
-
-def _local(spec: Spec, region_of: IntArray, name: str, default: float) -> FloatArray:
-    """Return a property at the quadrature points: a region's own value, else the model's."""
-    own = [getattr(region, name) for region in spec.regions]
-    table = np.array([default if value is None else value for value in own] + [default])
-    return np.asarray(table[region_of])
-
-
-def _beam_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[Term, ...]:
-    thickness = _local(spec, region_of, "thickness", spec.thickness)
-    area = np.array([np.nan if r.area is None else r.area for r in spec.regions] + [np.nan])[region_of]
-    area = np.where(np.isnan(area), spec.width * thickness, area)
-    inertia = np.array([np.nan if r.inertia is None else r.inertia for r in spec.regions] + [np.nan])[
-        region_of
-    ]
-    inertia = np.where(np.isnan(inertia), spec.width * thickness**3 / 12, inertia)
-    modulus = _local(spec, region_of, "E", spec.material.E)
-    density = _local(spec, region_of, "density", spec.material.density)
-    w = fields.weights
-    bending = {"E": 1.0, "thickness": 3.0, "width": 1.0, "inertia": 1.0}
-    # r is the rotation per unit of stretched length, so that r = dw/dx stays r = dw/dx when the beam grows
-    shearing = {"E": 1.0, "thickness": 1.0, "width": 1.0, "length": -1.0, "area": 1.0}
-    inertial = {"density": 1.0, "thickness": 1.0, "width": 1.0, "length": 1.0, "area": 1.0}
-    rotary = {"density": 1.0, "thickness": 3.0, "width": 1.0, "inertia": 1.0}
-    mass = Term("mass", "w", "w", w * density * area, inertial)
-    if spec.theory != "timoshenko":
-        terms = [Term("stiffness", "wxx", "wxx", w * modulus * inertia, bending | {"length": -3.0}), mass]
-        if spec.theory == "rayleigh":
-            terms.append(Term("mass", "wx", "wx", w * density * inertia, rotary | {"length": -1.0}))
-        return tuple(terms)
-    nu = spec.material.poisson
-    shear_modulus = modulus / (2 * (1 + nu))
-    stiff = w * shear_coefficient(nu) * shear_modulus * area
-    return (
-        Term("stiffness", "rx", "rx", w * modulus * inertia, bending | {"length": -3.0}),
-        Term("stiffness", "wx", "wx", stiff, shearing),
-        Term("stiffness", "wx", "r", -2 * stiff, shearing),
-        Term("stiffness", "r", "r", stiff, shearing),
-        mass,
-        Term("mass", "r", "r", w * density * inertia, rotary | {"length": -1.0}),
-    )
-
-
-def shear_coefficient(poisson: float) -> float:
-    """Shear coefficient of a rectangular section, Cowper (1966): 10 (1 + nu) / (12 + 11 nu) [-]."""
-    return 10 * (1 + poisson) / (12 + 11 * poisson)
-
-
-def _plate_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[Term, ...]:
-    thickness = _local(spec, region_of, "thickness", spec.thickness)
-    modulus = _local(spec, region_of, "E", spec.material.E)
-    density = _local(spec, region_of, "density", spec.material.density)
-    nu = spec.material.poisson
-    w = fields.weights
-    rigidity = w * modulus * thickness**3 / (12 * (1 - nu**2))
-    bending = {"E": 1.0, "thickness": 3.0}
-    along, across = bending | {"length": -3.0, "width": 1.0}, bending | {"length": 1.0, "width": -3.0}
-    mixed = bending | {"length": -1.0, "width": -1.0}
-    inertial = {"density": 1.0, "thickness": 1.0, "width": 1.0, "length": 1.0}
-    return (
-        Term("stiffness", "wxx", "wxx", rigidity, along),
-        Term("stiffness", "wyy", "wyy", rigidity, across),
-        Term("stiffness", "wxx", "wyy", 2 * nu * rigidity, mixed),
-        Term("stiffness", "wxy", "wxy", 2 * (1 - nu) * rigidity, mixed),
-        Term("mass", "w", "w", w * density * thickness, inertial),
-    )
+    return FieldStructure(spec, fields, terms, region_of, _fixed(spec, fields))
 
 
 def _fixed(spec: Spec, fields: Fields) -> Mapping[str, IntArray]:

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
 from acquisition.arrays import BoolArray, FloatArray
+from updating.update.identifiability import Determinability, determinability
 from updating.update.solve import NEGLIGIBLE
 from updating.update.system import Linear, System
 
@@ -31,6 +32,8 @@ class Statistics:
         Data minus parameters.
     inflation : float
         Factor by which standard deviations were raised because the model does not fit the data [-].
+    determinability : Determinability
+        Singular values, combinations, and the best subset.
     """
 
     covariance: FloatArray
@@ -38,6 +41,7 @@ class Statistics:
     chi2: float
     dof: int
     inflation: float
+    determinability: Determinability
 
 
 def assess(system: System, linear: Linear) -> Statistics:
@@ -47,39 +51,51 @@ def assess(system: System, linear: Linear) -> Statistics:
     chi^2 / dof where the misfit is beyond what the measurement explains. With any other weights the scatter of
     the residuals stands in for the measurement's variance.
     """
-    scaled = system.whitened(linear) * system.doubt
-    undetermined = _alone(scaled) > 1.0
+    told = _told(system, linear)
+    undetermined = told.alone > 1.0
     both = zip(linear.looks, system.specimens, strict=True)
     residual = np.concatenate([1 - look.frequency / s.measured.frequency for look, s in both])
     variance = np.concatenate([s.relative_variance for s in system.specimens])
+    behind = system.count_of_frequencies
     chi2 = float(np.sum((residual**2 / variance)[system.used]))
+    chi2 += float(np.sum(linear.weight[behind:] * linear.residual[behind:] ** 2))
     dof = system.count - int(np.sum(system.prior == 0))
     inflation = 1.0
     if dof > 0 and chi2_distribution.sf(chi2, dof) < SIGNIFICANT:
         inflation = float(np.sqrt(chi2 / dof))
-    covariance = _covariance(system, linear, variance * inflation**2)
+    covariance = _covariance(system, linear, variance * inflation**2, inflation)
     hopeless = undetermined & (system.prior == 0)
     covariance[hopeless, :] = 0.0
     covariance[:, hopeless] = 0.0
     covariance[hopeless, hopeless] = np.inf
-    return Statistics(covariance, undetermined, chi2, dof, inflation)
+    return Statistics(covariance, undetermined, chi2, dof, inflation, told)
 
 
-def _alone(scaled: FloatArray) -> FloatArray:
-    """Return each parameter's standard deviation from the data alone, in units of its doubt."""
-    _, size, right = np.linalg.svd(scaled, full_matrices=True)
-    padded = np.zeros(scaled.shape[1])
-    padded[: len(size)] = size
-    floor = NEGLIGIBLE * max(padded.max(), 1e-300)
-    return np.asarray(np.sqrt(np.sum((right.T / np.maximum(padded, floor)) ** 2, axis=1)))
+def _told(system: System, linear: Linear) -> Determinability:
+    """Return what the data determine at the solution, and what explains the nominal model's residual."""
+    looks = system.looks(system.start)
+    start = system.linear(system.start, looks)
+    both, behind = zip(looks, system.specimens, strict=True), system.count_of_frequencies
+    residual = [(1 - k.frequency / s.measured.frequency) / np.sqrt(s.relative_variance) for k, s in both]
+    return determinability(
+        system.whitened(linear) * system.doubt,
+        system.names,
+        doubt=system.doubt,
+        log=np.array([k.log for k in system.knobs]),
+        at_start=system.whitened(start) * system.doubt,
+        residual=np.concatenate(
+            [np.concatenate(residual)[system.used], np.sqrt(start.weight[behind:]) * start.residual[behind:]]
+        ),
+    )
 
 
-def _covariance(system: System, linear: Linear, variance: FloatArray) -> FloatArray:
+def _covariance(system: System, linear: Linear, variance: FloatArray, inflation: float) -> FloatArray:
     """Return the covariance of the estimate: of Eq. 25's linear answer to errors of the stated variance."""
     per_log = np.concatenate(
         [system._per_log(s, k) for k, s in zip(linear.looks, system.specimens, strict=True)]
     )
-    noise = variance * per_log**2
+    behind = inflation**2 / linear.weight[len(variance) :]
+    noise = np.concatenate([variance * per_log**2, behind])
     doubt = system.doubt
     s = linear.sensitivity * doubt
     normal = (s.T * linear.weight) @ s + np.diag(system.prior * doubt**2)

@@ -25,20 +25,17 @@ REGIONAL = {"E": "Pa", "density": "kg/m^3", "thickness": "m", "area": "m^2", "in
 DAMPERS = {"alpha": "1/s", "beta": "s", "loss_factor": "-"}
 """Coefficients of damping, of the whole or of one region, and their units."""
 
-DAMPER_START = {"alpha": 1.0, "beta": 1e-7, "loss_factor": 1e-3}
-"""Where a coefficient starts that the model gives no value [unit]."""
+MIDDLING = 0.01
+"""Damping ratio that sets the scale of the coefficients of damping [-]."""
 
-DAMPER_RANGE = (1e-4, 1e4)
-"""Bounds of a coefficient of damping over its start [-]."""
+MOST = 50.0
+"""Upper bound of a coefficient of damping, in that scale [-]."""
 
 FACTOR_RANGE = (0.05, 20.0)
 """Bounds of every factor [-]."""
 
 UNTOLD = np.log(2.0)
 """1-sigma scale of the logarithm of a factor of which the study says no tolerance [-]."""
-
-UNTOLD_DAMPING = np.log(10.0)
-"""The same of a coefficient of damping, of which an order of magnitude is often all that is known [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +64,7 @@ class Knob:
     factor : str, optional
         Factor of the model that it is; None for an effect and for damping.
     damper : str, optional
-        Coefficient of damping that it is: the nominal value times a factor.
+        Coefficient of damping that it is.
     regions : tuple of int
         Regions that it acts on, all of one name; empty for the whole structure.
     effect, parameter : str
@@ -95,7 +92,7 @@ class Knob:
     @property
     def is_factor(self) -> bool:
         """Whether the value is a nominal value times a factor."""
-        return (self.factor is not None or self.damper is not None) and not self.effect
+        return self.factor is not None and not self.effect
 
     def coordinate(self, value: float) -> float:
         """Take a factor or value to its coordinate."""
@@ -138,7 +135,7 @@ class Panel:
                 effects.setdefault(knob.effect, dict(self.fixed.get(knob.effect, {})))[knob.parameter] = value
             elif knob.damper is not None:
                 where = knob.regions or (WHOLE,)
-                state = state.plus(State(dampers={(i, knob.damper): knob.nominal * value for i in where}))
+                state = state.plus(State(dampers={(i, knob.damper): value for i in where}))
             elif knob.regions:
                 state = state.plus(State(regional={(i, str(knob.factor)): value for i in knob.regions}))
             else:
@@ -210,11 +207,11 @@ def _knobs(name: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob
     head, _, tail = name.rpartition(".") if "." in name else (name, "", "")
     places = tuple(i for i, region in enumerate(spec.regions) if region.name == head)
     if places and tail in DAMPERS:
-        return [_damper(name, tail, spec, tolerances, places)]
+        return [_damper(name, tail, predictor, places)]
     if places and tail:
         return [_regional(name, places, tail, spec, tolerances)]
     if name in DAMPERS:
-        return [_damper(name, name, spec, tolerances, ())]
+        return [_damper(name, name, predictor, ())]
     if head in UNITS and tail in ("", "factor"):
         return [_whole(head, spec, tolerances)]
     if head in LIBRARY:
@@ -229,13 +226,16 @@ def _knobs(name: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob
 
 
 def _whole(name: str, spec: Spec, tolerances: Tolerances) -> Knob:
+    _check_scales(name, name, spec)
     nominal = {
         "E": spec.material.E,
         "density": spec.material.density,
         "thickness": spec.thickness,
         "width": spec.width,
     }[name]
-    return _factor(name, UNITS[name], nominal, tolerances.factors.get(name, 0.0), name, ())
+    return _factor(
+        name, _unit(UNITS[name], nominal, spec), nominal, tolerances.factors.get(name, 0.0), name, ()
+    )
 
 
 def _regional(name: str, places: tuple[int, ...], prop: str, spec: Spec, tolerances: Tolerances) -> Knob:
@@ -244,10 +244,25 @@ def _regional(name: str, places: tuple[int, ...], prop: str, spec: Spec, toleran
         raise StudyError(
             f"update: {name}: a region has no {prop!r} to update; use {choice}, {', '.join(DAMPERS)}"
         )
+    _check_scales(name, prop, spec, regional=True)
     region = spec.regions[places[0]]
     own = getattr(region, prop)
     nominal = float(_general(prop, region, spec) if own is None else own)
-    return _factor(name, REGIONAL[prop], nominal, tolerances.factors.get(prop, 0.0), prop, places)
+    return _factor(
+        name, _unit(REGIONAL[prop], nominal, spec), nominal, tolerances.factors.get(prop, 0.0), prop, places
+    )
+
+
+def _unit(unit: str, nominal: float, spec: Spec) -> str:
+    """Return the unit of a property; a factor has none where no material of imported matrices is told."""
+    return "-" if spec.imported is not None and nominal == 1.0 else unit
+
+
+def _check_scales(name: str, prop: str, spec: Spec, *, regional: bool = False) -> None:
+    """See that a factor means something to imported matrices."""
+    obstacle = None if spec.imported is None else spec.imported.obstacle(prop, regional=regional)
+    if obstacle is not None:
+        raise StudyError(f"update: {name}: {obstacle}")
 
 
 def _general(prop: str, region: Region, spec: Spec) -> float:
@@ -262,18 +277,18 @@ def _general(prop: str, region: Region, spec: Spec) -> float:
     }[prop]
 
 
-def _damper(name: str, coefficient: str, spec: Spec, tolerances: Tolerances, places: tuple[int, ...]) -> Knob:
-    """Return a coefficient of damping; the tolerance of damping regularises where the study expects a value."""
+def _damper(name: str, coefficient: str, predictor: Predictor, places: tuple[int, ...]) -> Knob:
+    """Return a coefficient of damping, never negative, on the scale that gives a per cent within the test's band."""
+    spec = predictor.spec
     given = getattr(spec.damping, coefficient)
     if places:
         own = getattr(spec.regions[places[0]], coefficient)
         given = given if own is None else own
-    nominal = float(given) if given else DAMPER_START[coefficient]
-    low, high = DAMPER_RANGE
-    doubt = tolerances.damping if given else UNTOLD_DAMPING
+    omega = 2 * np.pi * predictor.measured.frequency
+    scale = MIDDLING * {"alpha": 2 * omega.min(), "beta": 2 / omega.max(), "loss_factor": 2.0}[coefficient]
     return Knob(
-        name, DAMPERS[coefficient], nominal, 1.0, low, high, doubt, bool(given), log=True,
-        damper=coefficient, regions=places,
+        name, DAMPERS[coefficient], 1.0, float(given or 0.0), 0.0, MOST * scale, scale, tolerated=False,
+        log=False, damper=coefficient, regions=places,
     )  # fmt: skip
 
 
@@ -288,7 +303,7 @@ def _factor(
 
 
 def _effect(name: str, effect: Effect, tail: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob]:
-    obstacle = effect.obstacle(predictor)
+    obstacle = effect.why_not(predictor)
     if obstacle is not None:
         raise StudyError(f"update: {effect.name} cannot be updated: {obstacle}")
     parameters = effect.parameters(predictor)

@@ -8,6 +8,8 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray
+from updating.update.identifiability import Determinability
+from updating.update.text import report_text
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,10 @@ class Estimate:
         Whether the value stands at the end of its range.
     low, high : float
         The range [``unit``].
+    initial : float
+        Value before the update [``unit``].
+    interval : tuple of float, optional
+        Ends of the 95 % interval, 2.5 and 97.5 percentiles of a bootstrap [``unit``].
     """
 
     name: str
@@ -43,6 +49,8 @@ class Estimate:
     at_bound: bool
     low: float
     high: float
+    initial: float = np.nan
+    interval: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +79,14 @@ class Update:
         Whether the frequencies after the update are those of the full model.
     warnings : tuple of str
         What the user ought to know.
+    draws : int
+        Number of bootstrap updates behind the intervals; 0 without any.
+    determinability : Determinability, optional
+        What the data determine: singular values, combinations, the best subset.
+    data : int
+        Number of data that weigh anything [-].
+    weights, quantity : str
+        What W_s is, and what is compared: ``frequency`` (relative) or ``eigenvalue``.
     """
 
     parameters: tuple[Estimate, ...]
@@ -86,6 +102,11 @@ class Update:
     history: pd.DataFrame
     exact: bool
     warnings: tuple[str, ...]
+    draws: int = 0
+    determinability: Determinability | None = None
+    data: int = 0
+    weights: str = ""
+    quantity: str = ""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -112,6 +133,15 @@ class Update:
             for p, name in zip(self.parameters, self.names, strict=True)
         ]
         return pd.DataFrame(rows)
+
+    @property
+    def reduced_chi2(self) -> float:
+        """Misfit in measurement variances per degree of freedom, nan without any [-]."""
+        return self.chi2 / self.dof if self.dof > 0 else float("nan")
+
+    def report(self) -> str:
+        """Return the whole result as text: statistics, parameters, correlations, what is not determined and why."""
+        return report_text(self)
 
     def rms_percent(self, which: str = "after") -> float:
         """Return the r.m.s. relative error of the frequencies used, ``before`` or ``after`` [%]."""

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray
-from acquisition.errors import StudyError
 from updating.case import Case
+from updating.update.building import build_specimen, build_system, check_data, per_case
 from updating.update.determine import Statistics, assess, correlations
-from updating.update.exact import full_frequencies
+from updating.update.exact import full_modes
 from updating.update.knobs import Knob
 from updating.update.result import Estimate, Update
+from updating.update.several import best_solution
 from updating.update.solve import Solution, solve
-from updating.update.specimen import build_specimen
-from updating.update.system import Quantity, System, Weights, build_system
+from updating.update.system import Quantity, System, Weights
 
-EXACT = 1e-6
+COMPONENTS = 2
+"""How often the shapes are weighted anew by what is left of them."""
+
+EXACT = 1e-7
 """Agreement of reduced and full frequencies at which the outer iteration ends, relative [-]."""
 
 
@@ -30,6 +34,7 @@ def update(
     weights: Weights = "covariance",
     quantity: Quantity | None = None,
     regularise: bool | None = None,
+    data: Sequence[str] = ("frequencies",),
 ) -> Update:
     """Update the parameters of one or several models by the frequencies of their tests.
 
@@ -54,6 +59,10 @@ def update(
     regularise : bool, optional
         Whether the tolerances hold the parameters near their nominal values (W_theta); left out, only with
         weights from the covariance.
+    data : sequence of str
+        ``frequencies``, and ``shapes``: those of the modes up to a factor each, weighted by the inverse variances
+        of the modal constants, places of the points included. Needs weights from the covariance and parameters
+        that are factors.
 
     Returns
     -------
@@ -66,9 +75,58 @@ def update(
     EstimationError
         If no measured mode has a partner.
     """
+    fitted = fit(
+        cases,
+        parameters=parameters,
+        shared=shared,
+        weights=weights,
+        quantity=quantity,
+        regularise=regularise,
+        data=data,
+    )
+    return report(fitted)
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """An update before it is reported.
+
+    Parameters
+    ----------
+    system : System
+        The problem, on reduced models that agree with the full ones at the solution.
+    solution : Solution
+        Where the iteration came to rest.
+    exact : bool
+        Whether the frequencies there are those of the full models.
+    remarks : tuple of str
+        What there is to say of other solutions.
+    weights : str
+        What W_s is.
+    """
+
+    system: System
+    solution: Solution
+    exact: bool
+    remarks: tuple[str, ...]
+    weights: str
+
+
+def fit(
+    cases: Case | Sequence[Case],
+    *,
+    parameters: Sequence[str] | Sequence[Sequence[str]] = ("E",),
+    shared: Sequence[str] = (),
+    weights: Weights = "covariance",
+    quantity: Quantity | None = None,
+    regularise: bool | None = None,
+    data: Sequence[str] = ("frequencies",),
+) -> Fitted:
+    """Solve an update; see :func:`update`."""
     several = [cases] if isinstance(cases, Case) else list(cases)
-    names = _per_case(parameters, len(several))
-    specimens = [build_specimen(case, own) for case, own in zip(several, names, strict=True)]
+    names = per_case(parameters, len(several))
+    check_data(data, several, weights)
+    specimens = [build_specimen(case, own, lean=True) for case, own in zip(several, names, strict=True)]
     system = build_system(
         specimens,
         shared,
@@ -76,53 +134,54 @@ def update(
         quantity or ("eigenvalue" if weights == "eigenvalue" else "frequency"),
         [len(case.measured.frequency) for case in several],
         regularised=weights == "covariance" if regularise is None else regularise,
+        shapes="shapes" in data,
     )
-    system, solution, exact = _exactly(system)
-    return _report(system, solution, assess(system, system.linear(solution.theta, solution.looks)), exact)
+    kind = weights if isinstance(weights, str) else "given for each mode"
+    return Fitted(*_exactly(system), kind)
 
 
-def _per_case(parameters: Sequence[str] | Sequence[Sequence[str]], count: int) -> list[list[str]]:
-    if not parameters:
-        raise StudyError('update: no parameters; name some, for instance parameters = ["E"]')
-    if all(isinstance(p, str) for p in parameters):
-        return [[str(p) for p in parameters]] * count
-    if len(parameters) != count:
-        raise StudyError(
-            f"update: {len(parameters)} lists of parameters for {count} studies; give one for each"
-        )
-    return [list(own) for own in parameters]
-
-
-def _exactly(system: System) -> tuple[System, Solution, bool]:
-    """Solve on the reduced models, correct these by the full ones, and repeat until they agree."""
-    solution = solve(system)
+def _exactly(system: System) -> tuple[System, Solution, bool, tuple[str, ...]]:
+    """Solve on the reduced models, bring these nearer to the full ones there, and repeat until they agree."""
+    solution, said = best_solution(system)
     history = [solution.history]
-    for _ in range(5):
-        full = [_full(system, i, solution) for i in range(len(system.specimens))]
-        if any(f is None for f in full):
-            return system, solution, False
-        pairs = list(zip(full, solution.looks, strict=True))
-        ratios = [np.asarray(f)[k.partner] / k.frequency for f, k in pairs]
-        system = system.corrected([s.correction * r for s, r in zip(system.specimens, ratios, strict=True)])
-        if max(np.abs(r - 1).max() for r in ratios) < EXACT:
-            break
+    for _ in range(COMPONENTS if system.shapes else 0):
+        system = system.reweighted(solution.looks)
         solution = solve(system, solution.theta)
         history.append(solution.history[1:])
+    for _ in range(6):
+        full = [_full(system, i, solution) for i in range(len(system.specimens))]
+        modes = [f for f in full if f is not None]
+        if len(modes) < len(full):
+            return system, solution, False, said
+        ratios = [f / look.frequency for (f, _), look in zip(modes, solution.looks, strict=True)]
+        near = max(np.abs(ratio - 1).max() for ratio in ratios) < EXACT
+        vectors = [v for _, v in modes]
+        system = system.corrected(ratios) if near else system.nearer(vectors, ratios)
+        solution = solve(system, solution.theta)
+        history.append(solution.history[1:])
+        if near:
+            break
+    if system.shapes:
+        system = system.reweighted(solution.looks)
+        solution = solve(system, solution.theta)
     looks = system.looks(solution.theta)
-    return system, Solution(solution.theta, looks, np.vstack(history), solution.converged), True
+    return system, Solution(solution.theta, looks, np.vstack(history), solution.converged), True, said
 
 
-def _full(system: System, index: int, solution: Solution) -> FloatArray | None:
-    """Return the full model's frequencies; None where an effect lives on the reduced one alone."""
+def _full(system: System, index: int, solution: Solution) -> tuple[FloatArray, FloatArray] | None:
+    """Return the full model's frequencies of the partners, and all its low modes; None where there is no such."""
     specimen, look = system.specimens[index], solution.looks[index]
-    updated = specimen.panel.effects(system.values(solution.theta, index))
-    state = specimen.predictor.base.plus(look.state)
-    return full_frequencies(
-        specimen.predictor, state, dict(specimen.accepted) | updated, int(look.partner.max()) + 1
-    )
+    values = system.values(solution.theta, index)
+    effects = dict(specimen.accepted) | specimen.panel.effects(values)
+    state = specimen.predictor.base.plus(specimen.panel.state(specimen.predictor, values))
+    modes = full_modes(specimen.predictor, state, effects, int(look.partner.max()) + 1)
+    return None if modes is None else (modes[0][look.partner], modes[1])
 
 
-def _report(system: System, solution: Solution, statistics: Statistics, exact: bool) -> Update:
+def report(fitted: Fitted) -> Update:
+    """Work out the statistics of an update."""
+    system, solution, exact = fitted.system, fitted.solution, fitted.exact
+    statistics = assess(system, system.linear(solution.theta, solution.looks))
     jacobian = np.array([_slope(k, t) for k, t in zip(system.knobs, solution.theta, strict=True)])
     with_units = statistics.covariance * np.outer(jacobian, jacobian)
     sigma = np.sqrt(np.diag(with_units))
@@ -130,7 +189,7 @@ def _report(system: System, solution: Solution, statistics: Statistics, exact: b
         _estimate(system, i, float(t), float(s))
         for i, (t, s) in enumerate(zip(solution.theta, sigma, strict=True))
     )
-    names = [_column(system, i) for i in range(len(system.knobs))]
+    names = list(system.names)
     history = pd.DataFrame(
         [[k.value(t) for k, t in zip(system.knobs, row, strict=True)] for row in solution.history],
         columns=names,
@@ -149,13 +208,12 @@ def _report(system: System, solution: Solution, statistics: Statistics, exact: b
         statistics.inflation,
         history,
         exact,
-        tuple(_warnings(system, solution, statistics, exact)),
+        (*_warnings(system, solution, statistics, exact), *fitted.remarks),
+        determinability=statistics.determinability,
+        data=system.count,
+        weights=fitted.weights,
+        quantity=system.quantity,
     )
-
-
-def _column(system: System, index: int) -> str:
-    owner, name = system.owner[index], system.knobs[index].name
-    return name if owner < 0 or len(system.specimens) == 1 else f"{name} ({system.specimens[owner].title})"
 
 
 def _slope(knob: Knob, coordinate: float) -> float:
@@ -180,6 +238,7 @@ def _estimate(system: System, index: int, coordinate: float, sigma: float) -> Es
         bool(coordinate <= system.low[index] + margin or coordinate >= system.high[index] - margin),
         knob.nominal * knob.low,
         knob.nominal * knob.high,
+        knob.nominal * knob.start,
     )
 
 

@@ -66,11 +66,17 @@ def solve(system: System, start: FloatArray | None = None, *, steps: int = 40) -
     theta = _scan(system) if start is None else start
     looks = system.looks(theta)
     history, converged = [theta], False
+    linear, bend = system.linear(theta, looks), np.zeros((len(theta), len(theta)))
     for _ in range(steps):
-        increment = step(system, system.linear(theta, looks), theta)
+        increment = step(system, linear, theta, bend)
         new, new_looks, moved = _controlled(system, theta, looks, increment)
+        if not moved and bend.any():
+            bend = np.zeros_like(bend)
+            continue
         converged = bool(np.all(np.abs(new - theta) <= CONVERGED * system.doubt))
         if moved:
+            before, linear = linear, system.linear(new, new_looks)
+            bend = _bent(bend, before, linear, new - theta, system.doubt)
             theta, looks = new, new_looks
             history.append(theta)
         if converged or not moved:
@@ -78,20 +84,41 @@ def solve(system: System, start: FloatArray | None = None, *, steps: int = 40) -
     return Solution(theta, looks, np.array(history), converged)
 
 
-def step(system: System, linear: Linear, theta: FloatArray) -> FloatArray:
+def _bent(
+    bend: FloatArray, before: Linear, after: Linear, moved: FloatArray, doubt: FloatArray
+) -> FloatArray:
+    """Return the part of the Hessian that Gauss and Newton leave out, corrected by the last step.
+
+    A symmetric rank-one secant update of the residuals' curvature alone (Dennis, Gay and Welsch 1981), in units
+    of the doubts. Where tolerances pull against the data the residuals do not vanish, and without it the
+    iteration creeps.
+    """
+    load = after.weight * after.residual
+    change = -((after.sensitivity - before.sensitivity) * doubt).T @ load
+    step = moved / doubt
+    gap = change - bend @ step
+    size = float(gap @ step)
+    if abs(size) <= 1e-8 * np.linalg.norm(gap) * np.linalg.norm(step):
+        return bend
+    return np.asarray(bend + np.outer(gap, gap) / size)
+
+
+def step(system: System, linear: Linear, theta: FloatArray, bend: FloatArray | None = None) -> FloatArray:
     """Return the increment of Eq. 25: (S'WS + W_theta)^-1 [S'W dlambda - W_theta (theta - theta_0)].
 
     Solved by singular values, in units of the parameters' doubts; directions that nothing determines stay where
-    they are. Parameters at a bound that the step would push further stay there.
+    they are. Parameters at a bound that the step would push further stay there. ``bend`` (p, p) is the curvature
+    of the residuals, in units of the doubts, and joins the matrix where that stays positive definite.
     """
     root = np.sqrt(linear.weight)
     rows = np.vstack([root[:, None] * linear.sensitivity, np.diag(np.sqrt(system.prior))])
-    load = np.concatenate([root * linear.residual, np.sqrt(system.prior) * (system.start - theta)])
+    load = np.concatenate([root * linear.residual, np.sqrt(system.prior) * (system.centre - theta)])
     free = np.ones(len(theta), dtype=bool)
     increment = np.zeros(len(theta))
     for _ in range(len(theta)):
         increment[:] = 0.0
-        increment[free] = _least((rows * system.doubt)[:, free], load) * system.doubt[free]
+        part = None if bend is None or not bend.any() else bend[np.ix_(free, free)]
+        increment[free] = _least((rows * system.doubt)[:, free], load, part) * system.doubt[free]
         tiny = 1e-9 * (system.high - system.low)
         out = free & (
             ((theta <= system.low + tiny) & (increment < 0))
@@ -103,9 +130,14 @@ def step(system: System, linear: Linear, theta: FloatArray) -> FloatArray:
     return np.where(free, increment, 0.0)
 
 
-def _least(rows: FloatArray, load: FloatArray) -> FloatArray:
+def _least(rows: FloatArray, load: FloatArray, bend: FloatArray | None) -> FloatArray:
     if rows.shape[1] == 0:
         return np.zeros(0)
+    if bend is not None:
+        normal = rows.T @ rows
+        values, vectors = np.linalg.eigh(normal + bend)
+        if values.min() > 0.05 * np.linalg.eigvalsh(normal).min() > 0:
+            return np.asarray(vectors @ ((vectors.T @ (rows.T @ load)) / values))
     left, size, right = np.linalg.svd(rows, full_matrices=False)
     kept = size > NEGLIGIBLE * max(size.max(), 1e-300)
     return np.asarray(right[kept].T @ ((left[:, kept].T @ load) / size[kept]))

@@ -9,14 +9,22 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.case import Case
-from updating.matching import mac_of_constants, match, pair_modes
+from acquisition.errors import StudyError
+from updating.matching import mac_of_constants, match
 from updating.measured import Measured
-from updating.models.state import State
-from updating.nominal import predictor_of
+from updating.models.reduced import Reduced
+from updating.models.structure import FieldStructure
 from updating.prediction import Prediction, Predictor
-from updating.update.knobs import Knob, Panel, build_panel
+from updating.update.affine import Affine, affine, eligible
+from updating.update.basis import WIDE, extended, update_basis
+from updating.update.knobs import Knob, Panel
 from updating.update.sensitivity import log_frequency_by
+
+FINEST = 1e-4
+"""No shape is measured better than this part of its r.m.s. [-]."""
+
+COMMON = 0.75
+"""Most of the variance of a constant that is ascribed to what all constants of its mode have in common [-]."""
 
 STEP = 1e-4
 """Step of the differences, relative to the width of a parameter's range [-]."""
@@ -34,14 +42,11 @@ class Look:
         Which of the model's elastic modes they are, from 0.
     prediction : Prediction
         The partners.
-    state : State
-        The model there.
     """
 
     frequency: FloatArray
     partner: IntArray
     prediction: Prediction
-    state: State
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +73,8 @@ class Specimen:
         Ratio of the full model's frequencies to the reduced model's [-].
     accepted : mapping of str to mapping
         Effects in the model beforehand and the values of their parameters.
+    shape_variance : (n_modes,) array or float
+        Factor on the variances of each mode's measured shape [-].
     """
 
     title: str
@@ -79,27 +86,77 @@ class Specimen:
     warnings: tuple[str, ...]
     correction: FloatArray
     accepted: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    shape_variance: FloatArray | float = 1.0
 
     def look(self, values: Sequence[float]) -> Look:
         """Evaluate the model, and find the partner of every measured mode by MAC."""
-        state = self.panel.state(self.predictor, values)
-        prediction = self.predictor.predict(state)
+        if self.affine is None:
+            prediction = self.predictor.predict(self.panel.state(self.predictor, values))
+        else:
+            prediction = self._quick(self.affine, np.log(values))
         partner = match(self.measured, prediction, self.order)
         chosen = prediction.select(partner)
-        return Look(chosen.frequency * self.correction, partner, chosen, state)
+        return Look(chosen.frequency * self.correction, partner, chosen)
+
+    def _quick(self, model: Affine, logs: FloatArray) -> Prediction:
+        """Predict the lowest modes with no more than an update by factors needs."""
+        values, vectors = model.eigen(logs, self.rigid + self.count)
+        vectors = vectors[:, self.rigid :]
+        frequency = np.sqrt(np.maximum(values[self.rigid :], 0.0)) / (2 * np.pi)
+        shape = self.shape_rows[:, : len(vectors)] @ vectors
+        hit = np.where(self.measured.hit[:, None] < 0, 1.0, shape[self.measured.hit])
+        constants = self.predictor.base.gain * shape[self.measured.seen] * hit
+        nothing = np.zeros((0, *constants.shape))
+        return Prediction(
+            frequency, np.full(len(frequency), np.nan), constants, nothing, nothing,
+            np.zeros((len(frequency), 0)), np.zeros((*constants.shape, 0)), vectors,
+        )  # fmt: skip
+
+    @cached_property
+    def affine(self) -> Affine | None:
+        """The model as a function of its factors, where all knobs are factors."""
+        base = self.predictor.base
+        if not eligible(self.panel.knobs) or base.released or base.theory is not None:
+            return None
+        return affine(self.predictor.reduced, self.panel.knobs, base)
+
+    @cached_property
+    def shape_rows(self) -> FloatArray:
+        """Displacement of the basis at the test points, (n_points, r)."""
+        if not len(self.measured.points):
+            return np.zeros((0, self.predictor.reduced.basis.shape[1]))
+        return self.predictor.nominal_rows["w"]
+
+    @cached_property
+    def rigid(self) -> int:
+        """Number of rigid-body modes."""
+        return self.predictor.reduced.structure.rigid_modes
+
+    @cached_property
+    def count(self) -> int:
+        """Number of elastic modes among which partners are looked for."""
+        return max(len(self.nominal_modes.frequency), int(self.order.max()) + 4)
+
+    @cached_property
+    def nominal_modes(self) -> Prediction:
+        """The modes of the model before the update."""
+        return self.predictor.predict()
 
     def slopes(self, values: Sequence[float], at: Look) -> FloatArray:
         """Return d ln f / d coordinate, (n_modes, n_knobs): Eqs. 16 and 17 for factors, differences for the rest."""
+        if self.affine is not None:
+            eigenvalue = (2 * np.pi * at.prediction.frequency) ** 2
+            return self.affine.slopes(np.log(values), eigenvalue, at.prediction.vectors)
         columns = [
-            self._analytic(knob, values[i], at) if knob.factor is not None else self._difference(i, values)
+            self._analytic(knob, values, i, at) if knob.factor is not None else self._difference(i, values)
             for i, knob in enumerate(self.panel.knobs)
         ]
         return np.stack(columns, axis=1)
 
-    def _analytic(self, knob: Knob, value: float, at: Look) -> FloatArray:
-        total = self.predictor.base.plus(at.state)
+    def _analytic(self, knob: Knob, values: Sequence[float], index: int, at: Look) -> FloatArray:
+        total = self.predictor.base.plus(self.panel.state(self.predictor, values))
         by = log_frequency_by(self.predictor.reduced, total, at.prediction, str(knob.factor), knob.regions)
-        return by * knob.chain(value)
+        return by * knob.chain(values[index])
 
     def _difference(self, index: int, values: Sequence[float]) -> FloatArray:
         knob = self.panel.knobs[index]
@@ -115,9 +172,9 @@ class Specimen:
     @cached_property
     def nominal(self) -> Look:
         """The model before the update: every factor 1, and no effect that the modeller has not accepted."""
-        prediction = self.predictor.predict()
+        prediction = self.nominal_modes
         partner = match(self.measured, prediction, self.order)
-        return Look(prediction.frequency[partner], partner, prediction.select(partner), State())
+        return Look(prediction.frequency[partner], partner, prediction.select(partner))
 
     def mac(self, look: Look) -> FloatArray:
         """Return the MAC of every pair, nan where no shapes were measured [-]."""
@@ -125,40 +182,98 @@ class Specimen:
             return np.full(len(self.number), np.nan)
         return np.diag(mac_of_constants(self.measured, look.prediction)).copy()
 
+    def shape_slopes(self, values: Sequence[float], at: Look) -> FloatArray:
+        """Return the derivatives of the partners' constants by the coordinates, (n_frf, n_modes, n_knobs) [1/kg]."""
+        model = self.affine
+        if model is None:
+            raise StudyError(
+                'update: shapes as data need parameters that are factors; use data = ["frequencies"]'
+            )
+        turned = model.turns(np.log(values), at.partner, self.rigid)
+        here, change = self.shape_rows @ at.prediction.vectors, self.shape_rows @ turned
+        # the solver's sign of a shape is of no account in a product of two components of the same solution
+        flip = self._signs(model, values, at)
+        change = change * flip
+        seen, hit, bare = self.measured.seen, self.measured.hit, self.measured.hit < 0
+        both = change[:, seen] * here[hit] + here[seen] * change[:, hit]
+        slopes = np.where(bare[:, None], change[:, seen], both)
+        return np.asarray(np.moveaxis(self.predictor.base.gain * slopes, 0, -1))
+
+    def _signs(self, model: Affine, values: Sequence[float], at: Look) -> FloatArray:
+        vectors = model.eigen(np.log(values), model.rank)[1][:, at.partner + self.rigid]
+        return np.asarray(np.sign(np.sum(vectors * at.prediction.vectors, axis=0)))
+
+    @cached_property
+    def shape_weight(self) -> FloatArray:
+        """Inverse variances of the measured shapes, places of the points included, (n_frf, n_modes).
+
+        An error of a mode's damping by the part d stretches all its constants alike, by d / 2 (projection of
+        1 / (s - p)^2 on 1 / (s - p)). A shape up to a factor is free of that, so it is taken out, as far as
+        ``COMMON`` of the variance: modes close by add to it what is not alike in all.
+        """
+        test = self.measured
+        stretch = np.nan_to_num(test.damping_sigma / (2 * test.damping)) if test.absolute else 0.0
+        total = test.constants_sigma**2
+        own_variance = total - np.minimum((stretch * test.constants) ** 2, COMMON * total)
+        places = np.zeros_like(test.constants)
+        if test.position_sigma > 0 and test.has_shapes:
+            nominal = self.nominal.prediction
+            own = np.sqrt(np.mean(test.constants**2, axis=0) / np.mean(nominal.constants**2, axis=0))
+            slopes = np.concatenate([nominal.along, nominal.along_seen]) * own
+            places = test.position_sigma**2 * np.sum(slopes**2, axis=0)
+        floor = FINEST**2 * np.mean(test.constants**2, axis=0, keepdims=True)
+        return np.asarray(1 / ((own_variance + places + floor) * self.shape_variance))
+
+    def reweighted(self, factor: FloatArray) -> Specimen:
+        """Return the same specimen with the variances of the shapes multiplied by factors (n_modes,) [-]."""
+        other = self._with(replace(self, shape_variance=self.shape_variance * factor))
+        other.__dict__.pop("shape_weight", None)
+        return other
+
+    def corrected(self, factor: FloatArray) -> Specimen:
+        """Return the same specimen with other corrections of the reduced model's frequencies (n_modes,) [-]."""
+        return self._with(replace(self, correction=factor))
+
+    def enriched(self, modes: FloatArray) -> Specimen | None:
+        """Return the same specimen with modes of the full model (n_dofs, n) in its basis, or None if it has no own."""
+        structure = self.predictor.reduced.structure
+        if self.affine is None or self.affine.rank >= structure.unknowns:
+            return None
+        return self._on(extended(self.predictor.reduced, modes))
+
+    def around(self, values: Sequence[float]) -> Specimen:
+        """Return the same specimen on a basis that is good far around some values of its knobs."""
+        structure = self.predictor.reduced.structure
+        plain = self.affine is not None and self.affine.rank < structure.unknowns
+        if not plain or self.predictor.additions or not isinstance(structure, FieldStructure):
+            return self
+        highest, count = float(self.measured.frequency.max()), len(self.measured.frequency)
+        state = self.panel.state(self.predictor, values)
+        return self._on(
+            update_basis(structure, self.panel.knobs, highest=highest, count=count, state=state, answers=WIDE)
+        )
+
+    def _on(self, reduced: Reduced) -> Specimen:
+        """Return the same specimen on another basis."""
+        own = replace(self.predictor)
+        own.__dict__["reduced"] = reduced
+        other = replace(self, predictor=own, correction=np.ones(len(self.number)))
+        other.__dict__.update(nominal=self.nominal, rigid=self.rigid, count=self.count)
+        return other
+
+    def redrawn(self, frequency: FloatArray, constants: FloatArray | None = None) -> Specimen:
+        """Return the same specimen with other measured frequencies [Hz] and constants [1/kg]."""
+        own = self.measured.constants if constants is None else constants
+        return self._with(replace(self, measured=replace(self.measured, frequency=frequency, constants=own)))
+
+    def _with(self, other: Specimen) -> Specimen:
+        """Hand on what was worked out and stays."""
+        kept = ("shape_weight", "affine", "shape_rows", "rigid", "count", "nominal_modes", "nominal")
+        other.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
+        return other
+
     @property
     def relative_variance(self) -> FloatArray:
         """Variance of the measured frequencies, re-mounting scatter included, relative [-]."""
         test = self.measured
         return np.asarray((test.frequency_sigma / test.frequency) ** 2 + test.repeatability**2)
-
-
-def build_specimen(case: Case, parameters: Sequence[str]) -> Specimen:
-    """Pair the modes of a case and find its knobs.
-
-    Raises
-    ------
-    StudyError
-        If a parameter does not exist on this specimen.
-    EstimationError
-        If no measured mode has a partner in the model.
-    """
-    predictor = predictor_of(case)
-    paired = pair_modes(case.measured, predictor.predict())
-    number = 1 + np.flatnonzero(np.isin(case.measured.frequency, paired.measured.frequency))
-    accepted = {name: dict(values) for name, values in case.accepted}
-    panel = build_panel(parameters, predictor, case.tolerances, accepted)
-    updated = {knob.effect for knob in panel.knobs}
-    if updated & set(accepted):
-        kept = tuple((n, v) for n, v in case.accepted if n not in updated)
-        predictor = predictor_of(replace(case, accepted=kept))
-    return Specimen(
-        case.title,
-        predictor.looking(paired.measured),
-        paired.measured,
-        number,
-        paired.order,
-        panel,
-        (*case.measured.warnings, *paired.warnings),
-        np.ones(len(number)),
-        {name: values for name, values in accepted.items() if name not in updated},
-    )

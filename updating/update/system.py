@@ -10,8 +10,8 @@ from typing import Literal
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
-from acquisition.errors import StudyError
 from updating.update.knobs import Knob
+from updating.update.shapes import shape_ratios, shape_residual, shape_slopes
 from updating.update.specimen import Look, Specimen
 
 Weights = Literal["covariance", "relative", "eigenvalue"] | Sequence[float]
@@ -59,7 +59,11 @@ class System:
     quantity : {"frequency", "eigenvalue"}
         What is compared.
     regularised : bool
-        Whether the tolerances hold the parameters near their start, Eq. 25.
+        Whether the tolerances hold the parameters near ``centre``, Eq. 25.
+    drawn : (p,) array, optional
+        Coordinates near which they are held, where these were drawn anew; left out, those of the nominal model.
+    shapes : bool
+        Whether the shapes, up to a factor per mode, are data behind the frequencies.
     """
 
     specimens: tuple[Specimen, ...]
@@ -69,6 +73,13 @@ class System:
     weights: tuple[FloatArray, ...]
     quantity: Quantity
     regularised: bool
+    drawn: FloatArray | None = None
+    shapes: bool = False
+
+    @property
+    def centre(self) -> FloatArray:
+        """Coordinates near which the parameters are held, theta_0 of Eq. 25."""
+        return self.start if self.drawn is None else self.drawn
 
     @cached_property
     def low(self) -> FloatArray:
@@ -82,7 +93,7 @@ class System:
 
     @cached_property
     def start(self) -> FloatArray:
-        """Coordinates of the nominal model, theta_0 of Eq. 25."""
+        """Coordinates of the nominal model."""
         return np.array([k.coordinate(k.start) for k in self.knobs])
 
     @cached_property
@@ -97,9 +108,20 @@ class System:
         return np.where(tolerated, 1 / self.doubt**2, 0.0)
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the unknowns, with their study where there are several."""
+        alone = len(self.specimens) == 1
+        pairs = zip(self.knobs, self.owner, strict=True)
+        return tuple(
+            k.name if owner < 0 or alone else f"{k.name} ({self.specimens[owner].title})"
+            for k, owner in pairs
+        )
+
+    @property
     def count(self) -> int:
-        """Number of data that weigh anything."""
-        return int(sum(np.sum(w > 0) for w in self.weights))
+        """Number of data that weigh anything, less the factors that shapes are free of."""
+        free = [s.measured.constants.size - s.measured.constants.shape[1] for s in self.specimens]
+        return int(sum(np.sum(w > 0) for w in self.weights)) + (sum(free) if self.shapes else 0)
 
     def values(self, theta: FloatArray, specimen: int) -> list[float]:
         """Return the factors and values of one specimen's knobs."""
@@ -118,11 +140,17 @@ class System:
                 parts.append(1 - look.frequency / test)
             else:
                 parts.append((2 * np.pi) ** 2 * (test**2 - look.frequency**2))
+        if self.shapes:
+            both = zip(self.specimens, looks, strict=True)
+            parts += [shape_residual(s, k).ravel() for s, k in both if s.measured.has_shapes]
         return np.concatenate(parts)
 
     @cached_property
     def weight(self) -> FloatArray:
         """Diagonal of W_s for the residuals, shape (n,)."""
+        if self.shapes:
+            own = [s.shape_weight.ravel() for s in self.specimens if s.measured.has_shapes]
+            return np.concatenate([*self.weights, *own])
         if self.quantity == "frequency":
             return np.concatenate(self.weights)
         both = zip(self.weights, self.specimens, strict=True)
@@ -132,7 +160,7 @@ class System:
     def cost(self, theta: FloatArray, looks: tuple[Look, ...]) -> float:
         """Return what Eq. 25 makes least."""
         residual = self.residual(looks)
-        return float(self.weight @ residual**2 + self.prior @ (theta - self.start) ** 2)
+        return float(self.weight @ residual**2 + self.prior @ (theta - self.centre) ** 2)
 
     def linear(self, theta: FloatArray, looks: tuple[Look, ...]) -> Linear:
         """Return residuals and sensitivities, Eqs. 18 and 19."""
@@ -142,7 +170,23 @@ class System:
             block = np.zeros((len(slopes), len(self.knobs)))
             block[:, self.index[i]] = slopes * self._per_log(specimen, look)[:, None]
             blocks.append(block)
+        blocks += self._shape_blocks(theta, looks) if self.shapes else []
         return Linear(self.residual(looks), np.vstack(blocks), self.weight, looks)
+
+    def _shape_blocks(self, theta: FloatArray, looks: tuple[Look, ...]) -> list[FloatArray]:
+        blocks = []
+        for i, (specimen, look) in enumerate(zip(self.specimens, looks, strict=True)):
+            if specimen.measured.has_shapes:
+                slopes = shape_slopes(specimen, self.values(theta, i), look)
+                block = np.zeros((len(slopes), len(self.knobs)))
+                block[:, self.index[i]] = slopes
+                blocks.append(block)
+        return blocks
+
+    @property
+    def count_of_frequencies(self) -> int:
+        """Number of paired modes."""
+        return sum(len(s.number) for s in self.specimens)
 
     def _per_log(self, specimen: Specimen, look: Look) -> FloatArray:
         if self.quantity == "frequency":
@@ -159,86 +203,53 @@ class System:
             rows.append(
                 linear.sensitivity[begin:end] / per_log / np.sqrt(specimen.relative_variance)[:, None]
             )
-        return np.vstack(rows)[self.used]
+        whitened = np.vstack(rows)[self.used]
+        behind = self.count_of_frequencies
+        shapes = np.sqrt(linear.weight[behind:, None]) * linear.sensitivity[behind:]
+        return np.vstack([whitened, shapes])
 
     @cached_property
     def used(self) -> BoolArray:
-        """Which data weigh anything, shape (n,)."""
-        return self.weight > 0
+        """Which modes' frequencies weigh anything, shape (n_modes,)."""
+        return np.concatenate(self.weights) > 0
 
     def corrected(self, factors: Sequence[FloatArray]) -> System:
-        """Return the problem with the reduced models' frequencies corrected by factors."""
-        specimens = tuple(replace(s, correction=f) for s, f in zip(self.specimens, factors, strict=True))
-        return replace(self, specimens=specimens)
+        """Return the problem with the reduced models' frequencies multiplied by factors (n_modes,) [-]."""
+        both = zip(self.specimens, factors, strict=True)
+        return replace(self, specimens=tuple(s.corrected(s.correction * f) for s, f in both))
 
+    def reweighted(self, looks: tuple[Look, ...]) -> System:
+        """Return the problem with the shapes of each mode weighted by what is left of them."""
+        own = [
+            s.reweighted(shape_ratios(s, k, len(self.knobs))) if s.measured.has_shapes else s
+            for s, k in zip(self.specimens, looks, strict=True)
+        ]
+        return replace(self, specimens=tuple(own))
 
-def build_system(
-    specimens: Sequence[Specimen],
-    shared: Sequence[str],
-    weights: Weights,
-    quantity: Quantity,
-    all_modes: Sequence[int],
-    *,
-    regularised: bool,
-) -> System:
-    """Number the unknowns and lay out the weights.
-
-    Raises
-    ------
-    StudyError
-        If a shared name is no parameter, weights do not fit the modes, or there are more free parameters than
-        data.
-    """
-    known = {knob.name for s in specimens for knob in s.panel.knobs}
-    if missing := sorted(set(shared) - known):
-        raise StudyError(
-            f"update: shared parameter {missing[0]!r} is updated in no study; add it to the parameters"
+    def nearer(self, modes: Sequence[FloatArray], factors: Sequence[FloatArray]) -> System:
+        """Return the problem with the full models' modes (n_dofs, n) in the bases; with factors where none fits."""
+        parts = zip(self.specimens, modes, factors, strict=True)
+        return replace(
+            self, specimens=tuple(s.enriched(m) or s.corrected(s.correction * f) for s, m, f in parts)
         )
-    unknowns: dict[tuple[str, int], Knob] = {}
-    index = []
-    for i, specimen in enumerate(specimens):
-        keys = [(k.name, -1 if k.name in shared else i) for k in specimen.panel.knobs]
-        for key, knob in zip(keys, specimen.panel.knobs, strict=True):
-            unknowns.setdefault(key, knob)
-        index.append([list(unknowns).index(key) for key in keys])
-    system = System(
-        tuple(specimens),
-        tuple(np.array(i) for i in index),
-        tuple(unknowns.values()),
-        tuple(owner for _, owner in unknowns),
-        _weights(specimens, weights, all_modes),
-        quantity,
-        regularised,
-    )
-    free = int(np.sum(system.prior == 0))
-    if free > system.count:
-        raise StudyError(
-            f"update: {free} parameters without a tolerance to hold them and {system.count} frequencies; name fewer "
-            'parameters, or use weights = "covariance" with [tolerances]'
-        )
-    return system
 
+    def around(self, theta: FloatArray) -> System:
+        """Return the problem on bases that are good far around a solution."""
+        both = enumerate(self.specimens)
+        return replace(self, specimens=tuple(s.around(self.values(theta, i)) for i, s in both))
 
-def _weights(
-    specimens: Sequence[Specimen], weights: Weights, all_modes: Sequence[int]
-) -> tuple[FloatArray, ...]:
-    """Return W_s for relative frequencies of each specimen."""
-    if isinstance(weights, str):
-        if weights == "covariance":
-            return tuple(1 / s.relative_variance for s in specimens)
-        if weights == "relative":
-            return tuple(np.ones(len(s.number)) for s in specimens)
-        if weights != "eigenvalue":
-            raise StudyError(
-                f"update: unknown weights {weights!r}; use covariance, relative, eigenvalue or a list of numbers"
-            )
-        top = max(s.measured.frequency.max() for s in specimens)
-        return tuple((s.measured.frequency / top) ** 4 for s in specimens)
-    given = np.asarray(weights, dtype=float)
-    if len(given) != sum(all_modes) or not np.all(given >= 0) or not np.any(given > 0):
-        raise StudyError(
-            f"update: {len(given)} weights for {sum(all_modes)} measured modes; give one for each, none negative, "
-            "in the order of the tests and their frequencies"
+    def redrawn(
+        self,
+        frequencies: Sequence[FloatArray],
+        centre: FloatArray,
+        constants: Sequence[FloatArray] | None = None,
+    ) -> System:
+        """Return the problem with other measured frequencies [Hz] and constants [1/kg], and another centre (p,)."""
+        shapes = [None] * len(frequencies) if constants is None else constants
+        both = zip(self.specimens, frequencies, shapes, strict=True)
+        other = replace(self, specimens=tuple(s.redrawn(f, c) for s, f, c in both), drawn=centre)
+        kept = ("low", "high", "start", "doubt", "prior", "used") + ("weight",) * (
+            self.quantity == "frequency"
         )
-    parts = np.split(given, np.cumsum(all_modes)[:-1])
-    return tuple(part[s.number - 1] for part, s in zip(parts, specimens, strict=True))
+        other.__dict__.update({name: getattr(self, name) for name in kept})
+        return other

@@ -24,7 +24,8 @@ from modalkit.figures.style import (
     text_width,
 )
 from modalkit.figures.words import located, share
-from updating import Case, Diagnosis
+from updating import Case, Diagnosis, Measured
+from updating.models.imported import Imported
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,10 @@ class Outline:
         Those that carry a transducer [m].
     clamped : tuple of str
         Clamped edges.
+    view : tuple of int
+        Axes of the model that are drawn to the right and upwards.
+    origin : tuple of float
+        Where the drawing's corner lies on them [m].
     """
 
     length: float
@@ -51,6 +56,12 @@ class Outline:
     points: FloatArray
     sensors: FloatArray
     clamped: tuple[str, ...]
+    view: tuple[int, int] = (0, 1)
+    origin: tuple[float, float] = (0.0, 0.0)
+
+    def flat(self, place: tuple[float, float, float]) -> tuple[float, float]:
+        """Return a place of the model as it is drawn [m]."""
+        return place[self.view[0]] - self.origin[0], place[self.view[1]] - self.origin[1]
 
     @property
     def even(self) -> bool:
@@ -65,11 +76,32 @@ def outline(diagnosis: Diagnosis, case: Case | None) -> Outline:
     if case is None:
         return _from_centres(diagnosis)
     spec, test = case.spec, case.measured
+    if spec.imported is not None:
+        return _imported_outline(spec.imported, test)
     width = spec.width if spec.kind == "plate" else 0.0
     zones = [(*r.x, *(r.y or (0.0, width)), found.get(r.name, 0.0)) for r in spec.regions]
     points = np.zeros((len(test.points), 2))
     points[:, : test.points.shape[1]] = test.points
     return Outline(spec.length, width, zones, points, points[list(test.sensors)], spec.clamped)
+
+
+def _imported_outline(imported: Imported, test: Measured) -> Outline:
+    """Draw the box of imported nodes along its two longest sides; what the regions hold is not known as an outline."""
+    low, high = imported.extents
+    view = np.sort(np.argsort(high - low, kind="stable")[-2:])
+    size = np.maximum((high - low)[view], 1e-3 * (high - low).max())
+    points = (test.points - low)[:, view]
+    first, second = (int(axis) for axis in view)
+    return Outline(
+        float(size[0]),
+        float(size[1]),
+        [(0.0, float(size[0]), 0.0, float(size[1]), 1.0)],
+        points,
+        points[list(test.sensors)],
+        (),
+        (first, second),
+        (float(low[first]), float(low[second])),
+    )
 
 
 def _from_centres(diagnosis: Diagnosis) -> Outline:
@@ -118,7 +150,7 @@ def draw_where(axes: Axes, diagnosis: Diagnosis, case: Case | None, *, width: fl
         axes.text(width, height + 0.22, "probability, %", fontsize=SMALL, color=MUTED, ha="right")
     _clamps(axes, body, frame)
     _points(axes, body, frame)
-    _cause(axes, diagnosis, frame, width, plate=body.width > 0)
+    _cause(axes, diagnosis, body, frame, width)
 
 
 @dataclass(frozen=True)
@@ -217,9 +249,9 @@ def _points(axes: Axes, body: Outline, frame: _Frame) -> None:
         axes.text(right, line, size, fontsize=SMALL, color=MUTED, ha="right", va="center")
 
 
-def _cause(axes: Axes, diagnosis: Diagnosis, frame: _Frame, width: float, *, plate: bool) -> None:
+def _cause(axes: Axes, diagnosis: Diagnosis, body: Outline, frame: _Frame, width: float) -> None:
     """Ring the places found and name the first above the structure."""
-    where = diagnosis.where
+    where, plate = diagnosis.where, body.width > 0
     base = frame.top + 0.42
     if where.location is None:
         texts = {
@@ -231,8 +263,9 @@ def _cause(axes: Axes, diagnosis: Diagnosis, frame: _Frame, width: float, *, pla
         return
     places = where.locations or (where.location,)
     for place in places:
-        x = frame.x(place[0])
-        y = frame.y(place[1]) if plate else frame.bottom + frame.tall / 2
+        along, across = body.flat(place)
+        x = frame.x(along)
+        y = frame.y(across) if plate else frame.bottom + frame.tall / 2
         if plate:
             axes.scatter(
                 [x], [y], s=190, facecolor="none", edgecolor=ORANGE, linewidth=2.4, clip_on=False, zorder=6
@@ -244,7 +277,7 @@ def _cause(axes: Axes, diagnosis: Diagnosis, frame: _Frame, width: float, *, pla
         axes.plot([x, x], [foot, base - 0.05], color=ORANGE, linewidth=1.4, clip_on=False, zorder=5.5)
     label = located(diagnosis, plate=plate) + (f"  (one of {len(places)})" if len(places) > 1 else "")
     half = text_width(label, TEXT, weight="bold") / 144
-    middle = float(np.clip(frame.x(where.location[0]), half, max(width - half, half)))
+    middle = float(np.clip(frame.x(body.flat(where.location)[0]), half, max(width - half, half)))
     axes.text(middle, base, label, fontsize=TEXT, fontweight="bold", color=ORANGE, ha="center")
 
 

@@ -1,0 +1,96 @@
+"""The command that makes a synthetic test of a study's model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import pandas as pd
+import typer
+
+from modalkit.cli.common import out, several, show_figures, show_table, working
+from modalkit.cli.options import Figures
+from modalkit.named_effects import parse_effect
+from modalkit.rig import Options
+from modalkit.simulate import SimulatedTest, simulate_test
+from modalkit.study import read_study
+from updating import LIBRARY
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(simulate)
+
+
+def simulate(
+    study: Annotated[Path, typer.Argument(help="study file")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="UFF file to write")],
+    effect: Annotated[
+        list[str] | None, typer.Option(help="NAME or NAME:PARAM=VALUE,PARAM=VALUE; repeat")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="seed of all scatter and noise")] = 0,
+    frfs: Annotated[bool, typer.Option("--frfs", help="write averaged FRFs instead of raw hits")] = False,
+    hits: Annotated[int | None, typer.Option(min=1, help="hits at each point")] = None,
+    samples: Annotated[int | None, typer.Option(min=64, help="samples per record")] = None,
+    rate: Annotated[float | None, typer.Option(min=1e-3, help="sampling rate [Hz]")] = None,
+    noise: Annotated[
+        float | None, typer.Option(min=0.0, help="noise of the responses, r.m.s. of their largest magnitude")
+    ] = None,
+    points: Annotated[int | None, typer.Option(help="how many points, where the study has none")] = None,
+    remount: Annotated[
+        bool,
+        typer.Option(
+            "--remount", help="let frequencies and level scatter as the study says of a new mounting"
+        ),
+    ] = False,
+    figures: Figures = None,
+) -> None:
+    """Make a synthetic hammer test of a study's model, with effects in it."""
+    effects = [parse_effect(text) for text in effect or ()]
+    options = Options(hits=hits, samples=samples, rate=rate, noise=noise, points=points, remount=remount)
+    with working("hitting the model"):
+        made = simulate_test(read_study(study), effects, seed=seed, options=options)
+        made.write(output, as_frfs=frfs)
+    _show(made)
+    out.print(f"written: {output}", markup=False)
+    show_figures(figures, lambda: _figures(made))
+
+
+def _figures(made: SimulatedTest) -> dict[str, Any]:
+    from modalkit.figures import frf_figure
+
+    return {"frf": frf_figure(made.frfs())}
+
+
+def _show(made: SimulatedTest) -> None:
+    out.print(made.title, style="bold", markup=False)
+    rows = [
+        {"effect": name, "channel": LIBRARY[name].channel, "parameter": parameter, "value": value}
+        for name, values in made.effects
+        for parameter, value in (values or {"-": float("nan")}).items()
+    ]
+    if rows:
+        show_table(pd.DataFrame(rows), "In it, beyond the study's model")
+    plan = made.rig.plan
+    count = sum(len(test.points) for test in made.tests)
+    out.print(
+        f"{several(plan.hits, 'hit')} at each of {several(count, 'point')}, "
+        f"{several(len(dict.fromkeys(made.rig.responses)), 'response')} ({plan.form}); "
+        f"{plan.samples} samples at {plan.rate:g} Hz, band {made.rig.band[0]:g} to {made.rig.band[1]:g} Hz."
+    )
+    noise = (
+        f"{plan.response_noise:g} of each record"
+        if plan.response_noise
+        else f"{plan.response_floor:.3g} r.m.s."
+    )
+    stated = made.tests[0].decay
+    out.print(
+        f"Force of {plan.peak:.3g} N in {1e3 * plan.width:.3g} ms; noise {plan.force_noise:.2g} N and {noise}; "
+        f"hits scatter by {1e3 * plan.position_sigma:g} mm"
+        + (f"; stated window of {stated:g} 1/s" if stated else "")
+        + "."
+    )
+    table = made.table()
+    show_table(table, f"{several(len(table), 'mode')} in the band", digits=dict.fromkeys(table.columns, 4))
+    for remark in made.remarks:
+        out.print(f"note: {remark}", markup=False)

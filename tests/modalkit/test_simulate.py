@@ -1,0 +1,409 @@
+"""Simulated hammer tests: what is put in is found again, whatever the study says of its test."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from acquisition import Dof, read_uff, write_uff
+from acquisition.errors import InputError, StudyError
+from modalkit.cli import main
+from modalkit.cli.demonstrate import sample
+from modalkit.named_effects import parse_effect
+from modalkit.process import process
+from modalkit.reading import read
+from modalkit.rig import Options, spaced
+from modalkit.simulate import prepare, simulate_test
+from modalkit.study import read_study
+from updating import LIBRARY, Damping, Material, Measured, Predictor, Spec
+
+Run = Callable[..., tuple[int, str, str]]
+STUDY = sample("beam_dry")
+TABLE = """
+[model]
+type = "{kind}"
+length = 0.4
+width = 0.03
+thickness = 0.005
+clamped = {clamped}
+[model.material]
+E = 210e9
+density = 7850.0
+"""
+
+
+def blank(places: np.ndarray) -> Measured:
+    """A test of points on a beam with its sensor at the last."""
+    n = len(places)
+    f = np.array([500.0, 1000.0])
+    return Measured(
+        f, f, f, f, places[:, None], tuple(range(1, n + 1)), np.full(n, n - 1), np.arange(n), np.ones((n, 2)),
+        np.ones((n, 2)), absolute=True,
+    )  # fmt: skip
+
+
+STEEL = Material(210e9, 7850.0, 0.3)
+BEAM = Spec("beam", 0.4, 0.03, 0.005, (40,), ("x0",), "euler-bernoulli", STEEL, damping=Damping(alpha=1e-3))
+MODEL = Predictor(BEAM, blank(np.linspace(0.08, 0.4, 5)))
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
+    def call(*arguments: str | Path) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["modalkit", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        text = capfd.readouterr()
+        return int(ended.value.code or 0), text.out, text.err
+
+    return call
+
+
+def study_of(folder: Path, test: str, *, kind: str = "beam", clamped: str = '["x0"]') -> Path:
+    path = folder / "study.toml"
+    path.write_text(f"[test]\n{test}\n{TABLE.format(kind=kind, clamped=clamped)}")
+    return path
+
+
+def pointed_at(data: Path, folder: Path, model_damping: str = "") -> Path:
+    """The sample's study with another file."""
+    path = folder / "other.toml"
+    text = STUDY.read_text().replace("beam_dry.uff", str(data))
+    path.write_text(text.replace("[tolerances]", f"{model_damping}\n[tolerances]"))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("effect", "name", "value"),
+    [("sensor_mass:mass=0.0086", "mass", 0.0086), ("clamp_rotation:stiffness=1500", "stiffness", 1500.0)],
+)
+def test_what_was_put_in_is_named(run: Run, tmp_path: Path, effect: str, name: str, value: float) -> None:
+    target, found, answer = (tmp_path / n for n in ("out.uff", "modes.json", "diagnosis.json"))
+    code, out, _ = run("simulate", STUDY, "--effect", effect, "--seed", "4", "--hits", "6", "-o", target)
+    assert code == 0
+    assert "6 hits at each of 5 points" in out
+    assert run("identify", target, "--band", "5", "500", "--json", found)[0] == 0
+    predicted = simulate_test(
+        read_study(STUDY), [parse_effect(effect)], seed=9, options=Options(hits=1)
+    ).table()
+    modes = json.loads(found.read_text())["modes"]
+    for mode, frequency, damping in zip(modes, *predicted.to_numpy().T, strict=True):
+        assert abs(mode["frequency_hz"] - frequency) < 4.5 * mode["frequency_sigma_hz"]
+        assert abs(100 * mode["damping_ratio"] - damping) < 450 * mode["damping_sigma"]
+    assert run("diagnose", pointed_at(target, tmp_path), "--json", answer)[0] == 0
+    record = json.loads(answer.read_text())
+    effect_name = effect.partition(":")[0]
+    assert record["cause"]["verdict"] == "named"
+    assert record["cause"]["sets"] == [[effect_name]]
+    estimate = record["cause"]["ranking"][0]["parameters"][f"{effect_name}.{name}"]
+    assert estimate["low95"] < value < estimate["high95"]
+
+
+def test_the_file_depends_on_study_and_seed_alone(run: Run, tmp_path: Path) -> None:
+    files = [tmp_path / f"{i}.uff" for i in range(3)]
+    for path, seed in zip(files, ("7", "7", "8"), strict=True):
+        assert run("simulate", STUDY, "--hits", "2", "--seed", seed, "-o", path)[0] == 0
+    tests = [read_uff(path).tests[0] for path in files]
+    assert np.array_equal(tests[0].points[2].motion, tests[1].points[2].motion)
+    assert not np.array_equal(tests[0].points[2].motion, tests[2].points[2].motion)
+
+
+def test_the_rig_is_that_of_the_study_s_own_hits() -> None:
+    """The sample was made with these figures; window, rate and records are stated, the rest is heard."""
+    made = simulate_test(read_study(STUDY), options=Options(hits=1))
+    plan = made.rig.plan
+    assert (plan.rate, plan.samples, plan.decay, plan.form) == (1280.0, 1024, 8.0, "accelerance")
+    assert simulate_test(read_study(STUDY)).tests[0].points[0].count == 15
+    assert plan.peak == pytest.approx(60.0, rel=0.1)
+    assert plan.width == pytest.approx(1.2 / 500, rel=0.1)
+    assert plan.force_noise == pytest.approx(2e-4 * 60, rel=0.25)
+    motion = np.abs(read_uff(STUDY.parent / "beam_dry.uff").tests[0].points[2].motion).max()
+    assert plan.response_floor == pytest.approx(3e-4 * motion, rel=0.5)
+    assert made.rig.band == (5.0, 500.0)
+    assert made.tests[0].decay == 8.0
+
+
+def test_an_unknown_window_and_gain_are_in_the_data_and_not_stated(tmp_path: Path) -> None:
+    study = read_study(STUDY)
+    plain = simulate_test(study, seed=1, options=Options(hits=3))
+    off = simulate_test(
+        study,
+        [parse_effect("exponential_window:decay=2.0"), parse_effect("calibration_gain:gain=1.2")],
+        seed=1,
+        options=Options(hits=3),
+    )
+    off.write(tmp_path / "off.uff")
+    plain.write(tmp_path / "plain.uff")
+    one, other = (read(tmp_path / n).identify(band=(5, 500)) for n in ("plain.uff", "off.uff"))
+    assert other.frfs.decay == 8.0
+    sigma = np.hypot(*(np.sqrt(m.pole_covariance[:, 1, 1]) * np.abs(m.poles) for m in (one, other)))
+    assert (np.abs(other.poles.real - one.poles.real + 2.0) < 4.5 * sigma).all()
+    assert sigma.max() < 0.1
+    ratio = np.median(other.constants.real / one.constants.real, axis=0)
+    assert ratio == pytest.approx(np.full(3, 1.2), rel=0.01)
+
+
+def test_frfs_come_with_coherence_and_fewer_bytes(run: Run, tmp_path: Path) -> None:
+    target = tmp_path / "frfs.uff"
+    assert run("simulate", STUDY, "--hits", "4", "--frfs", "-o", target)[0] == 0
+    content = read_uff(target)
+    assert not content.tests
+    assert content.frfs is not None
+    assert content.frfs.coherence is not None
+    assert content.frfs.decay == 8.0
+    assert set(content.frfs.averages.tolist()) == {4}
+    assert content.frfs.frequency[-1] == pytest.approx(500.0, abs=1.3)
+
+
+def test_directions_of_the_transducers_stay_what_they_were(tmp_path: Path) -> None:
+    frfs = read(STUDY.parent / "beam_dry.uff").frfs
+    turned = replace(frfs, responses=tuple(Dof(d.node, -3) for d in frfs.responses))
+    turned = turned.select([0, 2, 4]).scaled(np.array([-1.0, -1.0, -1.0]))
+    write_uff(tmp_path / "turned.uff", frfs=turned, geometry=frfs.geometry)
+    made = simulate_test(read_study(pointed_at(tmp_path / "turned.uff", tmp_path)), options=Options(hits=2))
+    found = made.frfs().band(5.0, 20.0)  # below the first mode, where model and test hardly differ
+    assert found.responses == turned.responses
+    product = np.sum(found.values * turned.band(5.0, 20.0).values.conj(), axis=1).real
+    size = np.linalg.norm(found.values, axis=1) * np.linalg.norm(turned.band(5.0, 20.0).values, axis=1)
+    assert (product / size > 0.9).all()
+
+
+def test_points_with_different_responses_are_different_tests(tmp_path: Path) -> None:
+    frfs = read(STUDY.parent / "beam_dry.uff").frfs
+    fewer = replace(frfs, responses=(*frfs.responses[:3], *frfs.references[3:4], frfs.responses[4]))
+    write_uff(tmp_path / "two.uff", frfs=fewer, geometry=frfs.geometry)
+    made = simulate_test(
+        read_study(pointed_at(tmp_path / "two.uff", tmp_path)),
+        [parse_effect("E:factor=1.01")],
+        options=Options(hits=2),
+    )
+    assert len(made.tests) == 2
+    pairs = {(d, p.reference) for test in made.tests for p in test.points for d in p.responses}
+    assert pairs == set(zip(fewer.responses, fewer.references, strict=True))
+    made.write(tmp_path / "made.uff")
+    assert len(read(tmp_path / "made.uff").frfs.responses) == 5
+
+
+def test_a_study_with_modes_alone_says_where_it_hits(run: Run, tmp_path: Path) -> None:
+    target = tmp_path / "out.uff"
+    published = sample("beam_dry").parent / "published.toml"
+    code, out, _ = run(
+        "simulate", published, "--points", "4", "--hits", "2", "--samples", "2048", "-o", target
+    )
+    assert code == 0
+    assert "the hammer goes to 4, evenly spaced" in out
+    assert "0.5 % for every mode" in out
+    nodes = read_uff(target).geometry
+    assert nodes.coordinates[:, 0] == pytest.approx(0.376 * np.arange(1, 5) / 4)
+    assert "the sensor sits at 4+Z" in out  # where the study knows of a mass
+
+
+def test_a_planned_test_needs_no_data_and_a_free_beam_hangs(tmp_path: Path) -> None:
+    study = read_study(
+        study_of(tmp_path, "axes = { x = [0.0, 1.0, 0.0], y = [-1.0, 0.0, 0.0] }", clamped="[]")
+    )
+    made = simulate_test(study, options=Options(hits=2, samples=4096))
+    assert len(made.table()) == 5
+    assert any("hung on cords" in r for r in made.remarks)
+    made.write(tmp_path / "out.uff")
+    processed = read(tmp_path / "out.uff")
+    assert processed.frfs.geometry.coordinates[:, 1] == pytest.approx(np.linspace(0, 0.4, 5))
+    model = processed.identify(band=(20.0, made.rig.band[1]))
+    assert model.modal.frequency == pytest.approx(made.table()["frequency [Hz]"].to_numpy(), rel=1e-4)
+    written = tmp_path / "back.toml"
+    written.write_text(
+        study.path.read_text().replace("[test]", f'[test]\nfiles = ["out.uff"]\nband = {list(made.rig.band)}')
+    )
+    again = simulate_test(read_study(written), options=Options(hits=1))
+    assert again.table()["frequency [Hz]"].to_numpy() == pytest.approx(
+        made.table()["frequency [Hz]"].to_numpy()
+    )
+
+
+def test_transducers_along_turned_axes_point_the_model_s_way(tmp_path: Path) -> None:
+    """The model's z is the test's -y, then no axis of the test at all."""
+    for axes, direction in (
+        ("x = [1.0, 0.0, 0.0], y = [0.0, 0.0, 1.0]", -2),
+        ("x = [1.0, 0.0, 0.0], y = [0.0, 0.6, 0.8]", 3),
+    ):
+        study = read_study(study_of(tmp_path, f"axes = {{ {axes} }}"))
+        made = simulate_test(study, options=Options(hits=1, samples=256))
+        assert {dof.direction for dof in made.rig.references} == {direction}
+        way = made.rig.geometry.direction(made.rig.references[0])
+        assert way == pytest.approx(study.axes(study.test).rotation[2])
+
+
+def test_points_stand_off_the_clamps() -> None:
+    beam = Spec("beam", 1.0, 0.03, 0.005, (10,), ("x0", "x1"), "euler-bernoulli", STEEL)
+    assert spaced(beam, 4)[:, 0] == pytest.approx([0.2, 0.4, 0.6, 0.8])
+    plate = Spec("plate", 0.4, 0.3, 0.003, (8, 6), ("x0",), "kirchhoff", STEEL)
+    grid = spaced(plate, None)
+    assert len(grid) == 20
+    assert grid.min(axis=0) == pytest.approx([0.08, 0.0])
+    assert grid.max(axis=0) == pytest.approx([0.4, 0.3])
+
+
+@pytest.mark.parametrize(
+    ("effect", "said"),
+    [
+        ("senser_mass:mass=0.01", "did you mean sensor_mass?"),
+        ("warp", "`modalkit effects` lists them"),
+        ("sensor_mass", "it takes mass [kg], found none"),
+        ("sensor_mass:mass=heavy", "is no PARAM=VALUE"),
+        ("sensor_mass:mass=-1", "must be positive"),
+        ("shear:factor=2", "it takes no parameters, found factor"),
+        ("sensor_mass:mass=nan", "is no PARAM=VALUE"),
+    ],
+)
+def test_a_wrong_effect_is_one_line_and_no_file(run: Run, tmp_path: Path, effect: str, said: str) -> None:
+    target = tmp_path / "out.uff"
+    code, _, err = run("simulate", STUDY, "--effect", effect, "-o", target)
+    assert code == 2
+    assert said in err
+    assert err.strip().count("\n") == 0
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_does_not_apply_is_refused(tmp_path: Path) -> None:
+    free = read_study(study_of(tmp_path, "", clamped="[]"))
+    with pytest.raises(StudyError, match="no clamped edge"):
+        simulate_test(free, [parse_effect("clamp_rotation:stiffness=100")])
+    with pytest.raises(InputError, match="says which points"):
+        simulate_test(read_study(STUDY), options=Options(points=3))
+    with pytest.raises(StudyError, match="at least 2"):
+        simulate_test(free, options=Options(points=1))
+
+
+def test_shear_and_a_sensor_at_once(tmp_path: Path) -> None:
+    """Two effects, one of them another theory: both act."""
+    study = read_study(study_of(tmp_path, "band = [10.0, 1200.0]"))
+    quick = Options(hits=1, samples=256)
+    both = [parse_effect("shear"), parse_effect("sensor_mass:mass=0.02")]
+    plain, sheared, heavy, all_of_it = (
+        simulate_test(study, effects, options=quick).table()["frequency [Hz]"].to_numpy()
+        for effects in ([], both[:1], both[1:], both)
+    )
+    assert (sheared < plain).all()
+    assert all_of_it / plain == pytest.approx((sheared / plain) * (heavy / plain), rel=2e-3)
+
+
+def test_a_new_mounting_scatters_as_the_study_says() -> None:
+    study = read_study(STUDY)
+    quick = Options(hits=1, samples=256)
+    plain = simulate_test(study, options=quick)
+    ready = prepare(study, replace(quick, remount=True))
+    again = [simulate_test(ready, seed=i) for i in range(12)]
+    ratios = np.array([one.poles / plain.poles for one in again])
+    assert np.abs(ratios.imag).max() < 1e-12
+    spread = np.sqrt(np.mean((ratios.real - 1) ** 2))
+    assert spread == pytest.approx(study.test.repeatability, rel=0.5)  # 36 draws: 12 % is one sigma
+    gains = np.array([one.rig.plan.gain for one in again])
+    assert np.sqrt(np.mean(np.log(gains) ** 2)) == pytest.approx(study.test.calibration, rel=0.8)
+
+
+def test_a_mass_that_the_study_takes_out_is_on_the_model_before(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(
+        STUDY.read_text().replace(
+            'files = ["beam_dry.uff"]',
+            f'files = ["{STUDY.parent / "beam_dry.uff"}"]\nsensor_masses = {{ "5+Z" = 0.0086 }}',
+        )
+    )
+    known = simulate_test(read_study(path), options=Options(hits=1)).table()
+    heavy = simulate_test(
+        read_study(STUDY), [parse_effect("sensor_mass:mass=0.0086")], options=Options(hits=1)
+    ).table()
+    column = "frequency [Hz]"
+    assert known[column].to_numpy() == pytest.approx(heavy[column].to_numpy(), rel=1e-9)
+    made = simulate_test(read_study(path), options=Options(hits=6), seed=3)
+    made.write(tmp_path / "made.uff")
+    again = tmp_path / "again.toml"
+    again.write_text(path.read_text().replace(str(STUDY.parent / "beam_dry.uff"), "made.uff"))
+    back = process(read_study(again))[1].modal.frequency
+    bare = simulate_test(read_study(STUDY), options=Options(hits=1)).table()[column].to_numpy()
+    assert back == pytest.approx(bare, rel=2e-4)
+
+
+EVERYTHING = {
+    name: ",".join(f"{p.name}={p.value(0.6):.9g}" for p in effect.parameters(MODEL))
+    for name, effect in LIBRARY.items()
+}
+
+
+@pytest.mark.parametrize("name", sorted(EVERYTHING))
+def test_every_effect_can_be_simulated_and_acts_as_in_a_prediction(tmp_path: Path, name: str) -> None:
+    study = read_study(study_of(tmp_path, "band = [4.0, 1100.0]"))
+    if LIBRARY[name].channel != "measurement" and (obstacle := LIBRARY[name].why_not(MODEL)):
+        pytest.skip(f"not on this beam: {obstacle}")
+    effect = parse_effect(f"{name}:{EVERYTHING[name]}")
+    made = simulate_test(study, [effect], options=Options(hits=1, samples=128)).table()
+    state = LIBRARY[name].state(MODEL, effect[1])
+    expected = MODEL.predict(state, count=12).frequency
+    decay = state.decay / (2 * np.pi * expected)
+    found = made["frequency [Hz]"].to_numpy()
+    assert found == pytest.approx((expected * np.sqrt(1 + 0.01 * decay + decay**2))[: len(found)], rel=1e-6)
+
+
+def test_the_rig_of_averaged_frfs_has_their_lines_averages_and_noise(tmp_path: Path) -> None:
+    told = Options(hits=8, noise=2e-3)
+    first = simulate_test(read_study(STUDY), seed=2, options=told)
+    first.write(tmp_path / "frfs.uff", as_frfs=True)
+    plan = simulate_test(
+        read_study(pointed_at(tmp_path / "frfs.uff", tmp_path)), options=Options(noise=None)
+    ).rig.plan
+    assert plan.hits == 8
+    assert plan.rate == pytest.approx(1280.0, rel=2e-3)
+    assert plan.samples == pytest.approx(1024, rel=2e-3)
+    assert plan.decay == 8.0
+    largest = [np.abs(point.motion).max(axis=-1).mean() for point in first.tests[0].points]
+    peaks = np.mean([point.force.max(axis=-1).mean() for point in first.tests[0].points])
+    assert plan.response_floor == pytest.approx(2e-3 * np.median(largest) * plan.peak / peaks, rel=0.4)
+
+
+def test_nothing_is_left_where_nothing_can_be_written(run: Run, tmp_path: Path) -> None:
+    code, _, err = run("simulate", STUDY, "--hits", "1", "-o", tmp_path / "nowhere" / "out.uff")
+    assert code == 2
+    assert "cannot be written" in err
+    assert err.strip().count("\n") == 0
+
+
+def test_a_beam_in_water_sounds_lower(tmp_path: Path) -> None:
+    study = read_study(sample("beam_wet"))
+    effect = [parse_effect("fluid_added_mass:fluid_density=998")]
+    dry, wet = (simulate_test(study, e, options=Options(hits=1)).table() for e in ([], effect))
+    count = min(len(dry), len(wet))
+    ratio = wet["frequency [Hz]"].to_numpy()[:count] / dry["frequency [Hz]"].to_numpy()[:count]
+    assert (ratio < 0.8).all()
+
+
+def test_a_window_applied_on_reading_is_not_one_of_the_records(run: Run, tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(
+        STUDY.read_text()
+        .replace("beam_dry.uff", str(STUDY.parent / "beam_dry.uff"))
+        .replace("exponential_window = 8.0", "exponential_window = 8.0\nwindow = 3.0")
+    )
+    made = simulate_test(read_study(path), options=Options(hits=1))
+    assert made.tests[0].decay == 8.0
+    plain = simulate_test(read_study(STUDY), options=Options(hits=1)).rig.plan
+    assert made.rig.plan.response_floor == pytest.approx(plain.response_floor, rel=0.2)
+
+
+def test_accepted_effects_are_in_the_model_already(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text(
+        STUDY.read_text().replace("beam_dry.uff", str(STUDY.parent / "beam_dry.uff"))
+        + '\n[[model.effect]]\nname = "sensor_mass"\nmass = 0.0086\n'
+    )
+    quick = Options(hits=1)
+    accepted = simulate_test(read_study(path), [parse_effect("E:factor=0.96")], options=quick).table()
+    both = [parse_effect("sensor_mass:mass=0.0086"), parse_effect("E:factor=0.96")]
+    named = simulate_test(read_study(STUDY), both, options=quick).table()
+    column = "frequency [Hz]"
+    assert accepted[column].to_numpy() == pytest.approx(named[column].to_numpy(), rel=1e-9)

@@ -1,0 +1,122 @@
+"""Structures written out by hand as matrices, for the tests of imported matrices."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+from scipy import sparse
+
+from updating import Axes, Material, Measured, Spec
+from updating.models import Damping, PointMass, Region
+from updating.models.fields import Sparse
+from updating.models.imported import Imported, NodeTable
+
+LENGTH, WIDTH, DEPTH, E, DENSITY = 0.5, 0.03, 0.005, 210e9, 7850.0
+STIFF, LINE = E * WIDTH * DEPTH**3 / 12, DENSITY * WIDTH * DEPTH
+"""Bending stiffness [N m^2] and mass per length [kg/m] of the beam."""
+
+
+def beam_matrices(elements: int, first: int = 0, last: int | None = None) -> tuple[Sparse, Sparse]:
+    """Return the textbook matrices of a free Euler-Bernoulli beam, w and dw/dx at every node, some elements only."""
+    h = LENGTH / elements
+    k = STIFF / h**3 * np.array(
+        [[12, 6 * h, -12, 6 * h], [6 * h, 4 * h**2, -6 * h, 2 * h**2],
+         [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h**2, -6 * h, 4 * h**2]]
+    )  # fmt: skip
+    m = LINE * h / 420 * np.array(
+        [[156, 22 * h, 54, -13 * h], [22 * h, 4 * h**2, 13 * h, -3 * h**2],
+         [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h**2, -22 * h, 4 * h**2]]
+    )  # fmt: skip
+    n = 2 * (elements + 1)
+    stiffness, mass = np.zeros((n, n)), np.zeros((n, n))
+    for e in range(first, elements if last is None else last):
+        rows = slice(2 * e, 2 * e + 4)
+        stiffness[rows, rows] += k
+        mass[rows, rows] += m
+    return Sparse(stiffness), Sparse(mass)
+
+
+def clamp(matrix: Sparse) -> Sparse:
+    """Leave out the two rows of the first node."""
+    return Sparse(matrix[2:][:, 2:])
+
+
+def beam_table(elements: int, *, clamped: bool) -> NodeTable:
+    """Return where the rows of the beam are: along x, w along z and the rotation about -y."""
+    node = np.repeat(np.arange(elements + 1) + 1, 2)
+    places = np.zeros((len(node), 3))
+    places[:, 0] = LENGTH * (node - 1) / elements
+    row = np.arange(len(node)) - (2 if clamped else 0)
+    return NodeTable(node, places, np.tile([3, 5], elements + 1), np.maximum(row, -1))
+
+
+def imported_beam(elements: int = 20, *, clamped: bool = True, parts: tuple[int, ...] = ()) -> Imported:
+    """Return the beam as imported matrices, divided behind some of its elements."""
+    edges = (0, *parts, elements)
+    pieces = [beam_matrices(elements, a, b) for a, b in itertools.pairwise(edges)] if parts else []
+    cut = clamp if clamped else (lambda matrix: matrix)
+    k, m = beam_matrices(elements)
+    return Imported(
+        cut(k), cut(m), beam_table(elements, clamped=clamped),
+        tuple(cut(k) for k, _ in pieces), tuple(cut(m) for _, m in pieces),
+    )  # fmt: skip
+
+
+def spec_of(imported: Imported, masses: tuple[PointMass, ...] = (), regions: tuple[Region, ...] = ()) -> Spec:
+    """Return the specification of imported matrices."""
+    count = max(len(imported.stiffness_parts), len(imported.mass_parts), 1)
+    regions = regions or tuple(
+        Region(f"part{i + 1}", (i / count, (i + 1) / count), (0, 1)) for i in range(count)
+    )
+    return Spec(
+        "matrices",
+        1.0,
+        1.0,
+        1.0,
+        (),
+        (),
+        "imported",
+        Material(E, DENSITY),
+        regions,
+        masses,
+        Damping(),
+        imported,
+    )
+
+
+def seen_from(points: np.ndarray, directions: np.ndarray, frequency: np.ndarray | None = None) -> Measured:
+    """Return a test that says where it hits, its sensor at the last point."""
+    frequency = np.array([100.0]) if frequency is None else frequency
+    n, m = len(points), len(frequency)
+    nothing = np.full(m, np.nan)
+    return Measured(
+        frequency, np.zeros(m), nothing, nothing, points, tuple(range(1, n + 1)), np.full(n, n - 1), np.arange(n),
+        np.ones((n, m)), np.ones((n, m)), absolute=True, directions=directions,
+    )  # fmt: skip
+
+
+def write_rsa(path: Path, matrix: Sparse) -> None:
+    """Write the lower triangle as Nastran does: fixed fields that touch, exponents with D."""
+    lower = sparse.tril(matrix).tocsc()
+    lower.sort_indices()
+    n, entries = lower.shape[0], lower.nnz
+
+    def block(numbers: list[str], each: int) -> list[str]:
+        return ["".join(numbers[i : i + each]) for i in range(0, len(numbers), each)]
+
+    pointers = block([f"{p + 1:8d}" for p in lower.indptr], 10)
+    indices = block([f"{i + 1:8d}" for i in lower.indices], 10)
+    values = block([f"{v:25.16E}".replace("E", "D") for v in lower.data], 3)
+    counts = [len(pointers) + len(indices) + len(values), len(pointers), len(indices), len(values), 0]
+    head = [
+        f"{'a beam':72s}{'BEAM':8s}",
+        "".join(f"{c:14d}" for c in counts),
+        f"{'RSA':14s}{n:14d}{n:14d}{entries:14d}{0:14d}",
+        f"{'(10I8)':16s}{'(10I8)':16s}{'(1P,3D25.16)':20s}{'':20s}",
+    ]
+    path.write_text("\n".join([*head, *pointers, *indices, *values]) + "\n", encoding="ascii")
+
+
+AXES = Axes()

@@ -1,0 +1,127 @@
+"""Intervals of an update by FRFs from tests that might have been."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
+from updating.case import Case
+from updating.frf_update.report import report
+from updating.frf_update.result import FrfUpdate
+from updating.frf_update.run import solve_stages
+from updating.frf_update.solve import CONVERGED, descend
+from updating.frf_update.stage import Stage
+from updating.frf_update.step import Step, last_steps
+from updating.measured_frfs import MeasuredFrfs
+from updating.models.state import NOMINAL
+from updating.update.bootstrap import FEWEST, LEVEL
+
+ROUNDS = 2
+"""How often the stages are gone through for each draw, from the solution of the data at hand."""
+
+STEPS = 4
+"""Largest number of iterations of a stage for a draw: draws lie near the data."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrfBootstrap:
+    """An update by FRFs and its repetitions.
+
+    Parameters
+    ----------
+    update : FrfUpdate
+        The update of the data at hand, whose parameters carry percentile intervals.
+    values : (n, p) array
+        Factors and values of the parameters of every draw.
+    """
+
+    update: FrfUpdate
+    values: FloatArray
+
+
+def bootstrap_frf_update(
+    case: Case,
+    frfs: MeasuredFrfs,
+    *,
+    rng: np.random.Generator,
+    n: int = 100,
+    draws: Iterable[MeasuredFrfs] | None = None,
+    parameters: Sequence[str] = (),
+    stages: Sequence[Sequence[str]] | None = None,
+    lines: int | Sequence[float] | None = None,
+) -> FrfBootstrap:
+    """Update, then update again from FRFs drawn anew: of the hits where they are given, else from the noise.
+
+    The level of each draw is scattered by the calibration. What the model cannot follow stays as it is in all draws:
+    the intervals cover the scatter of the measurement, and where there is a discrepancy they are the narrower ones;
+    the standard deviations of the parameters allow for it.
+
+    Parameters
+    ----------
+    case, frfs, parameters, stages, lines
+        As for :func:`updating.frf_update.update_frfs`.
+    rng : numpy.random.Generator
+        Source of the draws.
+    n : int
+        Number of draws [-].
+    draws : iterable of MeasuredFrfs, optional
+        FRFs from hits drawn anew, on the lines of ``frfs``; left out, the variance of ``frfs`` is drawn.
+
+    Raises
+    ------
+    StudyError
+        If there are fewer than twenty draws.
+    """
+    if n < FEWEST:
+        raise StudyError(
+            f"bootstrap: {n} draws tell nothing of an interval; ask for {FEWEST} or more, better 100"
+        )
+    specimen, _, steps = solve_stages(case, frfs, parameters, stages, lines)
+    found = report(specimen, frfs, steps)
+    last = last_steps(steps)
+    source = _from_noise(frfs, rng, n) if draws is None else draws
+    level = case.measured.calibration
+    values = np.array(
+        [_repeat(last, frfs, _levelled(draw, rng, level)) for draw, _ in zip(source, range(n), strict=False)]
+    )
+    if len(values) < n:
+        raise StudyError(f"bootstrap: {len(values)} draws were given and {n} asked for")
+    tails = (1 - LEVEL) / 2
+    low, high = np.quantile(values, [tails, 1 - tails], axis=0)
+    nominal = np.array([k.nominal for step in last for k in step.stage.knobs])
+    ends = zip(found.parameters, low * nominal, high * nominal, strict=True)
+    with_ends = tuple(replace(p, interval=(float(a), float(b))) for p, a, b in ends)
+    return FrfBootstrap(replace(found, parameters=with_ends, draws=n), values)
+
+
+def _from_noise(frfs: MeasuredFrfs, rng: np.random.Generator, n: int) -> Iterable[MeasuredFrfs]:
+    for _ in range(n):
+        scatter = rng.standard_normal(frfs.values.shape) + 1j * rng.standard_normal(frfs.values.shape)
+        yield replace(frfs, values=frfs.values + np.sqrt(frfs.variance / 2) * scatter)
+
+
+def _levelled(frfs: MeasuredFrfs, rng: np.random.Generator, calibration: float) -> MeasuredFrfs:
+    return replace(frfs, values=frfs.values * np.exp(calibration * rng.standard_normal()))
+
+
+def _repeat(last: Sequence[Step], frfs: MeasuredFrfs, draw: MeasuredFrfs) -> list[float]:
+    """Go through the stages again with other data, from where they rested."""
+    theta = [step.solved.theta for step in last]
+    own = [step.own for step in last]
+    for _ in range(ROUNDS if len(last) > 1 else 1):
+        for i, step in enumerate(last):
+            chosen = np.searchsorted(frfs.frequency, step.stage.frfs.frequency)
+            others = NOMINAL
+            for j, state in enumerate(own):
+                others = others.plus(state) if j != i else others
+            earlier = replace(others, ratios=step.stage.earlier.ratios)
+            stage: Stage = replace(step.stage, frfs=draw.lines(chosen), earlier=earlier)
+            theta[i] = descend(
+                stage, theta[i], stage.look(theta[i]), step.solved.discrepancy, share=CONVERGED, steps=STEPS
+            )[0]
+            own[i] = stage.panel.state(stage.predictor, stage.values(theta[i]))
+    return [v for step, t in zip(last, theta, strict=True) for v in step.stage.values(t)]

@@ -1,0 +1,206 @@
+"""What an update by FRFs reports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from acquisition.arrays import FloatArray, IntArray
+from identification import frac
+from updating.frf_update.result import FrfUpdate
+from updating.frf_update.stage import nominal
+from updating.frf_update.statistics import assess, misses, with_misses
+from updating.frf_update.step import Step, identified_ratios, last_steps
+from updating.matching import mac_of_constants, match
+from updating.measured_frfs import MeasuredFrfs
+from updating.models.state import NOMINAL, State, combine
+from updating.prediction import Predictor
+from updating.update.determine import correlations
+from updating.update.exact import full_modes
+from updating.update.knobs import Knob
+from updating.update.result import Estimate
+from updating.update.specimen import Specimen
+
+NOTEWORTHY = 0.01
+"""Discrepancy that the user ought to know of [-]."""
+
+
+def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> FrfUpdate:
+    """Put together what the stages have found.
+
+    Parameters
+    ----------
+    specimen : Specimen
+        The specimen.
+    frfs : MeasuredFrfs
+        All its FRFs.
+    steps : sequence of Step
+        Every stage as often as it was gone through, in order.
+    """
+    last = last_steps(steps)
+    results = [assess(s.stage, s.solved, specimen.measured.calibration) for s in last]
+    results = [
+        r if s.solved.discrepancy == 0 else with_misses(r, misses(specimen, s))
+        for r, s in zip(results, last, strict=True)
+    ]
+    knobs = [k for step in last for k in step.stage.knobs]
+    theta = np.concatenate([s.solved.theta for s in last])
+    slope = np.array([k.nominal * (k.value(t) if k.log else 1.0) for k, t in zip(knobs, theta, strict=True)])
+    covariance = _blocks([r.covariance for r in results])
+    state = combine([s.own for s in last])
+    if not specimen.predictor.expects(specimen.predictor.base.plus(state)):
+        state = replace(state, ratios=last[0].stage.earlier.ratios)
+    lost = np.concatenate([r.undetermined for r in results])
+    pairs, exact = _pairs(specimen, state, [k.value(t) for k, t in zip(knobs, theta, strict=True)])
+    chi2, count = results[-1].chi2, results[-1].count - len(results[-1].undetermined)
+    return FrfUpdate(
+        parameters=tuple(
+            _estimate(k, float(t), float(s))
+            for k, t, s in zip(knobs, theta, np.sqrt(np.diag(covariance)) * slope, strict=True)
+        ),
+        pairs=pairs,
+        covariance=covariance * np.outer(slope, slope),
+        correlations=correlations(covariance),
+        undetermined=tuple(k.name for k, bad in zip(knobs, lost, strict=True) if bad),
+        iterations=sum(len(s.solved.history) - 1 for s in steps),
+        converged=all(s.solved.converged for s in last),
+        chi2=chi2,
+        dof=count,
+        inflation=1.0,
+        history=_history(steps, knobs),
+        exact=exact,
+        warnings=tuple(_warnings(specimen, last, exact)),
+        data=results[-1].count,
+        weights="noise and discrepancy",
+        quantity="receptance",
+        frac=_frac(specimen, frfs, steps, state),
+        stages=tuple(len(s.solved.history) - 1 for s in steps),
+        lines=tuple(tuple(s.stage.frfs.frequency.tolist()) for s in last),
+        discrepancy=tuple(s.solved.discrepancy for s in last),
+        state=state,
+    )
+
+
+def _blocks(parts: Sequence[FloatArray]) -> FloatArray:
+    size = sum(len(p) for p in parts)
+    total, first = np.zeros((size, size)), 0
+    for part in parts:
+        total[first : first + len(part), first : first + len(part)] = part
+        first += len(part)
+    return total
+
+
+def _estimate(knob: Knob, coordinate: float, sigma: float) -> Estimate:
+    value = knob.value(coordinate)
+    margin = 1e-6 * knob.span()
+    ends = knob.coordinate(knob.low) + margin, knob.coordinate(knob.high) - margin
+    factor = value if knob.is_factor or knob.parameter == "factor" else None
+    if knob.reach:
+        factor = 1 + knob.reach * value
+    return Estimate(
+        knob.name,
+        None,
+        knob.nominal * value,
+        knob.unit,
+        factor,
+        sigma,
+        not ends[0] < coordinate < ends[1],
+        knob.nominal * knob.low,
+        knob.nominal * knob.high,
+        knob.nominal * knob.start,
+    )
+
+
+def _history(steps: Sequence[Step], knobs: Sequence[Knob]) -> pd.DataFrame:
+    """Return factors and values of every iteration; parameters of other stages stand still."""
+    current = {
+        k.name: k.value(t) for s in steps for k, t in zip(s.stage.knobs, nominal(s.stage.knobs), strict=True)
+    }
+    rows = [dict(current)]
+    for step in steps:
+        for theta in step.solved.history[1:]:
+            current |= {k.name: k.value(t) for k, t in zip(step.stage.knobs, theta, strict=True)}
+            rows.append(dict(current))
+    return pd.DataFrame(
+        rows, columns=[k.name for k in knobs], index=pd.RangeIndex(len(rows), name="iteration")
+    )
+
+
+def _pairs(specimen: Specimen, state: State, values: Sequence[float]) -> tuple[pd.DataFrame, bool]:
+    test, predictor = specimen.measured, specimen.predictor
+    found = {}
+    for name, at in (("before", NOMINAL), ("after", state)):
+        prediction = predictor.predict(at)
+        partner = match(test, prediction, specimen.order)
+        found[name] = (prediction.select(partner), partner)
+    after, partner = found["after"]
+    effects = dict(specimen.accepted) | specimen.panel.effects(values)
+    whole = full_modes(predictor, predictor.base.plus(state), effects, int(partner.max()) + 1)
+    after_hz = after.frequency if whole is None else whole[0][partner]
+    mac = np.full(len(partner), np.nan)
+    if test.has_shapes:
+        mac = np.diag(mac_of_constants(test, after)).copy()
+    table = pd.DataFrame(
+        {
+            "study": specimen.title,
+            "test_mode": specimen.number,
+            "model_mode": partner + 1,
+            "mac": mac,
+            "test_hz": test.frequency,
+            "before_hz": found["before"][0].frequency,
+            "after_hz": after_hz,
+            "used": True,
+            "test_damping": test.damping,
+            "before_damping": _damped(predictor, NOMINAL, found["before"][1]),
+            "after_damping": _damped(predictor, state, partner),
+        }
+    )
+    return table, whole is not None
+
+
+def _damped(predictor: Predictor, state: State, partner: IntArray) -> FloatArray:
+    """Return damping ratios by the complex modes; nan where the model has no damping [-]."""
+    if not predictor.expects(predictor.base.plus(state)):
+        return np.full(len(partner), np.nan)
+    poles = predictor.complex_modes(state).poles
+    return np.asarray((-poles.real / np.abs(poles))[partner])
+
+
+def _frac(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step], state: State) -> pd.DataFrame:
+    """Compare FRFs before, after each stage's first round but the last stage's, and at the end."""
+    nodes = specimen.measured.nodes
+    table: dict[str, list[float] | list[int]] = {
+        "response": [nodes[i] for i in frfs.seen],
+        "force": [nodes[i] for i in frfs.hit],
+    }
+    apart = [s for s in steps if not s.together]
+    first = [s.own for s in apart[: max(s.number for s in apart)]]
+    stations = {"before": NOMINAL}
+    stations |= {f"after stage {i + 1}": combine(first[: i + 1]) for i in range(len(first))}
+    undamped = not specimen.predictor.expects(specimen.predictor.base)
+    for name, at in (stations | {"after": state}).items():
+        shown = replace(at, ratios=identified_ratios(specimen)) if undamped and not at.dampers else at
+        table[name] = frac(frfs.values, specimen.predictor.receptance(frfs.laplace, shown)).tolist()
+    return pd.DataFrame(table)
+
+
+def _warnings(specimen: Specimen, last: Sequence[Step], exact: bool) -> list[str]:
+    found = list(specimen.warnings)
+    for i, step in enumerate(last, start=1):
+        if not step.solved.converged:
+            found.append(
+                f"the parameters of stage {i} still move after {len(step.solved.history) - 1} iterations"
+            )
+        if step.solved.discrepancy > NOTEWORTHY:
+            found.append(
+                f"stage {i}: the updated model misses the FRFs by {100 * step.solved.discrepancy:.1f} %, which no "
+                "noise explains; the standard deviations allow for it"
+            )
+    if not exact:
+        found.append(
+            "an effect is known to the reduced model alone: the frequencies after the update are its own"
+        )
+    return found

@@ -1,0 +1,181 @@
+"""One stage of an update by FRFs: which parameters move, what is compared, and how well it must agree.
+
+The residual is paper B's difference of receptances (Eqs. 9 and 10), whitened. To the noise of the measurement a
+*discrepancy* is added, relative to the size of the FRFs: what the model cannot follow however it is turned. It
+starts large, so that peaks that do not overlap yet cannot dominate, and is then estimated from what is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.stats import chi2
+
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from updating.frf_update.columns import Columns
+from updating.frf_update.expansion import expand
+from updating.frf_update.look import Look, changes, look, sensitivity
+from updating.measured_frfs import MeasuredFrfs
+from updating.models.state import State
+from updating.prediction import Predictor
+from updating.update.knobs import Knob, Panel
+
+CHANCE = 1e-3
+"""A misfit less probable than this is the model's, not the noise's [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """What one stage solves.
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The specimen's model.
+    frfs : MeasuredFrfs
+        Measured FRFs on the lines of this stage.
+    ends : Columns
+        Their points.
+    panel : Panel
+        The parameters of this stage.
+    earlier : State
+        What the stages before have settled.
+    resonances, widths : (n,) arrays
+        Measured natural frequencies [Hz] and damping ratios [-]; what lies within the widths of these and of the
+        model's own resonances is left to a later stage; empty where this stage settles the damping.
+    warp : (n_lines,) array
+        Factor on the frequency of each line at which the model is evaluated, so that measured and computed
+        peaks fall together where only damping is asked for [-].
+    all_resonances : (n,) array
+        Measured natural frequencies, whatever the stage [Hz].
+    """
+
+    predictor: Predictor
+    frfs: MeasuredFrfs
+    ends: Columns
+    panel: Panel
+    earlier: State
+    resonances: FloatArray
+    widths: FloatArray
+    warp: FloatArray
+    all_resonances: FloatArray
+
+    @property
+    def knobs(self) -> tuple[Knob, ...]:
+        """The parameters."""
+        return self.panel.knobs
+
+    @property
+    def doubt(self) -> FloatArray:
+        """1-sigma scales of the coordinates."""
+        return np.array([k.doubt for k in self.knobs])
+
+    @property
+    def low(self) -> FloatArray:
+        """Lower bounds of the coordinates."""
+        return np.array([k.coordinate(k.low) for k in self.knobs])
+
+    @property
+    def high(self) -> FloatArray:
+        """Upper bounds of the coordinates."""
+        return np.array([k.coordinate(k.high) for k in self.knobs])
+
+    def lines(self, keep: IntArray) -> Stage:
+        """Return the same stage on some of its lines."""
+        return replace(self, frfs=self.frfs.lines(keep), warp=self.warp[keep])
+
+    def values(self, theta: FloatArray) -> list[float]:
+        """Take coordinates to factors and values."""
+        return [k.value(t) for k, t in zip(self.knobs, theta, strict=True)]
+
+    def state(self, theta: FloatArray) -> State:
+        """Return the model at given coordinates, earlier stages included."""
+        return self.earlier.plus(self.panel.state(self.predictor, self.values(theta)))
+
+    def look(self, theta: FloatArray) -> Look:
+        """Evaluate the model."""
+        laplace = self.frfs.laplace.real + 1j * self.frfs.laplace.imag * self.warp
+        return look(self.predictor, self.state(theta), self.ends, laplace)
+
+    def slopes(self, theta: FloatArray, at: Look, *, measured: bool) -> ComplexArray:
+        """Return the sensitivities of Eq. 10, shape (p, n_frf, n_lines) [m/N].
+
+        Parameters
+        ----------
+        theta : (p,) array
+            Coordinates.
+        at : Look
+            The model there.
+        measured : bool
+            With the measured column expanded (Eq. 9 as it stands) or with the model's own.
+        """
+        excited = expand(at, self.ends, self.frfs.values) if measured else None
+        by = changes(self.predictor, self.panel, self.values(theta), self.ends, self.earlier)
+        return np.stack([sensitivity(at, change, self.ends, excited) for change in by])
+
+    def power(self, at: Look) -> FloatArray:
+        """Return the mean square of measured and computed receptances, (n_frf, n_lines) [m^2/N^2]."""
+        return np.asarray((np.abs(self.frfs.values) ** 2 + np.abs(at.receptance) ** 2) / 2)
+
+    def variance(self, at: Look, discrepancy: float) -> FloatArray:
+        """Return noise, discrepancy, and what a later stage will settle, (n_frf, n_lines) [m^2/N^2]."""
+        share = self._resonant(at)
+        return np.asarray(self.frfs.variance + (discrepancy**2 + share**2) * self.power(at))
+
+    def _resonant(self, at: Look) -> FloatArray:
+        """Return how much of the dynamic stiffness at each line is damping, by the nearest resonance (n_lines,)."""
+        if not len(self.resonances):
+            return np.zeros(len(at.laplace))
+        own = self._own_resonances(at.state)
+        centres = np.concatenate([self.resonances, own])
+        widths = np.concatenate([self.widths, np.interp(own, self.resonances, self.widths)])
+        f = self.frfs.frequency[:, None]
+        damper = 2 * widths * centres * f
+        return np.asarray((damper / np.hypot(centres**2 - f**2, damper)).max(axis=1))
+
+    def _own_resonances(self, state: State) -> FloatArray:
+        total = self.predictor.base.plus(state)
+        values = self.predictor.reduced.eigen(total)[0][self.predictor.reduced.structure.rigid_modes :]
+        frequency = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
+        return np.asarray(frequency[frequency < 1.5 * self.frfs.frequency.max()])
+
+    def residual(self, at: Look) -> ComplexArray:
+        """Return measured minus computed, (n_frf, n_lines) [m/N]."""
+        return np.asarray(self.frfs.values - at.receptance)
+
+    def misfit(self, at: Look, variance: FloatArray) -> float:
+        """Return the mean square of the whitened residual [-]."""
+        return float(np.mean(np.abs(self.residual(at)) ** 2 / variance))
+
+    def discrepancy(self, at: Look) -> float:
+        """Return the relative discrepancy that explains what is left: the whitened mean square is then 1 [-].
+
+        It is 0 where noise alone may well leave so much.
+        """
+        dof = max(2 * self.frfs.values.size - len(self.knobs), 1)
+        wanted = dof / (2 * self.frfs.values.size)
+        if self.misfit(at, self.variance(at, 0.0)) * 2 * self.frfs.values.size < chi2.isf(CHANCE, dof):
+            return 0.0
+
+        def excess(size: float) -> float:
+            return self.misfit(at, self.variance(at, size)) - wanted
+
+        return float(brentq(excess, 0.0, 2.0)) if excess(2.0) < 0 else 2.0
+
+
+def whitened(
+    stage: Stage, slopes: ComplexArray, at: Look, variance: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return sensitivities (2 n, p) and residuals (2 n,) in standard deviations, real parts first [-]."""
+    scale = np.sqrt(2 / variance)
+    rows = (slopes * scale).reshape(len(slopes), -1)
+    load = (stage.residual(at) * scale).ravel()
+    return np.hstack([rows.real, rows.imag]).T, np.concatenate([load.real, load.imag])
+
+
+def nominal(knobs: Sequence[Knob]) -> FloatArray:
+    """Return the coordinates of the nominal model."""
+    return np.array([k.coordinate(k.start) for k in knobs])

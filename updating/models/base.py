@@ -1,0 +1,172 @@
+"""What every structure offers, whether it is assembled here or imported: one base, one sibling for each origin."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+from scipy.sparse.linalg import splu
+
+from acquisition.arrays import FloatArray, IntArray
+from acquisition.errors import StudyError
+from updating.models.fields import Sparse
+from updating.models.solve import lowest
+from updating.models.spec import Spec
+from updating.models.state import State
+
+FACTORS = ("E", "density", "thickness", "width", "length", "section", "area", "inertia")
+"""What a model can be scaled by; ``section`` scales stiffness and mass alike, ``area`` and ``inertia`` are a beam's."""
+
+Powers = Mapping[str, float]
+
+
+class Term(Protocol):
+    """One part of a stiffness or mass matrix that grows with powers of the factors."""
+
+    @property
+    def kind(self) -> str:
+        """Which matrix it belongs to: ``stiffness`` or ``mass``."""
+
+    @property
+    def powers(self) -> Powers:
+        """Power of the term in each factor; what is missing is 0 [-]."""
+
+    def scale(self, factors: Mapping[str, float]) -> float:
+        """Return the product of the factors to their powers [-]."""
+
+
+def scale_of(powers: Powers, factors: Mapping[str, float]) -> float:
+    """Return the product of factors to their powers [-]."""
+    scale = 1.0
+    for name, value in factors.items():
+        scale *= value ** powers.get(name, 0.0)
+    return scale
+
+
+class Structure(ABC):
+    """A linear structure: a sum of terms over regions, ready to be reduced or solved.
+
+    Attributes
+    ----------
+    spec : Spec
+        What it is a model of.
+    terms : sequence of Term
+        Its stiffness and mass, term by term.
+    fixed : mapping of str to int array
+        Degrees of freedom that a clamp holds and an effect may release, by kind.
+    """
+
+    spec: Spec
+    terms: Sequence[Term]
+    fixed: Mapping[str, IntArray]
+
+    @property
+    @abstractmethod
+    def n_dofs(self) -> int:
+        """Number of degrees of freedom before any is fixed."""
+
+    @property
+    @abstractmethod
+    def rigid_modes(self) -> int:
+        """Number of rigid-body modes that the supports leave."""
+
+    @abstractmethod
+    def matrix(self, kind: str) -> Sparse:
+        """Return the stiffness or mass matrix over all degrees of freedom [SI]."""
+
+    @abstractmethod
+    def matrices(self, state: State) -> tuple[Sparse, Sparse]:
+        """Return stiffness and mass under a state's factors, of the whole and of regions, Eqs. 11-14 [SI]."""
+
+    @abstractmethod
+    def region_products(self, basis: FloatArray) -> tuple[FloatArray, ...]:
+        """Return every term on a basis, each (n_regions + 1, r, r); the last is what lies in no region [SI]."""
+
+    @abstractmethod
+    def point_masses(self) -> Sparse:
+        """Return the mass matrix of the masses the modeller knows of [kg]."""
+
+    @abstractmethod
+    def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, Sparse]:
+        """Return displacement ``w`` and slopes at points, each (n_points, n_dofs).
+
+        Parameters
+        ----------
+        points : (n_points, dim) array
+            Places in model axes [m].
+        directions : (n_points, 3) array, optional
+            Unit vectors along which the displacement is meant; left out, the model's z.
+        """
+
+    @abstractmethod
+    def unit_mass(self, points: FloatArray) -> Sparse:
+        """Return the mass matrix of 1 kg at each of some points [-]."""
+
+    @abstractmethod
+    def softenings(self, elastic: FloatArray) -> FloatArray:
+        """Return the loads (n_dofs, n) that a softened place feels when the structure moves in its lowest modes."""
+
+    @property
+    def unknowns(self) -> int:
+        """Number of degrees of freedom that are free and carry mass."""
+        return len(self.free())
+
+    def free(self, released: frozenset[str] = frozenset()) -> IntArray:
+        """Return the degrees of freedom that the clamps leave free, where some kinds are released."""
+        held = [dofs for kind, dofs in self.fixed.items() if kind not in released]
+        keep = np.ones(self.n_dofs, dtype=bool)
+        keep[np.concatenate(held).astype(int) if held else np.zeros(0, dtype=int)] = False
+        return np.flatnonzero(keep)
+
+    def solve(self, loads: FloatArray, shift: float) -> FloatArray:
+        """Return the answers of K + shift M to loads (n_dofs, n) [SI]; the shift holds what is free [rad^2/s^2]."""
+        free = self.free()
+        held = self.matrix("stiffness") + shift * self.matrix("mass")
+        answer = np.zeros((self.n_dofs, loads.shape[1]))
+        answer[free] = splu(held[free][:, free].tocsc()).solve(loads[free])
+        return answer
+
+    def eigen(
+        self,
+        count: int,
+        *,
+        stiffness: Sparse | None = None,
+        mass: Sparse | None = None,
+        released: frozenset[str] = frozenset(),
+    ) -> tuple[FloatArray, FloatArray]:
+        """Solve for the lowest modes of the full model, rigid-body modes included.
+
+        Parameters
+        ----------
+        count : int
+            Number of modes.
+        stiffness, mass : sparse arrays, optional
+            Matrices in place of the nominal ones [SI].
+        released : frozenset of str
+            Parts of the clamps that do not hold.
+
+        Returns
+        -------
+        eigenvalues : (count,) array
+            Squares of the angular frequencies [rad^2/s^2].
+        vectors : (n_dofs, count) array
+            Mass-normalised eigenvectors over all degrees of freedom [kg^-1/2].
+
+        Raises
+        ------
+        StudyError
+            If the model has fewer degrees of freedom than modes asked for.
+        """
+        free = self.free(released)
+        k = (self.matrix("stiffness") if stiffness is None else stiffness)[free][:, free]
+        m = (self.matrix("mass") if mass is None else mass)[free][:, free]
+        if count > len(free):
+            raise StudyError(
+                f"the model has {len(free)} degrees of freedom, too few for {count} modes; use more elements"
+            )
+        values, vectors = lowest(k, m, count)
+        full = np.zeros((self.n_dofs, count))
+        full[free] = vectors
+        return values, full

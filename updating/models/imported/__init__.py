@@ -1,0 +1,15 @@
+"""Structures that come as matrices of another program: one reader per format, one table of nodes."""
+
+from updating.models.imported.matrices import Imported
+from updating.models.imported.nodes import NodeTable, read_deck_table, read_table
+from updating.models.imported.read import READERS, read_imported, read_matrix
+
+__all__ = [
+    "READERS",
+    "Imported",
+    "NodeTable",
+    "read_deck_table",
+    "read_imported",
+    "read_matrix",
+    "read_table",
+]

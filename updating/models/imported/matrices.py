@@ -1,0 +1,123 @@
+"""Stiffness and mass as somebody else's program wrote them, with what says where their rows are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
+from updating.models.fields import Sparse
+from updating.models.imported.checks import check_mass, check_sum, symmetric, with_mass_everywhere
+from updating.models.imported.nodes import NodeTable
+from updating.models.imported.placing import Places
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """A structure given by its matrices.
+
+    Parameters
+    ----------
+    stiffness, mass : (n, n) sparse arrays
+        Of the whole structure on its supports [N/m, kg]; rows of rotations accordingly.
+    nodes : NodeTable
+        Where the rows are.
+    stiffness_parts, mass_parts : tuple of (n, n) sparse arrays
+        One of each region, in the order of the regions, or none; what the whole has beyond their sum belongs to
+        no region.
+    source : str
+        For messages.
+
+    Raises
+    ------
+    StudyError
+        If the matrices differ in order, are not symmetric, singular or indefinite, or smaller than their parts.
+    """
+
+    stiffness: Sparse
+    mass: Sparse
+    nodes: NodeTable
+    stiffness_parts: tuple[Sparse, ...] = ()
+    mass_parts: tuple[Sparse, ...] = ()
+    source: str = "model"
+    massless: bool = field(init=False, default=False)
+    rest: dict[str, Sparse | None] = field(init=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in ("stiffness", "mass"):
+            object.__setattr__(self, name, symmetric(getattr(self, name), f"{self.source}: {name}"))
+            parts = tuple(
+                symmetric(part, f"{self.source}: part {i + 1} of the {name}")
+                for i, part in enumerate(getattr(self, f"{name}_parts"))
+            )
+            object.__setattr__(self, f"{name}_parts", parts)
+        orders = self.stiffness.shape[0], self.mass.shape[0]
+        if orders[0] != orders[1]:
+            raise StudyError(
+                f"{self.source}: the stiffness is of order {orders[0]} and the mass of order {orders[1]}; export both "
+                "from one job"
+            )
+        self.nodes.check(orders[0])
+        named = tuple(
+            f"{self.source}: part {i + 1}"
+            for i in range(max(len(self.stiffness_parts), len(self.mass_parts)))
+        )
+        for name, parts in (("stiffness", self.stiffness_parts), ("mass", self.mass_parts)):
+            whole: Sparse = getattr(self, name)
+            self.rest[name] = check_sum(whole, parts, named[: len(parts)], name)
+        object.__setattr__(self, "massless", bool((self.mass.diagonal() == 0).any()))
+        bare = self.mass
+        object.__setattr__(self, "mass", with_mass_everywhere(self.stiffness, bare, self.source))
+        if self.massless and self.mass_parts:
+            left = self.rest["mass"]
+            self.rest["mass"] = Sparse(self.mass - bare if left is None else left + self.mass - bare)
+        check_mass(self.mass, self.source)
+
+    @property
+    def order(self) -> int:
+        """Number of degrees of freedom."""
+        return int(self.stiffness.shape[0])
+
+    @cached_property
+    def places(self) -> Places:
+        """The nodes, as places at which the structure's motion is known."""
+        return Places.of(self.nodes, self.order)
+
+    @cached_property
+    def extents(self) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest coordinates of the nodes, each (3,) [m]."""
+        return self.nodes.places.min(axis=0), self.nodes.places.max(axis=0)
+
+    @cached_property
+    def total_mass(self) -> float:
+        """Mass that moves when everything moves along the axis of most rows; held nodes are not in it [kg]."""
+        counts = [int(np.sum((self.nodes.direction == a) & (self.nodes.row >= 0))) for a in (1, 2, 3)]
+        along = np.zeros(self.order)
+        chosen = (self.nodes.direction == 1 + int(np.argmax(counts))) & (self.nodes.row >= 0)
+        along[self.nodes.row[chosen]] = 1.0
+        return float(along @ (self.mass @ along))
+
+    def obstacle(self, factor: str, *, regional: bool = False) -> str | None:
+        """Return why a factor cannot be turned, or None."""
+        if factor not in ("E", "density"):
+            return f"imported matrices know no {factor}; they scale with E and density"
+        name, parts = {
+            "E": ("stiffness_parts", self.stiffness_parts),
+            "density": ("mass_parts", self.mass_parts),
+        }[factor]
+        return f"needs {name} in [model], one file per region" if regional and not parts else None
+
+    def box(self, region: int) -> tuple[FloatArray, FloatArray] | None:
+        """Return the box of the nodes that a region's parts touch, each (3,) [m]; None without parts."""
+        found = [parts[region] for parts in (self.stiffness_parts, self.mass_parts) if region < len(parts)]
+        if not found:
+            return None
+        touched = np.zeros(self.order + 1, dtype=bool)
+        for part in found:
+            size = np.abs(part.diagonal())
+            touched[:-1] |= size > 1e-9 * size.max(initial=1e-300)
+        places = self.nodes.places[touched[self.nodes.row]]
+        return (places.min(axis=0), places.max(axis=0)) if len(places) else None

@@ -1,0 +1,159 @@
+"""The node table: where every row of imported matrices sits, and which way it moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from acquisition.arrays import FloatArray, IntArray, frozen_array
+from acquisition.errors import StudyError
+from updating.models.imported.calculix import read_dofs
+from updating.models.imported.deck import read_deck
+
+COLUMNS = ("node", "x", "y", "z", "direction", "row")
+
+HELD = -1
+"""Row of a degree of freedom that a support holds and the matrices do not contain."""
+
+
+@dataclass(frozen=True, eq=False)
+class NodeTable:
+    """Places and directions of the rows of a pair of matrices.
+
+    Parameters
+    ----------
+    node : (n,) int array
+        Node numbers.
+    places : (n, 3) array
+        Their coordinates in model axes [m].
+    direction : (n,) int array
+        1, 2, 3 for a displacement along x, y, z; 4, 5, 6 for a rotation about them.
+    row : (n,) int array
+        Row of the matrices, from 0; -1 where a support holds. Several rows of one node and direction are layers
+        of an expanded shell: the node moves with their mean.
+    source : str
+        File, for messages.
+    """
+
+    node: IntArray
+    places: FloatArray
+    direction: IntArray
+    row: IntArray
+    source: str = "nodes"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "places", frozen_array(self.places).reshape(-1, 3))
+        for name in ("node", "direction", "row"):
+            object.__setattr__(self, name, frozen_array(getattr(self, name), np.int64))
+        strange = self.direction[(self.direction < 1) | (self.direction > 6)]
+        if len(strange):
+            raise StudyError(
+                f"{self.source}: direction {strange[0]}; use 1, 2, 3 for x, y, z and 4, 5, 6 for rotations"
+            )
+        if not np.isfinite(self.places).all():
+            raise StudyError(f"{self.source}: a coordinate is missing or not finite")
+        used = self.row[self.row >= 0]
+        if len(np.unique(used)) < len(used):
+            twice = int(np.flatnonzero(np.bincount(used) > 1)[0])
+            raise StudyError(f"{self.source}: row {twice} (counted from 0) belongs to two degrees of freedom")
+
+    def check(self, order: int) -> None:
+        """See that no row lies beyond the matrices.
+
+        Raises
+        ------
+        StudyError
+            If one does.
+        """
+        if len(self.row) and self.row.max() >= order:
+            raise StudyError(
+                f"{self.source}: row {int(self.row.max()) + 1} (counted from 1) lies beyond the {order} rows of the "
+                "matrices; rows of the table are counted from 1, or from 0 where one is 0"
+            )
+
+
+def read_table(path: Path, order: int) -> NodeTable:
+    """Read a node table: CSV with the columns node, x, y, z, direction, row.
+
+    Rows are counted from 1, as the matrix formats do; from 0 if the table has a row 0. An empty row is a degree
+    of freedom that a support holds.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    order : int
+        Number of rows of the matrices.
+
+    Raises
+    ------
+    StudyError
+        If a column is missing, a value is no number, or a row lies beyond the matrices.
+    """
+    try:
+        table = pd.read_csv(path, comment="#", skipinitialspace=True)
+    except OSError as error:
+        raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
+    except (ValueError, pd.errors.ParserError) as error:
+        raise StudyError(f"{path}: not a CSV table ({error}); columns: {', '.join(COLUMNS)}") from error
+    table.columns = pd.Index([str(c).strip().lower() for c in table.columns])
+    if missing := [c for c in COLUMNS if c not in table.columns]:
+        raise StudyError(f"{path}: no column {', '.join(missing)}; the table needs {', '.join(COLUMNS)}")
+    try:
+        values = table[list(COLUMNS)].astype(float)
+    except ValueError as error:
+        raise StudyError(f"{path}: {error}; every column holds numbers") from error
+    rows = values["row"].to_numpy()
+    if np.nanmin(rows, initial=1.0) < 0:
+        raise StudyError(f"{path}: row {int(np.nanmin(rows))}; leave it empty where a support holds")
+    base = 0 if (rows == 0).any() else 1
+    whole = values[["node", "direction"]]
+    if whole.isna().to_numpy().any():
+        line = 2 + int(np.flatnonzero(whole.isna().any(axis=1))[0])
+        raise StudyError(f"{path}, line {line}: node or direction is missing")
+    found = NodeTable(
+        values["node"].to_numpy(dtype=np.int64),
+        values[["x", "y", "z"]].to_numpy(),
+        values["direction"].to_numpy(dtype=np.int64),
+        np.where(np.isnan(rows), HELD, np.nan_to_num(rows) - base).astype(np.int64),
+        str(path),
+    )
+    found.check(order)
+    return found
+
+
+def read_deck_table(path: Path, dofs: Path, order: int) -> NodeTable:
+    """Make the node table of a CalculiX job from its deck and its ``.dof`` file.
+
+    What the deck's supports hold is at rest. Nodes that CalculiX has made itself (the rotations and the swelling of
+    a shell's fold) stand in the ``.dof`` file with numbers beyond the deck's, and at no place.
+
+    Raises
+    ------
+    StudyError
+        If the two do not belong together.
+    """
+    deck = read_deck(path)
+    node, direction = read_dofs(dofs)
+    if len(node) != order:
+        raise StudyError(
+            f"{dofs}: {len(node)} degrees of freedom where the matrices have {order} rows; run ccx anew"
+        )
+    last = max(deck.nodes)
+    unknown = sorted({n for n in node.tolist() if n not in deck.nodes and n <= last})
+    if unknown:
+        raise StudyError(
+            f"{dofs}: node {unknown[0]} stands in no *NODE card of {path}; give the deck that was run"
+        )
+    rows = [
+        (n, d, row)
+        for row, (n, d) in enumerate(zip(node.tolist(), direction.tolist(), strict=True))
+        if n in deck.nodes and (n, d) not in deck.held
+    ]
+    rows += [(n, d, HELD) for n, d in sorted(deck.held) if d <= 3 and n in deck.nodes]
+    table = np.array(rows, dtype=np.int64).reshape(-1, 3)
+    coordinates = np.array([deck.nodes[n] for n in table[:, 0].tolist()]).reshape(-1, 3)
+    return NodeTable(table[:, 0], coordinates, table[:, 1], table[:, 2], f"{path} and {dofs.name}")

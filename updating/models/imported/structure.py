@@ -1,0 +1,196 @@
+"""A structure given by its matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from acquisition.errors import StudyError
+from updating.models.base import Structure, scale_of
+from updating.models.fields import Sparse
+from updating.models.imported.matrices import Imported
+from updating.models.imported.shifted import Shifted
+from updating.models.solve import DENSE
+from updating.models.spec import Spec
+from updating.models.state import State
+
+RIGID = 1e-6
+"""An eigenvalue below this share of the first that cannot be of a rigid body is zero [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class MatrixTerm:
+    """The stiffness or the mass, which grow with the modulus or the density.
+
+    Parameters
+    ----------
+    kind : {"stiffness", "mass"}
+        Which one.
+    powers : mapping
+        Power in each factor [-].
+    """
+
+    kind: str
+    powers: Mapping[str, float]
+
+    def scale(self, factors: Mapping[str, float]) -> float:
+        """Return the product of the factors to their powers [-]."""
+        return scale_of(self.powers, factors)
+
+
+TERMS = (
+    MatrixTerm("stiffness", MappingProxyType({"E": 1.0, "section": 1.0})),
+    MatrixTerm("mass", MappingProxyType({"density": 1.0, "section": 1.0})),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class ImportedStructure(Structure):
+    """A structure of which nothing but matrices is known.
+
+    Parameters
+    ----------
+    spec : Spec
+        What it is a model of; ``spec.imported`` holds the matrices.
+    """
+
+    spec: Spec
+    terms: tuple[MatrixTerm, ...] = TERMS
+    fixed: Mapping[str, IntArray] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def imported(self) -> Imported:
+        """The matrices."""
+        assert self.spec.imported is not None
+        return self.spec.imported
+
+    @property
+    def n_dofs(self) -> int:
+        """Number of degrees of freedom."""
+        return self.imported.order
+
+    @cached_property
+    def unknowns(self) -> int:
+        """Number of motions with mass, where the model is small enough to count them."""
+        mass = self.imported.mass
+        if self.n_dofs > DENSE:
+            return self.n_dofs
+        scale = np.sqrt(mass.diagonal())
+        return int(np.linalg.matrix_rank(mass.toarray() / np.outer(scale, scale), tol=1e-10, hermitian=True))
+
+    def _shifted(self, stiffness: Sparse, mass: Sparse) -> Shifted:
+        massless = self.imported.massless or self.unknowns < self.n_dofs
+        return Shifted(stiffness, mass, self.imported.source, massless)
+
+    @cached_property
+    def _nominal(self) -> Shifted:
+        return self._shifted(self.matrix("stiffness"), self.matrix("mass"))
+
+    @cached_property
+    def rigid_modes(self) -> int:
+        """Number of motions that nothing holds: eigenvalues that are nothing beside the seventh.
+
+        Raises
+        ------
+        StudyError
+            If there are more than the six of one body.
+        """
+        count = min(12, self.n_dofs)
+        values, vectors = self._nominal.lowest(count)
+        scale = float(values[min(6, count - 1)])
+        if count > 7 and scale <= RIGID * float(values[-1]):
+            row = int(np.argmax(np.abs(vectors[:, 6]))) + 1
+            raise StudyError(
+                f"{self.imported.source}: stiffness matrix singular: more than six motions have no stiffness, one with "
+                f"most at row {row}; parts that are not joined, or a mechanism"
+            )
+        return int(np.sum(np.abs(values[:6]) <= RIGID * scale))
+
+    def parts(self, kind: str) -> tuple[Sparse, ...]:
+        """Return the matrices of the regions, and of what lies in none [SI]."""
+        source = self.imported
+        parts = source.stiffness_parts if kind == "stiffness" else source.mass_parts
+        whole = source.stiffness if kind == "stiffness" else source.mass
+        empty = Sparse(whole.shape)
+        if not parts:
+            return (*[empty] * len(self.spec.regions), whole)
+        rest = source.rest[kind]
+        return (*parts, empty if rest is None else rest)
+
+    def matrix(self, kind: str) -> Sparse:
+        """Return the stiffness or mass matrix [SI]."""
+        whole = self.imported.stiffness if kind == "stiffness" else self.imported.mass
+        return whole if kind == "stiffness" or not self.spec.masses else Sparse(whole + self.point_masses())
+
+    def matrices(self, state: State) -> tuple[Sparse, Sparse]:
+        """Return stiffness and mass under a state's factors, of the whole and of regions, Eqs. 11-14 [SI]."""
+        total = {"stiffness": self.imported.stiffness, "mass": self.imported.mass}
+        for term in self.terms:
+            parts = self.parts(term.kind)
+            scale = np.ones(len(self.spec.regions))
+            for (region, factor), value in state.regional.items():
+                scale[region] *= value ** term.powers.get(factor, 0.0)
+            for region in np.flatnonzero(scale != 1.0).tolist():
+                total[term.kind] = Sparse(total[term.kind] + (scale[region] - 1.0) * parts[region])
+            total[term.kind] = Sparse(total[term.kind] * term.scale(state.factors))
+        return total["stiffness"], Sparse(total["mass"] + self.point_masses())
+
+    def region_products(self, basis: FloatArray) -> tuple[FloatArray, ...]:
+        """Return stiffness and mass on a basis, each (n_regions + 1, r, r); the last is what lies in no region [SI]."""
+        return tuple(
+            np.stack([basis.T @ (part @ basis) for part in self.parts(term.kind)]) for term in self.terms
+        )
+
+    def point_masses(self) -> Sparse:
+        """Return the mass matrix of the masses the modeller knows of, which move in all directions [kg]."""
+        total = Sparse((self.n_dofs, self.n_dofs))
+        places = self.imported.places
+        for mass in self.spec.masses:
+            at = np.array([mass.at], dtype=float)
+            total = total + mass.mass * self.unit_mass(at)
+            if mass.inertia:
+                turns = places.motions(at, range(3, 6))
+                total = total + mass.inertia * (turns.T @ turns)
+        return Sparse(total)
+
+    def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, Sparse]:
+        """Return displacement and slopes along directions at points, each (n_points, n_dofs)."""
+        points = np.asarray(points, dtype=float).reshape(-1, 3)
+        if directions is None:
+            directions = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+        return self.imported.places.rows(points, directions)
+
+    def unit_mass(self, points: FloatArray) -> Sparse:
+        """Return the mass matrix of 1 kg at each of some points, moving in every direction there is [-]."""
+        rows = self.imported.places.motions(np.asarray(points, dtype=float).reshape(-1, 3))
+        return Sparse(rows.T @ rows)
+
+    def softenings(self, elastic: FloatArray) -> FloatArray:
+        """Return the forces (n_dofs, n) of each region's stiffness, and mass, in the lowest modes."""
+        low = elastic[:, : min(4, elastic.shape[1])]
+        parts = (*self.imported.stiffness_parts, *self.imported.mass_parts)
+        return np.hstack([np.zeros((self.n_dofs, 0)), *(part @ low for part in parts)])
+
+    def solve(self, loads: FloatArray, shift: float) -> FloatArray:
+        """Return the answers of K + s M to loads (n_dofs, n); the shift is that of the one factor [SI]."""
+        return self._nominal.solve(loads)
+
+    def eigen(
+        self,
+        count: int,
+        *,
+        stiffness: Sparse | None = None,
+        mass: Sparse | None = None,
+        released: frozenset[str] = frozenset(),
+    ) -> tuple[FloatArray, FloatArray]:
+        """Solve for the lowest modes, rigid-body modes included; see :meth:`Structure.eigen`."""
+        if stiffness is None and mass is None:
+            return self._nominal.lowest(count)
+        k = self.matrix("stiffness") if stiffness is None else stiffness
+        m = self.matrix("mass") if mass is None else mass
+        return self._shifted(k, m).lowest(count)

@@ -1,0 +1,176 @@
+"""From cases to the problem that is solved: specimens with their knobs, unknowns, weights."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
+from updating.case import Case
+from updating.matching import pair_modes
+from updating.models import build_structure
+from updating.models.structure import FieldStructure
+from updating.nominal import predictor_of
+from updating.prediction import Predictor
+from updating.update.affine import eligible
+from updating.update.basis import update_basis
+from updating.update.knobs import Knob, Panel, build_panel
+from updating.update.specimen import Specimen
+from updating.update.system import Quantity, System, Weights
+
+
+def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False) -> Specimen:
+    """Pair the modes of a case and find its knobs.
+
+    Parameters
+    ----------
+    case : Case
+        Test beside model.
+    parameters : sequence of str
+        What is to be turned.
+    lean : bool
+        Whether a basis made for these parameters will do, without static answers at the test's points: for
+        frequencies and shapes, not for FRFs.
+
+    Raises
+    ------
+    StudyError
+        If a parameter does not exist on this specimen.
+    EstimationError
+        If no measured mode has a partner in the model.
+    """
+    predictor = predictor_of(case)
+    accepted = {name: dict(values) for name, values in case.accepted}
+    panel = build_panel(parameters, predictor, case.tolerances, accepted)
+    predictor = _on_own_basis(predictor, panel) if lean else predictor
+    paired = pair_modes(case.measured, predictor.predict())
+    number = 1 + np.flatnonzero(np.isin(case.measured.frequency, paired.measured.frequency))
+    updated = {knob.effect for knob in panel.knobs}
+    if updated & set(accepted):
+        kept = tuple((n, v) for n, v in case.accepted if n not in updated)
+        predictor = predictor_of(replace(case, accepted=kept))
+    return Specimen(
+        case.title,
+        predictor.looking(paired.measured),
+        paired.measured,
+        number,
+        paired.order,
+        panel,
+        (*case.measured.warnings, *paired.warnings),
+        np.ones(len(number)),
+        {name: values for name, values in accepted.items() if name not in updated},
+    )
+
+
+def _on_own_basis(predictor: Predictor, panel: Panel) -> Predictor:
+    """Give a plain model whose knobs are factors a basis made for these; others keep theirs."""
+    if predictor.additions or not eligible(panel.knobs) or predictor.spec.kind not in ("beam", "plate"):
+        return predictor
+    structure = build_structure(predictor.spec)
+    if not isinstance(structure, FieldStructure):
+        return predictor
+    test, own = predictor.measured, replace(predictor)
+    highest, count = float(test.frequency.max()), len(test.frequency)
+    own.__dict__["reduced"] = update_basis(structure, panel.knobs, highest=highest, count=count)
+    return own
+
+
+def build_system(
+    specimens: Sequence[Specimen],
+    shared: Sequence[str],
+    weights: Weights,
+    quantity: Quantity,
+    all_modes: Sequence[int],
+    *,
+    regularised: bool,
+    shapes: bool = False,
+) -> System:
+    """Number the unknowns and lay out the weights.
+
+    Raises
+    ------
+    StudyError
+        If a shared name is no parameter, weights do not fit the modes, or there are more free parameters than
+        data.
+    """
+    known = {knob.name for s in specimens for knob in s.panel.knobs}
+    if missing := sorted(set(shared) - known):
+        raise StudyError(
+            f"update: shared parameter {missing[0]!r} is updated in no study; add it to the parameters"
+        )
+    unknowns: dict[tuple[str, int], Knob] = {}
+    index = []
+    for i, specimen in enumerate(specimens):
+        keys = [(k.name, -1 if k.name in shared else i) for k in specimen.panel.knobs]
+        for key, knob in zip(keys, specimen.panel.knobs, strict=True):
+            unknowns.setdefault(key, knob)
+        index.append([list(unknowns).index(key) for key in keys])
+    system = System(
+        tuple(specimens),
+        tuple(np.array(i) for i in index),
+        tuple(unknowns.values()),
+        tuple(owner for _, owner in unknowns),
+        _weights(specimens, weights, all_modes),
+        quantity,
+        regularised,
+        shapes=shapes,
+    )
+    free = int(np.sum(system.prior == 0))
+    if free > system.count:
+        raise StudyError(
+            f"update: {free} parameters without a tolerance to hold them and {system.count} frequencies; name fewer "
+            'parameters, or use weights = "covariance" with [tolerances]'
+        )
+    return system
+
+
+def _weights(
+    specimens: Sequence[Specimen], weights: Weights, all_modes: Sequence[int]
+) -> tuple[FloatArray, ...]:
+    """Return W_s for relative frequencies of each specimen."""
+    if isinstance(weights, str):
+        if weights == "covariance":
+            return tuple(1 / s.relative_variance for s in specimens)
+        if weights == "relative":
+            return tuple(np.ones(len(s.number)) for s in specimens)
+        if weights != "eigenvalue":
+            raise StudyError(
+                f"update: unknown weights {weights!r}; use covariance, relative, eigenvalue or a list of numbers"
+            )
+        top = max(s.measured.frequency.max() for s in specimens)
+        return tuple((s.measured.frequency / top) ** 4 for s in specimens)
+    given = np.asarray(weights, dtype=float)
+    if len(given) != sum(all_modes) or not np.all(given >= 0) or not np.any(given > 0):
+        raise StudyError(
+            f"update: {len(given)} weights for {sum(all_modes)} measured modes; give one for each, none negative, "
+            "in the order of the tests and their frequencies"
+        )
+    parts = np.split(given, np.cumsum(all_modes)[:-1])
+    return tuple(part[s.number - 1] for part, s in zip(parts, specimens, strict=True))
+
+
+def per_case(parameters: Sequence[str] | Sequence[Sequence[str]], count: int) -> list[list[str]]:
+    """Return the parameters of each case."""
+    if not parameters:
+        raise StudyError('update: no parameters; name some, for instance parameters = ["E"]')
+    if all(isinstance(p, str) for p in parameters):
+        return [[str(p) for p in parameters]] * count
+    if len(parameters) != count:
+        raise StudyError(
+            f"update: {len(parameters)} lists of parameters for {count} studies; give one for each"
+        )
+    return [list(own) for own in parameters]
+
+
+def check_data(data: Sequence[str], cases: Sequence[Case], weights: Weights) -> None:
+    """See that what is to be data exists and can be weighed."""
+    if unknown := sorted(set(data) - {"frequencies", "shapes"}) or "frequencies" not in data:
+        found = ", ".join(unknown) if isinstance(unknown, list) else "no frequencies"
+        raise StudyError(f'update: data: {found}; use ["frequencies"] or ["frequencies", "shapes"]')
+    if "shapes" in data and weights != "covariance":
+        raise StudyError('update: shapes as data are weighted by their variances; use weights = "covariance"')
+    if "shapes" in data and not any(case.measured.has_shapes for case in cases):
+        raise StudyError(f"update: {cases[0].title}: no shapes were measured; leave data at frequencies")

@@ -1,0 +1,242 @@
+"""Which parameters, or combinations of them, data determine; and which of them explain the residual best."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+from scipy.stats import chi2
+
+from acquisition.arrays import BoolArray, FloatArray
+
+FLOOR = 1e-10
+"""Singular values under this share of the largest are none [-]."""
+
+COUPLED = 0.05
+"""Parameters whose share in a common undetermined direction is larger belong together [-]."""
+
+KNOWN = 0.3
+"""A combination counts as determined if data bring its doubt down to this share [-]."""
+
+NOTHING = 1e-3
+"""What data that say nothing leave is a thousand times the doubt, so that matrices can be inverted [-]."""
+
+SIMPLE = 0.03
+"""Exponents so near to a whole number or a half are written as such [-]."""
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Parameters that data do not tell apart.
+
+    Parameters
+    ----------
+    parameters : tuple of str
+        Their names.
+    determined : tuple of str
+        Combinations of them that the data do determine, as text: ``E / density``.
+    sigma : tuple of float
+        Standard deviation of each combination; relative for a product of factors, else in units of the doubts [-].
+    """
+
+    parameters: tuple[str, ...]
+    determined: tuple[str, ...]
+    sigma: tuple[float, ...]
+
+    def __str__(self) -> str:
+        """Return one sentence."""
+        names = ", ".join(self.parameters)
+        if len(self.parameters) == 1:
+            return f"{names}: the data say less of it than was known before"
+        if not self.determined:
+            return f"{names}: the data determine no combination of them"
+        known = "; ".join(
+            f"{text} (to {100 * sigma:.2g} %)"
+            for text, sigma in zip(self.determined, self.sigma, strict=True)
+        )
+        return f"{names}: not each by itself, only {known}"
+
+
+@dataclass(frozen=True, eq=False)
+class Determinability:
+    """What data determine at a setting of the parameters.
+
+    Parameters
+    ----------
+    singular_values : (min(n, p),) array
+        Of the sensitivities over what the measurement is good for, times the doubts: how many times the data
+        narrow a direction; under 1 they say less than was known [-].
+    alone : (p,) array
+        Standard deviation of each parameter from the data alone, all others free, over its doubt [-].
+    couplings : tuple of Coupling
+        Parameters that only combinations determine, group by group.
+    subset : tuple of str
+        Parameters in the order in which they explain the residual of the nominal model best.
+    explained : tuple of float
+        Share of the residual's weighted square explained after each of them [-].
+    """
+
+    singular_values: FloatArray
+    alone: FloatArray
+    couplings: tuple[Coupling, ...]
+    subset: tuple[str, ...]
+    explained: tuple[float, ...]
+
+
+def determinability(
+    scaled: FloatArray,
+    names: Sequence[str],
+    *,
+    doubt: FloatArray,
+    log: BoolArray,
+    at_start: FloatArray,
+    residual: FloatArray,
+) -> Determinability:
+    """Work out what data determine.
+
+    Parameters
+    ----------
+    scaled : (n, p) array
+        Sensitivities over standard deviations of the data, times the doubts [-].
+    names : sequence of str
+        Names of the parameters.
+    doubt : (p,) array
+        1-sigma scales of the coordinates.
+    log : (p,) bool array
+        Which coordinates are logarithms.
+    at_start : (n, p) array
+        ``scaled`` at the nominal model.
+    residual : (n,) array
+        Residual of the nominal model over standard deviations of the data [-].
+    """
+    _, size, right = np.linalg.svd(scaled, full_matrices=True)
+    padded = np.zeros(scaled.shape[1])
+    padded[: len(size)] = size
+    floored = np.maximum(padded, FLOOR * max(padded.max(initial=0.0), 1e-300))
+    alone = np.sqrt(np.sum((right.T / floored) ** 2, axis=1))
+    couplings = _couplings(right, floored, alone, names, doubt, log)
+    subset, explained = best_subset(at_start, residual)
+    return Determinability(size, alone, couplings, tuple(names[i] for i in subset), explained)
+
+
+def best_subset(columns: FloatArray, residual: FloatArray) -> tuple[tuple[int, ...], tuple[float, ...]]:
+    """Select parameters one after the other by the angle between their column and the residual.
+
+    Forward selection with orthogonalisation (Lallemand and Piranda, Proc. 8th IMAC (1990) 579-585; Friswell,
+    Mottershead and Ahmadian, J. Vib. Acoust. 120 (1998) 854-859). It ends when no further parameter gains more
+    than noise does.
+
+    Parameters
+    ----------
+    columns : (n, p) array
+        Sensitivities over standard deviations of the data.
+    residual : (n,) array
+        Residual over standard deviations of the data.
+
+    Returns
+    -------
+    order : tuple of int
+        The parameters selected.
+    explained : tuple of float
+        Share of the residual's square explained after each [-].
+    """
+    left, rest = np.array(columns, dtype=float), np.array(residual, dtype=float)
+    total, enough = float(rest @ rest), float(chi2.isf(0.05, 1))
+    before = np.linalg.norm(left, axis=0)
+    order: list[int] = []
+    explained: list[float] = []
+    while len(order) < min(columns.shape):
+        length = np.linalg.norm(left, axis=0)
+        usable = length > 1e-6 * np.maximum(before, 1e-300)
+        gain = np.where(usable, (left.T @ rest) ** 2 / np.maximum(length, 1e-150) ** 2, 0.0)
+        best = int(np.argmax(gain))
+        if gain[best] <= enough:
+            break
+        unit = left[:, best] / length[best]
+        rest = rest - unit * (unit @ rest)
+        left = left - np.outer(unit, unit @ left)
+        order.append(best)
+        explained.append(float(1 - rest @ rest / total))
+    return tuple(order), tuple(explained)
+
+
+def _couplings(
+    right: FloatArray,
+    size: FloatArray,
+    alone: FloatArray,
+    names: Sequence[str],
+    doubt: FloatArray,
+    log: BoolArray,
+) -> tuple[Coupling, ...]:
+    lost = np.flatnonzero(alone > 1)
+    if not len(lost):
+        return ()
+    empty = right[size < 1]
+    shared = np.abs(empty.T @ empty)[np.ix_(lost, lost)]
+    count, label = connected_components(shared > COUPLED, directed=False)
+    groups = [lost[label == i] for i in range(count)]
+    return tuple(_coupling(right, size, group, names, doubt, log) for group in groups)
+
+
+def _coupling(
+    right: FloatArray,
+    size: FloatArray,
+    group: np.ndarray,
+    names: Sequence[str],
+    doubt: FloatArray,
+    log: BoolArray,
+) -> Coupling:
+    """Find the combinations of a group in which the data alone leave little doubt."""
+    covariance = (right.T / np.maximum(size, NOTHING) ** 2) @ right
+    known = np.linalg.inv(covariance[np.ix_(group, group)])
+    values, vectors = np.linalg.eigh((known + known.T) / 2)
+    kept = np.flatnonzero(values > 1 / KNOWN**2)[::-1]
+    own = tuple(names[i] for i in group)
+    if len(kept) > 3:
+        return Coupling(
+            own, (f"{len(kept)} combinations of the {len(group)}",), (float(values[kept[-1]] ** -0.5),)
+        )
+    texts, sigmas = [], []
+    for weight in _readable(vectors[:, kept]):
+        text, scale = _text(weight, own, doubt[group], log[group])
+        texts.append(text)
+        sigmas.append(scale * float(np.sqrt(weight @ np.linalg.solve(known, weight))))
+    return Coupling(own, tuple(texts), tuple(sigmas))
+
+
+def _readable(directions: FloatArray) -> list[FloatArray]:
+    """Return other vectors of the same span with as many zeros as it admits, by elimination with pivots."""
+    rows = directions.T.copy()
+    done: list[int] = []
+    for i in range(len(rows)):
+        free = [j for j in range(rows.shape[1]) if j not in done]
+        pivot = free[int(np.argmax(np.abs(rows[i, free])))]
+        rows[i] /= rows[i, pivot]
+        for k in range(len(rows)):
+            if k != i:
+                rows[k] -= rows[k, pivot] * rows[i]
+        done.append(pivot)
+    return [np.asarray(row) for row in rows]
+
+
+def _text(weight: FloatArray, names: Sequence[str], doubt: FloatArray, log: BoolArray) -> tuple[str, float]:
+    """Write a combination of scaled coordinates; return it with the factor from its doubts to what is written."""
+    used = np.abs(weight) > COUPLED * np.abs(weight).max()
+    if log[used].all():
+        exponents = np.where(used, weight / doubt, 0.0)
+        largest = exponents[np.argmax(np.abs(exponents))]
+        exponents = exponents / largest
+        above = " ".join(_power(n, e) for n, e in zip(names, exponents, strict=True) if e > 0)
+        below = " ".join(_power(n, -e) for n, e in zip(names, exponents, strict=True) if e < 0)
+        return above + (f" / {below}" if below else ""), float(1 / abs(largest))
+    parts = [f"{w:+.2g} {n}" for n, w, u in zip(names, weight, used, strict=True) if u]
+    return " ".join(parts).lstrip("+") + " in units of their doubts", 1.0
+
+
+def _power(name: str, exponent: float) -> str:
+    near = round(2 * exponent) / 2
+    if near and abs(exponent - near) < SIMPLE:
+        exponent = near
+    return name if exponent == 1 else f"{name}^{exponent:.2g}"

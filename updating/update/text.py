@@ -1,0 +1,104 @@
+"""An update as text, in the order in which a fit is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from updating.update.result import Estimate, Update
+
+NOTABLE = 0.5
+"""Correlations above it are listed [-]."""
+
+MOST = 12
+"""Most correlations listed."""
+
+
+def report_text(update: Update) -> str:
+    """Return statistics, parameters, correlations and what is not determined as plain text."""
+    parts = [
+        *_section("Fit statistics", _statistics(update)),
+        *_section("Parameters", _parameters(update)),
+        *_section(f"Correlations over {NOTABLE:g}", _correlations(update)),
+        *_section("Not determined by these data", _undetermined(update)),
+        *_section("Best subset (order in which parameters explain the residual)", _subset(update)),
+    ]
+    return "\n".join(parts)
+
+
+def _section(title: str, lines: Iterator[str]) -> list[str]:
+    body = [f"    {line}" for line in lines]
+    return [f"[[{title}]]", *body] if body else []
+
+
+def _statistics(update: Update) -> Iterator[str]:
+    rows = [
+        ("data", str(update.data)),
+        ("parameters", str(len(update.parameters))),
+        ("iterations", f"{update.iterations} ({'converged' if update.converged else 'NOT converged'})"),
+        ("quantity", {"frequency": "relative frequency"}.get(update.quantity, update.quantity)),
+        ("weights", update.weights),
+        ("chi-square", f"{update.chi2:.4g}"),
+        ("degrees of freedom", str(update.dof)),
+        ("reduced chi-square", f"{update.reduced_chi2:.4g}"),
+        ("sigmas raised by", f"{update.inflation:.3g}"),
+        ("r.m.s. error", f"{update.rms_percent('before'):.4g} % -> {update.rms_percent():.4g} %"),
+    ]
+    width = max(len(name) for name, _ in rows)
+    yield from (f"{name:<{width}} = {value}" for name, value in rows if value)
+
+
+def _parameters(update: Update) -> Iterator[str]:
+    names = update.names
+    width = max(len(name) for name in names)
+    for name, parameter in zip(names, update.parameters, strict=True):
+        yield f"{name + ':':<{width + 1}} {_value(parameter, name in update.undetermined)}"
+
+
+def _value(p: Estimate, undetermined: bool) -> str:
+    text = f"{p.value:.6g}"
+    if np.isfinite(p.sigma):
+        share = f" ({100 * abs(p.sigma / p.value):.2g} %)" if p.value else ""
+        text += f" +- {p.sigma:.2g} {p.unit}{share}"
+    else:
+        text += f" {p.unit}, no standard deviation"
+    if p.interval is not None:
+        text += f", 95 % {p.interval[0]:.5g} ... {p.interval[1]:.5g}"
+    if p.factor is not None:
+        text += f", factor {p.factor:.4g}"
+    notes = [f"init {p.initial:.6g}", f"bounds {p.low:.3g} ... {p.high:.3g}"]
+    notes += ["AT BOUND"] * p.at_bound
+    if undetermined:
+        notes.append(
+            "NOT DETERMINED by the data" + ("; held by its tolerance" if np.isfinite(p.sigma) else "")
+        )
+    return f"{text} ({'; '.join(notes)})"
+
+
+def _correlations(update: Update) -> Iterator[str]:
+    matrix, names = update.correlations, update.names
+    rows, columns = np.triu_indices(len(names), 1)
+    value = matrix[rows, columns]
+    chosen = np.flatnonzero(np.abs(np.nan_to_num(value)) > NOTABLE)
+    chosen = chosen[np.argsort(-np.abs(value[chosen]), kind="stable")]
+    for i in chosen[:MOST]:
+        yield f"C({names[rows[i]]}, {names[columns[i]]}) = {value[i]:+.3f}"
+    if len(chosen) > MOST:
+        yield f"... and {len(chosen) - MOST} more"
+
+
+def _undetermined(update: Update) -> Iterator[str]:
+    told = update.determinability
+    if told is not None:
+        yield from (str(coupling) for coupling in told.couplings)
+
+
+def _subset(update: Update) -> Iterator[str]:
+    told = update.determinability
+    if told is None or len(update.parameters) < 2:
+        return
+    for name, share in zip(told.subset, told.explained, strict=True):
+        yield f"{name}: {100 * share:.4g} % explained"
