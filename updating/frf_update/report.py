@@ -54,7 +54,9 @@ def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> Frf
     if not specimen.predictor.expects(specimen.predictor.base.plus(state)):
         state = replace(state, ratios=last[0].stage.earlier.ratios)
     lost = np.concatenate([r.undetermined for r in results])
-    pairs, exact = _pairs(specimen, state, [k.value(t) for k, t in zip(knobs, theta, strict=True)])
+    pairs, exact = _pairs(
+        specimen, last[-1].stage.predictor, state, [k.value(t) for k, t in zip(knobs, theta, strict=True)]
+    )
     chi2, count = results[-1].chi2, results[-1].count - len(results[-1].undetermined)
     return FrfUpdate(
         parameters=tuple(
@@ -129,11 +131,13 @@ def _history(steps: Sequence[Step], knobs: Sequence[Knob]) -> pd.DataFrame:
     )
 
 
-def _pairs(specimen: Specimen, state: State, values: Sequence[float]) -> tuple[pd.DataFrame, bool]:
-    test, predictor = specimen.measured, specimen.predictor
+def _pairs(
+    specimen: Specimen, predictor: Predictor, state: State, values: Sequence[float]
+) -> tuple[pd.DataFrame, bool]:
+    test = specimen.measured
     found = {}
-    for name, at in (("before", NOMINAL), ("after", state)):
-        prediction = predictor.predict(at)
+    for name, looking, at in (("before", specimen.predictor, NOMINAL), ("after", predictor, state)):
+        prediction = looking.predict(at)
         partner = match(test, prediction, specimen.order)
         found[name] = (prediction.select(partner), partner)
     after, partner = found["after"]
@@ -154,7 +158,7 @@ def _pairs(specimen: Specimen, state: State, values: Sequence[float]) -> tuple[p
             "after_hz": after_hz,
             "used": True,
             "test_damping": test.damping,
-            "before_damping": _damped(predictor, NOMINAL, found["before"][1]),
+            "before_damping": _damped(specimen.predictor, NOMINAL, found["before"][1]),
             "after_damping": _damped(predictor, state, partner),
         }
     )
@@ -183,7 +187,8 @@ def _frac(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step], state: 
     undamped = not specimen.predictor.expects(specimen.predictor.base)
     for name, at in (stations | {"after": state}).items():
         shown = replace(at, ratios=identified_ratios(specimen)) if undamped and not at.dampers else at
-        table[name] = frac(frfs.values, specimen.predictor.receptance(frfs.laplace, shown)).tolist()
+        looking = specimen.predictor if name == "before" else steps[-1].stage.predictor
+        table[name] = frac(frfs.values, looking.receptance(frfs.laplace, shown)).tolist()
     return pd.DataFrame(table)
 
 

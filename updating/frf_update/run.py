@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.frf_update.columns import columns
+from updating.frf_update.finer import finer
 from updating.frf_update.lines import choose_lines
 from updating.frf_update.report import report
 from updating.frf_update.result import FrfUpdate
@@ -41,6 +42,9 @@ FRESH = 1e-3
 
 CYCLES = 4
 """How often the stages are gone through at most: from the second time on each knows what the others have found."""
+
+BASES = 3
+"""Most reduced bases that are made anew at the solution."""
 
 FOLLOWED = 0.02
 """Discrepancy under which measured and computed peaks lie within their widths of each other [-]."""
@@ -103,7 +107,26 @@ def solve_stages(
     named = _staged(parameters, stages)
     specimen = build_specimen(case, [name for stage in named for name in stage])
     panels = _split(specimen.panel, [len(build_specimen(case, stage).panel.knobs) for stage in named])
-    steps: list[Step] = []
+    steps = _go_through(specimen, frfs, panels, [], lines)
+    here = specimen
+    for _ in range(BASES):
+        better = finer(here, steps[-1])
+        if better is None:
+            break
+        here = better
+        steps = _go_through(here, frfs, panels, [s for s in steps if not s.together], lines)
+    return specimen, frfs, steps
+
+
+def _go_through(
+    specimen: Specimen,
+    frfs: MeasuredFrfs,
+    panels: Sequence[Panel],
+    done: Sequence[Step],
+    lines: int | Sequence[float] | None,
+) -> list[Step]:
+    """Go through the stages until they rest on one basis, from where they rested on another."""
+    steps = list(done)
     for _ in range(CYCLES if len(panels) > 1 else 1):
         for i, panel in enumerate(panels):
             steps.append(_solve(specimen, frfs, (i, panel), steps, lines))
@@ -111,7 +134,7 @@ def solve_stages(
             break
     if len(panels) > 1 and max(s.solved.discrepancy for s in steps[-len(panels) :]) < FOLLOWED:
         steps.append(_together(specimen, frfs, steps[-len(panels) :], lines))
-    return specimen, frfs, steps
+    return steps
 
 
 def _together(

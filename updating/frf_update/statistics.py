@@ -123,7 +123,7 @@ def misses(specimen: Specimen, step: Step) -> FloatArray:
         A stage at rest.
     """
     stage, theta = step.stage, step.solved.theta
-    test, predictor = specimen.measured, specimen.predictor
+    test, predictor = specimen.measured, stage.predictor
     at_rest = predictor.predict(step.state)
     partner = match(test, at_rest, specimen.order)
     residual = np.log(test.frequency / at_rest.frequency[partner])

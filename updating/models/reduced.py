@@ -193,17 +193,19 @@ def reduce_structure(
     clamped = vectors
     if count < unknowns:
         loads = structure.rows(points, directions)["w"].toarray().T
-        clamped = _extend(vectors, _static_answers(structure, mass, values, vectors, loads), mass)
+        clamped = extend_basis(vectors, _static_answers(structure, mass, values, vectors, loads), mass)
     ranks = {frozenset[str](): clamped.shape[1]}
     basis = clamped
     if structure.fixed:
         for released in (frozenset({"rotation"}), frozenset({"rotation", "translation"})):
-            basis = _extend(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
+            basis = extend_basis(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
             ranks[released] = basis.shape[1]
     return Reduced(structure, basis, ranks)
 
 
-def _extend(basis: FloatArray, extra: FloatArray, mass: Sparse, *, tolerance: float = 1e-9) -> FloatArray:
+def extend_basis(
+    basis: FloatArray, extra: FloatArray, mass: Sparse, *, tolerance: float = 1e-9
+) -> FloatArray:
     """Append the directions of ``extra`` that ``basis`` lacks, orthonormal in the mass."""
     for _ in range(2):
         extra = extra - basis @ (basis.T @ (mass @ extra))
