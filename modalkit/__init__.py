@@ -43,11 +43,14 @@ from acquisition import (  # noqa: E402
     write_uff,
 )
 from identification import ModalModel, identify  # noqa: E402
+from modalkit.fitting import update_studies  # noqa: E402
 from modalkit.handling import Handling  # noqa: E402
 from modalkit.process import Session, open_study  # noqa: E402
 from modalkit.reading import Processed, read  # noqa: E402
+from modalkit.simulate import simulate_test  # noqa: E402
 from modalkit.study import Study, read_study  # noqa: E402
 from updating import Case, Diagnosis, diagnose, register  # noqa: E402
+from updating.correlation import correlate  # noqa: E402
 
 __version__ = "0.1.0"
 
@@ -67,6 +70,7 @@ __all__ = [
     "Study",
     "StudyError",
     "bootstrap_frfs",
+    "correlate",
     "decide",
     "diagnose",
     "estimate_frfs",
@@ -80,6 +84,8 @@ __all__ = [
     "reciprocity",
     "register",
     "remove_sensor_mass",
+    "simulate_test",
     "split_hits",
+    "update_studies",
     "write_uff",
 ]

@@ -2,6 +2,8 @@
 
 from modalkit.figures.blind import blind_figure
 from modalkit.figures.diagnosis import diagnosis_figure
+from modalkit.figures.evolution import evolution_figure
+from modalkit.figures.frac import frac_figure
 from modalkit.figures.frf import frf_figure
 from modalkit.figures.hits import hits_figure
 from modalkit.figures.matrix import auto_mac_figure, mac_figure
@@ -15,6 +17,8 @@ __all__ = [
     "auto_mac_figure",
     "blind_figure",
     "diagnosis_figure",
+    "evolution_figure",
+    "frac_figure",
     "frf_figure",
     "hits_figure",
     "mac_figure",

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from acquisition import FrfSet
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frf import FORMS
-from modalkit.figures.paper_frf import Curve, Panel, paper_frf_figure
+from modalkit.figures.curves import Curve, Panel, curves_figure
 from modalkit.figures.words import percent
 from modalkit.tables.chain import Walk, Walked
 from updating.models.state import NOMINAL, State
@@ -91,7 +91,7 @@ def _figure(one: Walk) -> Figure:
     panel = Panel(
         f"hit and seen at point {frfs.responses[row].node}", frfs.frequency, tuple(curves), frfs.unit
     )
-    return paper_frf_figure(said, note, [panel])
+    return curves_figure(said, note, [panel])
 
 
 def _at_the_sensor(frfs: FrfSet) -> int:

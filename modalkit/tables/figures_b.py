@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from matplotlib.figure import Figure
 
 from acquisition.frf import FORMS, UNITS
-from modalkit.figures.paper_evolution import Course, Courses, paper_evolution_figure
-from modalkit.figures.paper_frac import paper_frac_figure
-from modalkit.figures.paper_frf import Curve, Panel, paper_frf_figure
+from modalkit.figures.curves import Curve, Panel, curves_figure
+from modalkit.figures.evolution import Course, Courses, evolution_figure
+from modalkit.figures.frac import frac_figure
 from modalkit.tables import printed_b as printed
 from modalkit.tables.staged import Staged
 from updating.models.state import State
@@ -63,7 +63,7 @@ def _frfs(update: Staged, number: int, said: str, what: str, states: Mapping[str
         title = f"seen at point {nodes[row]}, hit at point {frfs.references[row].node}"
         panels.append(Panel(title, frfs.frequency, tuple(curves), UNITS["receptance"], 135.0))
     note = f"Paper B, Fig. {number}, ours  ·  {what}  ·  receptances"
-    return paper_frf_figure(said, note, panels)
+    return curves_figure(said, note, panels)
 
 
 def _frac(update: Staged, number: int, states: Mapping[str, State], what: str, said: str) -> Figure:
@@ -72,7 +72,7 @@ def _frac(update: Staged, number: int, states: Mapping[str, State], what: str, s
     before, after = (f"{v.mean():.2f}" for v in bars.values())
     note = f"Paper B, Fig. {number}, ours  ·  {what}  ·  receptances, 5-600 Hz"
     said = said.format(before=before, after=after)
-    return paper_frac_figure(said, note, [f"{r.node}" for r in taped.frfs.responses], bars)
+    return frac_figure(said, note, [f"{r.node}" for r in taped.frfs.responses], bars)
 
 
 def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, float, float]]) -> Figure:
@@ -94,7 +94,7 @@ def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, f
     courses = [
         Courses(name, _unit(name), tuple(lines), logarithmic=name == "beta") for name, lines in panels.items()
     ]
-    return paper_evolution_figure(said, note, courses)
+    return evolution_figure(said, note, courses)
 
 
 def _unit(name: str) -> str:

@@ -1,4 +1,4 @@
-"""Parameters of an update by iteration, beside the values that a paper printed."""
+"""Parameters of an update by iteration, where there are any beside the values that a paper printed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from modalkit.figures.style import (
     tidy,
 )
 
-COLOURS = (BLUE, ORANGE)
+COLOURS = (BLUE, ORANGE, INK, MUTED, "#2a9d8f", "#8e5ea2")
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,15 +41,15 @@ class Course:
         What the panel calls it.
     values : (n_iterations + 1,) array
         Its values, the start first [unit of the panel].
-    printed : float
-        What the paper printed [unit of the panel].
+    printed : float, optional
+        What a paper printed [unit of the panel].
     repeats : tuple of int
         Iterations after which the stage was taken up again.
     """
 
     label: str
     values: FloatArray
-    printed: float
+    printed: float | None = None
     repeats: tuple[int, ...] = ()
 
 
@@ -62,7 +62,7 @@ class Courses:
     title, unit : str
         Their name and unit.
     lines : tuple of Course
-        The parameters, two at the most.
+        The parameters, six at the most.
     logarithmic : bool
         Whether they are shown by their logarithm.
     """
@@ -73,7 +73,7 @@ class Courses:
     logarithmic: bool = False
 
 
-def paper_evolution_figure(title: str, note: str, panels: Sequence[Courses]) -> Figure:
+def evolution_figure(title: str, note: str, panels: Sequence[Courses]) -> Figure:
     """Draw parameters by iteration, panels side by side.
 
     Parameters
@@ -106,15 +106,16 @@ def _draw(axes: Axes, panel: Courses) -> None:
     for line, colour in zip(panel.lines, COLOURS, strict=False):
         count = np.arange(len(line.values))
         axes.plot(count, line.values, color=colour, marker="o", markersize=3, linewidth=1.5)
-        axes.axhline(line.printed, color=colour, linewidth=1.0, linestyle=(0, (2, 2)))
+        if line.printed is not None:
+            axes.axhline(line.printed, color=colour, linewidth=1.0, linestyle=(0, (2, 2)))
     for again in panel.lines[0].repeats:
         axes.axvline(again, color=FAINT, linewidth=0.6, zorder=1.5)
     axes.set_xlim(-0.02 * last, 1.02 * last)
     axes.margins(y=0.1)
     ends = [(line.values[-1], f"{line.label} {_short(line.values[-1])}", True) for line in panel.lines]
-    ends += [(line.printed, f"printed {_short(line.printed)}", False) for line in panel.lines]
-    colours = [*COLOURS[: len(panel.lines)], *COLOURS[: len(panel.lines)]]
-    _label(axes, ends, colours)
+    beside = [(line.printed, i) for i, line in enumerate(panel.lines) if line.printed is not None]
+    ends += [(printed, f"printed {_short(printed)}", False) for printed, _ in beside]
+    _label(axes, ends, [*COLOURS[: len(panel.lines)], *[COLOURS[i] for _, i in beside]])
 
 
 def _label(axes: Axes, ends: Sequence[tuple[float, str, bool]], colours: Sequence[str]) -> None:
@@ -144,4 +145,4 @@ def _label(axes: Axes, ends: Sequence[tuple[float, str, bool]], colours: Sequenc
 
 
 def _short(value: float) -> str:
-    return f"{value:.3g}" if value < 100 else f"{value:.1f}"
+    return f"{value:.3g}" if abs(value) < 100 else f"{value:.1f}"

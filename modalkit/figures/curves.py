@@ -77,7 +77,7 @@ class Panel:
     highest: float = 225.0
 
 
-def paper_frf_figure(title: str, note: str, panels: Sequence[Panel]) -> Figure:
+def curves_figure(title: str, note: str, panels: Sequence[Panel]) -> Figure:
     """Draw magnitude and phase of FRFs, one panel under the other.
 
     Parameters

@@ -22,7 +22,7 @@ from modalkit.figures.style import (
 )
 
 
-def paper_frac_figure(title: str, note: str, points: Sequence[str], bars: Mapping[str, FloatArray]) -> Figure:
+def frac_figure(title: str, note: str, points: Sequence[str], bars: Mapping[str, FloatArray]) -> Figure:
     """Draw FRAC of every point for two models.
 
     Parameters
