@@ -38,8 +38,15 @@ class Session:
     warnings: tuple[str, ...]
 
 
-def open_study(study: Study) -> Session:
+def open_study(study: Study, *, with_baseline: bool = True) -> Session:
     """Work out the case of a study: process and identify its test and its baseline.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    with_baseline : bool
+        Whether the baseline is worked out too; only a diagnosis needs it.
 
     Raises
     ------
@@ -47,7 +54,11 @@ def open_study(study: Study) -> Session:
         If the study names no data.
     """
     test, processed, identified = _measure(study, study.test, "test")
-    baseline = None if study.baseline is None else _measure(study, study.baseline, "baseline")[0]
+    baseline, *before = (
+        _measure(study, study.baseline, "baseline")
+        if study.baseline is not None and with_baseline
+        else (None, None, None)
+    )
     case = Case(
         study.name,
         study.spec(),
@@ -57,10 +68,9 @@ def open_study(study: Study) -> Session:
         study.surroundings(),
         study.accepted(),
     )
-    warnings: tuple[str, ...] = ()
-    if processed is not None and identified is not None:
-        warnings = tuple(dict.fromkeys([*processed.warnings, *identified.warnings]))
-    return Session(study, case, processed, identified, warnings)
+    own = [w for part in (processed, identified) if part is not None for w in part.warnings]
+    own += [f"baseline: {w}" for part in before if part is not None for w in part.warnings]
+    return Session(study, case, processed, identified, tuple(dict.fromkeys(own)))
 
 
 def process(

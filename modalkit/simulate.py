@@ -117,7 +117,7 @@ def prepare(study: Study, options: Options | None = None) -> Prepared:
     told = options or Options()
     session = None
     if study.test.files or study.test.modes is not None:
-        session = open_study(study.model_copy(update={"baseline": None}))
+        session = open_study(study, with_baseline=False)
     spec, remarks = damped_spec(study, session)
     rig = _rig(study, spec, session, told)
     nominal = Predictor(spec, rig.measured, study.surroundings())

@@ -43,7 +43,7 @@ def correlate(
 ) -> None:
     """Pair the modes of test and model and say how far they agree, FRFs included."""
     with working("reading and identifying"):
-        session = open_study(read_study(study))
+        session = open_study(read_study(study), with_baseline=False)
     identified = session.identified
     result = compare(session.case, None if identified is None else identified.frfs)
     pairs = result.table

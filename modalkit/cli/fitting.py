@@ -43,7 +43,7 @@ def update(
 ) -> None:
     """Update the parameters named in the study's update table, by eigenvalues or by FRFs."""
     with working("reading and identifying"):
-        sessions = [open_study(read_study(path)) for path in studies]
+        sessions = [open_study(read_study(path), with_baseline=False) for path in studies]
     names = tuple(name.strip() for name in shared.split(",") if name.strip())
     with working("updating"):
         result = update_studies(sessions, names, draws=bootstrap, seed=seed)

@@ -85,7 +85,7 @@ def _walk_table(table: PrintedTable, folder: Path) -> Walk:
 def open_test(table: PrintedTable, folder: Path) -> Session:
     """Identify the test of a table from its universal file; the baseline has no part in it."""
     study = read_study(folder / table.study / "study.toml")
-    return open_study(study.model_copy(update={"baseline": None}))
+    return open_study(study, with_baseline=False)
 
 
 def walk(table: PrintedTable, printed: Printed, session: Session) -> Walked:

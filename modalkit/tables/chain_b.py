@@ -117,4 +117,4 @@ def _nearest(found: FloatArray, wanted: FloatArray, source: str) -> np.ndarray:
 def open_taped(folder: Path) -> Taped:
     """Identify the taped beam's test; the baseline has no part in the paper's tables."""
     study = read_study(folder / STUDY / "study.toml")
-    return Taped(open_study(study.model_copy(update={"baseline": None})))
+    return Taped(open_study(study, with_baseline=False))

@@ -56,7 +56,7 @@ def maker() -> Iterator[ModuleType]:
 @pytest.mark.parametrize("name", NAMES)
 def test_the_identified_frequencies_are_the_published_ones(name: str) -> None:
     study = read_study(SAMPLES / name / "study.toml")
-    session = open_study(study.model_copy(update={"baseline": None}))
+    session = open_study(study, with_baseline=False)
     assert session.case.measured.frequency == pytest.approx(PUBLISHED[name], rel=5e-4)
 
 
@@ -125,7 +125,7 @@ def test_a_tape_test_is_made_anew_alike(maker: ModuleType, tmp_path: Path) -> No
 @pytest.fixture(scope="module")
 def taped() -> Session:
     study = read_study(SAMPLES / "tape_taped" / "study.toml")
-    return open_study(study.model_copy(update={"baseline": None}))
+    return open_study(study, with_baseline=False)
 
 
 def test_the_identified_damping_is_the_published_one(taped: Session) -> None:
