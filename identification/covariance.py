@@ -51,12 +51,14 @@ def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactor
         Which of its poles are modes.
     """
     fit, misfit = fitted.fit, misfit_factor(frfs, fitted)
-    _, free, pole = fading.inflation(fitted.weights.fade, (frfs.decay - fit.poles.real) / frfs.df)
-    noise = NoiseFactors(pole, np.broadcast_to(free, fit.linear.residues.shape), np.ones(len(pole)))
+    held, free, pole = fading.inflation(fitted.weights.fade, (frfs.decay - fit.poles.real) / frfs.df)
+    shape = fit.linear.residues.shape
+    noise = NoiseFactors(pole, np.broadcast_to(free, shape), np.ones(len(pole)), np.broadcast_to(held, shape))
     told = hit_factors(frfs, fit, fitted.weights, modes, noise)
     if told is None:
-        return NoiseFactors(misfit * noise.poles, misfit * noise.constants, noise.shapes)
-    return NoiseFactors(np.maximum(told.poles, misfit), np.maximum(told.constants, misfit), told.shapes)
+        return NoiseFactors(misfit * noise.poles, misfit * noise.constants, noise.shapes, misfit * noise.held)
+    poles, constants = np.maximum(told.poles, misfit), np.maximum(told.constants, misfit)
+    return NoiseFactors(poles, constants, told.shapes, np.maximum(told.held, misfit))
 
 
 def pole_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
@@ -85,13 +87,41 @@ def constant_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> 
 
     Where FRFs disagree on a pole, each constant bears the scatter of its own FRF's pole about the common one.
     """
+    noise = constant_variance(fitted.fit) * factors.constants
+    return np.asarray(np.sqrt(noise + _shifted(frfs, fitted, factors)))
+
+
+def _shifted(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
+    """Return the variance of each constant by the scatter of its FRF's own pole, (n_frf, n_modes) [1/kg^2]."""
     fit = fitted.fit
     n = len(fit.poles)
-    noise = constant_variance(fit) * factors.constants
-    gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(len(noise), n, n, 2)
+    gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(-1, n, n, 2)
     own = np.einsum("jnna->jna", gain)
     shift = np.einsum("jna,nab,jnb->jn", own, disagreement(frfs, fitted, factors).each, own)
-    return np.asarray(np.sqrt(noise + (2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0)))
+    return np.asarray((2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0))
+
+
+def shared_errors(fitted: Fitted, factors: NoiseFactors) -> FloatArray:
+    """Return the errors of the constants' real parts that come from the poles, (n_frf, n_modes, k) [1/kg].
+
+    One standard deviation of each of k independent causes: their covariance is the sum over the causes of
+    products. An error of a mode's own pole stretches all its constants alike; that of a neighbour's adds
+    something of the neighbour's shape.
+    """
+    fit = fitted.fit
+    covariance = pole_covariance(fit)
+    size = np.sqrt(np.diag(covariance))
+    values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
+    half = (np.sqrt(np.repeat(factors.poles, 2)) * size)[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
+    moved = fit.pole_gain[:, 1 : 2 * len(fit.poles) : 2] @ half
+    return np.asarray(-2.0 * fit.poles.imag[:, None] * moved)
+
+
+def own_errors(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
+    """Return the standard deviation of each constant's real part with the poles known, (n_frf, n_modes) [1/kg]."""
+    fit = fitted.fit
+    held = (2.0 * fit.poles.imag) ** 2 * fit.linear_inverse[:, 1 : 2 * len(fit.poles) : 2]
+    return np.asarray(np.sqrt(held * factors.held + _shifted(frfs, fitted, factors)))
 
 
 def disagreement(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Disagreement:

@@ -41,11 +41,15 @@ class NoiseFactors:
     shapes : (n_modes,) array
         Further, for a component of the shape that constants of several references give: their errors are not
         independent if they come from the same hits [-].
+    held : (n_frf, n_modes) array
+        For each modal constant were the poles known: what is its own and no other constant shares. Not raised
+        for the few degrees of freedom behind it: it weighs data by the hundred [-].
     """
 
     poles: FloatArray
     constants: FloatArray
     shapes: FloatArray
+    held: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +62,8 @@ class _Sums:
         What each hit moves the poles by [rad/s].
     constants : (n_rows, n_modes) array
         Sum of squares of what it moves Im of the residues by, less that by the poles alone.
+    held : (n_rows, n_modes) array
+        The same with the poles held.
     rows : (n_rows,) int array
         Which FRFs.
     joint, apart : (n_modes,) arrays
@@ -67,6 +73,7 @@ class _Sums:
 
     steps: FloatArray
     constants: FloatArray
+    held: FloatArray
     rows: IntArray
     joint: FloatArray
     apart: FloatArray
@@ -105,9 +112,8 @@ def factors(
     ratio = _ratio(np.diag(spread), np.diag(plain))
     freedom = np.where(modes, 2 * _freedom(steps, n), 0.0)
     of_poles = prior.poles * _shrunk(ratio.reshape(n, 2).mean(axis=1) / prior.poles, freedom, _ALIKE_POLES)
-    return NoiseFactors(
-        of_poles, _of_constants(fit, groups, spread, plain, prior.constants), _of_shapes(groups)
-    )
+    of_constants = _of_constants(fit, groups, spread, plain, prior.constants)
+    return NoiseFactors(of_poles, of_constants, _of_shapes(groups), _of_held(fit, groups, prior.held))
 
 
 def _of_shapes(groups: list[_Sums]) -> FloatArray:
@@ -150,7 +156,8 @@ def _moved(
     gain = fit.pole_gain[rows, 1 : 2 * n : 2]
     own, by_poles = alone[:, :, 1 : 2 * n : 2], np.einsum("jnp,hp->hjn", gain, steps)
     joint, apart = _shared(own + by_poles, residues.imag * weights.level[rows, None], point[rows])
-    return _Sums(steps, np.sum(own**2 + 2.0 * own * by_poles, axis=0), rows, joint, apart)
+    both = np.sum(own**2 + 2.0 * own * by_poles, axis=0)
+    return _Sums(steps, both, np.sum(own**2, axis=0), rows, joint, apart)
 
 
 def _shared(moved: FloatArray, share: FloatArray, point: IntArray) -> tuple[FloatArray, FloatArray]:
@@ -184,18 +191,18 @@ def _ratio(found: FloatArray, expected: FloatArray) -> FloatArray:
     return np.asarray(np.minimum(ratio, _LARGEST))
 
 
-def _shrunk(ratio: FloatArray, freedom: FloatArray, alike: float) -> FloatArray:
+def _shrunk(ratio: FloatArray, freedom: FloatArray, alike: float, *, wide: bool = True) -> FloatArray:
     """Shrink each ratio of true to expected variance to that of all, and that to one.
 
     ``alike`` is how many degrees of freedom the ratio of all counts as, in each [-]. A variance from few
-    degrees of freedom makes errors Student's: it is raised so that 1.96 standard deviations still are a 95 %
-    interval.
+    degrees of freedom makes errors Student's: where ``wide``, it is raised so that 1.96 standard deviations
+    still are a 95 % interval.
     """
     total = float(freedom.sum())
     pooled = (float(np.sum(freedom * ratio)) + _PRIOR_FREEDOM) / (total + _PRIOR_FREEDOM)
     borrowed = min(alike, total + _PRIOR_FREEDOM)
     known = freedom + borrowed
-    wider = (stats.t.ppf(0.975, known) / stats.norm.ppf(0.975)) ** 2
+    wider = (stats.t.ppf(0.975, known) / stats.norm.ppf(0.975)) ** 2 if wide else 1.0
     return np.asarray(wider * (freedom * ratio + borrowed * pooled) / known)
 
 
@@ -215,4 +222,16 @@ def _of_constants(
         np.add.at(freedom, group.rows, len(group.steps) - 1.0)
     ratio = _ratio(np.maximum(found, 0.0), expected * prior)
     modes = [_shrunk(column, freedom, _ALIKE_CONSTANTS) for column in ratio.T]
+    return np.asarray(prior * np.stack(modes, axis=1))
+
+
+def _of_held(fit: Fit, groups: list[_Sums], prior: FloatArray) -> FloatArray:
+    """Return the same for constants with the poles held."""
+    expected = fit.linear_inverse[:, 1 : 2 * len(fit.poles) : 2]
+    found, freedom = np.zeros(expected.shape), np.zeros(len(expected))
+    for group in groups:
+        np.add.at(found, group.rows, group.held)
+        np.add.at(freedom, group.rows, len(group.steps) - 1.0)
+    ratio = _ratio(found, expected * prior)
+    modes = [_shrunk(column, freedom, _ALIKE_CONSTANTS, wide=False) for column in ratio.T]
     return np.asarray(prior * np.stack(modes, axis=1))

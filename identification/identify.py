@@ -144,6 +144,10 @@ def _assemble(
     sigma = covariance.constant_statistics(data, fitted, factors)[:, own]
     spread = covariance.pole_statistics(data, fitted, factors)[own]
     alone = _alone(data, fitted, own, sigma) * np.sqrt(factors.shapes[own])
+    shared = covariance.shared_errors(fitted, factors)[:, own]
+    noise = covariance.own_errors(data, fitted, factors)[:, own]
+    if fitted.held is not None:
+        noise = np.sqrt(np.maximum(alone**2 - np.sum(shared**2, axis=2), noise**2))
     shapes = mode_shapes(data, constants, alone)
     scatter = np.sqrt(covariance.disagreement(data, fitted, factors).each[own, 1, 1])
     said = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
@@ -154,6 +158,8 @@ def _assemble(
         pole_covariance=spread,
         constants=constants,
         constant_sigma=sigma,
+        constant_noise=noise,
+        constant_shared=sign[:, None, None] * shared,
         responses=tuple(unsigned(d) for d in data.responses),
         references=tuple(unsigned(d) for d in data.references),
         lower=sign * terms[-2],

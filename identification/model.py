@@ -37,6 +37,11 @@ class ModalModel:
         Modal constants A = phi_i phi_j, signs of the transducers' directions applied [1/kg].
     constant_sigma : (n_frf, n_modes) array
         Standard deviation of their real part; that of the imaginary part is about the same [1/kg].
+    constant_noise : (n_frf, n_modes) array
+        Standard deviation of the real part that is each constant's own, as if the poles were known [1/kg].
+    constant_shared : (n_frf, n_modes, k) array
+        The rest: what one standard deviation of each of k independent causes, errors of the poles, does to the
+        real parts of all constants. An error common to a mode's constants leaves its shape as it is [1/kg].
     responses, references : tuple of Dof, length n_frf
         Degrees of freedom, directions positive.
     lower, upper : (n_frf,) arrays
@@ -63,6 +68,8 @@ class ModalModel:
     pole_covariance: FloatArray
     constants: ComplexArray
     constant_sigma: FloatArray
+    constant_noise: FloatArray
+    constant_shared: FloatArray
     responses: tuple[Dof, ...]
     references: tuple[Dof, ...]
     lower: FloatArray
@@ -79,7 +86,14 @@ class ModalModel:
         """Freeze the arrays."""
         for name in ("poles", "constants", "background_poles"):
             object.__setattr__(self, name, frozen_array(getattr(self, name), np.complex128))
-        for name in ("pole_covariance", "constant_sigma", "lower", "upper"):
+        for name in (
+            "pole_covariance",
+            "constant_sigma",
+            "constant_noise",
+            "constant_shared",
+            "lower",
+            "upper",
+        ):
             object.__setattr__(self, name, frozen_array(getattr(self, name)))
 
     def __len__(self) -> int:

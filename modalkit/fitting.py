@@ -63,6 +63,11 @@ def update_studies(
     weights = tables[0].weights
     if len(tables) > 1 and any(isinstance(table.weights, list) for table in tables):
         weights = [weight for session in sessions for weight in _listed(session)]
+    elif len({str(table.weights) for table in tables}) > 1:
+        kinds = ", ".join(
+            f'"{table.weights}" in {s.study.path}' for s, table in zip(sessions, tables, strict=True)
+        )
+        raise StudyError(f"[update] weights: {kinds}; use one kind in all studies")
     own = [list(dict.fromkeys([*table.named, *shared])) for table in tables]
     if len({tuple(table.data) for table in tables}) > 1:
         raise StudyError("[update] data: the studies name different data; name the same in all")
@@ -95,8 +100,8 @@ def _by_frfs(session: Session, draws: int, seed: int) -> FrfUpdate:
     if session.identified is None:
         raise StudyError(f'{session.study.path}: [update] method = "frf" needs FRFs; give files in [test]')
     table, case = session.study.update, session.case
-    if table.data != ["frequencies"]:
-        raise StudyError(f'{session.study.path}: [update] data is of method = "eigenvalue"')
+    if table.data != ["frequencies"] or table.weights != "covariance":
+        raise StudyError(f'{session.study.path}: [update] weights and data are of method = "eigenvalue"')
     frfs = measured_frfs(session.identified, case.measured)
     if not draws:
         return update_frfs(case, frfs, parameters=table.named, stages=table.stages, lines=table.lines)

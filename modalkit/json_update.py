@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from updating.frf_update import FrfUpdate
 from updating.update import Update
 
 
@@ -66,7 +67,27 @@ def to_json(update: Update) -> dict[str, Any]:
             "draws": update.draws,
         },
         "determinability": _determinability(update),
+        "frf": _by_frfs(update),
         "warnings": list(update.warnings),
+    }
+
+
+def _by_frfs(update: Update) -> dict[str, Any] | None:
+    """Return what only an update by FRFs has; None for another."""
+    if not isinstance(update, FrfUpdate):
+        return None
+    damping = ("test_damping", "before_damping", "after_damping")
+    return {
+        "frac": [
+            {name: int(v) if name in ("response", "force") else _number(v) for name, v in row.items()}
+            for row in update.frac.to_dict("records")
+        ],
+        "damping": [
+            {name: _number(row[name]) for name in damping} for row in update.pairs.to_dict("records")
+        ],
+        "iterations_by_stage": list(update.stages),
+        "lines_hz": [list(lines) for lines in update.lines],
+        "discrepancy": list(update.discrepancy),
     }
 
 

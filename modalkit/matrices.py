@@ -11,16 +11,20 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models import Damping, Material, PointMass, Region, Spec
-from updating.models.imported import Imported, read_imported
+from updating.models.imported import SI, Imported, read_imported
 
 if TYPE_CHECKING:
-    from modalkit.study import ModelTable
+    from modalkit.study_tables import ModelTable
 
 FOREIGN = ("length", "width", "thickness", "elements", "clamped", "theory")
 """Keys of ``[model]`` that beams and plates have and matrices do not."""
 
 FACTORS_ALONE = Material(1.0, 1.0)
 """Material of matrices of which none is told: modulus and density are factors."""
+
+
+LIGHTEST = 0.1
+"""Below any solid's density [kg/m^3]."""
 
 
 def matrices_of(model: ModelTable, file: Callable[[str], Path]) -> Imported:
@@ -58,6 +62,7 @@ def matrices_of(model: ModelTable, file: Callable[[str], Path]) -> Imported:
         file(str(model.nodes)),
         stiffness_parts=[file(name) for name in model.stiffness_parts],
         mass_parts=[file(name) for name in model.mass_parts],
+        units=model.units or SI,
     )
 
 
@@ -81,6 +86,11 @@ def matrices_spec(model: ModelTable, imported: Imported, damping: Damping) -> Sp
     low, high = imported.extents
     size = np.maximum(high - low, 1e-6 * max(float((high - low).max()), 1e-9))
     material = model.material
+    if material is not None and material.density < LIGHTEST:
+        raise StudyError(
+            f"[model.material] density = {material.density:g}: no solid weighs so little; it is in kg/m3, and E in Pa, "
+            "whatever the units of the matrices"
+        )
     return Spec(
         "matrices",
         float(size[0]),

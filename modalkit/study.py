@@ -5,12 +5,21 @@ from __future__ import annotations
 import tomllib
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ValidationError
 
 from acquisition.errors import StudyError
 from modalkit.matrices import matrices_of, matrices_spec
+from modalkit.study_errors import explain, known_keys
+from modalkit.study_tables import (
+    MATRICES_ONLY,
+    EnvironmentTable,
+    MeasurementTable,
+    ModelTable,
+    Strict,
+    TolerancesTable,
+    UpdateTable,
+)
 from updating.axes import Axes
 from updating.effects import LIBRARY
 from updating.environment import Environment
@@ -18,148 +27,19 @@ from updating.models import Damping, Material, PointMass, Region, Spec
 from updating.models.imported import Imported
 from updating.tolerances import Tolerances
 
-Vector = tuple[float, float, float]
-
-MATRICES_ONLY = ("stiffness", "mass_matrix", "stiffness_parts", "mass_parts", "nodes")
-"""Keys of ``[model]`` that are of imported matrices alone; ``mass = "file"`` is read as ``mass_matrix``."""
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class AxesTable(_Strict):
-    """Model axes in test coordinates."""
-
-    origin: Vector = (0.0, 0.0, 0.0)
-    x: Vector = (1.0, 0.0, 0.0)
-    y: Vector = (0.0, 1.0, 0.0)
+__all__ = [
+    "MATRICES_ONLY",
+    "EnvironmentTable",
+    "MeasurementTable",
+    "ModelTable",
+    "Study",
+    "TolerancesTable",
+    "UpdateTable",
+    "read_study",
+]
 
 
-class MeasurementTable(_Strict):
-    """``[test]`` and ``[baseline]``: where the data are and how they were taken."""
-
-    files: list[str] = []
-    modes: str | None = None
-    band: tuple[float, float] | None = None
-    exponential_window: float = Field(0.0, ge=0.0)
-    window_on: Literal["both", "responses"] | None = None
-    window: float = Field(0.0, ge=0.0)
-    estimator: Literal["H1", "H2", "Hv"] = "H1"
-    use: list[tuple[str, int]] = []
-    leave: list[tuple[str, int]] = []
-    add: list[float] = []
-    drop: list[float] = []
-    layout: str | None = None
-    sensor_masses: dict[str, float] = {}
-    calibration: float = Field(0.02, gt=0.0)
-    repeatability: float = Field(0.0005, ge=0.0)
-    position_sigma: float = Field(0.001, ge=0.0)
-    axes: AxesTable = AxesTable()
-
-
-class MaterialTable(_Strict):
-    """``[model.material]``."""
-
-    E: float = Field(gt=0)
-    density: float = Field(gt=0)
-    poisson: float = Field(0.3, ge=0.0, lt=0.5)
-
-
-class DampingTable(_Strict):
-    """``[model.damping]``."""
-
-    alpha: float | None = None
-    beta: float | None = None
-    loss_factor: float | None = None
-    ratios: list[float] | None = None
-
-
-class MassTable(_Strict):
-    """``[[model.mass]]``."""
-
-    at: list[float]
-    mass: float = Field(ge=0)
-    inertia: float = Field(0.0, ge=0)
-
-
-class RegionTable(_Strict):
-    """``[[model.region]]``."""
-
-    name: str
-    x: tuple[float, float] | None = None
-    y: tuple[float, float] | None = None
-    E: float | None = None
-    density: float | None = None
-    thickness: float | None = None
-    area: float | None = None
-    inertia: float | None = None
-    alpha: float | None = None
-    beta: float | None = None
-    loss_factor: float | None = None
-
-
-class ModelTable(_Strict):
-    """``[model]``."""
-
-    type: Literal["beam", "plate", "matrices"]
-    length: float | None = None
-    width: float | None = None
-    thickness: float | None = None
-    elements: int | list[int] | None = None
-    clamped: list[str] = []
-    theory: str | None = None
-    stiffness: str | None = None
-    mass_matrix: str | None = None
-    stiffness_parts: list[str] = []
-    mass_parts: list[str] = []
-    nodes: str | None = None
-    material: MaterialTable | None = None
-    damping: DampingTable = DampingTable()
-    mass: list[MassTable] = []
-    region: list[RegionTable] = []
-    effect: list[dict[str, Any]] = []
-
-
-class TolerancesTable(_Strict):
-    """``[tolerances]``: the modeller's own doubts, relative standard deviations."""
-
-    E: float = Field(0.01, ge=0)
-    density: float = Field(0.003, ge=0)
-    thickness: float = Field(0.005, ge=0)
-    length: float = Field(0.002, ge=0)
-    width: float = Field(0.002, ge=0)
-    damping: float = Field(0.3, gt=0)
-
-
-class EnvironmentTable(_Strict):
-    """``[environment]``."""
-
-    fluid_density: float | None = Field(None, gt=0)
-    free_surface: float | None = Field(None, gt=0)
-    bottom: float | None = Field(None, gt=0)
-    walls: tuple[float, float, float, float] | None = None
-
-
-class UpdateTable(_Strict):
-    """``[update]``."""
-
-    method: Literal["eigenvalue", "frf"] = "eigenvalue"
-    parameters: list[str] | None = None
-    weights: Literal["covariance", "relative", "eigenvalue"] | list[float] = "covariance"
-    lines: int | list[float] | None = None
-    stages: list[list[str]] | None = None
-    data: list[Literal["frequencies", "shapes"]] = ["frequencies"]
-
-    @property
-    def named(self) -> list[str]:
-        """Parameters to update: as listed; left out and without stages, the modulus."""
-        if self.parameters is None:
-            return [] if self.stages is not None else ["E"]
-        return self.parameters
-
-
-class Study(_Strict):
+class Study(Strict):
     """A whole study file.
 
     Use :func:`read_study`; paths are relative to ``folder``.
@@ -178,6 +58,21 @@ class Study(_Strict):
     def file(self, name: str) -> Path:
         """Return a file of the study, relative to the study file."""
         return self.path.parent / name
+
+    def inputs(self) -> tuple[Path, ...]:
+        """Return the study file and every file it names."""
+        names: list[str | None] = []
+        for table in (self.test, self.baseline):
+            names += [] if table is None else [*table.files, table.modes, table.layout]
+        if (model := self.model) is not None:
+            names += [
+                model.stiffness,
+                model.mass_matrix,
+                model.nodes,
+                *model.stiffness_parts,
+                *model.mass_parts,
+            ]
+        return (self.path, *(self.file(name) for name in names if name is not None))
 
     @property
     def name(self) -> str:
@@ -317,45 +212,11 @@ def read_study(path: Path) -> Study:
     except tomllib.TOMLDecodeError as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
     if "path" in content:
-        raise StudyError(f"{path}: unknown key path; known here: {', '.join(_known(()))}")
+        raise StudyError(f"{path}: unknown key path; known here: {', '.join(known_keys((), Study))}")
     model = content.get("model", {})
     if isinstance(model, dict) and isinstance(model.get("mass"), str):
         content["model"] = {"mass_matrix" if key == "mass" else key: value for key, value in model.items()}
     try:
         return Study(**content, path=path)
     except ValidationError as error:
-        raise StudyError(f"{path}: {_explain(error)}") from error
-
-
-def _explain(error: ValidationError) -> str:
-    """Say in one line what is wrong and where."""
-    parts = []
-    for problem in error.errors()[:3]:
-        place = ".".join(str(p) for p in problem["loc"])
-        if problem["type"] == "extra_forbidden":
-            known = _known(problem["loc"][:-1])
-            parts.append(f"unknown key {place}" + (f"; known here: {', '.join(known)}" if known else ""))
-        else:
-            parts.append(f"{place}: {problem['msg'].lower()}")
-    return "; ".join(parts)
-
-
-def _known(place: tuple[int | str, ...]) -> list[str]:
-    """Return the keys a table of the study may have."""
-    tables: dict[tuple[str, ...], type[BaseModel]] = {
-        (): Study,
-        ("test",): MeasurementTable,
-        ("baseline",): MeasurementTable,
-        ("test", "axes"): AxesTable,
-        ("baseline", "axes"): AxesTable,
-        ("model",): ModelTable,
-        ("model", "material"): MaterialTable,
-        ("model", "damping"): DampingTable,
-        ("model", "mass"): MassTable,
-        ("model", "region"): RegionTable,
-        ("tolerances",): TolerancesTable,
-        ("environment",): EnvironmentTable,
-        ("update",): UpdateTable,
-    }
-    table = tables.get(tuple(str(p) for p in place if not isinstance(p, int)))
-    return [] if table is None else [n for n in table.model_fields if n != "path"]
+        raise StudyError(f"{path}: {explain(error, Study)}") from error

@@ -53,6 +53,9 @@ def match(measured: Measured, prediction: Prediction, order: IntArray) -> IntArr
 WILD = 0.25
 """Standard deviation of the logarithms of the frequency ratios beyond which ranks are doubted."""
 
+DISTANT, NOTHING_IN_COMMON = 2.0, 10.0
+"""Typical ratio of frequencies, test to model or back, from which pairs by rank are doubted, and refused."""
+
 FAINT = 0.35
 """Modes whose constants are no better known than this, relative to their r.m.s., are not compared."""
 
@@ -149,7 +152,7 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     count = min(len(measured.frequency), len(prediction.frequency))
     ratio = np.log(measured.frequency[:count] / prediction.frequency[:count])
     if count == len(measured.frequency) and np.std(ratio) < WILD:
-        return Paired(measured, np.arange(count), ())
+        return Paired(measured, np.arange(count), _distance(measured, float(np.exp(np.median(ratio)))))
     pairs = pair(measured.frequency, prediction.frequency, None)
     rows = np.array([p.test for p in pairs if p.model is not None and p.test is not None], dtype=int)
     order = np.array([p.model for p in pairs if p.model is not None and p.test is not None], dtype=int)
@@ -159,3 +162,21 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     keep[rows] = True
     lost = [f"mode at {f:.2f} Hz has no partner in the model" for f in measured.frequency[~keep]]
     return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))
+
+
+def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
+    """Say how far test and model are apart where ranks alone pair them.
+
+    Raises
+    ------
+    EstimationError
+        If so far that they have no mode in common.
+    """
+    times = f"the test's frequencies are {ratio:.3g} times the model's"
+    if max(ratio, 1 / ratio) > NOTHING_IN_COMMON:
+        raise EstimationError(
+            f"{measured.title or 'test'}: no modes in common: {times}; check the units of the model (m, Pa, kg/m3) "
+            "and of the test (Hz)"
+        )
+    far = max(ratio, 1 / ratio) > DISTANT
+    return (f"{times}, and only their order pairs them: they may be other modes",) if far else ()

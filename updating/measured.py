@@ -54,6 +54,10 @@ class Measured:
         Sign by which those FRFs, their transducers' directions made positive, point along the model's axes [-].
     directions : (n_points, 3) array, optional
         Which way each point moves in model axes; left out, along the model's z [-].
+    noise : (n_frf, n_modes) array, optional
+        The part of ``constants_sigma`` that is each constant's own; None where all of it is [1/kg].
+    shared : (n_frf, n_modes, k) array, optional
+        The rest: what one standard deviation of each of k independent causes does to all constants [1/kg].
     """
 
     frequency: FloatArray
@@ -76,6 +80,13 @@ class Measured:
     rows: IntArray | None = None
     signs: FloatArray | None = None
     directions: FloatArray | None = None
+    noise: FloatArray | None = None
+    shared: FloatArray | None = None
+
+    @property
+    def own_sigma(self) -> FloatArray:
+        """Standard deviation of each constant that no other shares, (n_frf, n_modes) [1/kg, or - per mode]."""
+        return self.constants_sigma if self.noise is None else self.noise
 
     @property
     def has_shapes(self) -> bool:
@@ -89,7 +100,8 @@ class Measured:
 
     def modes(self, keep: BoolArray | IntArray) -> Measured:
         """Return the same test with some of its modes."""
-        columns = {n: getattr(self, n)[:, keep] for n in ("constants", "constants_sigma")}
+        told = ["constants", "constants_sigma", *["noise"] * (self.noise is not None)]
+        columns = {n: getattr(self, n)[:, keep] for n in (*told, *["shared"] * (self.shared is not None))}
         rows = ("frequency", "frequency_sigma", "damping", "damping_sigma")
         return replace(self, **{n: getattr(self, n)[keep] for n in rows}, **columns)
 
@@ -189,19 +201,34 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         rows=both,
         signs=signs,
         directions=_directions(keys, spec),
+        noise=_with_complexity(
+            model.constants[both],
+            model.constant_noise[both],
+            _across(model.constants.real[both], model.constant_shared[both]),
+        ),
+        shared=model.constant_shared[both] * signs[:, None, None],
         **options,  # type: ignore[arg-type]
     )
 
 
-def _with_complexity(constants: ComplexArray, sigma: FloatArray) -> FloatArray:
+def _across(constants: FloatArray, shared: FloatArray) -> FloatArray:
+    """Return the mean square of shared errors across each mode's shape, (n_modes,) [1/kg^2]."""
+    along = np.einsum("jr,jrk->rk", constants, shared) / np.sum(constants**2, axis=0)[:, None]
+    return np.asarray(np.mean(np.sum((shared - constants[..., None] * along) ** 2, axis=2), axis=0))
+
+
+def _with_complexity(
+    constants: ComplexArray, sigma: FloatArray, known: FloatArray | float = 0.0
+) -> FloatArray:
     """Widen sigma to what the imaginary parts show.
 
     The constants of real modes are real; what disturbs an FRF turns them as much as it stretches them, so the
-    scatter of the imaginary parts of a mode measures the error of its real parts.
+    scatter of the imaginary parts of a mode measures the error of its real parts. ``known`` (n_modes,) is the
+    part of it that other causes explain [1/kg^2].
     """
     turned = np.angle(np.sum(constants**2, axis=0)) / 2
     across = (constants * np.exp(-1j * turned)).imag
-    excess = np.mean(across**2, axis=0) - np.mean(sigma**2, axis=0)
+    excess = np.mean(across**2, axis=0) - np.mean(sigma**2, axis=0) - known
     return np.asarray(np.sqrt(sigma**2 + np.maximum(excess, 0.0)))
 
 

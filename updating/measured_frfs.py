@@ -32,6 +32,8 @@ class MeasuredFrfs:
         Point of the response and of the force of each FRF, numbered as in the test's :class:`Measured`.
     source : str
         Where they came from, for messages.
+    order : int
+        How often the measured motion was integrated to a displacement, by the window that is stated [-].
     """
 
     laplace: ComplexArray
@@ -40,11 +42,26 @@ class MeasuredFrfs:
     seen: IntArray
     hit: IntArray
     source: str = ""
+    order: int = 0
 
     @property
     def frequency(self) -> FloatArray:
         """Frequency of the lines [Hz]."""
         return np.asarray(self.laplace.imag / (2 * np.pi))
+
+    def pairs(self) -> list[tuple[int, int]]:
+        """Return the points of response and force of every FRF."""
+        return list(zip(self.seen.tolist(), self.hit.tolist(), strict=True))
+
+    def select(self, rows: IntArray) -> MeasuredFrfs:
+        """Return some of the FRFs."""
+        return replace(
+            self,
+            values=self.values[rows],
+            variance=self.variance[rows],
+            seen=self.seen[rows],
+            hit=self.hit[rows],
+        )
 
     def lines(self, keep: BoolArray | IntArray) -> MeasuredFrfs:
         """Return the same FRFs on some of their lines."""
@@ -88,6 +105,7 @@ def measured_frfs(identified: ModalModel, measured: Measured) -> MeasuredFrfs:
         measured.seen,
         measured.hit,
         frfs.source,
+        FORMS.index(frfs.form),
     )
 
 

@@ -152,9 +152,13 @@ def _thousandfold(points: FloatArray, spec: Spec) -> str:
     assert spec.imported is not None
     low, high = spec.imported.extents
     ratio = max(float(np.ptp(points, axis=0).max(initial=0.0)), 1e-12) / max(float((high - low).max()), 1e-12)
-    for wrong, value in (("test", ratio), ("node table", 1 / ratio)):
+    remedies = (
+        ("test", ratio, "scale its geometry to [m]"),
+        ("node table", 1 / ratio, 'if matrices and nodes are in mm and t, write units = "mm-t-s" in [model]'),
+    )
+    for wrong, value, remedy in remedies:
         if THOUSANDFOLD[0] < value < THOUSANDFOLD[1]:
-            return f"the {wrong} looks a thousand times too large: is it in mm? [m] is expected"
+            return f"the {wrong} looks a thousand times too large: is it in mm? {remedy}"
     return ""
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy import linalg
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from updating.environment import Environment
@@ -319,7 +320,7 @@ class Predictor:
         stiffness, mass = self.reduced.matrices(total)
         viscous, structural = self._damping_matrices(total)
         if self._given(total) is not None:
-            values, vectors = self.reduced.eigen(total)
+            values, vectors = linalg.eigh(stiffness, mass)
             first = self.reduced.structure.rigid_modes
             rates = np.zeros(len(values))
             rates[first:] = (
@@ -358,10 +359,11 @@ class Predictor:
         laplace : (n_lines,) complex array
             Where in the Laplace plane, i omega + sigma [1/s].
         state : State
-            Departure from the nominal model, on top of ``base``; its gain multiplies the FRFs.
+            Departure from the nominal model, on top of ``base``; its gain multiplies the FRFs, and its decay is
+            that of a window beside what ``laplace`` holds.
         """
         total = self.base.plus(state)
         if total.theory is not None and total.theory != self.spec.theory:
             return self.under(total.theory).receptance(laplace, replace(state, theory=None))
         seen, hit = self.frf_rows(state)
-        return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace))
+        return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))

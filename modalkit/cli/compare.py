@@ -13,7 +13,7 @@ from modalkit.cli.options import Figures
 from modalkit.json_correlation import correlation_record
 from modalkit.process import Session, open_study
 from modalkit.study import read_study
-from modalkit.write import write_json, write_text
+from modalkit.write import check_json_place, check_place, write_json, write_text
 from updating.correlation import Correlation
 from updating.correlation import correlate as compare
 from updating.prediction import Predictor
@@ -42,6 +42,7 @@ def correlate(
     figures: Figures = None,
 ) -> None:
     """Pair the modes of test and model and say how far they agree, FRFs included."""
+    check_json_place(json)
     with working("reading and identifying"):
         session = open_study(read_study(study), with_baseline=False)
     identified = session.identified
@@ -77,6 +78,7 @@ def tables(
     """Make the papers' tables through the whole chain, our value beside the published one."""
     from modalkit.tables import render, work
 
+    check_place(output)
     with working("making the tables"):
         made = work(paper)
         text = render(made.tables(), form.value)

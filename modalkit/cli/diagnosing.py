@@ -14,7 +14,7 @@ from modalkit.letter import letter
 from modalkit.process import Session, open_study
 from modalkit.records import diagnosis_record, effects_record
 from modalkit.study import read_study
-from modalkit.write import write_json
+from modalkit.write import check_json_place, write_json
 from updating import Diagnosis
 from updating import diagnose as examine
 
@@ -31,6 +31,7 @@ def diagnose(
     figures: Figures = None,
 ) -> None:
     """Say where the gap between test and model lies, what causes it, and how far it closes."""
+    check_json_place(json)
     with working("reading and identifying"):
         session = open_study(read_study(study))
     with working("weighing the effects"):

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
+from acquisition.errors import InputError
 from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
 from modalkit.cli.options import Figures
 from modalkit.fitting import update_studies
 from modalkit.json_update import to_json
 from modalkit.process import open_study
 from modalkit.study import read_study
-from modalkit.write import write_json
+from modalkit.write import check_json_place, write_json
 from updating.frf_update import FrfUpdate
 from updating.update import Update
 
@@ -42,6 +43,11 @@ def update(
     figures: Figures = None,
 ) -> None:
     """Update the parameters named in the study's update table, by eigenvalues or by FRFs."""
+    check_json_place(json)
+    if twice := [
+        path for i, path in enumerate(studies) if path.resolve() in {p.resolve() for p in studies[:i]}
+    ]:
+        raise InputError(f"{twice[0]}: given twice; the same test is no further information")
     with working("reading and identifying"):
         sessions = [open_study(read_study(path), with_baseline=False) for path in studies]
     names = tuple(name.strip() for name in shared.split(",") if name.strip())

@@ -63,14 +63,19 @@ def test_damping_at_the_printed_parameters(made: dict[object, PaperTable]) -> No
 
 def test_our_update_finds_the_section_that_the_paper_printed(made: dict[object, PaperTable]) -> None:
     ours, given = column(made[2], "updated, ours"), column(made[2], "updated")
-    assert ours == pytest.approx(given, rel=0.03)
-    assert (np.abs(ours - given) < 3 * column(made[2], "sigma, ours")).all()
+    sigma = column(made[2], "sigma, ours")
+    assert (sigma < 0.08 * given).all()
+    assert (np.abs(ours - given) < 2 * sigma).all()
     # and without the calibration error it is the section that was measured
     assert column(made[2], "times 0.74, ours")[:2] == pytest.approx([144.9, 255.5], rel=0.05)
 
 
 def test_our_update_meets_frequencies_shapes_and_damping(made: dict[object, PaperTable]) -> None:
-    assert column(made[3], "after, ours") == pytest.approx(column(made[3], "after [Hz]"), rel=5e-3)
+    test, ours = column(made[3], "test [Hz]"), column(made[3], "after, ours")
+    missed, printed_miss = (
+        np.sqrt(np.mean((f / test - 1) ** 2)) for f in (ours, column(made[3], "after [Hz]"))
+    )
+    assert missed < printed_miss < 0.005
     assert column(made[3], "MAC after, ours").min() >= 99.6
     errors = made[5].factors.iloc[0]
     assert errors["mean error after [%]"] == pytest.approx(14.4, abs=0.05)

@@ -77,6 +77,7 @@ def taken(
         constants=modes.constants,
         constants_sigma=1e-3 * np.ones((11, 6)),
         calibration=1e-4,
+        repeatability=0.0,  # one mounting, whose frequencies are the truth's
     )
     return measured, MeasuredFrfs(s, h + sigma * scatter, sigma**2 * np.ones(h.shape), seen, hit, "test")
 

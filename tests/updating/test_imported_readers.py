@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import io
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +34,19 @@ def squeezed(path: Path) -> None:
     path.write_bytes(gzip.compress(plain.getvalue()))
 
 
+def stored_whole(path: Path) -> None:
+    """Both triangles under a header that says symmetric, as some exporters do."""
+    plain = io.BytesIO()
+    mmwrite(plain, K, symmetry="general", precision=17)
+    text = plain.getvalue().replace(b"general", b"symmetric", 1)
+    path.write_bytes(gzip.compress(text) if path.suffix == ".gz" else text)
+
+
+def edited_triplets(path: Path, edit: Callable[[str], str]) -> None:
+    write_triplets(path, K)
+    path.write_text(edit(path.read_text()))
+
+
 WRITERS = {
     "k.mtx": lambda path: mmwrite(path, K, symmetry="symmetric", precision=17),
     "general.mtx": lambda path: mmwrite(path, K, symmetry="general", precision=17),
@@ -44,6 +58,13 @@ WRITERS = {
     "coo.npz": lambda path: sparse.save_npz(path, sparse.coo_matrix(K)),
     "plain.npz": lambda path: np.savez(path, K=K.toarray()),
     "k.sti": lambda path: write_triplets(path, K),
+    "k.npy": lambda path: np.save(path, K.toarray()),
+    "dia.npz": lambda path: sparse.save_npz(path, sparse.dia_array(K)),
+    "stored whole.mtx": stored_whole,
+    "stored whole.mtx.gz": stored_whole,
+    "fortran.sti": lambda path: edited_triplets(path, lambda text: text.replace("e", "D")),
+    "comments.sti": lambda path: edited_triplets(path, lambda text: "** of a beam\n\n# K\n" + text),
+    "commas.sti": lambda path: edited_triplets(path, lambda text: ",".join(text.split(" "))),
 }
 
 
@@ -55,6 +76,18 @@ def test_every_format_gives_the_same_matrix(tmp_path: Path, name: str) -> None:
     np.testing.assert_allclose(found.toarray(), K.toarray(), rtol=1e-12, atol=1e-6)
 
 
+def archive(**arrays: np.ndarray) -> bytes:
+    plain = io.BytesIO()
+    np.savez(plain, **arrays)  # type: ignore[arg-type]
+    return plain.getvalue()
+
+
+def complex_sparse() -> bytes:
+    plain = io.BytesIO()
+    sparse.save_npz(plain, sparse.csr_array(K.toarray() * (1 + 0.01j)))
+    return plain.getvalue()
+
+
 BROKEN = [
     ("k.xyz", b"1", "no reader for .xyz"),
     ("k.mtx", b"1 2 3\n", "not a MatrixMarket file"),
@@ -64,6 +97,17 @@ BROKEN = [
     ("k.sti", b"", "not a matrix of CalculiX|is empty"),
     ("k.sti", b"1 1 soft\n", "not a matrix of CalculiX"),
     ("k.sti", b"0 1 2.0\n", "CalculiX counts from 1"),
+    ("k.sti", b"1 1\n2 2\n", "2 numbers on a line"),
+    ("k.sti", b"1 1 1.0 0.0\n2 2 1.0 0.0\n", "4 numbers on a line"),
+    ("k.sti", b"1 1 1.0\n2 ", "not a matrix of CalculiX"),
+    ("k.sti", b"1.5 1 1.0\n", "not a matrix of CalculiX"),
+    ("k.sti", b"1 1 1.0\n99999999999 1 1.0\n", "row or column 99999999999 in a matrix of 2 entries"),
+    ("k.sti", b" \n\n", "is empty"),
+    ("k.mtx", b"%%MatrixMarket matrix coordinate pattern symmetric\n1 1 1\n1 1\n", "pattern"),
+    ("k.npz", b"", "not an .npz archive"),
+    ("k.npz", archive(format=np.array(b"csr"), data=np.ones(3)), "not an .npz archive"),
+    ("k.npz", archive(K=np.ones((2, 2)) * 1j), "complex128"),
+    ("k.npz", complex_sparse(), "complex128"),
 ]
 
 
@@ -126,6 +170,14 @@ WRONG_TABLES = [
     ("node,x,y,z,direction,row\n1,0,,0,3,1\n", "missing or not finite"),
     ("node,x,y,z,direction,row\n1,0,0,0,,1\n", "line 2: node or direction"),
     ("node,x,y,z,direction,row\n1,0,0,0,3,-1\n", "leave it empty"),
+    ("node,x,y,z,direction,row\n", "no line has a row"),
+    ("node,x,y,z,direction,row\n1,0,0,0,3,\n", "no line has a row"),
+    ("node,x,y,z,direction,row\n1,0,0,0,3,1.5\n", r"row 1\.5 is no whole number"),
+    ("node,x,y,z,direction,row\n1,0,0,0,3.5,1\n", r"direction 3\.5 is no whole number"),
+    ("node,x,y,z,direction,row\n1.5,0,0,0,3,1\n", r"node 1\.5 is no whole number"),
+    ("node,x,y,z,direction,row\n1,0,0,0,1,1\n1,0.2,0,0,3,2\n", "node 1 stands at two places"),
+    ("node,x,y,z,direction,row\n1,0,0,0,3,1,7\n2,0,0,0,3,2,7\n", "more values than the header has names"),
+    ("node;x;y;z;direction;row\n1;0;0;0;3;1\n", "separated by commas"),
     ("", "not a CSV table"),
 ]
 
@@ -173,7 +225,8 @@ def test_a_deck_and_its_dof_file_make_a_node_table(tmp_path: Path) -> None:
 
 WRONG_DECKS = [
     ("*ELEMENT\n1, 2, 3\n", "no \\*NODE card"),
-    (DECK + "*TRANSFORM, NSET=A\n", "line 13.*TRANSFORM"),
+    (DECK + "*NGEN, NSET=A\n", "line 13.*NGEN"),
+    (DECK + "*TRANSFORM, NSET=A\n1, 0, 0, 0, 1, 0\n", "no \\*NSET A"),
     (DECK.replace("*NODE, NSET=LOWER", "*NODE, SYSTEM=C"), "is not followed"),
     (DECK + "nobody, 1\n", "no \\*NSET nobody"),
     (DECK.replace("1, 0.0, 0.0, 0.0", "1, here"), "is no node"),
@@ -187,6 +240,46 @@ def test_a_deck_that_cannot_be_followed_is_refused(tmp_path: Path, text: str, sa
     path = deck(tmp_path, text)
     with pytest.raises(StudyError, match=said):
         read_deck_table(path, tmp_path / "job.dof", 6)
+
+
+def test_supports_along_turned_axes_hold_no_row(tmp_path: Path) -> None:
+    """The rows of a node under *TRANSFORM are along x, y, z still; only where all three are held is it at rest."""
+    turned = (
+        DECK + "*NSET, NSET=TURN\n2, 3\n*TRANSFORM, NSET=TURN\n0, 1, 0, 0, 0, 1\n*BOUNDARY\n2, 1\n3, 1, 3\n"
+    )
+    path = deck(tmp_path, turned.replace("held, 1, 2", "1, 1, 2"))
+    table = read_deck_table(path, tmp_path / "job.dof", 6)
+    held = set(zip(table.node[table.row < 0].tolist(), table.direction[table.row < 0].tolist(), strict=True))
+    assert held == {(1, 1), (1, 2), (3, 1), (3, 2), (3, 3)}
+
+
+@pytest.mark.parametrize(
+    ("units", "length", "force"), [("mm-t-s", 1e-3, 1.0), ("in-lbf-s", 0.0254, 4.4482216)]
+)
+def test_matrices_in_other_units_are_taken_to_si(
+    tmp_path: Path, units: str, length: float, force: float
+) -> None:
+    """A beam with rows of rotation, written as its makers' units have it: K / (F / L), F and F L; places / L."""
+    table = beam_table(6, clamped=True)
+    turning = np.isin(np.arange(12), table.row[(table.direction == 5) & (table.row >= 0)])
+    per = np.where(turning, 1.0, 1 / length)
+    scale = sparse.diags_array(1 / per) / np.sqrt(force * length)
+    for name, matrix in (("k", K), ("m", M)):
+        sparse.save_npz(tmp_path / f"{name}.npz", sparse.csr_array(scale @ matrix @ scale))
+    if units == "mm-t-s":  # 12 EI / h^3 of a free element, in N/mm
+        assert (scale @ K @ scale).toarray()[0, 0] == pytest.approx(K.toarray()[0, 0] / 1000)
+    lines = ["node,x,y,z,direction,row"]
+    for n, (x, y, z), d, r in zip(table.node, table.places / length, table.direction, table.row, strict=True):
+        lines.append(f"{n},{float(x)!r},{float(y)!r},{float(z)!r},{d},{'' if r < 0 else r + 1}")
+    (tmp_path / "nodes.csv").write_text("\n".join(lines))
+    files = (tmp_path / "k.npz", tmp_path / "m.npz", tmp_path / "nodes.csv")
+    found = read_imported(*files, stiffness_parts=files[:1], units=units)
+    np.testing.assert_allclose(found.stiffness.toarray(), K.toarray(), rtol=1e-7, atol=1e-3)
+    np.testing.assert_allclose(found.stiffness_parts[0].toarray(), K.toarray(), rtol=1e-7, atol=1e-3)
+    np.testing.assert_allclose(found.mass.toarray(), M.toarray(), rtol=1e-7, atol=1e-12)
+    np.testing.assert_allclose(found.nodes.places, table.places, atol=1e-12)
+    with pytest.raises(StudyError, match="no units 'furlong'"):
+        read_imported(*files, units="furlong")
 
 
 def test_a_dof_file_of_another_run(tmp_path: Path) -> None:

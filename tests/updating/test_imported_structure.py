@@ -278,6 +278,8 @@ REFUSED = {
         Sparse(M.toarray() - 0.9 * np.eye(16) * M.diagonal()),
         "mass matrix indefinite",
     ),
+    "swapped": (M, K, "rad.2/s.2 on the diagonals: are the two matrices swapped"),
+    "no stiffness": (Sparse((16, 16)), M, "the stiffness matrix is empty"),
     "massless and loose": (
         without(K, 4) + Sparse(np.diag(np.eye(16)[4] * -1)),
         without(M, 4),
@@ -309,6 +311,26 @@ def test_parts_that_are_not_joined_are_refused() -> None:
     imported = Imported(Sparse(many[0].tocsr()), Sparse(many[1].tocsr()), beam_table(10, clamped=False))
     with pytest.raises(StudyError, match="more than six motions"):
         build_structure(spec_of(imported)).rigid_modes  # noqa: B018
+
+
+@pytest.mark.parametrize("elements", [8, 230])
+def test_motions_with_neither_stiffness_nor_mass_are_named_as_such(elements: int) -> None:
+    """One direction of two rows is taken out of both matrices: no negative spring, and no rigid body either."""
+    k, m = (clamp(matrix).toarray() for matrix in beam_matrices(elements))
+    hollow = np.zeros((len(k), 1))
+    hollow[[6, 9], 0] = 1.0, -0.5
+    hollow /= np.linalg.norm(hollow)
+    keep = np.eye(len(k)) - hollow @ hollow.T
+    imported = Imported(Sparse(keep @ k @ keep), Sparse(keep @ m @ keep), beam_table(elements, clamped=True))
+    with pytest.raises(
+        StudyError, match=r"1 motion\(s\) have neither stiffness nor mass, one shows at row (7|10)"
+    ):
+        build_structure(spec_of(imported)).eigen(3)
+
+
+def test_a_negative_part_is_refused() -> None:
+    with pytest.raises(StudyError, match=r"part 2 of the stiffness: row 1 has -.* on its diagonal"):
+        Imported(K, M, TABLE, (Sparse(2 * K), Sparse(-K)))
 
 
 def test_one_triangle_is_completed() -> None:

@@ -20,9 +20,11 @@ def recovery() -> ModuleType:
     return module
 
 
-def covered(seeds: range) -> np.ndarray:
+def covered(
+    seeds: range, data: tuple[str, ...] = ("frequencies", "shapes"), *, blind: bool = False
+) -> np.ndarray:
     module = recovery()
-    return np.concatenate([np.abs(module.pulls(*module.recovered(seed))) < 1.96 for seed in seeds])
+    return np.concatenate([module.inside(*module.recovered(seed, data, blind=blind)) for seed in seeds])
 
 
 def test_a_few_random_specimens_are_recovered() -> None:
@@ -37,9 +39,18 @@ def test_modulus_and_density_of_everything_are_named_as_a_pair() -> None:
 
 
 @pytest.mark.slow
-def test_pooled_coverage_is_that_of_the_intervals() -> None:
-    inside = covered(range(300, 370))
-    assert len(inside) >= 300
+@pytest.mark.parametrize(
+    ("data", "blind", "seeds"),
+    [
+        (("frequencies", "shapes"), False, range(1300, 1375)),
+        (("frequencies",), False, range(1000, 1085)),
+        (("frequencies",), True, range(1000, 1080)),
+    ],
+    ids=["shapes", "frequencies", "frequencies alone measured"],
+)
+def test_pooled_coverage_is_that_of_the_intervals(data: tuple[str, ...], blind: bool, seeds: range) -> None:
+    inside = covered(seeds, data, blind=blind)
+    assert len(inside) >= 350
     low, high = recovery().interval(int(inside.sum()), len(inside))
-    assert low < 0.97
-    assert high > 0.93
+    assert low < 0.95 < high
+    assert 0.93 <= inside.mean() <= 0.97

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from acquisition import EstimationError, ModalData, StudyError
+from acquisition import Dof, EstimationError, Geometry, ModalData, StudyError
 from updating import Axes, Case, Material, Region, Spec, Tolerances, build_structure, measured_from_modes
 from updating.update import update
 from updating.update.identifiability import best_subset
@@ -112,12 +112,43 @@ def test_bad_input_is_refused_in_one_line(options: dict[str, object], said: str)
     assert "\n" not in str(refused.value)
 
 
+def shapes_at(dofs: tuple[Dof, ...], shapes: np.ndarray) -> Case:
+    geometry = Geometry(
+        tuple(range(1, len(dofs) + 1)),
+        np.column_stack([np.linspace(0, 0.4, len(dofs)), np.zeros((len(dofs), 2))]),
+    )
+    data = ModalData(np.array([200.0]), np.array([1.0]), dofs=dofs, shapes=shapes[:, None], geometry=geometry)
+    return Case("bar", BEAM, measured_from_modes(data, Axes(), BEAM), None, DOUBTS)
+
+
 def test_no_common_mode_is_said() -> None:
+    dofs = tuple(Dof(i + 1, 3) for i in range(9))
+    # a shape that changes its sign from point to point is none of a clamped beam's lowest
+    with pytest.raises(EstimationError, match="no measured mode looks like") as refused:
+        update(shapes_at(dofs, (-1.0) ** np.arange(9)), parameters=["E"], weights="relative")
+    assert "\n" not in str(refused.value)
+
+
+def test_a_frequency_far_from_all_of_the_model_is_none_of_its_modes() -> None:
     data = ModalData(np.array([1e6]), np.array([1.0]))
     case = Case("bar", BEAM, measured_from_modes(data, Axes(), BEAM), None, DOUBTS)
-    try:
-        result = update(case, parameters=["E"], weights="relative")
-    except EstimationError as refused:
-        assert "partner" in str(refused)
-    else:
-        assert result.parameters[0].at_bound
+    with pytest.raises(EstimationError, match="no modes in common"):
+        update(case, parameters=["E"], weights="relative")
+
+
+def test_tolerances_that_the_data_contradict_are_not_trusted() -> None:
+    """One per cent of doubt and a modulus a quarter off: what only the tolerance holds is uncertain by as much."""
+    tight = Tolerances({"E": 0.01, "density": 0.01})
+    result = update(case_of(np.sqrt(0.75) * frequencies(BEAM), tight), parameters=["E", "density"])
+    assert any("tolerances from its nominal value" in w for w in result.warnings)
+    truth = {"E": 0.75 * 210e9, "density": 7850.0}
+    for p in result.parameters:
+        assert abs(p.value - truth[p.name]) < 2 * p.sigma
+    calm = update(case_of(frequencies(BEAM), tight), parameters=["E", "density"])
+    assert not any("contradict" in w for w in calm.warnings)
+    assert max(p.sigma / p.value for p in calm.parameters) < 0.01
+
+
+def test_damping_is_no_parameter_of_frequencies() -> None:
+    with pytest.raises(StudyError, match=r"root\.alpha is a coefficient of damping"):
+        update(case_of(frequencies(BEAM)), parameters=["E", "root.alpha"])

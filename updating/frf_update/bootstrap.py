@@ -10,6 +10,9 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.case import Case
+from updating.frf_update.columns import columns
+from updating.frf_update.look import Look, look
+from updating.frf_update.mounting import resonances, shifted
 from updating.frf_update.report import report
 from updating.frf_update.result import FrfUpdate
 from updating.frf_update.run import solve_stages
@@ -17,7 +20,7 @@ from updating.frf_update.solve import CONVERGED, descend
 from updating.frf_update.stage import Stage
 from updating.frf_update.step import Step, last_steps
 from updating.measured_frfs import MeasuredFrfs
-from updating.models.state import NOMINAL
+from updating.models.state import NOMINAL, combine
 from updating.update.bootstrap import FEWEST, LEVEL
 
 ROUNDS = 2
@@ -56,9 +59,9 @@ def bootstrap_frf_update(
 ) -> FrfBootstrap:
     """Update, then update again from FRFs drawn anew: of the hits where they are given, else from the noise.
 
-    The level of each draw is scattered by the calibration. What the model cannot follow stays as it is in all draws:
-    the intervals cover the scatter of the measurement, and where there is a discrepancy they are the narrower ones;
-    the standard deviations of the parameters allow for it.
+    The level of each draw is scattered by the calibration, its resonances by mounting the structure anew. What the
+    model cannot follow stays as it is in all draws: the intervals cover the scatter of the measurement, and where
+    there is a discrepancy they are the narrower ones; the standard deviations of the parameters allow for it.
 
     Parameters
     ----------
@@ -83,10 +86,16 @@ def bootstrap_frf_update(
     specimen, _, steps = solve_stages(case, frfs, parameters, stages, lines)
     found = report(specimen, frfs, steps)
     last = last_steps(steps)
+    whole = _whole(last, frfs)
     source = _from_noise(frfs, rng, n) if draws is None else draws
-    level = case.measured.calibration
+    test = case.measured
     values = np.array(
-        [_repeat(last, frfs, _levelled(draw, rng, level)) for draw, _ in zip(source, range(n), strict=False)]
+        [
+            _repeat(
+                last, frfs, _levelled(_mounted(draw, whole, rng, test.repeatability), rng, test.calibration)
+            )
+            for draw, _ in zip(source, range(n), strict=False)
+        ]
     )
     if len(values) < n:
         raise StudyError(f"bootstrap: {len(values)} draws were given and {n} asked for")
@@ -104,6 +113,19 @@ def _from_noise(frfs: MeasuredFrfs, rng: np.random.Generator, n: int) -> Iterabl
         yield replace(frfs, values=frfs.values + np.sqrt(frfs.variance / 2) * scatter)
 
 
+def _whole(last: Sequence[Step], frfs: MeasuredFrfs) -> Look:
+    """Return the updated model on all lines."""
+    stage = last[-1].stage
+    state = replace(combine([s.own for s in last]), ratios=stage.earlier.ratios)
+    return look(stage.predictor, state, columns(frfs), frfs.laplace, order=frfs.order)
+
+
+def _mounted(frfs: MeasuredFrfs, at: Look, rng: np.random.Generator, repeatability: float) -> MeasuredFrfs:
+    """Move every resonance as another mounting might."""
+    shift = repeatability * rng.standard_normal(len(resonances(at)))
+    return replace(frfs, values=frfs.values + shifted(at, columns(frfs), shift).sum(axis=0))
+
+
 def _levelled(frfs: MeasuredFrfs, rng: np.random.Generator, calibration: float) -> MeasuredFrfs:
     return replace(frfs, values=frfs.values * np.exp(calibration * rng.standard_normal()))
 
@@ -119,7 +141,9 @@ def _repeat(last: Sequence[Step], frfs: MeasuredFrfs, draw: MeasuredFrfs) -> lis
             for j, state in enumerate(own):
                 others = others.plus(state) if j != i else others
             earlier = replace(others, ratios=step.stage.earlier.ratios)
-            stage: Stage = replace(step.stage, frfs=draw.lines(chosen), earlier=earlier)
+            kept = set(step.stage.frfs.pairs())
+            rows = np.array([k for k, pair in enumerate(draw.pairs()) if pair in kept])
+            stage: Stage = replace(step.stage, frfs=draw.select(rows).lines(chosen), earlier=earlier)
             theta[i] = descend(
                 stage, theta[i], stage.look(theta[i]), step.solved.discrepancy, share=CONVERGED, steps=STEPS
             )[0]

@@ -32,20 +32,20 @@ def expand(at: Look, ends: Columns, measured: ComplexArray) -> ComplexArray:
 
     Returns
     -------
-    (n_frf, n_lines, r) complex array
-        Motion of the basis under the excitation of each FRF [m/N].
+    (n_lines, r, n_excitations) complex array
+        Motion of the basis under each excitation of ``ends`` [m/N].
     """
-    found = np.empty((*measured.shape, at.states.shape[1]), dtype=complex)
+    found = []
     everywhere = answers(at.matrices, np.eye(at.states.shape[1]), at.laplace)
     for excitation, rows in ends.groups:
         own = at.states[:, :, excitation]
         computed = on_each_line(at.rows[ends.response[rows]], own[:, :, None])[:, :, 0]
-        missing = measured[rows].T / at.gain - computed
+        missing = (measured[rows] / at.gain).T - computed
         lever = at.states[:, :, ends.response[rows]].transpose(0, 2, 1)
         back = lever.conj().transpose(0, 2, 1)
         gram = lever @ back
         size = np.einsum("lii->l", gram).real / len(rows)
         gram = gram + RIDGE * size[:, None, None] * np.eye(len(rows))
         force = back @ np.linalg.solve(gram, missing[:, :, None])
-        found[rows] = (own + (everywhere @ force)[:, :, 0])[None]
-    return found
+        found.append(own + (everywhere @ force)[:, :, 0])
+    return np.stack(found, axis=-1)

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.sparse.linalg import splu
 
 from acquisition.arrays import FloatArray
-from updating.frf_update.step import Step
+from updating.frf_update.step import Step, last_steps
 from updating.models.reduced import SMALL, Reduced, extend_basis
-from updating.models.state import State
+from updating.models.state import State, combine
+from updating.prediction import Predictor
 from updating.update.specimen import Specimen
 
 AGREES = 1e-5
 """Relative change of the frequencies and of the FRFs by a new basis under which the old one will do [-]."""
 
 
-def finer(specimen: Specimen, step: Step) -> Specimen | None:
-    """Return a specimen whose basis is made at the solution, or None where its own agrees with that.
+def finer(specimen: Specimen, steps: Sequence[Step]) -> tuple[Specimen, list[Step]] | None:
+    """Return specimen and steps on a basis made at the solution, or None where their own agrees with that.
 
     A basis of the nominal model's modes and static answers is exact there, and within some per mille of the FRFs
     with parameters that are a third off. Modes and static answers of the *updated* full model take their place, and
@@ -28,9 +30,10 @@ def finer(specimen: Specimen, step: Step) -> Specimen | None:
     ----------
     specimen : Specimen
         The specimen.
-    step : Step
-        A stage at rest, whose lines the comparison uses.
+    steps : sequence of Step
+        Every stage as often as it was gone through; the lines of the last are compared.
     """
+    step = steps[-1]
     predictor = specimen.predictor
     state = predictor.base.plus(step.state)
     if predictor.reduced.structure.unknowns <= SMALL or state.released or state.theory is not None:
@@ -38,11 +41,19 @@ def finer(specimen: Specimen, step: Step) -> Specimen | None:
     new = predictor.looking(specimen.measured)
     new.__dict__["reduced"] = basis_at(predictor.reduced, state, _loads(specimen))
     new.__dict__.pop("base", None)
+    moved = [_moved(s, new) for s in steps]
+    there = replace(combine([s.own for s in last_steps(moved)]), ratios=step.state.ratios)
     laplace = step.stage.frfs.laplace
-    old_frfs, new_frfs = predictor.receptance(laplace, step.state), new.receptance(laplace, step.state)
+    old_frfs, new_frfs = predictor.receptance(laplace, step.state), new.receptance(laplace, there)
     if np.abs(new_frfs - old_frfs).max() <= AGREES * np.abs(new_frfs).max():
         return None
-    return replace(specimen, predictor=new)
+    return replace(specimen, predictor=new), moved
+
+
+def _moved(step: Step, predictor: Predictor) -> Step:
+    """Return a step whose effects are matrices on the basis of another predictor."""
+    values = step.stage.values(step.solved.theta)
+    return replace(step, own=step.stage.panel.state(predictor, values))
 
 
 def _loads(specimen: Specimen) -> FloatArray:

@@ -16,7 +16,10 @@ from acquisition.errors import StudyError
 from updating.frf_update.stage import Stage
 
 CANDIDATES = 250
-"""Lines looked at, evenly thinned from the band."""
+"""Fewest lines looked at, spread evenly over the band."""
+
+BESIDE = 4
+"""Lines on either side of each measured resonance that are looked at too."""
 
 COUNT = 100
 """Lines chosen where the user says nothing."""
@@ -54,13 +57,24 @@ def choose_lines(
     count = COUNT if lines is None else lines
     if count < 1:
         raise StudyError(f"[update] lines = {count}: name at least one line, or leave it out")
-    thin = np.unique(
-        np.round(np.linspace(0, len(frequency) - 1, min(CANDIDATES, len(frequency)))).astype(int)
-    )
+    peaks = stage.all_resonances if stage.damps_alone else np.zeros(0)
+    thin = _candidates(frequency, peaks, max(CANDIDATES, 2 * count))
     if count >= len(thin):
         return thin
     few = stage.lines(thin)
     return np.sort(thin[_greedy(_information(few, theta, discrepancy), count)])
+
+
+def _candidates(frequency: FloatArray, resonances: FloatArray, count: int) -> IntArray:
+    """Return lines spread evenly over the band, and those about some resonances, which an even spread may miss.
+
+    Where damping alone is asked for it stands there. Of mass and stiffness a line right on a peak says most if
+    the model can follow it, and misleads most if not.
+    """
+    even = np.round(np.linspace(0, len(frequency) - 1, min(count, len(frequency)))).astype(int)
+    nearest = np.abs(frequency[:, None] - resonances).argmin(axis=0)
+    about = nearest[:, None] + np.arange(-BESIDE, BESIDE + 1)
+    return np.unique(np.clip(np.concatenate([even, about.ravel()]), 0, len(frequency) - 1))
 
 
 def _nearest(frequency: FloatArray, wanted: FloatArray) -> IntArray:

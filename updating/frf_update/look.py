@@ -40,9 +40,12 @@ class Look:
     receptance : (n_frf, n_lines) complex array
         The model's FRFs, gain included [m/N].
     laplace : (n_lines,) complex array
-        Where in the Laplace plane [1/s].
-    gain : float
-        Factor of the measured level over the true one [-].
+        Where in the Laplace plane, a window that only the model knows of included [1/s].
+    gain : (n_lines,) complex array
+        Factor of the measured level over the true one: the calibration's, and what such a window does to a motion
+        that was integrated as if there were none [-].
+    order : int
+        How often the measured motion was integrated to a displacement [-].
     """
 
     state: State
@@ -51,10 +54,11 @@ class Look:
     states: ComplexArray
     receptance: ComplexArray
     laplace: ComplexArray
-    gain: float
+    gain: ComplexArray
+    order: int = 0
 
 
-def look(predictor: Predictor, state: State, ends: Columns, laplace: ComplexArray) -> Look:
+def look(predictor: Predictor, state: State, ends: Columns, laplace: ComplexArray, *, order: int = 0) -> Look:
     """Evaluate a model at the points and lines of measured FRFs.
 
     Parameters
@@ -66,19 +70,23 @@ def look(predictor: Predictor, state: State, ends: Columns, laplace: ComplexArra
     ends : Columns
         The points of every FRF.
     laplace : (n_lines,) complex array
-        Where in the Laplace plane [1/s].
+        Where in the Laplace plane, by what is stated of the measurement [1/s].
+    order : int
+        How often the measured motion was integrated to a displacement: a file of accelerances, twice [-].
     """
-    matrices, rows, gain = _parts(predictor, state, ends)
-    states = answers(matrices, rows.T, laplace)
+    matrices, rows, level, decay = _parts(predictor, state, ends)
+    there = laplace + decay
+    gain = level * (there / laplace) ** order if decay else np.full(len(laplace), level, dtype=complex)
+    states = answers(matrices, rows.T, there)
     receptance = gain * on_each_line(rows, states)[:, ends.response, ends.excitation].T
-    return Look(state, matrices, rows, states, receptance, laplace, gain)
+    return Look(state, matrices, rows, states, receptance, there, gain, order)
 
 
-def _parts(predictor: Predictor, state: State, ends: Columns) -> tuple[Matrices, FloatArray, float]:
+def _parts(predictor: Predictor, state: State, ends: Columns) -> tuple[Matrices, FloatArray, float, float]:
     total = predictor.base.plus(state)
     if total.theory is not None and total.theory != predictor.spec.theory:
         return _parts(predictor.under(total.theory), replace(state, theory=None), ends)
-    return predictor.matrices(state), predictor.point_rows(state)[ends.points], total.gain
+    return predictor.matrices(state), predictor.point_rows(state)[ends.points], total.gain, total.decay
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,11 +101,14 @@ class Change:
         Derivative of the rows, where points move on the model; zero elsewhere.
     log_gain : float
         Derivative of the logarithm of the gain [-].
+    decay : float
+        Derivative of the decay of a window that only the model knows of [1/s].
     """
 
     matrices: Matrices
     rows: FloatArray
     log_gain: float
+    decay: float
 
 
 def changes(
@@ -132,11 +143,12 @@ def changes(
             moved = [*values[:i], knob.value(coordinate), *values[i + 1 :]]
             sides.append(_parts(predictor, earlier.plus(panel.state(predictor, moved)), ends))
         width = at[1] - at[0]
-        (low, low_rows, low_gain), (high, high_rows, high_gain) = sides
+        (low, low_rows, low_gain, low_decay), (high, high_rows, high_gain, high_decay) = sides
         names = ("stiffness", "mass", "viscous", "structural")
         matrices = Matrices(*[(getattr(high, n) - getattr(low, n)) / width for n in names])
+        log_gain = float(np.log(high_gain / low_gain) / width)
         found.append(
-            Change(matrices, (high_rows - low_rows) / width, float(np.log(high_gain / low_gain) / width))
+            Change(matrices, (high_rows - low_rows) / width, log_gain, (high_decay - low_decay) / width)
         )
     return found
 
@@ -152,22 +164,31 @@ def sensitivity(at: Look, change: Change, ends: Columns, excited: ComplexArray |
         What the coordinate changes.
     ends : Columns
         The points of every FRF.
-    excited : (n_frf, n_lines, r) complex array, optional
-        The structure's own motion under each FRF's excitation in place of the model's: H^X of Eq. 9 where it
+    excited : (n_lines, r, n_excitations) complex array, optional
+        The structure's own motion under each excitation of ``ends`` in place of the model's: H^X of Eq. 9 where it
         was measured, expanded to all of the basis [m/N].
     """
-    s = at.laplace[:, None, None]
-    d = change.matrices
-    moved = d.stiffness + 1j * d.structural
-    states = at.states
-    dynamic = s**2 * on_each_line(d.mass, states) + s * on_each_line(d.viscous, states)
-    dynamic = (dynamic + on_each_line(moved, states))[:, :, ends.response]
-    if excited is None:
-        by = -np.einsum("lrf,lrf->fl", dynamic, states[:, :, ends.excitation])
-    else:
-        by = -np.einsum("lrf,flr->fl", dynamic, excited)
+    excitations, which = np.unique(ends.excitation, return_inverse=True)
+    right = at.states[:, :, excitations] if excited is None else excited
+    left = at.states.transpose(0, 2, 1)
+    by = -(left @ _forces(at, change, right))[:, ends.response, which.ravel()].T
     if np.any(change.rows):
-        moving = on_each_line(change.rows, states)
+        moving = on_each_line(change.rows, at.states)
         moving = moving + moving.transpose(0, 2, 1)
         by = by + moving[:, ends.response, ends.excitation].T
-    return np.asarray(at.gain * by + change.log_gain * at.receptance)
+    level = change.log_gain + at.order * change.decay / at.laplace
+    return np.asarray(at.gain * by + level * at.receptance)
+
+
+def _forces(at: Look, change: Change, states: ComplexArray) -> ComplexArray:
+    """Return dZ / d coordinate times states (n_lines, r, n) [N]."""
+    s, d, own = at.laplace[:, None, None], change.matrices, at.matrices
+    one = np.ones_like(s)
+    parts = [(s**2, d.mass), (s, d.viscous), (one, d.stiffness), (1j * one, d.structural)]
+    if change.decay:
+        parts += [(2 * s * change.decay, own.mass), (change.decay * one, own.viscous)]
+    found = np.zeros(states.shape, dtype=complex)
+    for factor, matrix in parts:
+        if np.any(matrix):
+            found += factor * on_each_line(matrix, states)
+    return found

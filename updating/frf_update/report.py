@@ -10,6 +10,8 @@ import pandas as pd
 
 from acquisition.arrays import FloatArray, IntArray
 from identification import frac
+from updating.frf_update.columns import columns
+from updating.frf_update.look import look
 from updating.frf_update.result import FrfUpdate
 from updating.frf_update.stage import nominal
 from updating.frf_update.statistics import assess, misses, with_misses
@@ -41,7 +43,11 @@ def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> Frf
         Every stage as often as it was gone through, in order.
     """
     last = last_steps(steps)
-    results = [assess(s.stage, s.solved, specimen.measured.calibration) for s in last]
+    test = specimen.measured
+    # a stage of damping alone looks at the lines where a mounting puts its peaks; misses hold the scatter too
+    apart = [s.stage.damps_alone or s.solved.discrepancy > 0 for s in last]
+    scatter = [0.0 if a else test.repeatability for a in apart]
+    results = [assess(s.stage, s.solved, test.calibration, r) for s, r in zip(last, scatter, strict=True)]
     results = [
         r if s.solved.discrepancy == 0 else with_misses(r, misses(specimen, s))
         for r, s in zip(results, last, strict=True)
@@ -57,7 +63,7 @@ def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> Frf
     pairs, exact = _pairs(
         specimen, last[-1].stage.predictor, state, [k.value(t) for k, t in zip(knobs, theta, strict=True)]
     )
-    chi2, count = results[-1].chi2, results[-1].count - len(results[-1].undetermined)
+    chi2, count = sum(r.chi2 for r in results), sum(r.count for r in results)
     return FrfUpdate(
         parameters=tuple(
             _estimate(k, float(t), float(s))
@@ -70,12 +76,12 @@ def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> Frf
         iterations=sum(len(s.solved.history) - 1 for s in steps),
         converged=all(s.solved.converged for s in last),
         chi2=chi2,
-        dof=count,
+        dof=count - len(knobs),
         inflation=1.0,
         history=_history(steps, knobs),
         exact=exact,
         warnings=tuple(_warnings(specimen, last, exact)),
-        data=results[-1].count,
+        data=count,
         weights="noise and discrepancy",
         quantity="receptance",
         frac=_frac(specimen, frfs, steps, state),
@@ -188,7 +194,8 @@ def _frac(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step], state: 
     for name, at in (stations | {"after": state}).items():
         shown = replace(at, ratios=identified_ratios(specimen)) if undamped and not at.dampers else at
         looking = specimen.predictor if name == "before" else steps[-1].stage.predictor
-        table[name] = frac(frfs.values, looking.receptance(frfs.laplace, shown)).tolist()
+        computed = look(looking, shown, columns(frfs), frfs.laplace, order=frfs.order).receptance
+        table[name] = frac(frfs.values, computed).tolist()
     return pd.DataFrame(table)
 
 

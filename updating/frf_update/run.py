@@ -11,28 +11,29 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.case import Case
+from updating.frf_update.begin import from_frequencies
+from updating.frf_update.channels import odd
 from updating.frf_update.columns import columns
 from updating.frf_update.finer import finer
 from updating.frf_update.lines import choose_lines
 from updating.frf_update.report import report
 from updating.frf_update.result import FrfUpdate
-from updating.frf_update.solve import BEGIN, solve
+from updating.frf_update.solve import BEGIN, Solved, solve
 from updating.frf_update.stage import Stage, nominal
 from updating.frf_update.statistics import assess
-from updating.frf_update.step import Step, identified_ratios
+from updating.frf_update.step import UNTOLD_RATIO, Step, identified_ratios, last_steps
 from updating.matching import match
 from updating.measured_frfs import MeasuredFrfs
-from updating.models.state import NOMINAL, State
+from updating.models.state import NOMINAL, State, combine
 from updating.update.building import build_specimen
-from updating.update.knobs import Panel
+from updating.update.knobs import DAMPERS, DAMPING, Panel, build_panel
 from updating.update.specimen import Specimen
 
 PASSES = 2
 """How often a stage chooses its lines: on the nominal model, and again where that has brought it."""
 
-UNTOLD_RATIO = 0.005
-"""Damping ratio of modes of which the test says none, for what lies too near a resonance [-]."""
-
+CHOICES = 2
+"""How often each stage chooses its lines before it keeps them."""
 
 LEAST = 0.02
 """Discrepancy with which lines are chosen anew where a stage had come to rest on less [-]."""
@@ -40,7 +41,7 @@ LEAST = 0.02
 FRESH = 1e-3
 """The same of a stage that is taken up again when others have moved [-]."""
 
-CYCLES = 4
+CYCLES = 6
 """How often the stages are gone through at most: from the second time on each knows what the others have found."""
 
 BASES = 3
@@ -48,6 +49,21 @@ BASES = 3
 
 FOLLOWED = 0.02
 """Discrepancy under which measured and computed peaks lie within their widths of each other [-]."""
+
+ODD = 0.05
+"""Discrepancy from which on an FRF is looked for that is unlike the others [-]."""
+
+ODD_GAIN = 0.5
+"""Share of the discrepancy that may be left for such an FRF to be left out [-]."""
+
+APART = 0.3
+"""Discrepancy beyond which peaks may have met by chance, and another beginning is tried [-]."""
+
+STRANGE = 0.02
+"""Relative width about a resonance that the identification does not know, of which only damping is not asked [-]."""
+
+EDGE = 1.1
+"""Resonances up to so many times the highest line are looked at [-]."""
 
 REST = 0.1
 """Change from one cycle to the next under which parameters rest, in standard deviations [-]."""
@@ -106,16 +122,44 @@ def solve_stages(
     """Go through the stages until they rest; see :func:`update_frfs`."""
     named = _staged(parameters, stages)
     specimen = build_specimen(case, [name for stage in named for name in stage])
-    panels = _split(specimen.panel, [len(build_specimen(case, stage).panel.knobs) for stage in named])
-    steps = _go_through(specimen, frfs, panels, [], lines)
+    panels = _split(specimen, case, named)
+    specimen, kept, steps = _without_odd(specimen, frfs, panels, lines)
     here = specimen
     for _ in range(BASES):
-        better = finer(here, steps[-1])
+        better = finer(here, steps)
         if better is None:
             break
-        here = better
-        steps = _go_through(here, frfs, panels, [s for s in steps if not s.together], lines)
+        here, steps = better
+        steps = _go_through(here, kept, panels, [s for s in steps if not s.together], lines)
     return specimen, frfs, steps
+
+
+def _without_odd(
+    specimen: Specimen, frfs: MeasuredFrfs, panels: Sequence[Panel], lines: int | Sequence[float] | None
+) -> tuple[Specimen, MeasuredFrfs, list[Step]]:
+    """Go through the stages, and again without FRFs that no parameter can follow if the others then agree."""
+    steps = _go_through(specimen, frfs, panels, [], lines)
+    off = max(s.solved.discrepancy for s in last_steps(steps))
+    if off < ODD:
+        return specimen, frfs, steps
+    state = replace(combine([s.own for s in last_steps(steps)]), ratios=steps[-1].stage.earlier.ratios)
+    found = odd(frfs, specimen.predictor, state)
+    if not found:
+        return specimen, frfs, steps
+    kept = frfs.select(np.setdiff1d(np.arange(len(frfs.values)), list(found)))
+    again = _go_through(specimen, kept, panels, [], lines)
+    better = max(s.solved.discrepancy for s in last_steps(again)) < ODD_GAIN * off
+    nodes, what = (
+        specimen.measured.nodes,
+        "is left out" if better else "was kept, as the rest agree no better",
+    )
+    said = [
+        f"the FRF at node {nodes[frfs.seen[i]]} by the force at node {nodes[frfs.hit[i]]} has {how} of the others "
+        f"beside the model and {what}; check its channel, calibration and direction"
+        for i, how in sorted(found.items())
+    ]
+    specimen = replace(specimen, warnings=(*specimen.warnings, *said))
+    return (specimen, kept, again) if better else (specimen, frfs, steps)
 
 
 def _go_through(
@@ -126,25 +170,48 @@ def _go_through(
     lines: int | Sequence[float] | None,
 ) -> list[Step]:
     """Go through the stages until they rest on one basis, from where they rested on another."""
-    steps = list(done)
-    for _ in range(CYCLES if len(panels) > 1 else 1):
+    steps, count = list(done), len(panels)
+    mixed = entangled(panels)
+    for _ in range(1 if count == 1 or mixed else CYCLES):
         for i, panel in enumerate(panels):
             steps.append(_solve(specimen, frfs, (i, panel), steps, lines))
-        if _at_rest(steps, len(panels)):
+        if _at_rest(steps, count):
             break
-    if len(panels) > 1 and max(s.solved.discrepancy for s in steps[-len(panels) :]) < FOLLOWED:
-        steps.append(_together(specimen, frfs, steps[-len(panels) :], lines))
+    else:
+        if count > 1 and not mixed:
+            steps[-1] = replace(steps[-1], solved=replace(steps[-1].solved, converged=False))
+    if count == 1:
+        return steps
+    off = max(s.solved.discrepancy for s in steps[-count:])
+    if off < FOLLOWED:
+        return [*steps, _together(specimen, frfs, steps[-count:], lines)]
+    if mixed:
+        both = _together(specimen, frfs, steps[-count:], lines, near=off > APART)
+        return [*steps, both] if both.solved.discrepancy < off else steps
     return steps
 
 
+def entangled(panels: Sequence[Panel]) -> bool:
+    """Tell whether more than one stage turns mass or stiffness, so that one can only rest where the others do."""
+    return sum(not all(k.damps for k in panel.knobs) for panel in panels) > 1
+
+
 def _together(
-    specimen: Specimen, frfs: MeasuredFrfs, last: Sequence[Step], lines: int | Sequence[float] | None
+    specimen: Specimen,
+    frfs: MeasuredFrfs,
+    last: Sequence[Step],
+    lines: int | Sequence[float] | None,
+    *,
+    near: bool = False,
 ) -> Step:
-    """Turn the parameters of all stages at once, where the model can follow the FRFs within their peaks."""
+    """Turn the parameters of all stages at once, from where they rested or from where the frequencies put them."""
     stage = _stage(specimen, frfs, specimen.panel, NOMINAL)
     theta = np.concatenate([step.solved.theta for step in last])
+    begin = max(FRESH, *(step.solved.discrepancy for step in last))
+    if near:
+        theta, begin = from_frequencies(specimen, stage, nominal(stage.knobs)), BEGIN
     stage = stage.lines(choose_lines(stage, theta, LEAST, None if lines is None else _doubled(lines)))
-    solved = solve(stage, theta, begin=max(FRESH, *(step.solved.discrepancy for step in last)))
+    solved = solve(stage, theta, begin=begin)
     found = stage.state(solved.theta)
     return Step(len(last), stage, solved, found, found, together=True)
 
@@ -170,7 +237,7 @@ def _staged(parameters: Sequence[str], stages: Sequence[Sequence[str]] | None) -
     if stages is not None:
         named = [list(stage) for stage in stages]
     else:
-        damping = [n for n in parameters if n.rpartition(".")[2] in ("alpha", "beta", "loss_factor")]
+        damping = [n for n in parameters if n.rpartition(".")[2] in DAMPERS or n.partition(".")[0] in DAMPING]
         named = [[n for n in parameters if n not in damping], damping]
     named = [stage for stage in named if stage]
     if not named:
@@ -178,9 +245,12 @@ def _staged(parameters: Sequence[str], stages: Sequence[Sequence[str]] | None) -
     return named
 
 
-def _split(panel: Panel, counts: Sequence[int]) -> list[Panel]:
+def _split(specimen: Specimen, case: Case, named: Sequence[Sequence[str]]) -> list[Panel]:
+    """Return the panel of each stage."""
+    fixed = {name: dict(values) for name, values in case.accepted}
+    counts = [len(build_panel(s, specimen.predictor, case.tolerances, fixed).knobs) for s in named]
     ends = np.cumsum([0, *counts])
-    return [replace(panel, knobs=panel.knobs[first:last]) for first, last in pairwise(ends)]
+    return [replace(specimen.panel, knobs=specimen.panel.knobs[a:b]) for a, b in pairwise(ends)]
 
 
 def _solve(
@@ -204,36 +274,70 @@ def _solve(
     theta, size, passes = nominal(panel.knobs), BEGIN, PASSES
     if number in latest:
         theta, size, passes = latest[number].solved.theta, max(latest[number].solved.discrepancy, FRESH), 1
+    if sum(step.number == number for step in done) >= CHOICES:  # what chooses anew each time never rests
+        lines = latest[number].stage.frfs.frequency.tolist()
+    stage, solved, visited = _rested(whole, theta, size, lines, passes)
+    if solved.discrepancy > APART and number not in latest and not stage.damps_alone:
+        near = from_frequencies(specimen, whole, theta)
+        other = _rested(whole, near, size, lines, passes)
+        if other[1].discrepancy < solved.discrepancy:
+            stage, solved, visited = other[0], other[1], [theta, *other[2]]
+    theta = solved.theta
+    own = panel.state(specimen.predictor, [k.value(t) for k, t in zip(panel.knobs, theta, strict=True)])
+    return Step(number, stage, replace(solved, history=np.array(visited)), own, stage.state(theta))
+
+
+def _rested(
+    whole: Stage, theta: FloatArray, size: float, lines: int | Sequence[float] | None, passes: int
+) -> tuple[Stage, Solved, list[FloatArray]]:
+    """Return the stage on the lines it compared last, where it came to rest, and all coordinates on the way."""
     visited = [theta]
     for _ in range(passes):
         stage = whole.lines(choose_lines(whole, theta, size, lines))
         solved = solve(stage, theta, begin=size)
         theta, size = solved.theta, max(solved.discrepancy, LEAST)
         visited += list(solved.history[1:])
-    own = panel.state(specimen.predictor, [k.value(t) for k, t in zip(panel.knobs, theta, strict=True)])
-    return Step(number, stage, replace(solved, history=np.array(visited)), own, stage.state(theta))
+    return stage, solved, visited
 
 
 def _stage(specimen: Specimen, frfs: MeasuredFrfs, panel: Panel, earlier: State) -> Stage:
     test = specimen.measured
-    damps = any(k.damper is not None for k in panel.knobs)
-    only_damps = all(k.damper is not None for k in panel.knobs)
+    damps = any(k.damps for k in panel.knobs)
+    only_damps = all(k.damps for k in panel.knobs)
     unknown = not damps and not np.isfinite(test.damping).all()
     told = damps or unknown or bool(earlier.dampers)
     ratios = None if told else identified_ratios(specimen)
     widths = np.where(np.isfinite(test.damping), test.damping, UNTOLD_RATIO)
     order = np.argsort(test.frequency)
+    centres, widths = (test.frequency[order], widths[order]) if unknown else (np.zeros(0), np.zeros(0))
+    if only_damps:
+        centres = _unmatched(specimen, frfs, earlier)
+        widths = np.full(len(centres), STRANGE)
     return Stage(
         specimen.predictor,
         frfs,
         columns(frfs),
         panel,
         replace(earlier, ratios=ratios),
-        test.frequency[order] if unknown else np.zeros(0),
-        widths[order] if unknown else np.zeros(0),
+        centres,
+        widths,
         _warp(specimen, frfs, earlier) if only_damps else np.ones(len(frfs.laplace)),
         test.frequency[order],
     )
+
+
+def _unmatched(specimen: Specimen, frfs: MeasuredFrfs, state: State) -> FloatArray:
+    """Return where on the measured axis the model has resonances that the identification does not know [Hz]."""
+    prediction = specimen.predictor.predict(state)
+    partner = match(specimen.measured, prediction, specimen.order)
+    own = np.delete(prediction.frequency, partner)
+    order = np.argsort(specimen.measured.frequency)
+    measured = specimen.measured.frequency[order]
+    ratio = np.interp(
+        own, prediction.frequency[partner][order], prediction.frequency[partner][order] / measured
+    )
+    found = own / ratio
+    return np.asarray(found[found < EDGE * frfs.frequency.max()])
 
 
 def _warp(specimen: Specimen, frfs: MeasuredFrfs, state: State) -> FloatArray:

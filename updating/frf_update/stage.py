@@ -44,8 +44,9 @@ class Stage:
     earlier : State
         What the stages before have settled.
     resonances, widths : (n,) arrays
-        Measured natural frequencies [Hz] and damping ratios [-]; what lies within the widths of these and of the
-        model's own resonances is left to a later stage; empty where this stage settles the damping.
+        Where resonances are left alone [Hz], and how wide [-]: all measured ones and the model's own where nothing is
+        known of the damping and this stage does not settle it, and where it settles nothing else those of the
+        model that the identification does not know.
     warp : (n_lines,) array
         Factor on the frequency of each line at which the model is evaluated, so that measured and computed
         peaks fall together where only damping is asked for [-].
@@ -67,6 +68,11 @@ class Stage:
     def knobs(self) -> tuple[Knob, ...]:
         """The parameters."""
         return self.panel.knobs
+
+    @property
+    def damps_alone(self) -> bool:
+        """Whether nothing but damping is turned."""
+        return all(k.damps for k in self.knobs)
 
     @property
     def doubt(self) -> FloatArray:
@@ -98,7 +104,7 @@ class Stage:
     def look(self, theta: FloatArray) -> Look:
         """Evaluate the model."""
         laplace = self.frfs.laplace.real + 1j * self.frfs.laplace.imag * self.warp
-        return look(self.predictor, self.state(theta), self.ends, laplace)
+        return look(self.predictor, self.state(theta), self.ends, laplace, order=self.frfs.order)
 
     def slopes(self, theta: FloatArray, at: Look, *, measured: bool) -> ComplexArray:
         """Return the sensitivities of Eq. 10, shape (p, n_frf, n_lines) [m/N].
@@ -117,8 +123,12 @@ class Stage:
         return np.stack([sensitivity(at, change, self.ends, excited) for change in by])
 
     def power(self, at: Look) -> FloatArray:
-        """Return the mean square of measured and computed receptances, (n_frf, n_lines) [m^2/N^2]."""
-        return np.asarray((np.abs(self.frfs.values) ** 2 + np.abs(at.receptance) ** 2) / 2)
+        """Return the mean of the measured FRF's square and of its modes' squares in the model, (n_frf, n_lines).
+
+        A model that is off by some per cent is so in each of its modes. Between them, where their shares cancel,
+        what is left of the FRF is no measure of the error [m^2/N^2].
+        """
+        return np.asarray((np.abs(self.frfs.values) ** 2 + modal_power(at, self.ends)) / 2)
 
     def variance(self, at: Look, discrepancy: float) -> FloatArray:
         """Return noise, discrepancy, and what a later stage will settle, (n_frf, n_lines) [m^2/N^2]."""
@@ -129,9 +139,11 @@ class Stage:
         """Return how much of the dynamic stiffness at each line is damping, by the nearest resonance (n_lines,)."""
         if not len(self.resonances):
             return np.zeros(len(at.laplace))
-        own = self._own_resonances(at.state)
-        centres = np.concatenate([self.resonances, own])
-        widths = np.concatenate([self.widths, np.interp(own, self.resonances, self.widths)])
+        centres, widths = self.resonances, self.widths
+        if not self.damps_alone:
+            own = self._own_resonances(at.state)
+            centres = np.concatenate([self.resonances, own])
+            widths = np.concatenate([self.widths, np.interp(own, self.resonances, self.widths)])
         f = self.frfs.frequency[:, None]
         damper = 2 * widths * centres * f
         return np.asarray((damper / np.hypot(centres**2 - f**2, damper)).max(axis=1))
@@ -164,6 +176,26 @@ class Stage:
             return self.misfit(at, self.variance(at, size)) - wanted
 
         return float(brentq(excess, 0.0, 2.0)) if excess(2.0) < 0 else 2.0
+
+
+def modal_power(at: Look, ends: Columns) -> FloatArray:
+    """Return the sum of the squares of all modes' shares in every FRF, shape (n_frf, n_lines) [m^2/N^2]."""
+    constants, poles = modal_shares(at, ends)
+    return np.asarray(np.abs(at.gain) ** 2 * (constants**2 @ np.abs(poles) ** 2))
+
+
+def modal_shares(at: Look, ends: Columns) -> tuple[FloatArray, ComplexArray]:
+    """Return constants (n_frf, r) [1/kg] and dynamic factors (r, n_lines) [s^2] whose product is each mode's share.
+
+    The damping that couples modes is left out: shares say how large an error may be, not what it is.
+    """
+    values, vectors = at.matrices.undamped
+    viscous = np.einsum("ir,ij,jr->r", vectors, at.matrices.viscous, vectors, optimize=True)
+    structural = np.einsum("ir,ij,jr->r", vectors, at.matrices.structural, vectors, optimize=True)
+    s = at.laplace
+    shapes = at.rows @ vectors
+    dynamic = s**2 + viscous[:, None] * s + (values + 1j * structural)[:, None]
+    return np.asarray(shapes[ends.response] * shapes[ends.excitation]), np.asarray(1 / dynamic)
 
 
 def whitened(

@@ -6,18 +6,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, FloatArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
+from updating.frf_update.begin import paired
+from updating.frf_update.look import Change, sensitivity
+from updating.frf_update.mounting import resonances, shifted
 from updating.frf_update.solve import DROWNED, Solved
-from updating.frf_update.stage import Stage, whitened
+from updating.frf_update.stage import Stage, modal_shares, whitened
 from updating.frf_update.step import Step
-from updating.matching import match
+from updating.models.damping import Matrices
+from updating.prediction import Prediction
 from updating.update.specimen import Specimen
 
-STEP = 1e-3
-"""Step of the differences of frequencies, in a parameter's doubts [-]."""
-
-FAINT = 0.02
-"""Directions in which a doubt moves the frequencies no more than this share of the most are none to them [-]."""
+WEAK = 0.2
+"""Modal constants under this share of a mode's largest say little of relative errors [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,14 +43,15 @@ class StageStatistics:
     count: int
 
 
-def assess(stage: Stage, solved: Solved, calibration: float) -> StageStatistics:
+def assess(stage: Stage, solved: Solved, calibration: float, repeatability: float = 0.0) -> StageStatistics:
     """Work out covariance and determinability at the solution.
 
     What the model cannot follow is alike on neighbouring lines and at all points, so that it is no fresh piece of
     information on each: where there is a discrepancy, the residuals of the lines on one flank of a resonance are
     summed before they are squared (the cluster-robust covariance of Liang and Zeger 1986, with the correction
     G / (G - p)).
-    A common error of the level moves the parameters as it would the FRFs.
+    A common error of the level moves the parameters as it would the FRFs, and so does another mounting each
+    resonance.
 
     Parameters
     ----------
@@ -59,6 +61,8 @@ def assess(stage: Stage, solved: Solved, calibration: float) -> StageStatistics:
         Where it came to rest.
     calibration : float
         Relative 1-sigma uncertainty of the level [-].
+    repeatability : float
+        Relative 1-sigma scatter of every frequency by mounting the structure anew [-].
     """
     at = solved.at
     slopes = stage.slopes(solved.theta, at, measured=False)
@@ -73,6 +77,9 @@ def assess(stage: Stage, solved: Solved, calibration: float) -> StageStatistics:
     level = np.concatenate([part.ravel() for part in _level(stage, solved)])
     shift = bread @ (rows.T @ level) * calibration
     covariance = covariance + np.outer(shift, shift)
+    if repeatability > 0:
+        shift = bread @ (rows.T @ _mounted(stage, solved, repeatability))
+        covariance = covariance + shift @ shift.T
     lost = right[~kept].T @ right[~kept]
     covariance = covariance + lost
     noise = 2 * np.abs(stage.residual(at)) ** 2 / stage.frfs.variance
@@ -92,6 +99,15 @@ def _level(stage: Stage, solved: Solved) -> tuple[FloatArray, FloatArray]:
     return np.asarray(raised.real), np.asarray(raised.imag)
 
 
+def _mounted(stage: Stage, solved: Solved, repeatability: float) -> FloatArray:
+    """Return what each resonance's scatter adds to the whitened residuals, (2 n, n_modes)."""
+    small = 1e-3 * repeatability
+    shift = np.full(len(resonances(solved.at)), small)
+    scale = np.sqrt(2 / stage.variance(solved.at, solved.discrepancy)) * repeatability / small
+    moved = (shifted(solved.at, stage.ends, shift) * scale).reshape(len(shift), -1)
+    return np.hstack([moved.real, moved.imag]).T
+
+
 def _clustered(stage: Stage, bread: FloatArray, scores: FloatArray, plain: FloatArray) -> FloatArray:
     """Return the cluster-robust covariance, or the plain one scaled up where clusters are too few."""
     resonances = stage.all_resonances
@@ -109,11 +125,12 @@ def _clustered(stage: Stage, bread: FloatArray, scores: FloatArray, plain: Float
 
 
 def misses(specimen: Specimen, step: Step) -> FloatArray:
-    """Return how far parameters may be off for the frequencies that the updated model misses, (p, p).
+    """Return how far parameters may be off for the frequencies and damping ratios that the model misses, (p, p).
 
-    A model of another form cannot meet all modes: what it must give to one it takes from another. Least squares
-    of the frequencies, with their own residual scatter, says how much that leaves open; directions that frequencies
-    do not determine get nothing from here.
+    A model of another form cannot meet all modes: what it must give to one it takes from another. Every paired mode
+    is given an error of its own, of the size that frequencies and damping ratios are missed by in the mean (frequencies
+    by no less than they scatter from one mounting to the next), and that is
+    followed through the estimate: how far an error of one mode's pole pulls each parameter.
 
     Parameters
     ----------
@@ -122,25 +139,98 @@ def misses(specimen: Specimen, step: Step) -> FloatArray:
     step : Step
         A stage at rest.
     """
-    stage, theta = step.stage, step.solved.theta
-    test, predictor = specimen.measured, stage.predictor
-    at_rest = predictor.predict(step.state)
-    partner = match(test, at_rest, specimen.order)
-    residual = np.log(test.frequency / at_rest.frequency[partner])
-    slopes = np.zeros((len(residual), len(theta)))
-    for i, knob in enumerate(stage.knobs):
-        ends = np.clip(theta[i] + STEP * knob.doubt * np.array([-1, 1]), stage.low[i], stage.high[i])
-        logs = []
-        for end in ends:
-            moved = np.where(np.arange(len(theta)) == i, end, theta)
-            prediction = predictor.predict(stage.state(moved), count=len(at_rest.frequency))
-            logs.append(np.log(prediction.frequency[partner]))
-        slopes[:, i] = (logs[1] - logs[0]) / (ends[1] - ends[0]) * knob.doubt
-    _, size, right = np.linalg.svd(slopes, full_matrices=False)
-    kept = size > FAINT * max(size.max(initial=0.0), 1e-6)
-    scatter = float(residual @ residual) / max(len(residual) - int(kept.sum()), 1)
-    inverse = (right[kept].T / size[kept] ** 2) @ right[kept]
-    return np.asarray(scatter * inverse * np.outer(stage.doubt, stage.doubt))
+    stage, solved = step.stage, step.solved
+    at_rest, partner = paired(specimen, stage, solved.theta)
+    test = specimen.measured
+    variance = stage.variance(solved.at, solved.discrepancy)
+    rows, _ = whitened(stage, stage.slopes(solved.theta, solved.at, measured=False), solved.at, variance)
+    _, size, right = np.linalg.svd(rows * stage.doubt, full_matrices=False)
+    kept = size > max(DROWNED, 1e-10 * size.max(initial=0.0))
+    gain = (right[kept].T / size[kept] ** 2) @ right[kept] @ (rows * stage.doubt).T
+    dampers = sum(knob.damper is not None for knob in stage.knobs)
+    total = np.zeros((len(solved.theta),) * 2)
+    if np.all(stage.warp == 1.0):
+        missed = max(
+            _scatter(np.log(test.frequency / at_rest.frequency[partner]), len(stage.knobs) - dampers),
+            test.repeatability,
+        )
+        total += missed**2 * _pulled(
+            stage, solved, gain, _pole_changes(stage, solved, partner, damping=False)
+        )
+    known = np.isfinite(test.damping) & (test.damping > 0) & np.isfinite(at_rest.damping[partner])
+    if known.any() and stage.earlier.ratios is None:
+        missed = _scatter(np.log(test.damping / at_rest.damping[partner])[known], dampers)
+        total += missed**2 * _pulled(stage, solved, gain, _pole_changes(stage, solved, partner, damping=True))
+    total += _constants_missed(specimen, stage, at_rest, partner) ** 2 * _reshaped(
+        stage, solved, gain, partner
+    )
+    return np.asarray(total * np.outer(stage.doubt, stage.doubt))
+
+
+def _constants_missed(specimen: Specimen, stage: Stage, at_rest: Prediction, partner: IntArray) -> float:
+    """Return the relative error of the modal constants, a common level apart [-]."""
+    test = specimen.measured
+    seen = np.abs(test.constants) > WEAK * np.abs(test.constants).max(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = test.constants / at_rest.constants[:, partner]
+    known = seen & (ratio > 0) & np.isfinite(ratio)
+    if known.sum() < 2:
+        return 0.0
+    return float(np.std(np.log(ratio[known])))
+
+
+def _reshaped(stage: Stage, solved: Solved, gain: FloatArray, partner: IntArray) -> FloatArray:
+    """Return the covariance of the coordinates, in doubts, for unit relative errors of every modal constant."""
+    constants, dynamic = modal_shares(solved.at, stage.ends)
+    first = stage.predictor.reduced.structure.rigid_modes
+    scale = np.sqrt(2 / stage.variance(solved.at, solved.discrepancy))
+    n_frf, n_lines = scale.shape
+    both = gain.reshape(len(gain), 2, n_frf, n_lines)
+    total = np.zeros((len(gain),) * 2)
+    for mode in first + partner:
+        share = constants[:, [mode]] * dynamic[mode] * solved.at.gain * scale
+        pull = np.einsum("pfl,fl->pf", both[:, 0], share.real) + np.einsum(
+            "pfl,fl->pf", both[:, 1], share.imag
+        )
+        total += pull @ pull.T
+    return total
+
+
+def _scatter(residual: FloatArray, parameters: int) -> float:
+    """Return the standard deviation of what is left by a fit of some parameters [-]."""
+    return float(np.sqrt(residual @ residual / max(len(residual) - parameters, 1)))
+
+
+def _pole_changes(stage: Stage, solved: Solved, partner: IntArray, *, damping: bool) -> list[Change]:
+    """Return what a relative error of each mode's frequency, or of its damping, is in the matrices."""
+    matrices = solved.at.matrices
+    values, vectors = matrices.undamped
+    first = stage.predictor.reduced.structure.rigid_modes
+    nothing = np.zeros_like(matrices.mass)
+    found = []
+    for mode in first + partner:
+        momentum = matrices.mass @ vectors[:, mode]
+        shape = np.outer(momentum, momentum)
+        own = float(vectors[:, mode] @ matrices.viscous @ vectors[:, mode])
+        lost = float(vectors[:, mode] @ matrices.structural @ vectors[:, mode])
+        changed = (
+            Matrices(nothing, nothing, own * shape, lost * shape)
+            if damping
+            else Matrices(2 * values[mode] * shape, nothing, nothing, nothing)
+        )
+        found.append(Change(changed, np.zeros_like(solved.at.rows), log_gain=0.0, decay=0.0))
+    return found
+
+
+def _pulled(stage: Stage, solved: Solved, gain: FloatArray, errors: list[Change]) -> FloatArray:
+    """Return the covariance of the coordinates, in doubts, for unit errors of the modes."""
+    scale = np.sqrt(2 / stage.variance(solved.at, solved.discrepancy))
+    total = np.zeros((len(gain),) * 2)
+    for change in errors:
+        moved = (sensitivity(solved.at, change, stage.ends) * scale).ravel()
+        pull = gain @ np.concatenate([moved.real, moved.imag])
+        total += np.outer(pull, pull)
+    return total
 
 
 def with_misses(found: StageStatistics, extra: FloatArray) -> StageStatistics:

@@ -13,6 +13,9 @@ from updating.matching import match
 from updating.models.state import State
 from updating.update.specimen import Specimen
 
+UNTOLD_RATIO = 0.005
+"""Damping ratio of modes of which the test says none [-]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Step:
@@ -57,6 +60,8 @@ def identified_ratios(specimen: Specimen) -> tuple[float, ...]:
     """
     prediction = specimen.predictor.predict()
     partner = match(specimen.measured, prediction, specimen.order)
-    ratios = np.full(len(prediction.frequency), float(np.median(specimen.measured.damping)))
-    ratios[partner] = specimen.measured.damping
+    known = np.isfinite(specimen.measured.damping)
+    middle = float(np.median(specimen.measured.damping[known])) if known.any() else UNTOLD_RATIO
+    ratios = np.full(len(prediction.frequency) + 1, middle)  # the last stands for all modes above
+    ratios[partner[known]] = specimen.measured.damping[known]
     return tuple(ratios.tolist())

@@ -19,6 +19,9 @@ from updating.models.damping import Matrices
 class ComplexModes:
     """Poles and shapes: H(s) = sum_r psi_r psi_r^T / (s - p_r) + conj(psi_r psi_r^T) / (s - conj p_r).
 
+    So with viscous damping. With structural damping that couples modes the poles and residues are those of the upper
+    half plane, and the sum is the FRF near resonances only.
+
     Parameters
     ----------
     poles : (n_modes,) complex array

@@ -122,13 +122,14 @@ class Reduced:
         return tuple(p.sum(axis=0) for p in self.parts)
 
     def _totals(self, state: State) -> list[FloatArray]:
-        totals = list(self.sums)
-        for region in {index for index, _ in state.regional}:
-            own = {factor: value for (index, factor), value in state.regional.items() if index == region}
-            for i, term in enumerate(self.structure.terms):
-                scale = term.scale(own)
-                if scale != 1.0:
-                    totals[i] = totals[i] + (scale - 1.0) * self.parts[i][region]
+        if not state.regional:
+            return list(self.sums)
+        totals = []
+        for term, parts, whole in zip(self.structure.terms, self.parts, self.sums, strict=True):
+            scale = np.ones(len(parts))
+            for (region, factor), value in state.regional.items():
+                scale[region] *= value ** term.powers.get(factor, 0.0)
+            totals.append(whole if np.all(scale == 1.0) else np.tensordot(scale, parts, axes=1))
         return totals
 
     def log_sensitivity(self, state: State, factor: str) -> tuple[FloatArray, FloatArray]:

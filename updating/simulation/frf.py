@@ -43,7 +43,7 @@ def receptances(
         Row of the point of the response and of the force.
     method : {"auto", "direct", "modal"}
         Solve Z(s) on every line, or sum modes (complex ones where damping couples them); left to itself, direct where
-        lines are fewer than the unknowns of the basis.
+        lines are fewer than the unknowns of the basis. Where loss factors differ by region every line is solved.
     count : int, optional
         Elastic modes in the sum, from the lowest; the others answer by their stiffness, damping and inertia, up to
         s^2. Left out, all modes of the basis.
@@ -57,9 +57,17 @@ def receptances(
     left, right = model.rows[seen], model.rows[hit]
     if method == "auto" and count is None and (len(s) <= len(model.matrices.mass) or model.rigid):
         method = "direct"
+    if _hysteretic(model):
+        method = "direct"
     if method == "direct":
         return np.asarray(model.gain * receptance(model.matrices, left, right, s))
     return np.asarray(model.gain * _sum_of_modes(model, left, right, s, count))
+
+
+def _hysteretic(model: Simulated) -> bool:
+    """Whether structural damping couples the modes: no sum of conjugate poles is then the FRF."""
+    _, vectors = model.matrices.undamped
+    return not uncoupled(vectors.T @ model.matrices.structural @ vectors)
 
 
 def _sum_of_modes(

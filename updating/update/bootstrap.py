@@ -81,10 +81,11 @@ def bootstrap(
 
     Frequencies are those that :func:`redrawn_frequencies` makes from the test's hits, or are drawn from the
     covariance that the identification states; the scatter by re-mounting, which neither knows, is drawn on top.
-    Shapes, where they are data, are drawn from their variances.
+    Shapes or constants, where they are data, are drawn from their covariance.
     Where tolerances hold the parameters, what they hold them near is drawn too (randomised maximum likelihood;
     Oliver, He and Reynolds 1996), for otherwise the spread would leave out what only the tolerances say.
-    All draws are updated on the reduced model that agrees with the full one at the solution.
+    All draws are updated on the reduced model that agrees with the full one at the solution. They begin at it:
+    where several solutions explain the data about as well, the intervals are widened to those of all of them.
 
     The intervals cover the measurement's scatter and, with tolerances, the modeller's doubt. They do not cover
     the model's error: a form of model that cannot fit, a wrong length or a wrong boundary shifts all draws alike;
@@ -167,7 +168,7 @@ def _redrawn(
 def _redrawn_shapes(specimen: Specimen, rng: np.random.Generator) -> FloatArray:
     """Return the constants of a specimen with other errors of the same variance, (n_frf, n_modes) [1/kg]."""
     constants = specimen.measured.constants
-    return np.asarray(constants + rng.standard_normal(constants.shape) / np.sqrt(specimen.shape_weight))
+    return np.asarray(constants + specimen.errors.draw(rng).reshape(constants.shape))
 
 
 def _with_intervals(update: Update, system: System, draws: Draws) -> Update:
@@ -184,4 +185,5 @@ def _with_intervals(update: Update, system: System, draws: Draws) -> Update:
 
 
 def _interval(estimate: Estimate, low: float, high: float) -> Estimate:
-    return replace(estimate, interval=(low, high))
+    ends = (low, high) if estimate.interval is None else estimate.interval
+    return replace(estimate, interval=(min(low, ends[0]), max(high, ends[1])))

@@ -21,6 +21,9 @@ from updating.update.knobs import Knob, Panel, build_panel
 from updating.update.specimen import Specimen
 from updating.update.system import Quantity, System, Weights
 
+BEYOND = ("shapes", "constants")
+"""What can be data beside the frequencies."""
+
 
 def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False) -> Specimen:
     """Pair the modes of a case and find its knobs.
@@ -45,6 +48,11 @@ def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False)
     predictor = predictor_of(case)
     accepted = {name: dict(values) for name, values in case.accepted}
     panel = build_panel(parameters, predictor, case.tolerances, accepted)
+    dampers = [knob.name for knob in panel.knobs if knob.damper is not None]
+    if lean and dampers:
+        raise StudyError(
+            f'update: {dampers[0]} is a coefficient of damping, of which frequencies say nothing; use method = "frf"'
+        )
     predictor = _on_own_basis(predictor, panel) if lean else predictor
     paired = pair_modes(case.measured, predictor.predict())
     number = 1 + np.flatnonzero(np.isin(case.measured.frequency, paired.measured.frequency))
@@ -167,10 +175,20 @@ def per_case(parameters: Sequence[str] | Sequence[Sequence[str]], count: int) ->
 
 def check_data(data: Sequence[str], cases: Sequence[Case], weights: Weights) -> None:
     """See that what is to be data exists and can be weighed."""
-    if unknown := sorted(set(data) - {"frequencies", "shapes"}) or "frequencies" not in data:
+    if unknown := sorted(set(data) - {"frequencies", *BEYOND}) or "frequencies" not in data:
         found = ", ".join(unknown) if isinstance(unknown, list) else "no frequencies"
-        raise StudyError(f'update: data: {found}; use ["frequencies"] or ["frequencies", "shapes"]')
-    if "shapes" in data and weights != "covariance":
-        raise StudyError('update: shapes as data are weighted by their variances; use weights = "covariance"')
-    if "shapes" in data and not any(case.measured.has_shapes for case in cases):
-        raise StudyError(f"update: {cases[0].title}: no shapes were measured; leave data at frequencies")
+        raise StudyError(
+            f'update: data: {found}; use ["frequencies"], with "shapes" or "constants" where wanted'
+        )
+    for name in (n for n in BEYOND if n in data):
+        if weights != "covariance":
+            raise StudyError(
+                f'update: {name} as data are weighted by their variances; use weights = "covariance"'
+            )
+        if not any(case.measured.has_shapes for case in cases):
+            raise StudyError(f"update: {cases[0].title}: no shapes were measured; leave data at frequencies")
+    bare = [c.title for c in cases if c.measured.has_shapes and not c.measured.absolute]
+    if "constants" in data and bare:
+        raise StudyError(
+            f'update: {bare[0]}: shapes are known, but not their level; constants as data need FRFs, use "shapes"'
+        )

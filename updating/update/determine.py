@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
@@ -34,6 +34,10 @@ class Statistics:
         Factor by which standard deviations were raised because the model does not fit the data [-].
     determinability : Determinability
         Singular values, combinations, and the best subset.
+    strain : float
+        By how much the parameters leave their tolerances, r.m.s., where chance does not explain it; else 1 [-].
+    beliefs : (p, p) array
+        Part of the covariance that rests on the tolerances.
     """
 
     covariance: FloatArray
@@ -42,9 +46,15 @@ class Statistics:
     dof: int
     inflation: float
     determinability: Determinability
+    strain: float
+    beliefs: FloatArray
+
+    def strained(self) -> Statistics:
+        """Return the same with what rests on the tolerances raised by how far the data contradict them."""
+        return replace(self, covariance=self.covariance + (self.strain**2 - 1) * self.beliefs)
 
 
-def assess(system: System, linear: Linear) -> Statistics:
+def assess(system: System, linear: Linear, theta: FloatArray) -> Statistics:
     """Work out covariance and determinability at the solution.
 
     With weights from the covariance of the measurement, the covariance is (S'WS + W_theta)^-1, raised by
@@ -63,12 +73,26 @@ def assess(system: System, linear: Linear) -> Statistics:
     inflation = 1.0
     if dof > 0 and chi2_distribution.sf(chi2, dof) < SIGNIFICANT:
         inflation = float(np.sqrt(chi2 / dof))
-    covariance = _covariance(system, linear, variance * inflation**2, inflation)
+    data, beliefs = _covariance(system, linear, variance * inflation**2, inflation)
+    covariance = data + beliefs
     hopeless = undetermined & (system.prior == 0)
     covariance[hopeless, :] = 0.0
     covariance[:, hopeless] = 0.0
     covariance[hopeless, hopeless] = np.inf
-    return Statistics(covariance, undetermined, chi2, dof, inflation, told)
+    couplings = tuple(replace(c, sigma=tuple(inflation * v for v in c.sigma)) for c in told.couplings)
+    told = replace(told, couplings=couplings)
+    strain = _strain(system, theta)
+    return Statistics(covariance, undetermined, chi2, dof, inflation, told, strain, beliefs)
+
+
+def _strain(system: System, theta: FloatArray) -> float:
+    """Return by how much the parameters leave their tolerances, r.m.s., where chance does not explain it; else 1."""
+    held = system.prior > 0
+    moved = float(np.sum(system.prior[held] * (theta - system.start)[held] ** 2))
+    count = int(held.sum())
+    if count == 0 or chi2_distribution.sf(moved, count) > SIGNIFICANT:
+        return 1.0
+    return float(np.sqrt(moved / count))
 
 
 def _told(system: System, linear: Linear) -> Determinability:
@@ -89,8 +113,10 @@ def _told(system: System, linear: Linear) -> Determinability:
     )
 
 
-def _covariance(system: System, linear: Linear, variance: FloatArray, inflation: float) -> FloatArray:
-    """Return the covariance of the estimate: of Eq. 25's linear answer to errors of the stated variance."""
+def _covariance(
+    system: System, linear: Linear, variance: FloatArray, inflation: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the covariance of Eq. 25's linear answer to errors of the data, and to errors of the tolerances."""
     per_log = np.concatenate(
         [system._per_log(s, k) for k, s in zip(linear.looks, system.specimens, strict=True)]
     )
@@ -103,7 +129,8 @@ def _covariance(system: System, linear: Linear, variance: FloatArray, inflation:
     gain = inverse @ (s.T * linear.weight)
     data = (gain * noise) @ gain.T
     prior = inverse @ np.diag(system.prior * doubt**2) @ inverse
-    return np.asarray((data + prior) * np.outer(doubt, doubt))
+    scale = np.outer(doubt, doubt)
+    return np.asarray(data * scale), np.asarray(prior * scale)
 
 
 def correlations(covariance: FloatArray) -> FloatArray:

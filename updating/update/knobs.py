@@ -25,6 +25,9 @@ REGIONAL = {"E": "Pa", "density": "kg/m^3", "thickness": "m", "area": "m^2", "in
 DAMPERS = {"alpha": "1/s", "beta": "s", "loss_factor": "-"}
 """Coefficients of damping, of the whole or of one region, and their units."""
 
+DAMPING = ("exponential_window",)
+"""Effects that are nothing but damping."""
+
 MIDDLING = 0.01
 """Damping ratio that sets the scale of the coefficients of damping [-]."""
 
@@ -93,6 +96,11 @@ class Knob:
     def is_factor(self) -> bool:
         """Whether the value is a nominal value times a factor."""
         return self.factor is not None and not self.effect
+
+    @property
+    def damps(self) -> bool:
+        """Whether it is a matter of damping alone."""
+        return self.damper is not None or self.effect in DAMPING
 
     def coordinate(self, value: float) -> float:
         """Take a factor or value to its coordinate."""

@@ -29,7 +29,8 @@ class Estimate:
     factor : float or None
         Value over nominal value; None for what is no factor [-].
     sigma : float
-        Standard deviation of ``value`` [``unit``]; infinite where the data do not determine it.
+        Standard deviation of ``value`` [``unit``], its r.m.s. error where several solutions explain the data about
+        as well; infinite where the data do not determine it.
     at_bound : bool
         Whether the value stands at the end of its range.
     low, high : float
@@ -37,7 +38,8 @@ class Estimate:
     initial : float
         Value before the update [``unit``].
     interval : tuple of float, optional
-        Ends of the 95 % interval, 2.5 and 97.5 percentiles of a bootstrap [``unit``].
+        Ends of the 95 % interval: 2.5 and 97.5 percentiles of a bootstrap, or, where several solutions explain the
+        data about as well, of the mixture of all [``unit``].
     """
 
     name: str

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray
 from updating.case import Case
-from updating.update.building import build_specimen, build_system, check_data, per_case
+from updating.update.building import BEYOND, build_specimen, build_system, check_data, per_case
 from updating.update.determine import Statistics, assess, correlations
 from updating.update.exact import full_modes
 from updating.update.knobs import Knob
+from updating.update.mixture import Mixture
 from updating.update.result import Estimate, Update
-from updating.update.several import best_solution
+from updating.update.several import Others, best_solution, mixture, said, within
 from updating.update.solve import Solution, solve
 from updating.update.system import Quantity, System, Weights
-
-COMPONENTS = 2
-"""How often the shapes are weighted anew by what is left of them."""
 
 EXACT = 1e-7
 """Agreement of reduced and full frequencies at which the outer iteration ends, relative [-]."""
@@ -60,9 +58,10 @@ def update(
         Whether the tolerances hold the parameters near their nominal values (W_theta); left out, only with
         weights from the covariance.
     data : sequence of str
-        ``frequencies``, and ``shapes``: those of the modes up to a factor each, weighted by the inverse variances
-        of the modal constants, places of the points included. Needs weights from the covariance and parameters
-        that are factors.
+        ``frequencies``, and one of ``shapes`` and ``constants``. Shapes are those of the modes up to a factor
+        each; constants have their level, which needs calibrated FRFs. Both are weighted by the inverse of the
+        modal constants' covariance: noise, errors of the poles, places of points and sensors, and for constants
+        the calibration, which all of a test have in common. They need weights from the covariance.
 
     Returns
     -------
@@ -99,8 +98,8 @@ class Fitted:
         Where the iteration came to rest.
     exact : bool
         Whether the frequencies there are those of the full models.
-    remarks : tuple of str
-        What there is to say of other solutions.
+    others : Others
+        Other solutions that explain the data about as well.
     weights : str
         What W_s is.
     """
@@ -108,7 +107,7 @@ class Fitted:
     system: System
     solution: Solution
     exact: bool
-    remarks: tuple[str, ...]
+    others: Others
     weights: str
 
 
@@ -127,6 +126,7 @@ def fit(
     names = per_case(parameters, len(several))
     check_data(data, several, weights)
     specimens = [build_specimen(case, own, lean=True) for case, own in zip(several, names, strict=True)]
+    specimens = [replace(s, level="constants" in data) for s in specimens]
     system = build_system(
         specimens,
         shared,
@@ -134,25 +134,25 @@ def fit(
         quantity or ("eigenvalue" if weights == "eigenvalue" else "frequency"),
         [len(case.measured.frequency) for case in several],
         regularised=weights == "covariance" if regularise is None else regularise,
-        shapes="shapes" in data,
+        shapes=bool(set(data) & set(BEYOND)),
     )
     kind = weights if isinstance(weights, str) else "given for each mode"
     return Fitted(*_exactly(system), kind)
 
 
-def _exactly(system: System) -> tuple[System, Solution, bool, tuple[str, ...]]:
+def _exactly(system: System) -> tuple[System, Solution, bool, Others]:
     """Solve on the reduced models, bring these nearer to the full ones there, and repeat until they agree."""
-    solution, said = best_solution(system)
+    solution, others = best_solution(system)
     history = [solution.history]
-    for _ in range(COMPONENTS if system.shapes else 0):
-        system = system.reweighted(solution.looks)
+    if system.shapes:
+        system = system.settled(solution.theta, solution.looks)
         solution = solve(system, solution.theta)
         history.append(solution.history[1:])
     for _ in range(6):
         full = [_full(system, i, solution) for i in range(len(system.specimens))]
         modes = [f for f in full if f is not None]
         if len(modes) < len(full):
-            return system, solution, False, said
+            return system, solution, False, others
         ratios = [f / look.frequency for (f, _), look in zip(modes, solution.looks, strict=True)]
         near = max(np.abs(ratio - 1).max() for ratio in ratios) < EXACT
         vectors = [v for _, v in modes]
@@ -161,11 +161,8 @@ def _exactly(system: System) -> tuple[System, Solution, bool, tuple[str, ...]]:
         history.append(solution.history[1:])
         if near:
             break
-    if system.shapes:
-        system = system.reweighted(solution.looks)
-        solution = solve(system, solution.theta)
     looks = system.looks(solution.theta)
-    return system, Solution(solution.theta, looks, np.vstack(history), solution.converged), True, said
+    return system, Solution(solution.theta, looks, np.vstack(history), solution.converged), True, others
 
 
 def _full(system: System, index: int, solution: Solution) -> tuple[FloatArray, FloatArray] | None:
@@ -181,7 +178,7 @@ def _full(system: System, index: int, solution: Solution) -> tuple[FloatArray, F
 def report(fitted: Fitted) -> Update:
     """Work out the statistics of an update."""
     system, solution, exact = fitted.system, fitted.solution, fitted.exact
-    statistics = assess(system, system.linear(solution.theta, solution.looks))
+    statistics, several = assess_all(fitted)
     jacobian = np.array([_slope(k, t) for k, t in zip(system.knobs, solution.theta, strict=True)])
     with_units = statistics.covariance * np.outer(jacobian, jacobian)
     sigma = np.sqrt(np.diag(with_units))
@@ -189,6 +186,8 @@ def report(fitted: Fitted) -> Update:
         _estimate(system, i, float(t), float(s))
         for i, (t, s) in enumerate(zip(solution.theta, sigma, strict=True))
     )
+    if several is not None:
+        parameters = tuple(within(p, system.knobs[i], several, i) for i, p in enumerate(parameters))
     names = list(system.names)
     history = pd.DataFrame(
         [[k.value(t) for k, t in zip(system.knobs, row, strict=True)] for row in solution.history],
@@ -208,12 +207,24 @@ def report(fitted: Fitted) -> Update:
         statistics.inflation,
         history,
         exact,
-        (*_warnings(system, solution, statistics, exact), *fitted.remarks),
+        (*_warnings(system, solution, statistics, exact), *said(system, several)),
         determinability=statistics.determinability,
         data=system.count,
         weights=fitted.weights,
         quantity=system.quantity,
     )
+
+
+def assess_all(fitted: Fitted) -> tuple[Statistics, Mixture | None]:
+    """Return the statistics of an update, and the mixture of all solutions where another one matters."""
+    system, solution = fitted.system, fitted.solution
+    statistics = assess(system, system.linear(solution.theta, solution.looks), solution.theta)
+    if not fitted.others.solutions:
+        return statistics.strained(), None
+    both = mixture(system, solution, statistics.covariance, fitted.others)
+    if both.solutions == 1:
+        return statistics.strained(), None
+    return replace(statistics, covariance=both.error()), both
 
 
 def _slope(knob: Knob, coordinate: float) -> float:
@@ -272,6 +283,13 @@ def _warnings(system: System, solution: Solution, statistics: Statistics, exact:
         found.append(
             f"the updated model misses the frequencies by {statistics.inflation:.1f} times what the measurement "
             "explains; the standard deviations are raised by that factor"
+        )
+    if statistics.strain > 1:
+        away = (solution.theta - system.start) * np.sqrt(system.prior)
+        worst = int(np.argmax(np.abs(away)))
+        found.append(
+            f"{system.names[worst]} ends {abs(away[worst]):.0f} tolerances from its nominal value: data and tolerances "
+            f"contradict each other; what rests on tolerances is raised by {statistics.strain:.1f}"
         )
     if not exact:
         found.append(

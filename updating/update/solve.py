@@ -47,7 +47,9 @@ class Solution:
         return len(self.history) - 1
 
 
-def solve(system: System, start: FloatArray | None = None, *, steps: int = 40) -> Solution:
+def solve(
+    system: System, start: FloatArray | None = None, *, steps: int = 40, rest: float = CONVERGED
+) -> Solution:
     """Iterate from the nominal model until the increments of the parameters vanish.
 
     Parameters
@@ -58,6 +60,8 @@ def solve(system: System, start: FloatArray | None = None, *, steps: int = 40) -
         Coordinates to start from; left out, the nominal ones, and for effects the best of a few values.
     steps : int
         Largest number of steps.
+    rest : float
+        Increments under this share of the doubts end the iteration [-].
 
     Returns
     -------
@@ -73,7 +77,7 @@ def solve(system: System, start: FloatArray | None = None, *, steps: int = 40) -
         if not moved and bend.any():
             bend = np.zeros_like(bend)
             continue
-        converged = bool(np.all(np.abs(new - theta) <= CONVERGED * system.doubt))
+        converged = bool(np.all(np.abs(new - theta) <= rest * system.doubt))
         if moved:
             before, linear = linear, system.linear(new, new_looks)
             bend = _bent(bend, before, linear, new - theta, system.doubt)
@@ -165,8 +169,18 @@ def _scan(system: System) -> FloatArray:
         if knob.factor is not None:
             continue
         tried = []
-        for value in [*np.linspace(system.low[i], system.high[i], GRID), theta[i]]:
+        for value in _trials(system, i, float(theta[i])):
             theta[i] = value
             tried.append((system.cost(theta, system.looks(theta)), float(value)))
         theta[i] = min(tried)[1]
     return theta
+
+
+def _trials(system: System, index: int, start: float) -> list[float]:
+    """Return values over a parameter's range; with shapes also near the start, for far from it they say no more."""
+    low, high = float(system.low[index]), float(system.high[index])
+    values = [*np.linspace(low, high, GRID).tolist(), start]
+    if system.shapes:
+        near = (high - low) / (GRID - 1) * 0.5 ** np.arange(1, 5)
+        values += [v for v in (*(start - near), *(start + near)) if low <= v <= high]
+    return values

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from acquisition.errors import StudyError
 from updating.matching import mac_of_constants, match
 from updating.measured import Measured
 from updating.models.reduced import Reduced
@@ -19,12 +18,8 @@ from updating.update.affine import Affine, affine, eligible
 from updating.update.basis import WIDE, extended, update_basis
 from updating.update.knobs import Knob, Panel
 from updating.update.sensitivity import log_frequency_by
-
-FINEST = 1e-4
-"""No shape is measured better than this part of its r.m.s. [-]."""
-
-COMMON = 0.75
-"""Most of the variance of a constant that is ascribed to what all constants of its mode have in common [-]."""
+from updating.update.shape_errors import constant_errors
+from updating.update.whitening import Whitening
 
 STEP = 1e-4
 """Step of the differences, relative to the width of a parameter's range [-]."""
@@ -73,8 +68,11 @@ class Specimen:
         Ratio of the full model's frequencies to the reduced model's [-].
     accepted : mapping of str to mapping
         Effects in the model beforehand and the values of their parameters.
-    shape_variance : (n_modes,) array or float
-        Factor on the variances of each mode's measured shape [-].
+    level : bool
+        Whether the measured constants are data with their level, not up to a factor per mode.
+    near : Prediction, optional
+        Partners in a model nearer to the test than the nominal one, by which misplaced points and calibration are
+        judged.
     """
 
     title: str
@@ -86,7 +84,8 @@ class Specimen:
     warnings: tuple[str, ...]
     correction: FloatArray
     accepted: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    shape_variance: FloatArray | float = 1.0
+    level: bool = False
+    near: Prediction | None = None
 
     def look(self, values: Sequence[float]) -> Look:
         """Evaluate the model, and find the partner of every measured mode by MAC."""
@@ -158,16 +157,27 @@ class Specimen:
         by = log_frequency_by(self.predictor.reduced, total, at.prediction, str(knob.factor), knob.regions)
         return by * knob.chain(values[index])
 
-    def _difference(self, index: int, values: Sequence[float]) -> FloatArray:
+    def _ends(self, index: int, values: Sequence[float]) -> tuple[Look, Look, float]:
+        """Look on both sides of a knob's setting; return how far apart in its coordinate."""
         knob = self.panel.knobs[index]
         here, step = knob.coordinate(values[index]), STEP * knob.span()
         ends = [max(here - step, knob.coordinate(knob.low)), min(here + step, knob.coordinate(knob.high))]
-        logs = []
-        for end in ends:
-            moved = list(values)
-            moved[index] = knob.value(end)
-            logs.append(np.log(self.look(moved).frequency))
-        return np.asarray((logs[1] - logs[0]) / (ends[1] - ends[0]))
+        moved = [[*values[:index], knob.value(end), *values[index + 1 :]] for end in ends]
+        return self.look(moved[0]), self.look(moved[1]), ends[1] - ends[0]
+
+    def _difference(self, index: int, values: Sequence[float]) -> FloatArray:
+        low, high, apart = self._ends(index, values)
+        return np.asarray((np.log(high.frequency) - np.log(low.frequency)) / apart)
+
+    def _shape_difference(self, index: int, values: Sequence[float], at: Look) -> FloatArray:
+        low, high, apart = self._ends(index, values)
+        here = at.prediction.constants
+        # shapes without a reference come with the solver's sign
+        ends = [
+            k.prediction.constants * np.sign(np.sum(k.prediction.constants * here, axis=0))
+            for k in (low, high)
+        ]
+        return np.asarray((ends[1] - ends[0]) / apart)
 
     @cached_property
     def nominal(self) -> Look:
@@ -186,9 +196,8 @@ class Specimen:
         """Return the derivatives of the partners' constants by the coordinates, (n_frf, n_modes, n_knobs) [1/kg]."""
         model = self.affine
         if model is None:
-            raise StudyError(
-                'update: shapes as data need parameters that are factors; use data = ["frequencies"]'
-            )
+            columns = [self._shape_difference(i, values, at) for i in range(len(self.panel.knobs))]
+            return np.stack(columns, axis=-1)
         turned = model.turns(np.log(values), at.partner, self.rigid)
         here, change = self.shape_rows @ at.prediction.vectors, self.shape_rows @ turned
         # the solver's sign of a shape is of no account in a product of two components of the same solution
@@ -204,30 +213,20 @@ class Specimen:
         return np.asarray(np.sign(np.sum(vectors * at.prediction.vectors, axis=0)))
 
     @cached_property
-    def shape_weight(self) -> FloatArray:
-        """Inverse variances of the measured shapes, places of the points included, (n_frf, n_modes).
+    def errors(self) -> Whitening:
+        """Covariance of the measured constants, calibration included where their level is data."""
+        at = self.nominal.prediction if self.near is None else self.near
+        turned = any(knob.effect == "calibration_gain" for knob in self.panel.knobs)
+        return constant_errors(
+            self.measured, at, self.measured.calibration if self.level and not turned else 0.0
+        )
 
-        An error of a mode's damping by the part d stretches all its constants alike, by d / 2 (projection of
-        1 / (s - p)^2 on 1 / (s - p)). A shape up to a factor is free of that, so it is taken out, as far as
-        ``COMMON`` of the variance: modes close by add to it what is not alike in all.
-        """
-        test = self.measured
-        stretch = np.nan_to_num(test.damping_sigma / (2 * test.damping)) if test.absolute else 0.0
-        total = test.constants_sigma**2
-        own_variance = total - np.minimum((stretch * test.constants) ** 2, COMMON * total)
-        places = np.zeros_like(test.constants)
-        if test.position_sigma > 0 and test.has_shapes:
-            nominal = self.nominal.prediction
-            own = np.sqrt(np.mean(test.constants**2, axis=0) / np.mean(nominal.constants**2, axis=0))
-            slopes = np.concatenate([nominal.along, nominal.along_seen]) * own
-            places = test.position_sigma**2 * np.sum(slopes**2, axis=0)
-        floor = FINEST**2 * np.mean(test.constants**2, axis=0, keepdims=True)
-        return np.asarray(1 / ((own_variance + places + floor) * self.shape_variance))
-
-    def reweighted(self, factor: FloatArray) -> Specimen:
-        """Return the same specimen with the variances of the shapes multiplied by factors (n_modes,) [-]."""
-        other = self._with(replace(self, shape_variance=self.shape_variance * factor))
-        other.__dict__.pop("shape_weight", None)
+    def settled(self, values: Sequence[float], look: Look) -> Specimen:
+        """Return the same specimen with its errors judged by the model at some values of its knobs."""
+        count = int(look.partner.max()) + 1
+        near = self.predictor.predict(self.panel.state(self.predictor, values), count=count)
+        other = self._with(replace(self, near=near.select(look.partner)))
+        other.__dict__.pop("errors", None)
         return other
 
     def corrected(self, factor: FloatArray) -> Specimen:
@@ -259,6 +258,7 @@ class Specimen:
         own.__dict__["reduced"] = reduced
         other = replace(self, predictor=own, correction=np.ones(len(self.number)))
         other.__dict__.update(nominal=self.nominal, rigid=self.rigid, count=self.count)
+        other.__dict__.update({"errors": self.errors} if self.measured.has_shapes else {})
         return other
 
     def redrawn(self, frequency: FloatArray, constants: FloatArray | None = None) -> Specimen:
@@ -268,7 +268,7 @@ class Specimen:
 
     def _with(self, other: Specimen) -> Specimen:
         """Hand on what was worked out and stays."""
-        kept = ("shape_weight", "affine", "shape_rows", "rigid", "count", "nominal_modes", "nominal")
+        kept = ("errors", "affine", "shape_rows", "rigid", "count", "nominal_modes", "nominal")
         other.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
         return other
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.update.knobs import Knob
-from updating.update.shapes import shape_ratios, shape_residual, shape_slopes
+from updating.update.shapes import shape_residual, shape_slopes
 from updating.update.specimen import Look, Specimen
 
 Weights = Literal["covariance", "relative", "eigenvalue"] | Sequence[float]
@@ -63,7 +63,8 @@ class System:
     drawn : (p,) array, optional
         Coordinates near which they are held, where these were drawn anew; left out, those of the nominal model.
     shapes : bool
-        Whether the shapes, up to a factor per mode, are data behind the frequencies.
+        Whether the shapes, or the constants where a specimen says so, are data behind the frequencies; their
+        residuals are whitened.
     """
 
     specimens: tuple[Specimen, ...]
@@ -120,7 +121,8 @@ class System:
     @property
     def count(self) -> int:
         """Number of data that weigh anything, less the factors that shapes are free of."""
-        free = [s.measured.constants.size - s.measured.constants.shape[1] for s in self.specimens]
+        sizes = [(s.measured.constants.shape, s.level) for s in self.specimens if s.measured.has_shapes]
+        free = [rows * modes - (0 if level else modes) for (rows, modes), level in sizes]
         return int(sum(np.sum(w > 0) for w in self.weights)) + (sum(free) if self.shapes else 0)
 
     def values(self, theta: FloatArray, specimen: int) -> list[float]:
@@ -142,14 +144,14 @@ class System:
                 parts.append((2 * np.pi) ** 2 * (test**2 - look.frequency**2))
         if self.shapes:
             both = zip(self.specimens, looks, strict=True)
-            parts += [shape_residual(s, k).ravel() for s, k in both if s.measured.has_shapes]
+            parts += [shape_residual(s, k) for s, k in both if s.measured.has_shapes]
         return np.concatenate(parts)
 
     @cached_property
     def weight(self) -> FloatArray:
         """Diagonal of W_s for the residuals, shape (n,)."""
         if self.shapes:
-            own = [s.shape_weight.ravel() for s in self.specimens if s.measured.has_shapes]
+            own = [np.ones(s.measured.constants.size) for s in self.specimens if s.measured.has_shapes]
             return np.concatenate([*self.weights, *own])
         if self.quantity == "frequency":
             return np.concatenate(self.weights)
@@ -218,12 +220,10 @@ class System:
         both = zip(self.specimens, factors, strict=True)
         return replace(self, specimens=tuple(s.corrected(s.correction * f) for s, f in both))
 
-    def reweighted(self, looks: tuple[Look, ...]) -> System:
-        """Return the problem with the shapes of each mode weighted by what is left of them."""
-        own = [
-            s.reweighted(shape_ratios(s, k, len(self.knobs))) if s.measured.has_shapes else s
-            for s, k in zip(self.specimens, looks, strict=True)
-        ]
+    def settled(self, theta: FloatArray, looks: tuple[Look, ...]) -> System:
+        """Return the problem with the errors of points and calibration judged at a solution."""
+        both = enumerate(zip(self.specimens, looks, strict=True))
+        own = [s.settled(self.values(theta, i), k) if s.measured.has_shapes else s for i, (s, k) in both]
         return replace(self, specimens=tuple(own))
 
     def nearer(self, modes: Sequence[FloatArray], factors: Sequence[FloatArray]) -> System:

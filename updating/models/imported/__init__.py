@@ -3,9 +3,12 @@
 from updating.models.imported.matrices import Imported
 from updating.models.imported.nodes import NodeTable, read_deck_table, read_table
 from updating.models.imported.read import READERS, read_imported, read_matrix
+from updating.models.imported.units import SI, UNITS
 
 __all__ = [
     "READERS",
+    "SI",
+    "UNITS",
     "Imported",
     "NodeTable",
     "read_deck_table",

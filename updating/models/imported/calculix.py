@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
@@ -21,26 +22,48 @@ def read_triplets(path: Path) -> Sparse:
     StudyError
         If a line is not of that kind.
     """
-    try:
-        table = pd.read_csv(
-            path,
-            sep=r"\s+",
-            header=None,
-            names=["row", "column", "value"],
-            dtype={"value": float},
-            engine="c",
-        )
-        row, column = (table[name].to_numpy(dtype=np.int64) - 1 for name in ("row", "column"))
-    except (ValueError, pd.errors.ParserError) as error:
-        raise StudyError(f"{path}: not a matrix of CalculiX ({error}); see SOLVER=MATRIXSTORAGE") from error
+    table = _table(path)
     if not len(table):
         raise StudyError(f"{path}: is empty; did ccx stop early? its .sta and .dat files tell")
+    row, column = (table[i].to_numpy(dtype=np.int64) - 1 for i in (0, 1))
     if min(row.min(), column.min()) < 0:
-        raise StudyError(f"{path}: row or column 0; CalculiX counts from 1")
+        raise StudyError(f"{path}: row or column 0 or below; CalculiX counts from 1")
     order = int(max(row.max(), column.max())) + 1
-    matrix = Sparse(sparse.coo_array((table["value"].to_numpy(), (row, column)), (order, order)).tocsr())
+    if order > 1000 + 100 * len(table):
+        raise StudyError(f"{path}: row or column {order} in a matrix of {len(table)} entries; write it anew")
+    matrix = Sparse(sparse.coo_array((table[2].to_numpy(), (row, column)), (order, order)).tocsr())
     one_triangle = bool((row <= column).all() or (row >= column).all())
     return Sparse(matrix + matrix.T - sparse.diags_array(matrix.diagonal())) if one_triangle else matrix
+
+
+def _table(path: Path) -> pd.DataFrame:
+    """Return row, column and value of every line."""
+    kinds = {0: np.int64, 1: np.int64, 2: np.float64}
+    try:
+        try:
+            table = pd.read_csv(path, sep=r"\s+", header=None, dtype=kinds, engine="c")
+        except (
+            ValueError,
+            OverflowError,
+            pd.errors.ParserError,
+        ):  # by somebody else: comments, commas, D exponents
+            table = pd.read_csv(_plain(path), sep=r"\s+", header=None, dtype=kinds, engine="c")
+    except pd.errors.EmptyDataError:
+        return pd.DataFrame()
+    except (ValueError, OverflowError, pd.errors.ParserError) as error:
+        told = str(error).strip().replace("\n", " ")
+        raise StudyError(f"{path}: not a matrix of CalculiX ({told}); see SOLVER=MATRIXSTORAGE") from error
+    if len(table.columns) != len(kinds):
+        raise StudyError(
+            f"{path}: {len(table.columns)} numbers on a line; CalculiX writes row, column and value"
+        )
+    return table
+
+
+def _plain(path: Path) -> io.StringIO:
+    """Return the lines of a file without comments, with blanks between numbers and exponents with E."""
+    lines = path.read_text(encoding="latin-1").upper().replace(",", " ").replace("D", "E").splitlines()
+    return io.StringIO("\n".join(line for line in lines if line.strip()[:1] not in "*#%!"))
 
 
 def read_dofs(path: Path) -> tuple[IntArray, IntArray]:

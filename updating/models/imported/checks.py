@@ -17,6 +17,9 @@ SYMMETRY = 1e-6
 INDEFINITE = 1e-6
 """A negative eigenvalue of the scaled mass matrix beyond this is no rounding [-]."""
 
+SLOWEST = 1.0
+"""Stiffness over mass of a single row that no structure made of solids has [rad^2/s^2]."""
+
 HEAVIER = 1e5
 """How far above the highest ratio of stiffness to mass that of a massless degree of freedom is put [-]."""
 
@@ -50,6 +53,25 @@ def symmetric(matrix: Sparse, source: str) -> Sparse:
             f"{matrix[j, i]:.6g}; gyroscopic, follower or contact terms cannot be in it"
         )
     return Sparse((matrix + matrix.T) / 2)
+
+
+def check_size(stiffness: Sparse, mass: Sparse, source: str) -> None:
+    """See that there is stiffness, and that it is not the mass.
+
+    Raises
+    ------
+    StudyError
+        If the stiffness is empty, or so small beside the mass that the two must be in each other's place.
+    """
+    stiff, heavy = stiffness.diagonal(), mass.diagonal()
+    if not stiffness.count_nonzero():
+        raise StudyError(f"{source}: the stiffness matrix is empty")
+    both = (stiff > 0) & (heavy > 0)
+    if both.any() and (ratio := float(np.median(stiff[both] / heavy[both]))) < SLOWEST:
+        raise StudyError(
+            f"{source}: stiffness over mass is {ratio:.3g} rad^2/s^2 on the diagonals: are the two matrices "
+            "swapped, or in different units?"
+        )
 
 
 def with_mass_everywhere(stiffness: Sparse, mass: Sparse, source: str) -> Sparse:
@@ -148,6 +170,13 @@ def check_sum(whole: Sparse, parts: tuple[Sparse, ...], sources: tuple[str, ...]
     rest = Sparse(whole - sum(parts[1:], start=parts[0]))
     diagonal = whole.diagonal()
     rounding = SYMMETRY * np.maximum(np.abs(diagonal), 1e-300)
+    for part, source in zip(parts, sources, strict=True):
+        if (wrong := part.diagonal() < -10 * rounding).any():
+            row = int(np.flatnonzero(wrong)[0])
+            raise StudyError(
+                f"{source} of the {name}: row {row + 1} has {part.diagonal()[row]:.6g} on its diagonal; a region's own "
+                "matrix is not negative"
+            )
     lacking = rest.diagonal() < -10 * rounding
     if lacking.any():
         row = int(np.argmin(rest.diagonal() / np.maximum(np.abs(diagonal), 1e-300)))

@@ -11,8 +11,8 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 
-REFUSED = ("*TRANSFORM", "*PART", "*INSTANCE", "*NCOPY", "*NGEN")
-"""What moves, makes or turns nodes in ways that are not followed here."""
+REFUSED = ("*PART", "*INSTANCE", "*NCOPY", "*NGEN")
+"""What moves or makes nodes in ways that are not followed here."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +50,9 @@ def read_deck(path: Path) -> Deck:
     Raises
     ------
     StudyError
-        If there is no node, or a card that moves or turns nodes.
+        If there is no node, or a card that moves nodes or makes some.
     """
-    deck = Deck()
+    deck, turned = Deck(), set[int]()
     for card, options, line, where in _lines(path, depth=0):
         if card == "*NODE":
             number, place = _node(line, where)
@@ -63,9 +63,20 @@ def read_deck(path: Path) -> Deck:
             deck.sets.setdefault(options["NSET"], []).extend(_listed(line, options, deck, where))
         elif card == "*BOUNDARY":
             deck.held.update(_held(line, deck, where))
+        elif card == "*TRANSFORM":
+            turned.update(deck.members(options.get("NSET", ""), where))
     if not deck.nodes:
         raise StudyError(f"{path}: no *NODE card; give the deck that holds the mesh, or a node table (CSV)")
+    _forget_turned(deck, turned)
     return deck
+
+
+def _forget_turned(deck: Deck, turned: set[int]) -> None:
+    """Leave out supports along a node's own axes unless they hold all three; the matrices' rows stay along x, y, z."""
+    for node in turned:
+        along = {(node, direction) for direction in (1, 2, 3)}
+        if not along <= deck.held:
+            deck.held.difference_update(along)
 
 
 def _lines(path: Path, *, depth: int) -> Iterator[tuple[str, dict[str, str], str, str]]:

@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
-from updating.models.imported.checks import check_mass, check_sum, symmetric, with_mass_everywhere
+from updating.models.imported.checks import check_mass, check_size, check_sum, symmetric, with_mass_everywhere
 from updating.models.imported.nodes import NodeTable
 from updating.models.imported.placing import Places
 
@@ -60,6 +60,7 @@ class Imported:
                 f"{self.source}: the stiffness is of order {orders[0]} and the mass of order {orders[1]}; export both "
                 "from one job"
             )
+        check_size(self.stiffness, self.mass, self.source)
         self.nodes.check(orders[0])
         named = tuple(
             f"{self.source}: part {i + 1}"

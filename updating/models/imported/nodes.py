@@ -58,7 +58,25 @@ class NodeTable:
         used = self.row[self.row >= 0]
         if len(np.unique(used)) < len(used):
             twice = int(np.flatnonzero(np.bincount(used) > 1)[0])
-            raise StudyError(f"{self.source}: row {twice} (counted from 0) belongs to two degrees of freedom")
+            both = " and ".join(
+                f"{self.node[i]}.{self.direction[i]}" for i in np.flatnonzero(self.row == twice)[:2]
+            )
+            raise StudyError(
+                f"{self.source}: one row, {twice + 1} (counted from 1), belongs to two degrees of freedom, {both} "
+                "(node.direction)"
+            )
+        self._check_places()
+
+    def _check_places(self) -> None:
+        _, first, where = np.unique(self.node, return_index=True, return_inverse=True)
+        apart = np.abs(self.places - self.places[first[where]]).max(axis=1, initial=0.0)
+        reach = np.abs(self.places).max(initial=0.0)
+        if len(apart) and apart.max() > 1e-6 * reach:
+            worst = int(np.argmax(apart))
+            raise StudyError(
+                f"{self.source}: node {self.node[worst]} stands at two places, "
+                f"{self.places[first[where[worst]]].tolist()} and {self.places[worst].tolist()}"
+            )
 
     def check(self, order: int) -> None:
         """See that no row lies beyond the matrices.
@@ -94,14 +112,18 @@ def read_table(path: Path, order: int) -> NodeTable:
         If a column is missing, a value is no number, or a row lies beyond the matrices.
     """
     try:
-        table = pd.read_csv(path, comment="#", skipinitialspace=True)
+        table = pd.read_csv(path, comment="#", skipinitialspace=True, encoding="utf-8-sig")
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
     except (ValueError, pd.errors.ParserError) as error:
         raise StudyError(f"{path}: not a CSV table ({error}); columns: {', '.join(COLUMNS)}") from error
+    if not table.index.equals(pd.RangeIndex(len(table))):
+        raise StudyError(f"{path}: lines have more values than the header has names; name every column")
     table.columns = pd.Index([str(c).strip().lower() for c in table.columns])
     if missing := [c for c in COLUMNS if c not in table.columns]:
-        raise StudyError(f"{path}: no column {', '.join(missing)}; the table needs {', '.join(COLUMNS)}")
+        raise StudyError(
+            f"{path}: no column {', '.join(missing)}; the table needs {', '.join(COLUMNS)}, separated by commas"
+        )
     try:
         values = table[list(COLUMNS)].astype(float)
     except ValueError as error:
@@ -114,6 +136,15 @@ def read_table(path: Path, order: int) -> NodeTable:
     if whole.isna().to_numpy().any():
         line = 2 + int(np.flatnonzero(whole.isna().any(axis=1))[0])
         raise StudyError(f"{path}, line {line}: node or direction is missing")
+    if not (rows >= 0).any():
+        raise StudyError(
+            f"{path}: no line has a row of the matrices; there must be one for each that is at a place"
+        )
+    for column in ("node", "direction", "row"):
+        told = values[column].to_numpy()
+        if (broken := ~np.isnan(told) & ((told != np.round(told)) | (np.abs(told) > 2**53))).any():
+            line = int(np.flatnonzero(broken)[0])
+            raise StudyError(f"{path}, entry {line + 1}: {column} {told[line]:g} is no whole number")
     found = NodeTable(
         values["node"].to_numpy(dtype=np.int64),
         values[["x", "y", "z"]].to_numpy(),

@@ -13,6 +13,7 @@ from updating.models.imported.calculix import read_triplets
 from updating.models.imported.market import read_market
 from updating.models.imported.matrices import Imported
 from updating.models.imported.nodes import NodeTable, read_deck_table, read_table
+from updating.models.imported.units import SI, matrix_in_si, places_in_si
 
 READERS: dict[str, Callable[[Path], Sparse]] = {
     ".mtx": read_market,
@@ -24,6 +25,7 @@ READERS: dict[str, Callable[[Path], Sparse]] = {
     ".rua": read_boeing,
     ".psa": read_boeing,
     ".npz": read_archive,
+    ".npy": read_archive,
     ".sti": read_triplets,
     ".mas": read_triplets,
 }
@@ -70,17 +72,20 @@ def read_imported(
     *,
     stiffness_parts: Sequence[Path] = (),
     mass_parts: Sequence[Path] = (),
+    units: str = SI,
 ) -> Imported:
     """Read a structure given by its matrices.
 
     Parameters
     ----------
     stiffness, mass : Path
-        Matrices of the whole structure on its supports [SI].
+        Matrices of the whole structure on its supports [as ``units`` says].
     nodes : Path
         Node table (CSV), or the CalculiX deck.
     stiffness_parts, mass_parts : sequence of Path
         One of each region, in the order of the regions.
+    units : {"m-kg-s", "mm-t-s", "in-lbf-s"}
+        What the matrices and the nodes are in; the result is in SI units.
 
     Raises
     ------
@@ -89,11 +94,16 @@ def read_imported(
     """
     whole = read_matrix(stiffness)
     table = read_nodes(nodes, stiffness, max(whole.shape))
+    weight = read_matrix(mass)
+    parts = [
+        tuple(matrix_in_si(read_matrix(path), table, units) for path in paths)
+        for paths in (stiffness_parts, mass_parts)
+    ]
     return Imported(
-        whole,
-        read_matrix(mass),
-        table,
-        tuple(read_matrix(path) for path in stiffness_parts),
-        tuple(read_matrix(path) for path in mass_parts),
+        matrix_in_si(whole, table, units),
+        matrix_in_si(weight, table, units),
+        places_in_si(table, units),
+        parts[0],
+        parts[1],
         f"{stiffness.name}, {mass.name}",
     )

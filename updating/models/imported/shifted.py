@@ -14,6 +14,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.checks import factored, negative_pivots
+from updating.models.imported.hollow import check_hollow
 from updating.models.solve import DENSE, lowest
 
 SMALL_SHIFT = 1e-9
@@ -64,6 +65,7 @@ class Shifted:
                 f"{self.source}: singular: some motion has neither stiffness nor mass ({error}); leave out degrees of "
                 "freedom that nothing holds"
             ) from error
+        check_hollow(self.stiffness, self.mass, factor, self.source)
         found = negative_pivots(factor)
         if found is not None:
             raise StudyError(
@@ -104,9 +106,14 @@ class Shifted:
         """Solve by shift and invert (Lanczos)."""
         n = self.stiffness.shape[0]
         inverse = linalg.LinearOperator((n, n), matvec=self.factor.solve, dtype=float)
-        values, vectors = linalg.eigsh(
-            self.stiffness, count, self.mass, sigma=-self.shift, OPinv=inverse, which="LM", v0=np.ones(n)
-        )
+        try:
+            values, vectors = linalg.eigsh(
+                self.stiffness, count, self.mass, sigma=-self.shift, OPinv=inverse, which="LM", v0=np.ones(n)
+            )
+        except linalg.ArpackError as error:
+            raise StudyError(
+                f"{self.source}: no modes found ({error}); is the stiffness that of the structure?"
+            ) from error
         order = np.argsort(values)
         return values[order], vectors[:, order]
 

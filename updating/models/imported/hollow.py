@@ -1,0 +1,57 @@
+"""Motions with neither stiffness nor mass, which elements of reduced integration leave where one is as thick as all."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from acquisition.errors import StudyError
+from updating.models.fields import Sparse
+from updating.models.imported.checks import factored
+
+LOST = 1e-10
+"""A pivot below this share of its diagonal entry has lost all its digits [-]."""
+
+NOTHING = 1e-9
+"""Below this share of what each of its rows has, a motion has nothing [-]."""
+
+
+def check_hollow(stiffness: Sparse, mass: Sparse, factor: Any, source: str) -> None:
+    """See that no motion has neither stiffness nor mass, where pivots of the factored sum have lost their digits.
+
+    Such motions are eigenvectors to zero of K and M added, the sum scaled by its diagonal.
+
+    Raises
+    ------
+    StudyError
+        If there is one: its frequency could be anything.
+    """
+    entries = np.abs(stiffness.diagonal())[np.argsort(factor.perm_c)]
+    if (np.abs(factor.U.diagonal()) > LOST * entries).all():
+        return
+    both = _ones_on_diagonal(Sparse(_level(stiffness) + _level(mass)))
+    one = sparse.eye_array(both.shape[0])
+    below, above = (factored(Sparse(both + shift * one)) for shift in (NOTHING, -NOTHING))
+    count = int((above.U.diagonal() < 0).sum())
+    if (below.U.diagonal() < 0).any() or not count:
+        return
+    row = int(np.flatnonzero(above.perm_c == int(np.flatnonzero(above.U.diagonal() < 0)[0]))[0]) + 1
+    raise StudyError(
+        f"{source}: singular: {count} motion(s) have neither stiffness nor mass, one shows at row {row}; "
+        "elements of reduced integration (C3D20R), one across, leave such: take C3D20, or two across"
+    )
+
+
+def _level(matrix: Sparse) -> Sparse:
+    """Return a matrix over the middle of its diagonal."""
+    diagonal = np.abs(matrix.diagonal())
+    return Sparse(matrix / float(np.median(diagonal[diagonal > 0]))) if (diagonal > 0).any() else matrix
+
+
+def _ones_on_diagonal(matrix: Sparse) -> Sparse:
+    """Return a matrix with its rows and columns scaled to ones on the diagonal."""
+    diagonal = np.abs(matrix.diagonal())
+    scale = sparse.diags_array(1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)))
+    return Sparse(scale @ matrix @ scale)
