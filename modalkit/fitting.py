@@ -16,6 +16,7 @@ from modalkit.reading import Judged, Processed
 from updating.frf_update import FrfUpdate, bootstrap_frf_update, update_frfs
 from updating.measured_frfs import MeasuredFrfs, measured_frfs, redrawn
 from updating.update import Update, bootstrap, redrawn_frequencies, update
+from updating.update.system import Weights
 
 
 def update_studies(
@@ -60,14 +61,7 @@ def update_studies(
     for session, table in zip(sessions, tables, strict=True):
         if table.stages is not None or table.lines is not None:
             raise StudyError(f'{session.study.path}: [update] stages and lines are of method = "frf"')
-    weights = tables[0].weights
-    if len(tables) > 1 and any(isinstance(table.weights, list) for table in tables):
-        weights = [weight for session in sessions for weight in _listed(session)]
-    elif len({str(table.weights) for table in tables}) > 1:
-        kinds = ", ".join(
-            f'"{table.weights}" in {s.study.path}' for s, table in zip(sessions, tables, strict=True)
-        )
-        raise StudyError(f"[update] weights: {kinds}; use one kind in all studies")
+    weights = _weights(sessions)
     own = [list(dict.fromkeys([*table.named, *shared])) for table in tables]
     if len({tuple(table.data) for table in tables}) > 1:
         raise StudyError("[update] data: the studies name different data; name the same in all")
@@ -81,6 +75,19 @@ def update_studies(
     return bootstrap(
         cases, rng=rng, n=draws, frequencies=frequencies, parameters=own, shared=shared, weights=weights
     ).update
+
+
+def _weights(sessions: Sequence[Session]) -> Weights:
+    """Return the weights of one study, or those of several put together."""
+    tables = [session.study.update for session in sessions]
+    if len(tables) > 1 and any(isinstance(table.weights, list) for table in tables):
+        return [weight for session in sessions for weight in _listed(session)]
+    if len({str(table.weights) for table in tables}) > 1:
+        kinds = ", ".join(
+            f'"{table.weights}" in {s.study.path}' for s, table in zip(sessions, tables, strict=True)
+        )
+        raise StudyError(f"[update] weights: {kinds}; use one kind in all studies")
+    return tables[0].weights
 
 
 def _listed(session: Session) -> list[float]:
