@@ -34,10 +34,7 @@ def _values(diagnosis: Diagnosis) -> str:
     top = next((r for r in diagnosis.ranking if r.effects == diagnosis.sets[0]), None)
     if top is None or not top.parameters:
         return ""
-    parts = [
-        f"{name.split('.')[-1]} {e.value:.4g}{'' if e.unit == '-' else ' ' + e.unit} [{e.low95:.4g}, {e.high95:.4g}]"
-        for name, e in top.parameters.items()
-    ]
+    parts = [f"{name.split('.')[-1]} {e}" for name, e in top.parameters.items()]
     return "(" + "; ".join(parts) + ")"
 
 

@@ -17,14 +17,27 @@ FREQUENCY_WEIGHT = 0.5
 """How much a frequency ratio of e counts against a MAC of zero."""
 
 
-def mac_of_constants(measured: Measured, prediction: Prediction) -> FloatArray:
-    """Return the MAC between measured and predicted modal constants, (n_measured, n_predicted) [-]."""
-    a, b = measured.constants, prediction.constants
+def mac_of_constants(
+    measured: Measured, prediction: Prediction, trusted: BoolArray | None = None
+) -> FloatArray:
+    """Return the MAC between measured and predicted modal constants, (n_measured, n_predicted) [-].
+
+    Parameters
+    ----------
+    measured, prediction
+        Test and model.
+    trusted : (n_frf,) bool array, optional
+        Rows to use; left out, all.
+    """
+    rows = slice(None) if trusted is None else trusted
+    a, b = measured.constants[rows], prediction.constants[rows]
     power = np.outer(np.sum(a**2, axis=0), np.sum(b**2, axis=0))
     return np.asarray((a.T @ b) ** 2 / np.maximum(power, 1e-300))
 
 
-def match(measured: Measured, prediction: Prediction, order: IntArray) -> IntArray:
+def match(
+    measured: Measured, prediction: Prediction, order: IntArray, trusted: BoolArray | None = None
+) -> IntArray:
     """Assign a predicted mode to every measured mode.
 
     Parameters
@@ -36,6 +49,8 @@ def match(measured: Measured, prediction: Prediction, order: IntArray) -> IntArr
     order : (n_measured,) int array
         Rank of the model mode that belongs to each measured one where shapes cannot tell: the i-th entry
         counts model modes from the lowest.
+    trusted : (n_frf,) bool array, optional
+        Rows whose shapes are compared; left out, all.
 
     Returns
     -------
@@ -46,7 +61,7 @@ def match(measured: Measured, prediction: Prediction, order: IntArray) -> IntArr
         return np.asarray(np.argsort(prediction.frequency)[order])
     ratio = np.abs(np.log(measured.frequency[:, None] / prediction.frequency[None, :]))
     ratio = np.nan_to_num(ratio, nan=3.0)
-    cost = 1 - mac_of_constants(measured, prediction) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
+    cost = 1 - mac_of_constants(measured, prediction, trusted) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
     return np.asarray(linear_sum_assignment(cost)[1])
 
 
@@ -81,11 +96,14 @@ class Paired:
         Rank of each one's partner among the model's modes.
     warnings : tuple of str
         Which modes have none.
+    trusted : (n_frf,) bool array, optional
+        Rows by which they were paired, where some points spoil the shapes of all modes.
     """
 
     measured: Measured
     order: IntArray
     warnings: tuple[str, ...]
+    trusted: BoolArray | None = None
 
 
 def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
@@ -111,8 +129,9 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
             f"the test has {len(measured.frequency)} modes and the model {len(prediction.frequency)} in its band; "
             "narrow the band of the test"
         )
-    order = match(measured, prediction, np.arange(len(measured.frequency)))
-    mac = mac_of_constants(measured, prediction)[np.arange(len(order)), order]
+    trusted = _trusted(measured, prediction)
+    order = match(measured, prediction, np.arange(len(measured.frequency)), trusted)
+    mac = mac_of_constants(measured, prediction, trusted)[np.arange(len(order)), order]
     ratio = np.log(measured.frequency / prediction.frequency[order])
     near = np.abs(ratio - np.median(ratio)) < ASTRAY
     keep = (mac >= LOWEST_MAC) & (near | (mac >= SAME))
@@ -128,7 +147,46 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     ]
     if keep.sum() < len(keep) / 2:
         lost.append("most measured modes have no partner: test and model may not be the same structure")
-    return Paired(measured.modes(keep), order[keep], tuple(lost))
+    if trusted is not None:
+        left_out = _moved(measured, ~trusted)
+        lost.append(f"modes are paired without point {', '.join(left_out)}, which spoils their shapes")
+    return Paired(measured.modes(keep), order[keep], tuple(lost), trusted)
+
+
+SPOILT = 0.8
+"""Mean MAC of the pairs under which points are looked for that spoil it..."""
+
+MENDED = 0.05
+"""...and by how much leaving one out must raise it [-]."""
+
+
+def _trusted(measured: Measured, prediction: Prediction) -> BoolArray | None:
+    """Return the rows left when the few points that spoil the shapes of all modes are out, None where none does."""
+
+    def agreement(rows: BoolArray) -> float:
+        order = match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
+        return float(np.mean(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order]))
+
+    rows = np.ones(len(measured.seen), dtype=bool)
+    reached = agreement(rows)
+    if reached >= SPOILT:
+        return None
+    moved = measured.hit if len(np.unique(measured.hit)) >= len(np.unique(measured.seen)) else measured.seen
+    points = np.unique(moved)
+    for _ in range(len(points) * 2 // 5):
+        trials = [rows & (moved != point) for point in points]
+        found = [agreement(t) if len(np.unique(moved[t])) >= 3 else 0.0 for t in trials]
+        best = int(np.argmax(found))
+        if found[best] < reached + MENDED:
+            break
+        rows, reached = trials[best], found[best]
+    return None if rows.all() or reached < SPOILT else rows
+
+
+def _moved(measured: Measured, rows: BoolArray) -> list[str]:
+    kept = set(measured.hit[~rows].tolist())
+    roving = measured.hit if set(measured.hit[rows].tolist()) - kept else measured.seen
+    return sorted({str(measured.nodes[p]) for p in roving[rows].tolist() if p >= 0})
 
 
 def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:

@@ -58,6 +58,15 @@ class Measured:
         The part of ``constants_sigma`` that is each constant's own; None where all of it is [1/kg].
     shared : (n_frf, n_modes, k) array, optional
         The rest: what one standard deviation of each of k independent causes does to all constants [1/kg].
+    phase, phase_sigma : (n_chains, n_modes) arrays, optional
+        By how much the complex constants of each measurement chain are turned, from -pi/2 to pi/2, and its
+        standard deviation; ``constants`` are turned back by it [rad].
+    chain : (n_frf,) int array, optional
+        Which chain each FRF was measured by.
+    slope, slope_sigma : (n_modes,) arrays, optional
+        Relative change of each frequency per newton of the hits' peak force [1/N].
+    level : float, optional
+        Mean peak force of the hits [N].
     """
 
     frequency: FloatArray
@@ -82,6 +91,12 @@ class Measured:
     directions: FloatArray | None = None
     noise: FloatArray | None = None
     shared: FloatArray | None = None
+    phase: FloatArray | None = None
+    phase_sigma: FloatArray | None = None
+    chain: IntArray | None = None
+    slope: FloatArray | None = None
+    slope_sigma: FloatArray | None = None
+    level: float | None = None
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -100,10 +115,11 @@ class Measured:
 
     def modes(self, keep: BoolArray | IntArray) -> Measured:
         """Return the same test with some of its modes."""
-        told = ["constants", "constants_sigma", *["noise"] * (self.noise is not None)]
-        columns = {n: getattr(self, n)[:, keep] for n in (*told, *["shared"] * (self.shared is not None))}
-        rows = ("frequency", "frequency_sigma", "damping", "damping_sigma")
-        return replace(self, **{n: getattr(self, n)[keep] for n in rows}, **columns)
+        across = ("constants", "constants_sigma", "noise", "shared", "phase", "phase_sigma")
+        along = ("frequency", "frequency_sigma", "damping", "damping_sigma", "slope", "slope_sigma")
+        columns = {n: getattr(self, n)[:, keep] for n in across if getattr(self, n) is not None}
+        rows = {n: getattr(self, n)[keep] for n in along if getattr(self, n) is not None}
+        return replace(self, **rows, **columns)
 
 
 def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: float | str) -> Measured:
@@ -182,6 +198,7 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
     points = np.stack([(responses if k in responses.keys else references).point(k) for k in keys])
     seen, hit = responses.index[left], references.index[right]
     signs = responses.signs[left] * references.signs[right]
+    constants = turn(model.constants[both] * signs[:, None], model.constant_sigma[both], seen, hit)
     return Measured(
         model.modal.frequency,
         model.modal.frequency_sigma,
@@ -191,8 +208,8 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         tuple(node for node, _ in keys),
         np.array([where[responses.keys[i]] for i in seen.tolist()]),
         np.array([where[references.keys[i]] for i in hit.tolist()]),
-        model.constants.real[both] * signs[:, None],
-        _with_complexity(model.constants[both], model.constant_sigma[both]),
+        constants.real,
+        constants.widened(model.constant_sigma[both]),
         absolute=True,
         repeated=model.frfs.variance is not None,
         warnings=tuple(
@@ -201,12 +218,14 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         rows=both,
         signs=signs,
         directions=_directions(keys, spec),
-        noise=_with_complexity(
-            model.constants[both],
+        noise=constants.widened(
             model.constant_noise[both],
-            _across(model.constants.real[both], model.constant_shared[both]),
+            _across(constants.real * signs[:, None], model.constant_shared[both]),
         ),
         shared=model.constant_shared[both] * signs[:, None, None],
+        phase=constants.phase,
+        phase_sigma=constants.phase_sigma,
+        chain=constants.chain,
         **options,  # type: ignore[arg-type]
     )
 
@@ -217,19 +236,64 @@ def _across(constants: FloatArray, shared: FloatArray) -> FloatArray:
     return np.asarray(np.mean(np.sum((shared - constants[..., None] * along) ** 2, axis=2), axis=0))
 
 
-def _with_complexity(
-    constants: ComplexArray, sigma: FloatArray, known: FloatArray | float = 0.0
-) -> FloatArray:
-    """Widen sigma to what the imaginary parts show.
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """Complex modal constants as real ones and by how much each chain turned them; see :func:`turn`.
 
-    The constants of real modes are real; what disturbs an FRF turns them as much as it stretches them, so the
-    scatter of the imaginary parts of a mode measures the error of its real parts. ``known`` (n_modes,) is the
-    part of it that other causes explain [1/kg^2].
+    Parameters
+    ----------
+    real, imaginary : (n_frf, n_modes) arrays
+        Along and across the direction to which most of a mode's constants point [1/kg].
+    phase, phase_sigma : (n_chains, n_modes) arrays
+        That direction, from -pi/2 to pi/2, and its standard deviation [rad].
+    chain : (n_frf,) int array
+        Which chain measured each FRF.
     """
-    turned = np.angle(np.sum(constants**2, axis=0)) / 2
-    across = (constants * np.exp(-1j * turned)).imag
-    excess = np.mean(across**2, axis=0) - np.mean(sigma**2, axis=0) - known
-    return np.asarray(np.sqrt(sigma**2 + np.maximum(excess, 0.0)))
+
+    real: FloatArray
+    imaginary: FloatArray
+    phase: FloatArray
+    phase_sigma: FloatArray
+    chain: IntArray
+
+    def widened(self, sigma: FloatArray, known: FloatArray | float = 0.0) -> FloatArray:
+        """Widen standard deviations (n_frf, n_modes) to what the imaginary parts show.
+
+        The constants of real modes are real; what disturbs an FRF turns them as much as it stretches them, so the
+        scatter of the imaginary parts of a mode measures the error of its real parts. ``known`` (n_modes,) is the
+        part of it that other causes explain [1/kg^2].
+        """
+        excess = np.mean(self.imaginary**2, axis=0) - np.mean(sigma**2, axis=0) - known
+        return np.asarray(np.sqrt(sigma**2 + np.maximum(excess, 0.0)))
+
+
+def turn(constants: ComplexArray, sigma: FloatArray, seen: IntArray, hit: IntArray) -> Turned:
+    """Turn complex modal constants to the real axis, chain by chain and mode by mode.
+
+    A real mode's constants are real. A chain that delays turns all those of a mode alike, by -omega times the
+    delay; what reversed signs there are does not change that direction.
+
+    Parameters
+    ----------
+    constants : (n_frf, n_modes) complex array
+        Modal constants [1/kg].
+    sigma : (n_frf, n_modes) array
+        Their standard deviations [1/kg].
+    seen, hit : (n_frf,) int arrays
+        Point of the response and of the force of each FRF; a response transducer that stays is a chain, one that
+        roves is one chain in all.
+    """
+    transducers, chain = np.unique(seen, return_inverse=True)
+    if len(transducers) > len(np.unique(hit)):
+        chain = np.zeros(len(seen), dtype=np.int64)
+    count = int(chain.max()) + 1
+    member = (chain == np.arange(count)[:, None]).astype(float)
+    phase = np.angle(member @ constants**2) / 2
+    real, imaginary = (part(constants * np.exp(-1j * phase[chain])) for part in (np.real, np.imag))
+    power = np.maximum(member @ real**2, 1e-300)
+    excess = np.maximum(np.mean(imaginary**2, axis=0) - np.mean(sigma**2, axis=0), 0.0)
+    phase_sigma = np.sqrt(member @ (real**2 * (sigma**2 + excess))) / power
+    return Turned(np.asarray(real), np.asarray(imaginary), phase, phase_sigma, chain.astype(np.int64))
 
 
 def _directions(keys: tuple[Key, ...], spec: Spec) -> FloatArray | None:

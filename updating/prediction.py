@@ -18,11 +18,12 @@ from updating.environment import Environment
 from updating.measured import Measured
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
-from updating.models.damping import Matrices, damping_matrices
+from updating.models.damping import Matrices, damping_matrices, modal_losses
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.spec import Damping, Spec, Theory
-from updating.models.state import NOMINAL, State, combine
+from updating.models.state import NOMINAL, State
+from updating.reading import Reading, reading
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,8 +95,13 @@ class Predictor:
 
     @cached_property
     def base(self) -> State:
-        """What the additions put into the model, on this predictor's basis."""
-        return combine(addition(self.bare) for addition in self.additions)
+        """What the additions put into the model, on this predictor's basis; each sees those before it."""
+        total, seen = NOMINAL, self.bare
+        for count, addition in enumerate(self.additions, start=1):
+            total = total.plus(addition(seen))
+            seen = self.looking(self.measured, self.additions[:count])
+            seen.__dict__["base"] = total
+        return total
 
     @cached_property
     def bare(self) -> Predictor:
@@ -183,18 +189,21 @@ class Predictor:
             top = (2 * np.pi * 1.6 * self.measured.frequency.max()) ** 2
             count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
         chosen = np.arange(first, min(first + count, len(values)))
-        rows = self._rows(total)
+        read = reading(self.measured, total)
+        rows = self._rows(total, read.points)
         shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
-        by = [self._by_factor(total, values, vectors, chosen, name, rows) for name in factors]
-        frequency = np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
+        by = [self._by_factor(total, values, vectors, chosen, name, rows, read.points) for name in factors]
+        shift = 1.0 + total.slope * (self.measured.level or 0.0)
+        frequency = shift * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
+        level = read.gain[:, None]
         return Prediction(
             frequency,
             self._damping(total, values[chosen], vectors[:, chosen]),
-            total.gain * self._product(shapes["w"], shapes["w"]),
-            total.gain * self._slopes(shapes),
-            total.gain * self._sensor_slopes(shapes),
+            level * read.product(shapes["w"], shapes["w"]),
+            level * self._slopes(shapes, read),
+            level * self._sensor_slopes(shapes, read),
             np.stack([b[0] for b in by], axis=-1) if by else np.zeros((len(chosen), 0)),
-            total.gain * np.stack([self._change(shapes["w"], b[1]) for b in by], axis=-1)
+            level[:, :, None] * np.stack([_change(shapes["w"], b[1], read) for b in by], axis=-1)
             if by
             else np.zeros((len(self.measured.seen), len(chosen), 0)),
             vectors[:, chosen],
@@ -205,14 +214,20 @@ class Predictor:
         """Displacement and slopes of the basis at the test points, each (n_points, r)."""
         return self.reduced.rows(self.measured.points, self.measured.directions)
 
-    def _rows(self, state: State) -> dict[str, FloatArray]:
+    def _rows(self, state: State, places: FloatArray | None = None) -> dict[str, FloatArray]:
+        """Return the rows of the basis at places, the test's points where none are given."""
         stretch = state.factors.get("length", 1.0)
-        if stretch == 1.0:
+        elsewhere = places is not None and len(places) > len(self.measured.points)
+        if stretch == 1.0 and not elsewhere:
             return self.nominal_rows
-        points = np.array(self.measured.points)
+        points = np.array(places if elsewhere else self.measured.points)
         points[:, 0] = (points[:, 0] + self.growth * (stretch - 1)) / stretch
-        rows = self.reduced.rows(points)
+        rows = self.reduced.rows(points, self._directions(len(points)))
         return {n: m / stretch if n == "wx" else m for n, m in rows.items()}
+
+    def _directions(self, count: int) -> FloatArray | None:
+        told = self.measured.directions
+        return None if told is None else told[np.minimum(np.arange(count), len(told) - 1)]
 
     @property
     def growth(self) -> float:
@@ -221,31 +236,16 @@ class Predictor:
         share = {frozenset({"x0"}): 1.0, frozenset({"x1"}): 0.0}.get(frozenset(clamped), 0.5)
         return share * self.spec.length
 
-    def _product(self, seen: FloatArray, hit: FloatArray) -> FloatArray:
-        """Multiply the shape at the responses with the shape at the references; 1 where there is none."""
-        left = seen[self.measured.seen]
-        right = np.where(self.measured.hit[:, None] < 0, 1.0, hit[self.measured.hit])
-        return np.asarray(left * right)
-
-    def _change(self, shape: FloatArray, change: FloatArray) -> FloatArray:
-        left, right = shape[self.measured.seen], shape[self.measured.hit]
-        d_left, d_right = change[self.measured.seen], change[self.measured.hit]
-        bare = self.measured.hit[:, None] < 0
-        return np.asarray(np.where(bare, d_left, d_left * right + left * d_right))
-
-    def _slopes(self, shapes: dict[str, FloatArray]) -> FloatArray:
+    def _slopes(self, shapes: dict[str, FloatArray], read: Reading) -> FloatArray:
         names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
-        bare = self.measured.hit[:, None] < 0
-        seen = shapes["w"][self.measured.seen]
-        slopes = [
-            np.where(bare, shapes[n][self.measured.seen], seen * shapes[n][self.measured.hit]) for n in names
-        ]
+        bare = read.hit[:, None] < 0
+        seen = shapes["w"][read.seen]
+        slopes = [np.where(bare, shapes[n][read.seen], seen * shapes[n][read.hit]) for n in names]
         return np.stack(slopes)
 
-    def _sensor_slopes(self, shapes: dict[str, FloatArray]) -> FloatArray:
+    def _sensor_slopes(self, shapes: dict[str, FloatArray], read: Reading) -> FloatArray:
         names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
-        hit = np.where(self.measured.hit[:, None] < 0, 1.0, shapes["w"][self.measured.hit])
-        return np.stack([shapes[n][self.measured.seen] * hit for n in names])
+        return np.stack([read.product(shapes[n], shapes["w"]) for n in names])
 
     def _by_factor(
         self,
@@ -255,6 +255,7 @@ class Predictor:
         chosen: IntArray,
         name: str,
         rows: dict[str, FloatArray],
+        places: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
         """Return derivatives of ln f and of the shapes at the points by the logarithm of a factor."""
         stiffness, mass = self.reduced.log_sensitivity(state, name)
@@ -269,7 +270,7 @@ class Predictor:
         n = vectors.shape[0]
         change = rows["w"][:, :n] @ (vectors @ weights)
         if name == "length":
-            shift = (self.growth - self.measured.points[:, :1]) * np.ones((1, n))
+            shift = (self.growth - places[:, :1]) * np.ones((1, n))
             change = change + (shift * rows["wx"][:, :n]) @ vectors[:, chosen]
         return by_value / (2 * np.maximum(lam, 1e-12)), change
 
@@ -281,9 +282,8 @@ class Predictor:
         viscous, structural = self._damping_matrices(state)
         c = np.einsum("ir,ij,jr->r", vectors, viscous, vectors)
         d = np.einsum("ir,ij,jr->r", vectors, structural, vectors)
-        return np.asarray(
-            c / (2 * omega) + d / (2 * omega**2) + self._ratios(state, len(values)) + state.decay / omega
-        )
+        added = modal_losses(state, values, vectors) / (2 * omega) + state.decay / omega
+        return np.asarray(c / (2 * omega) + d / (2 * omega**2) + self._ratios(state, len(values)) + added)
 
     def expects(self, state: State) -> bool:
         """Whether model, regions or the state say what damping to expect."""
@@ -319,13 +319,14 @@ class Predictor:
         total = self.base.plus(state)
         stiffness, mass = self.reduced.matrices(total)
         viscous, structural = self._damping_matrices(total)
-        if self._given(total) is not None:
+        modal = any(loss.power not in (0.0, -1.0) for loss in total.losses)
+        if self._given(total) is not None or modal:
             values, vectors = linalg.eigh(stiffness, mass)
             first = self.reduced.structure.rigid_modes
             rates = np.zeros(len(values))
-            rates[first:] = (
-                2 * self._ratios(total, len(values) - first) * np.sqrt(np.maximum(values[first:], 0))
-            )
+            omega = np.sqrt(np.maximum(values[first:], 0))
+            rates[first:] = 2 * self._ratios(total, len(values) - first) * omega
+            rates[first:] += modal_losses(total, values[first:], vectors[:, first:])
             momenta = mass @ vectors
             viscous = viscous + (momenta * rates) @ momenta.T
         return Matrices(stiffness, mass, viscous, structural, self.reduced.structure.rigid_modes)
@@ -367,3 +368,10 @@ class Predictor:
             return self.under(total.theory).receptance(laplace, replace(state, theory=None))
         seen, hit = self.frf_rows(state)
         return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
+
+
+def _change(shape: FloatArray, change: FloatArray, read: Reading) -> FloatArray:
+    """Return the change of the constants that a change of the shapes makes, both (n_points, n_modes)."""
+    left, right = shape[read.seen], shape[read.hit]
+    d_left, d_right = change[read.seen], change[read.hit]
+    return np.asarray(np.where(read.hit[:, None] < 0, d_left, d_left * right + left * d_right))

@@ -6,11 +6,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
+import numpy as np
+
 from acquisition.arrays import FloatArray
-from updating.effects import Effect, Parameter
+from updating.effects import Effect, Parameter, Variant
+from updating.effects.base import Values
 from updating.models.spec import Theory
 from updating.models.state import State, combine
 from updating.prediction import Predictor
+
+MIDDLE = 0.5
+"""Quantile that stands in for a parameter that a variant fixes."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """What a candidate leaves in doubt beside its parameters.
+
+    Parameters
+    ----------
+    fidelity : float
+        How far its idealisation may be off, relative to the shift it makes [-].
+    damping : float
+        How far it leaves damping in doubt: 1 sigma of ln zeta [-].
+    """
+
+    fidelity: float = 0.0
+    damping: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,10 +45,23 @@ class Candidate:
         The effects; empty is 'only the tolerances'.
     theory : str, optional
         Theory the model is put on because the nominal one is known to fall short.
+    chosen : tuple of Variant
+        The form of each effect; empty is the plain form of all.
     """
 
     effects: tuple[Effect, ...] = ()
     theory: Theory | None = None
+    chosen: tuple[Variant, ...] = ()
+
+    @property
+    def forms(self) -> tuple[Variant, ...]:
+        """The form of each effect."""
+        return self.chosen or (Variant(),) * len(self.effects)
+
+    @property
+    def log_weight(self) -> float:
+        """Logarithm of the prior share of these forms [-]."""
+        return float(np.sum(np.log([form.weight for form in self.forms]))) if self.effects else 0.0
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -34,9 +69,12 @@ class Candidate:
         return tuple(effect.name for effect in self.effects)
 
     @property
-    def fidelity(self) -> float:
-        """How far the idealisations may be off, relative to the shift they make [-]."""
-        return max((effect.fidelity for effect in self.effects), default=0.0)
+    def doubt(self) -> Doubt:
+        """What the effects leave in doubt beside their parameters."""
+        return Doubt(
+            max((effect.fidelity for effect in self.effects), default=0.0),
+            max((effect.damping_doubt for effect in self.effects), default=0.0),
+        )
 
     def stage(self, predictor: Predictor) -> Predictor:
         """Return the predictor the effects act on."""
@@ -46,57 +84,69 @@ class Candidate:
         return predictor if theory is None else predictor.under(theory)
 
     def parameters(self, predictor: Predictor) -> tuple[tuple[str, Parameter], ...]:
-        """Return all parameters as (effect.parameter, prior)."""
-        return tuple((f"{e.name}.{p.name}", p) for e in self.effects for p in e.parameters(predictor))
+        """Return the parameters that are searched, as (effect.parameter, prior)."""
+        return tuple(
+            (f"{effect.name}.{p.name}", p)
+            for effect, form in zip(self.effects, self.forms, strict=True)
+            for p in _free(effect, form, predictor)
+        )
 
     def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
         """Take prior quantiles to values, by effect.parameter."""
-        return {
-            f"{e.name}.{n}": v for e, part in self._split(predictor, coordinates) for n, v in part.items()
-        }
-
-    def _split(
-        self, predictor: Predictor, coordinates: Sequence[float]
-    ) -> list[tuple[Effect, dict[str, float]]]:
-        parts, start = [], 0
         stage = self.stage(predictor)
-        for effect in self.effects:
-            end = start + len(effect.parameters(stage))
-            parts.append((effect, effect.values(stage, coordinates[start:end])))
-            start = end
+        return {f"{e.name}.{n}": v for e, part in self.split(stage, coordinates) for n, v in part.items()}
+
+    def split(self, stage: Predictor, coordinates: Sequence[float]) -> list[tuple[Effect, Values]]:
+        """Return the values of each effect's parameters at prior quantiles, on the predictor they act on."""
+        parts: list[tuple[Effect, Values]] = []
+        start = 0
+        for effect, form in zip(self.effects, self.forms, strict=True):
+            quantiles = []
+            for parameter in effect.parameters(stage):
+                fixed = parameter.name in form.values
+                quantiles.append(MIDDLE if fixed else coordinates[start])
+                start += not fixed
+            parts.append((effect, {**effect.values(stage, quantiles), **form.values}))
         return parts
 
     def state(self, predictor: Predictor, coordinates: Sequence[float]) -> State:
         """Return the state of the model at prior quantiles."""
         stage = self.stage(predictor)
-        states = [effect.state(stage, values) for effect, values in self._split(predictor, coordinates)]
-        return combine([*states, State(theory=self.theory)])
+        return self.assemble(stage, self.split(stage, coordinates))
+
+    def assemble(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
+        """Return the state of the model at values of the effects' parameters."""
+        return combine([*(effect.state(stage, values) for effect, values in parts), State(theory=self.theory)])
 
     def locations(
         self, predictor: Predictor, coordinates: Sequence[float], *, channel: str | None = None
     ) -> tuple[tuple[float, float, float], ...]:
         """Return where the effects sit, those of one channel or all [m]."""
         stage = self.stage(predictor)
-        parts = self._split(predictor, coordinates)
-        acting = [(e, v) for e, v in parts if channel in (None, e.channel)]
+        acting = [(e, v) for e, v in self.split(stage, coordinates) if channel in (None, e.channel)]
         return tuple(place for effect, values in acting for place in effect.locations(stage, values))
 
     def derived(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, tuple[float, str]]:
         """Return derived quantities by effect.name, as (value, unit)."""
         stage = self.stage(predictor)
-        parts = self._split(predictor, coordinates)
         return {
             f"{effect.name}.{n}": v
-            for effect, values in parts
+            for effect, values in self.split(stage, coordinates)
             for n, v in effect.derived(stage, values).items()
         }
 
     def starts(self, predictor: Predictor) -> list[FloatArray]:
         """Return prior quantiles to start a search from: every combination of the effects' own."""
-        import numpy as np
-
         stage = self.stage(predictor)
-        return [
-            np.concatenate([*map(np.asarray, s), []])
-            for s in product(*(e.starts(stage) for e in self.effects))
-        ]
+        own = [_starts(e, form, stage) for e, form in zip(self.effects, self.forms, strict=True)]
+        return [np.concatenate([*map(np.asarray, s), []]) for s in product(*own)]
+
+
+def _free(effect: Effect, form: Variant, predictor: Predictor) -> list[Parameter]:
+    return [p for p in effect.parameters(predictor) if p.name not in form.values]
+
+
+def _starts(effect: Effect, form: Variant, stage: Predictor) -> list[tuple[float, ...]]:
+    free = [p.name not in form.values for p in effect.parameters(stage)]
+    own = [tuple(u for u, is_free in zip(s, free, strict=True) if is_free) for s in effect.starts(stage)]
+    return list(dict.fromkeys(own))

@@ -99,7 +99,14 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
     predictor = predictor.looking(paired.measured)
     accepted = tuple(LIBRARY[name] for name, _ in case.accepted)
     problem = Problem(
-        predictor, paired.measured, tolerances, paired.order, baseline, baseline_order, accepted
+        predictor,
+        paired.measured,
+        tolerances,
+        paired.order,
+        baseline,
+        baseline_order,
+        accepted,
+        paired.trusted,
     )
     return problem, warnings
 

@@ -47,7 +47,7 @@ class Explanation:
     candidate : Candidate
         The effects.
     log_evidence : float
-        Logarithm of the evidence [-].
+        Logarithm of the evidence, the prior share of the effects' forms in it [-].
     best : Point
         Most probable parameters.
     samples : (m, k) array
@@ -95,10 +95,11 @@ def explain(
     -------
     Explanation
     """
-    places = candidate.starts(problem.predictor) if starts is None else starts
+    places = problem.starts(candidate) if starts is None else starts
     if len(places[0]) == 0:
         point = evaluate(problem, candidate, np.zeros(0))
-        return Explanation(candidate, point.marginal.log_likelihood, point, np.zeros((1, 0)), np.ones(1))
+        evidence = point.marginal.log_likelihood + candidate.log_weight
+        return Explanation(candidate, evidence, point, np.zeros((1, 0)), np.ones(1))
     peaks = _peaks(problem, candidate, places)
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
@@ -115,7 +116,8 @@ def explain(
         peaks = [*peaks, _moments(problem, candidate, samples, weights)]
         count = min(2 * count, 512)
     best = max([*points, *(p.point for p in peaks)], key=lambda p: p.marginal.log_likelihood)
-    return Explanation(candidate, total - float(np.log(len(samples))), best, samples, weights)
+    evidence = total - float(np.log(len(samples))) + candidate.log_weight
+    return Explanation(candidate, evidence, best, samples, weights)
 
 
 def _moments(problem: Problem, candidate: Candidate, samples: FloatArray, weights: FloatArray) -> Peak:

@@ -9,7 +9,8 @@ import numpy as np
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.gaussian import Marginal, marginal, whiten
-from updating.diagnosis.problem import Comparison, Problem
+from updating.diagnosis.comparison import Comparison
+from updating.diagnosis.problem import Problem
 
 STEP = 1e-3
 """Finite-difference step in prior quantiles."""
@@ -70,26 +71,23 @@ def evaluate(
     problem: Problem, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
 ) -> Point:
     """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide."""
-    state = candidate.state(problem.predictor, coordinates.tolist())
-    comparison = problem.compare(state, fidelity=candidate.fidelity)
+    comparison = problem.at(candidate, coordinates)
     result = marginal(comparison, keep)
     for _ in range(2 if problem.wide else 0):
-        shift = np.clip(result.shift[: len(problem.names)], -FARTHEST, FARTHEST)
-        comparison = problem.compare(state, shift, fidelity=candidate.fidelity)
+        comparison = problem.at(candidate, coordinates, np.clip(result.shift, -FARTHEST, FARTHEST))
         result = marginal(comparison, keep)
     return Point(coordinates, comparison, result)
 
 
 def sensitivities(problem: Problem, candidate: Candidate, point: Point) -> FloatArray:
     """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
-    shift = np.clip(point.marginal.shift[: len(problem.names)], -FARTHEST, FARTHEST) if problem.wide else None
+    shift = np.clip(point.marginal.shift, -FARTHEST, FARTHEST) if problem.wide else None
     columns = []
     for i, u in enumerate(point.coordinates):
         step = STEP if u < 0.5 else -STEP
         moved = point.coordinates.copy()
         moved[i] += step
-        state = candidate.state(problem.predictor, moved.tolist())
-        there = problem.compare(state, shift, fidelity=candidate.fidelity)
+        there = problem.at(candidate, moved, shift)
         columns.append((point.comparison.residual - there.residual) / step)
     return np.stack(columns, axis=1) if columns else np.zeros((len(point.comparison.residual), 0))
 

@@ -7,14 +7,14 @@ prior; a misfit of shapes then counts for as much as their noise, judged by all 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.special import logsumexp
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.diagnosis.problem import SCALES, Comparison
+from updating.diagnosis.comparison import SCALES, SHAPES, Comparison
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,13 +60,15 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     if not _sound(comparison):
         nothing = np.zeros(comparison.nuisance.shape[1])
         return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
-    shapes = comparison.channel == 2 if keep is None else (comparison.channel == 2) & keep
+    shapes = comparison.channel == SHAPES if keep is None else (comparison.channel == SHAPES) & keep
     scales = SCALES if shapes.any() else SCALES[:1]
-    parts = [gaussian(comparison, scale, keep) for scale in scales]
+    parts = gaussian(comparison, scales, keep)
     prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
     score = np.array([part.log_likelihood for part in parts]) + prior
     top = parts[int(np.argmax(score))]
-    return Marginal(float(logsumexp(score)), top.chi2, top.shift, top.count, top.scale)
+    peak = float(score.max())
+    total = peak + float(np.log(np.sum(np.exp(score - peak))))
+    return Marginal(total, top.chi2, top.shift, top.count, top.scale)
 
 
 def _sound(comparison: Comparison) -> bool:
@@ -79,17 +81,30 @@ def _sound(comparison: Comparison) -> bool:
     )
 
 
-def gaussian(comparison: Comparison, scale: float, keep: BoolArray | None = None) -> Marginal:
-    """Integrate the nuisances out at one scale of the noise of the shapes; see :func:`marginal`."""
+def gaussian(
+    comparison: Comparison, scales: Sequence[float], keep: BoolArray | None = None
+) -> list[Marginal]:
+    """Integrate the nuisances out at each of some scales of the noise of the shapes; see :func:`marginal`."""
     rows = slice(None) if keep is None else keep
-    r, j, d = comparison.residual[rows], comparison.nuisance[rows], comparison.noise(scale)[rows]
-    weighted = j / d[:, None]
-    inner = cho_factor(np.eye(j.shape[1]) + j.T @ weighted)
-    load = weighted.T @ r
-    shift = cho_solve(inner, load)
-    chi2 = float(r @ (r / d) - load @ shift)
-    log_det = float(np.sum(np.log(d)) + 2 * np.sum(np.log(np.diag(inner[0]))))
-    return Marginal(-0.5 * (chi2 + log_det + len(r) * np.log(2 * np.pi)), chi2, shift, len(r), scale)
+    r, j, d = comparison.residual[rows], comparison.nuisance[rows], comparison.variance[rows]
+    shapes = comparison.channel[rows] == SHAPES
+    data = np.column_stack([j, r])
+    # every scale weighs the same two Gram matrices, those of the shapes and of the rest
+    grams = [(data[part].T / d[part]) @ data[part] for part in (~shapes, shapes)]
+    share = 1.0 / np.square(np.asarray(scales))[:, None, None]
+    gram = grams[0] + share * grams[1]
+    p = j.shape[1]
+    inner = np.eye(p) + gram[:, :p, :p]
+    lower = np.linalg.cholesky(inner)
+    load = gram[:, :p, p:]
+    shift = np.linalg.solve(inner, load)[:, :, 0]
+    chi2 = gram[:, p, p] - np.einsum("sp,sp->s", load[:, :, 0], shift)
+    log_det = 2 * np.log(np.einsum("sii->si", lower)).sum(axis=1)
+    log_det += np.sum(np.log(d)) + 2 * shapes.sum() * np.log(np.asarray(scales))
+    score = -0.5 * (chi2 + log_det + len(r) * np.log(2 * np.pi))
+    return [
+        Marginal(float(score[i]), float(chi2[i]), shift[i], len(r), scale) for i, scale in enumerate(scales)
+    ]
 
 
 def whiten(

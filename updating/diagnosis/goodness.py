@@ -7,10 +7,7 @@ from scipy.stats import chi2, norm
 
 from updating.diagnosis.fit import Point
 from updating.diagnosis.gaussian import gaussian, marginal
-from updating.diagnosis.problem import SCALES
-
-CHANNELS = ("frequency", "damping", "frf")
-
+from updating.diagnosis.comparison import CHANNELS, SCALES, SHAPES
 
 def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     """Return the p-value of each channel and of all data together.
@@ -28,7 +25,7 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     Returns
     -------
     dict
-        ``frequency``, ``damping``, ``frf`` where there are such data, ``all`` of them together, and ``doubts``:
+        Each of ``CHANNELS`` where there are such data, ``all`` of them together, and ``doubts``:
         whether a tolerance or the calibration had to be stretched beyond belief.
     """
     comparison = point.comparison
@@ -44,12 +41,13 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
         )
         if not keep.any():
             continue
-        shapes = bool((comparison.channel[keep] == 2).any())
+        shapes = bool((comparison.channel[keep] == SHAPES).any())
         tried = list(zip(SCALES, tails, strict=True)) if shapes else [(1.0, 1.0)]
-        parts = [(gaussian(comparison, scale, keep), tail) for scale, tail in tried]
+        found = gaussian(comparison, [scale for scale, _ in tried], keep)
+        parts = [(part, tail) for part, (_, tail) in zip(found, tried, strict=True)]
         freedom = max(int(keep.sum()) - (fitted if name == "all" else 0), 1)
         values[name] = max(min(float(chi2.sf(part.chi2, freedom)), float(tail)) for part, tail in parts)
-    named = point.marginal.shift[: comparison.doubts]
+    named = point.marginal.shift[comparison.doubts]
     if len(named):
         values["doubts"] = float(min(1.0, len(named) * 2 * norm.sf(np.abs(named).max())))
     return values

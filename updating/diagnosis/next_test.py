@@ -16,7 +16,8 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.evidence import Explanation
 from updating.diagnosis.fit import sensitivities
-from updating.diagnosis.problem import Comparison, Problem
+from updating.diagnosis.comparison import Comparison
+from updating.diagnosis.problem import Problem
 from updating.diagnosis.result import NextTest
 from updating.diagnosis.search import Search
 from updating.effects.base import total_mass
@@ -143,7 +144,7 @@ def _difference(
         state = explanation.candidate.state(problem.predictor, explanation.best.coordinates.tolist())
         if extra is not None:
             state = state.plus(extra(explanation.candidate.stage(problem.predictor)))
-        there.append(problem.compare(state, fidelity=explanation.candidate.fidelity))
+        there.append(problem.compare(state, doubt=explanation.candidate.doubt))
     free = sensitivities(problem, b.candidate, b.best)
     columns = np.hstack([there[1].nuisance, free])
     return there[1].residual - there[0].residual, columns, there[1].variance, there[1].nuisance.shape[1]

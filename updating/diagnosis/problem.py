@@ -1,4 +1,4 @@
-"""The comparison of one test with one state of the model: residuals, nuisances and noise.
+"""The problem of a diagnosis: a test, a model, and everything that is doubted about either.
 
 Every doubt that is not an effect is a *nuisance*: a column of sensitivities with a standard normal prior.
 They are the modeller's tolerances, the calibration, the common level of damping, and where each point was
@@ -13,9 +13,11 @@ from functools import cached_property
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.diagnosis.before import Before
-from updating.effects.base import Effect
+from updating.diagnosis.candidate import Candidate, Doubt
+from updating.diagnosis.comparison import KNOWN_SCATTER, UNKNOWN_SCATTER, Block, Comparison, assemble
+from updating.effects.base import Effect, Parameter, Variant
 from updating.matching import match
 from updating.measured import Measured
 from updating.models.base import FACTORS
@@ -26,13 +28,6 @@ from updating.tolerances import Tolerances
 SHAPE_FLOOR = 0.005
 """Error of a modal constant that no coherence shows (cross-talk, direction), relative to the mode's r.m.s."""
 
-SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
-"""How many times worse than thought the shapes may be."""
-
-KNOWN_SCATTER = (0.85, 0.12, 0.025, 0.004, 0.001)
-UNKNOWN_SCATTER = (0.3, 0.25, 0.2, 0.15, 0.1)
-"""Prior of each scale, where repeated hits show the scatter and where nothing does."""
-
 REPEATED_DAMPING = 0.1
 """Scatter of damping from one mounting of a specimen to the next, relative [-]."""
 
@@ -42,43 +37,11 @@ LEAST_NOISE = 1e-6
 UNKNOWN_LEVEL = 0.2
 """A calibration worse than this is found by least squares before anything is linearised."""
 
+TURNED = 0.03
+"""How far damping that is not proportional, and filters, turn a mode's constants (1 sigma) [rad]."""
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
-    """Measured minus predicted data at one state, with what may explain it.
 
-    Parameters
-    ----------
-    residual : (n,) array
-        ln f, then ln damping ratio, then modal constants over their r.m.s. per mode [-].
-    nuisance : (n, p) array
-        Change of the prediction per standard deviation of each nuisance [-].
-    variance : (n,) array
-        Variance of the independent noise [-].
-    channel : (n,) int array
-        0 frequency, 1 damping, 2 shape and level.
-    mode : (n,) int array
-        Measured mode each datum belongs to.
-    prediction : Prediction
-        The predicted modes, in the order of the measured ones.
-    scale_prior : tuple of float
-        Prior of each of ``SCALES`` on the noise of the shapes [-].
-    doubts : int
-        How many of the first nuisances are named doubts: tolerances, level of damping, calibration.
-    """
-
-    residual: FloatArray
-    nuisance: FloatArray
-    variance: FloatArray
-    channel: IntArray
-    mode: IntArray
-    prediction: Prediction
-    scale_prior: tuple[float, ...] = KNOWN_SCATTER
-    doubts: int = 0
-
-    def noise(self, scale: float) -> FloatArray:
-        """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
-        return np.where(self.channel == 2, scale**2, 1.0) * self.variance
+NO_DOUBT = Doubt()
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +64,8 @@ class Problem:
         Rank of the model mode of each of them, for data without shapes.
     accepted : tuple of Effect
         Effects put into the model beforehand, the first of the predictor's additions.
+    trusted : (n_frf,) bool array, optional
+        Rows by whose shapes modes are paired; left out, all.
     """
 
     predictor: Predictor
@@ -110,6 +75,59 @@ class Problem:
     baseline: Measured | None = None
     baseline_order: IntArray | None = None
     accepted: tuple[Effect, ...] = ()
+    trusted: BoolArray | None = None
+
+    @property
+    def specimens(self) -> tuple[Problem, ...]:
+        """The specimens: this one."""
+        return (self,)
+
+    def applies(self, effect: Effect) -> str | None:
+        """Return why an effect cannot be examined, or None."""
+        return effect.why_not(self.predictor)
+
+    def forms(self, effect: Effect) -> tuple[Variant, ...]:
+        """Return the forms in which an effect may come."""
+        stage = Candidate((effect,)).stage(self.predictor)
+        return effect.variants(stage)
+
+    def starts(self, candidate: Candidate) -> list[FloatArray]:
+        """Return prior quantiles from which to search."""
+        return candidate.starts(self.predictor)
+
+    def parameters(self, candidate: Candidate) -> tuple[tuple[str, Parameter], ...]:
+        """Return the parameters that are searched, as (effect.parameter, prior)."""
+        return candidate.parameters(candidate.stage(self.predictor))
+
+    def values(self, candidate: Candidate, coordinates: FloatArray) -> dict[str, float]:
+        """Return all values at prior quantiles, by effect.parameter."""
+        return candidate.values(self.predictor, coordinates.tolist())
+
+    def derived(self, candidate: Candidate, coordinates: FloatArray) -> dict[str, tuple[float, str]]:
+        """Return derived quantities at prior quantiles, by effect.name."""
+        return candidate.derived(self.predictor, coordinates.tolist())
+
+    def place(self, candidate: Candidate, coordinates: FloatArray) -> tuple[State, ...]:
+        """Return the state of each specimen at prior quantiles."""
+        return (candidate.state(self.predictor, coordinates.tolist()),)
+
+    def at(
+        self, candidate: Candidate, coordinates: FloatArray, shift: FloatArray | None = None
+    ) -> Comparison:
+        """Compare the data with a candidate at prior quantiles.
+
+        Parameters
+        ----------
+        candidate : Candidate
+            Effects.
+        coordinates : (k,) array
+            Prior quantiles of their parameters [-].
+        shift : (p,) array, optional
+            Nuisances about which tolerances are linearised; left out, none [standard deviations].
+        """
+        (state,) = self.place(candidate, coordinates)
+        told = None if shift is None else shift[: len(self.names)]
+        return self.compare(state, told, doubt=candidate.doubt)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -158,14 +176,17 @@ class Problem:
     def nominal(self) -> Prediction:
         """The nominal prediction of the matched modes."""
         prediction = self.predictor.predict(factors=self.names, at_least=self.reach)
-        return prediction.select(match(self.measured, prediction, self.order))
+        return prediction.select(self._match(prediction))
+
+    def _match(self, prediction: Prediction) -> IntArray:
+        return match(self.measured, prediction, self.order, self.trusted)
 
     @property
     def wide(self) -> bool:
         """Whether tolerances are too wide for one linearisation."""
         return bool(len(self.sigmas)) and float(self.sigmas.max()) > 0.04
 
-    def compare(self, state: State, shift: FloatArray | None = None, *, fidelity: float = 0.0) -> Comparison:
+    def compare(self, state: State, shift: FloatArray | None = None, *, doubt: Doubt = NO_DOUBT) -> Comparison:
         """Compare the test with a state of the model.
 
         Parameters
@@ -174,47 +195,27 @@ class Problem:
             Departure from the nominal model.
         shift : (n_names,) array, optional
             Tolerance nuisances applied to the model before it is linearised [standard deviations].
-        fidelity : float
-            How far the state's idealisation may be off, relative to the shift it makes [-].
+        doubt : Doubt
+            What the state leaves in doubt.
         """
         shift = np.zeros(len(self.names)) if shift is None else shift
         moved = State(factors=dict(zip(self.names, np.exp(shift * self.sigmas), strict=True)))
-        prediction = self.predictor.predict(state.plus(moved), factors=self.names, at_least=self.reach)
-        prediction = prediction.select(match(self.measured, prediction, self.order))
-        reference = self.nominal if fidelity else None
-        blocks = [self._frequencies(prediction, reference, fidelity), self._dampings(prediction)]
+        whole = state.plus(moved)
+        prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
+        prediction = prediction.select(self._match(prediction))
+        signs = np.ones(len(prediction.frequency))
+        blocks = [self._frequencies(prediction, doubt.fidelity), self._dampings(prediction, doubt.damping)]
+        if self.measured.phase is not None and self.measured.has_shapes:
+            phases, signs = self._phases(self.predictor.base.plus(whole), prediction)
+            blocks.append(phases)
         if self.measured.has_shapes:
-            blocks.append(self._shapes(prediction, reference, fidelity))
-        return self._assemble(blocks, shift, prediction)
+            blocks.append(self._shapes(prediction, signs, doubt.fidelity))
+        if self.measured.slope is not None:
+            blocks.append(self._slopes(self.predictor.base.plus(whole), prediction, doubt.fidelity))
+        prior = KNOWN_SCATTER if self.measured.repeated else UNKNOWN_SCATTER
+        return assemble(sorted(blocks, key=lambda b: b.channel), self.sigmas, shift, prediction, prior)
 
-    def _assemble(self, blocks: list[_Block], shift: FloatArray, prediction: Prediction) -> Comparison:
-        columns = sum(b.own.shape[1] for b in blocks) + len(self.names)
-        rows = sum(len(b.residual) for b in blocks)
-        nuisance = np.zeros((rows, columns))
-        row, column = 0, len(self.names)
-        for block in blocks:
-            end, right = row + len(block.residual), column + block.own.shape[1]
-            nuisance[row:end, : len(self.names)] = block.factors * self.sigmas
-            nuisance[row:end, column:right] = block.own
-            row, column = end, right
-        residual = np.concatenate([b.residual for b in blocks])
-        residual = residual + nuisance[:, : len(self.names)] @ shift
-        channel = np.concatenate([np.full(len(b.residual), i) for i, b in enumerate(blocks)])
-        return Comparison(
-            residual,
-            nuisance,
-            np.concatenate([b.variance for b in blocks]),
-            channel,
-            np.concatenate([b.mode for b in blocks]),
-            prediction,
-            KNOWN_SCATTER if self.measured.repeated else UNKNOWN_SCATTER,
-            len(self.names)
-            + blocks[0].own.shape[1]
-            + blocks[1].own.shape[1]
-            + int(self.measured.absolute and len(blocks) > 2),
-        )
-
-    def _frequencies(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:
+    def _frequencies(self, now: Prediction, fidelity: float) -> Block:
         test = self.measured
         variance = (test.frequency_sigma / test.frequency) ** 2 + max(test.repeatability, LEAST_NOISE) ** 2
         by = now.log_frequency_by
@@ -223,12 +224,12 @@ class Problem:
             variance, by = variance + doubt, by - known
         variance = variance + self._accepted_variance
         n = len(test.frequency)
-        own = np.zeros((n, 0))
-        if reference is not None:
+        named, own = np.zeros((n, 0)), np.zeros((n, 0))
+        if fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
-            doubtful = fidelity * np.log(now.frequency / reference.frequency)
-            variance, own = variance + doubtful**2, doubtful[:, None]
-        return _Block(np.log(test.frequency / now.frequency), by, own, variance, np.arange(n))
+            doubtful = fidelity * np.log(now.frequency / self.nominal.frequency)
+            variance, named = variance + doubtful**2, doubtful[:, None]
+        return Block(0, np.log(test.frequency / now.frequency), variance, by, named, own, np.arange(n))
 
     @cached_property
     def _accepted_variance(self) -> FloatArray:
@@ -237,7 +238,7 @@ class Problem:
             return np.zeros(len(self.measured.frequency))
         without = self.predictor.looking(self.measured, self.predictor.additions[len(self.accepted) :])
         plain = without.predict(at_least=self.reach)
-        plain = plain.select(match(self.measured, plain, self.order))
+        plain = plain.select(self._match(plain))
         shift = np.log(self.nominal.frequency / plain.frequency)
         return np.asarray((self.doubt_of_accepted * shift) ** 2)
 
@@ -253,51 +254,97 @@ class Problem:
             return np.full(len(now.frequency), told)
         return np.where(self.before.seen(now) > 0.5, self.damping_doubt, told)
 
-    def _dampings(self, now: Prediction) -> _Block:
+    def _dampings(self, now: Prediction, doubt: float) -> Block:
         rows = self.damping_known
         test = self.measured
         relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=0.05)
         expected = np.maximum(now.damping[rows], 1e-7)
         tolerance = self._damping_tolerance(now)[rows]
-        variance = relative**2 + tolerance**2
-        return _Block(
+        variance = relative**2 + tolerance**2 + doubt**2
+        level = np.stack([tolerance, np.full(len(rows), doubt)], axis=1)[:, : 1 + (doubt > 0)]
+        return Block(
+            1,
             np.log(test.damping[rows] / expected),
-            np.zeros((len(rows), len(self.names))),
-            tolerance[:, None] if len(rows) else np.zeros((0, 0)),
             variance,
+            np.zeros((len(rows), len(self.names))),
+            level if len(rows) else np.zeros((0, 0)),
+            np.zeros((len(rows), 0)),
             rows,
         )
 
-    def _shapes(self, now: Prediction, reference: Prediction | None, fidelity: float) -> _Block:
+    def _phases(self, whole: State, now: Prediction) -> tuple[Block, FloatArray]:
+        """Return how far each chain turns each mode beyond the delay, and by what sign a turn past pi/2 is undone."""
+        test = self.measured
+        assert test.phase is not None
+        assert test.phase_sigma is not None
+        expected = -2 * np.pi * test.frequency * whole.delay
+        turns = np.round((expected - test.phase) / np.pi)
+        residual = test.phase - expected + np.pi * turns
+        n_chains, n_modes = residual.shape
+        columns = np.repeat(TURNED * np.eye(n_modes)[None], n_chains, axis=0).reshape(-1, n_modes)
+        block = Block(
+            3,
+            residual.ravel(),
+            (test.phase_sigma**2 + (0.3 * TURNED) ** 2).ravel(),
+            np.zeros((residual.size, len(self.names))),
+            np.zeros((residual.size, 0)),
+            columns,
+            np.tile(np.arange(n_modes), n_chains),
+        )
+        assert test.chain is not None
+        return block, np.where(turns[test.chain] % 2 == 0, 1.0, -1.0)
+
+    def _slopes(self, whole: State, now: Prediction, fidelity: float) -> Block:
+        """Return by how much more than predicted frequencies depend on the force, times its mean."""
+        test = self.measured
+        assert test.slope is not None
+        assert test.slope_sigma is not None
+        level = test.level or 1.0
+        n = len(test.slope)
+        uneven = fidelity * whole.slope * level
+        known = np.isfinite(test.slope)
+        return Block(
+            4,
+            level * np.where(known, test.slope - whole.slope, 0.0),
+            np.where(known, (level * test.slope_sigma) ** 2 + uneven**2, 1.0),
+            np.zeros((n, len(self.names))),
+            np.zeros((n, 0)),
+            np.zeros((n, 0)),
+            np.arange(n),
+        )
+
+    def _shapes(self, now: Prediction, signs: FloatArray, fidelity: float) -> Block:
         test, scale = self.measured, self.scale
         constants, by, doubt = now.constants, now.constants_by, np.zeros_like(now.constants)
         if self.before is not None:
             missed, doubt, known = self.before.shapes(now)
             constants, by = constants + missed, by - known
-        predicted, by, along = constants / scale, by / scale[:, None], now.along / scale
-        along_scale: FloatArray | float | None = None
+        if signs.ndim == 1:
+            signs = np.broadcast_to(signs, constants.shape)
+        level = signs / scale
         if not test.absolute:
-            share = _projection(test.constants / scale, predicted, axis=0)
-            predicted, by, along = predicted * share, by * share[:, None], along * share
-            along_scale = share
+            level = level * _projection(test.constants / scale, constants * level, axis=0)
         elif test.calibration > UNKNOWN_LEVEL:
-            level = float(_projection(test.constants / scale, predicted, axis=None))
-            predicted, by, along = predicted * level, by * level, along * level
-            along_scale = level
+            level = level * float(_projection(test.constants / scale, constants * level, axis=None))
+        predicted, by = constants * level, by * level[:, :, None]
         variance = (test.constants_sigma**2 + doubt) / scale**2 + SHAPE_FLOOR**2
-        if reference is not None:
+        if fidelity:
             # the part of the change that is not a mere change of the mode's level
-            before = reference.constants / scale
+            before = self.nominal.constants / scale
             before = before * _projection(predicted, before, axis=0)
             variance = variance + (fidelity * (predicted - before)) ** 2
-        sensors = now.along_seen / scale * (along_scale if along_scale is not None else 1.0)
-        own = [self._level_columns(predicted), self._position_columns(along), self._sensor_columns(sensors)]
+        gain = self._level_columns(predicted)
+        own = [self._position_columns(now.along * level), self._sensor_columns(now.along_seen * level)]
         modes = np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel()
-        return _Block(
+        if not test.absolute:
+            own, gain = [gain, *own], np.zeros((predicted.size, 0))
+        return Block(
+            2,
             (test.constants / scale - predicted).ravel(),
-            by.reshape(predicted.size, len(self.names)),
-            np.hstack(own),
             variance.ravel(),
+            by.reshape(predicted.size, len(self.names)),
+            gain,
+            np.hstack(own),
             modes,
         )
 
@@ -329,15 +376,6 @@ class Problem:
             for slope in along
         ]
         return np.stack(columns, axis=1)
-
-
-@dataclass(frozen=True, eq=False)
-class _Block:
-    residual: FloatArray
-    factors: FloatArray
-    own: FloatArray
-    variance: FloatArray
-    mode: IntArray
 
 
 def _projection(data: FloatArray, model: FloatArray, *, axis: int | None) -> FloatArray:

@@ -36,13 +36,23 @@ class Gap:
 
 @dataclass(frozen=True)
 class ParameterEstimate:
-    """A parameter of an effect with its 95 % interval [unit]."""
+    """A parameter of an effect with its 95 % interval [unit], or what its form fixes: points, which have none."""
 
-    value: float
+    value: float | str | tuple[int, ...]
     unit: str
-    low95: float
-    high95: float
+    low95: float | None
+    high95: float | None
     at_bound: bool
+
+    def __str__(self) -> str:
+        if isinstance(self.value, str):
+            return self.value
+        if isinstance(self.value, tuple):
+            return ", ".join(map(str, self.value))
+        unit = "" if self.unit in {"-", "node"} else f" {self.unit}"
+        if self.low95 is None:
+            return f"{self.value:g}"
+        return f"{self.value:.4g} [{self.low95:.4g}, {self.high95:.4g}]{unit}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +77,52 @@ class Zone:
 
 
 @dataclass(frozen=True)
+class Seat:
+    """One place where a cause may sit.
+
+    Parameters
+    ----------
+    place : tuple of float
+        Where it most probably is [m].
+    spread : tuple of float
+        Standard deviation along each axis [m].
+    probability : float
+        Share of the explanation's probability; places taken at the same time have 1 each [-].
+    """
+
+    place: Place
+    spread: Place
+    probability: float
+
+
+@dataclass(frozen=True, eq=False)
 class Where:
-    """Where the cause sits."""
+    """Where the cause sits.
+
+    Parameters
+    ----------
+    channel : str
+        stiffness, mass, damping, measurement, or none.
+    channels : dict of str to float
+        Probability of each, given that there is a cause; ``none`` is that of no cause at all [-].
+    location : tuple of float, optional
+        The most probable place [m].
+    locations : tuple of tuple of float
+        All places that hold a notable share of the probability, mirrored ones too, most probable first [m].
+    points : tuple of int
+        Test nodes concerned: at the places, or those of which an effect of the measurement speaks.
+    zones : tuple of Zone
+        Probability of each region.
+    zones_by : {"explanations", "regions"}
+        Whether these rest on the places of the explanations, or, where nothing explains the gap, on the evidence of
+        a change of one region alone.
+    seats : tuple of Seat
+        The locations with spread and probability.
+    modes : DataFrame, optional
+        What each mode adds to the gap, in standard deviations; see :mod:`updating.diagnosis.contributions`.
+    band : str
+        One sentence on the modes and the kind of data that carry the gap.
+    """
 
     channel: str
     channels: dict[str, float]
@@ -76,6 +130,10 @@ class Where:
     locations: tuple[Place, ...]
     points: tuple[int, ...]
     zones: tuple[Zone, ...]
+    zones_by: Literal["explanations", "regions"] = "explanations"
+    seats: tuple[Seat, ...] = ()
+    modes: pd.DataFrame | None = None
+    band: str = ""
 
 
 @dataclass(frozen=True)
@@ -163,8 +221,7 @@ class Diagnosis:
                 "probability": r.probability,
                 "fits (p)": r.p_value,
                 "parameters": ", ".join(
-                    f"{n} = {e.value:.4g} [{e.low95:.4g}, {e.high95:.4g}] {e.unit}"
-                    for n, e in r.parameters.items()
+                    f"{n} = {e}" for n, e in r.parameters.items()
                 ),
             }
             for r in self.ranking

@@ -1,9 +1,13 @@
-"""Which candidates are weighed: singles first, pairs when no single explains the data."""
+"""Which candidates are weighed: singles first, pairs when no single explains the data.
+
+An effect may come in several forms (which point, which sign); each is weighed by itself, with its share of the
+effect's prior, and their evidence is added up.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -16,7 +20,7 @@ from updating.diagnosis.fit import sensitivities
 from updating.diagnosis.gaussian import whiten
 from updating.diagnosis.goodness import p_value
 from updating.diagnosis.problem import Problem
-from updating.effects import Effect
+from updating.effects import Effect, Variant
 
 REJECTED = 0.01
 """An explanation that fits worse than this is rejected."""
@@ -29,6 +33,9 @@ WORTH_A_CLOSER_LOOK = 0.03
 
 PAIRS = 8
 """How many pairs are weighed, those a linear look finds the most promising."""
+
+FORM_SHARE = 0.02
+"""Forms of an effect with less than this share of the most probable one do not speak for its fit [-]."""
 
 PAIR_PRIOR = 0.05
 """Prior weight of a pair against a single effect."""
@@ -69,7 +76,7 @@ class Search:
 
 def examine(problem: Problem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
     """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
-    obstacles = {effect.name: effect.why_not(problem.predictor) for effect in library}
+    obstacles = {effect.name: problem.applies(effect) for effect in library}
     possible = [effect for effect in library if obstacles[effect.name] is None]
     return possible, {name: why for name, why in obstacles.items() if why is not None}
 
@@ -89,13 +96,30 @@ def search(problem: Problem, library: Sequence[Effect]) -> Search:
     twin = _falls_short(problem, effects)
     singles: list[Explanation] = []
     for effect in effects:
-        singles.append(_single(problem, effect, twin=twin, bar=_bar([nothing, *singles])))
+        for form in problem.forms(effect):
+            singles.append(_single(problem, effect, form, twin=twin, bar=_bar([nothing, *singles])))
     found = [nothing, *singles]
     if max(_fit(e) for e in found) < REJECTED:
         found += _pairs(problem, singles)
-    rows = _weigh(found)
+    rows = sorted(_weigh(found), key=lambda row: -row.probability)
     closer = [_closer(problem, row) if i < CLOSER_LOOKS else row.explanation for i, row in enumerate(rows)]
-    return Search(nothing, _weigh(closer), obstacles)
+    return Search(nothing, _merged(_weigh(closer)), obstacles)
+
+
+def _merged(rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
+    """Add up the forms of each set of effects; the most probable form stands for them."""
+    forms: dict[frozenset[str], list[Weighed]] = {}
+    for row in rows:
+        forms.setdefault(frozenset(row.names), []).append(row)
+    merged = []
+    for own in forms.values():
+        top = max(own, key=lambda row: row.probability)
+        total = float(logsumexp([row.explanation.log_evidence for row in own]))
+        fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
+        merged.append(
+            Weighed(replace(top.explanation, log_evidence=total), sum(row.probability for row in own), fits)
+        )
+    return tuple(sorted(merged, key=lambda row: -row.probability))
 
 
 def _closer(problem: Problem, row: Weighed) -> Explanation:
@@ -117,12 +141,11 @@ def _fit(explanation: Explanation) -> float:
     return p_value(explanation.best, explanation.samples.shape[1])
 
 
-def _weigh(found: list[Explanation]) -> tuple[Weighed, ...]:
+def _weigh(found: list[Explanation]) -> list[Weighed]:
     prior = np.array([PAIR_PRIOR if len(e.names) > 1 else 1.0 for e in found])
     score = np.array([e.log_evidence for e in found]) + np.log(prior)
     probability = np.exp(score - logsumexp(score))
-    rows = [Weighed(e, float(p), _fit(e)) for e, p in zip(found, probability, strict=True)]
-    return tuple(sorted(rows, key=lambda row: -row.probability))
+    return [Weighed(e, float(p), _fit(e)) for e, p in zip(found, probability, strict=True)]
 
 
 def _falls_short(problem: Problem, effects: list[Effect]) -> bool:
@@ -144,60 +167,69 @@ def _falls_short(problem: Problem, effects: list[Effect]) -> bool:
     return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
 
 
-def _single(problem: Problem, effect: Effect, *, twin: bool, bar: float) -> Explanation:
-    """Weigh one effect; where the theory falls short, on either theory and half the evidence of each."""
-    plain = explain(problem, Candidate((effect,)), bar=bar)
+def _single(problem: Problem, effect: Effect, form: Variant, *, twin: bool, bar: float) -> Explanation:
+    """Weigh one form of an effect; where the theory falls short, on either theory and half the evidence of each."""
+    plain = explain(problem, Candidate((effect,), chosen=(form,)), bar=bar)
     if not twin or effect.name == "shear":
         return plain
-    better = explain(problem, Candidate((effect,), theory="timoshenko"), bar=bar)
+    better = explain(problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), bar=bar)
     total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
     chosen = max(plain, better, key=lambda e: e.log_evidence)
-    return Explanation(chosen.candidate, total, chosen.best, chosen.samples, chosen.weights)
+    return replace(chosen, log_evidence=total)
 
 
 def _pairs(problem: Problem, singles: list[Explanation]) -> list[Explanation]:
     """Weigh the pairs that a linear look at every pair finds the most promising."""
+    possible = [e for e in singles if e.best.possible]
+    reached = _linear_looks(problem, possible)
+    data = len(problem.at(Candidate(), np.zeros(0)).residual)
     looks = []
-    data = len(problem.measured.frequency) + len(problem.damping_known) + problem.measured.constants.size
-    for first, second in combinations(singles, 2):
+    for i, j in combinations(range(len(possible)), 2):
+        first, second = possible[i], possible[j]
+        if first.names == second.names:
+            continue
         if len(first.best.coordinates) + len(second.best.coordinates) >= data:
             continue  # as many parameters as data explain anything
-        gain, starts = _linear_look(problem, first, second)
-        looks.append((gain, first, second, starts))
+        weight = first.candidate.log_weight + second.candidate.log_weight
+        looks.append((max(reached[i, j], reached[j, i]) + weight, first, second))
     looks = [look for look in looks if np.isfinite(look[0])]
     looks.sort(key=lambda look: -look[0])
     found: list[Explanation] = []
-    for _, first, second, starts in looks[:PAIRS]:
+    for _, first, second in looks[:PAIRS]:
+        middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]
+        a, b = first.best.coordinates, second.best.coordinates
+        starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
         bar = _bar([*singles, *found])
         found.append(explain(problem, _joined(first, second), starts=starts, bar=bar))
     return found
 
 
 def _joined(first: Explanation, second: Explanation) -> Candidate:
-    theory = first.candidate.theory or second.candidate.theory
-    return Candidate(first.candidate.effects + second.candidate.effects, theory=theory)
+    a, b = first.candidate, second.candidate
+    return Candidate(a.effects + b.effects, theory=a.theory or b.theory, chosen=a.forms + b.forms)
 
 
-def _linear_look(problem: Problem, first: Explanation, second: Explanation) -> tuple[float, list[FloatArray]]:
-    """Return the log-likelihood that a linear step from either single's best would reach, and where to start."""
-    reached, starts = [], []
-    for leader, other in ((first, second), (second, first)):
-        if not (leader.best.possible and other.best.possible):
-            continue
-        columns = [sensitivities(problem, leader.candidate, leader.best), _increment(problem, other)]
-        normal, load = whiten(
-            leader.best.comparison, np.nan_to_num(np.hstack(columns)), leader.best.marginal.scale
-        )
-        step = np.linalg.lstsq(normal, load, rcond=1e-10)[0]
-        reached.append(leader.best.marginal.log_likelihood + 0.5 * float(load @ step))
-    middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]
-    a, b = first.best.coordinates, second.best.coordinates
-    starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
-    return max(reached, default=-np.inf), starts
+def _linear_looks(problem: Problem, singles: list[Explanation]) -> FloatArray:
+    """Return the log-likelihood that a linear step from each single's best, with each other, would reach.
 
-
-def _increment(problem: Problem, explanation: Explanation) -> FloatArray:
-    """Return what an effect at its best adds to the nominal prediction, and its sensitivities there."""
-    plain = problem.compare(Candidate().state(problem.predictor, ()))
-    whole = (plain.residual - explanation.best.comparison.residual)[:, None]
-    return np.hstack([whole, sensitivities(problem, explanation.candidate, explanation.best)])
+    Returns
+    -------
+    (n, n) array
+        Row: whose best is the start; column: whose whole shift, and its sensitivities there, are added [-].
+    """
+    nominal = problem.at(Candidate(), np.zeros(0)).residual
+    own = [np.nan_to_num(sensitivities(problem, e.candidate, e.best)) for e in singles]
+    shifts = [(nominal - e.best.comparison.residual)[:, None] for e in singles]
+    everything = np.nan_to_num(np.hstack([np.hstack(pair) for pair in zip(shifts, own, strict=True)]))
+    ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
+    reached = np.full((len(singles), len(singles)), -np.inf)
+    for i, leader in enumerate(singles):
+        normal, load = whiten(leader.best.comparison, everything, leader.best.marginal.scale)
+        start = leader.best.marginal.log_likelihood
+        mine = np.arange(ends[i] + 1, ends[i + 1])
+        for j in range(len(singles)):
+            if j != i:
+                columns = np.concatenate([mine, np.arange(ends[j], ends[j + 1])])
+                step = np.linalg.lstsq(normal[np.ix_(columns, columns)], load[columns], rcond=1e-10)[0]
+                reached[i, j] = start + 0.5 * float(load[columns] @ step)
+    return reached

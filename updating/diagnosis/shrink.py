@@ -8,7 +8,8 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.evidence import Explanation
 from updating.diagnosis.fit import climb, evaluate
-from updating.diagnosis.goodness import CHANNELS, carrier
+from updating.diagnosis.comparison import CHANNELS
+from updating.diagnosis.goodness import carrier
 from updating.diagnosis.problem import Problem
 from updating.diagnosis.result import Closed, Shrink
 
@@ -62,13 +63,13 @@ def _rms(values: FloatArray) -> float:
 def _raw(problem: Problem, metric: str) -> FloatArray:
     """Return the errors of the nominal model as it stands, no tolerance moved."""
     comparison = evaluate(problem, Candidate(), np.zeros(0)).comparison
-    plain = problem.compare(Candidate().state(problem.predictor, ()))
+    plain = problem.at(Candidate(), np.zeros(0))
     return np.asarray(plain.residual[comparison.channel == CHANNELS.index(metric)])
 
 
 def _noise(problem: Problem, metric: str) -> FloatArray:
     """Return the variance that repeating the test (and the baseline) alone would give, per datum of a channel."""
-    plain = problem.compare(Candidate().state(problem.predictor, ()))
+    plain = problem.at(Candidate(), np.zeros(0))
     rows = plain.channel == CHANNELS.index(metric)
     if metric == "frequency":
         tests = [problem.measured] + ([] if problem.baseline is None else [problem.baseline])

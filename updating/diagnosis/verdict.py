@@ -94,22 +94,22 @@ def _plausible(problem: Problem, explanation: Explanation) -> bool:
 
 
 def estimates(problem: Problem, explanation: Explanation) -> dict[str, ParameterEstimate]:
-    """Return posterior median and 95 % interval of every parameter and derived quantity."""
-    candidate, predictor = explanation.candidate, problem.predictor
-    stage = candidate.stage(predictor)
-    parameters = candidate.parameters(stage)
-    if not parameters:
-        return {}
+    """Return posterior median and 95 % interval of every parameter and derived quantity, and what its form fixes."""
+    candidate = explanation.candidate
+    searched = problem.parameters(candidate)
     keep = np.argsort(explanation.weights)[::-1][:300]
     weights = explanation.weights[keep] / explanation.weights[keep].sum()
-    drawn = [candidate.values(predictor, explanation.samples[i].tolist()) for i in keep]
+    samples = [explanation.samples[i] for i in keep]
+    drawn = [problem.values(candidate, u) for u in samples]
     result = {}
-    for i, (name, parameter) in enumerate(parameters):
-        values = np.array([d[name] for d in drawn])
-        low, middle, high = _quantiles(values, weights)
+    for i, (name, parameter) in enumerate(searched):
+        low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
         at_bound = bool(min(explanation.best.coordinates[i], 1 - explanation.best.coordinates[i]) < 1e-3)
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, at_bound)
-    derived = [candidate.derived(predictor, explanation.samples[i].tolist()) for i in keep]
+    for name, value in drawn[0].items():
+        if name not in result:
+            result[name] = ParameterEstimate(value, "node" if "point" in name else "-", None, None, False)
+    derived = [problem.derived(candidate, u) for u in samples]
     for name, (_, unit) in derived[0].items():
         low, middle, high = _quantiles(np.array([d[name][0] for d in derived]), weights)
         result[name] = ParameterEstimate(middle, unit, low, high, at_bound=False)

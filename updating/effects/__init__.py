@@ -6,16 +6,24 @@ To add one, subclass :class:`Effect` in some thirty lines and :func:`register` a
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from acquisition.errors import StudyError
-from updating.effects.base import Channel, Effect, Parameter
+from updating.effects.base import Channel, Effect, Parameter, Variant
 from updating.effects.clamp import ClampRotation
 from updating.effects.factor import Density, Modulus, SectionScale, Thickness
 from updating.effects.fluid import FluidAddedMass
 from updating.effects.length import Length
 from updating.effects.local_stiffness import LocalStiffness
 from updating.effects.mass import SensorMass
-from updating.effects.measurement import CalibrationGain, ExponentialWindow
+from updating.effects.measurement import (
+    CalibrationGain,
+    ExponentialWindow,
+    Polarity,
+    PositionError,
+    SwappedPoints,
+    TimeDelay,
+)
 from updating.effects.shear import Shear
 from updating.models.state import State
 from updating.prediction import Predictor
@@ -35,6 +43,10 @@ LIBRARY: dict[str, Effect] = {
         FluidAddedMass(),
         ExponentialWindow(),
         CalibrationGain(),
+        TimeDelay(),
+        Polarity(),
+        SwappedPoints(),
+        PositionError(),
     )
 }
 """All effects by name."""
@@ -45,7 +57,7 @@ def register(effect: Effect) -> None:
     LIBRARY[effect.name] = effect
 
 
-def accepted_state(predictor: Predictor, name: str, values: Mapping[str, float]) -> State:
+def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -> State:
     """Return the departure that an accepted effect makes at stated values.
 
     Raises
@@ -61,7 +73,7 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, float])
     )  # the second look, on the better theory
     if not there_already and (obstacle := effect.why_not(predictor)) is not None:
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
-    takes = {parameter.name for parameter in effect.parameters(predictor)}
+    takes = {parameter.name for parameter in effect.parameters(predictor)} | set(effect.labels)
     if set(values) != takes:
         raise StudyError(
             f"[[model.effect]] {name}: it takes {', '.join(sorted(takes)) or 'no parameters'}, "
@@ -70,4 +82,4 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, float])
     return effect.state(predictor, values)
 
 
-__all__ = ["LIBRARY", "Channel", "Effect", "Parameter", "accepted_state", "register"]
+__all__ = ["LIBRARY", "Channel", "Effect", "Parameter", "Variant", "accepted_state", "register"]

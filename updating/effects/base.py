@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import ClassVar, Literal
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -56,7 +57,25 @@ class Parameter:
         return float(np.clip(u, 0.0, 1.0))
 
 
-Values = Mapping[str, float]
+Values = Mapping[str, Any]
+"""Values of an effect's parameters by name: numbers, and tuples of node numbers where points are meant."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One of several forms in which an effect may come: which point, which sign, which of its parameters act.
+
+    Parameters
+    ----------
+    values : mapping
+        What this form fixes; parameters named here are not searched.
+    weight : float
+        Prior probability of this form among all forms of the effect, those not listed included [-].
+    """
+
+    values: Values = field(default_factory=lambda: MappingProxyType({}))
+    weight: float = 1.0
+
 
 
 class Effect(ABC):
@@ -78,10 +97,14 @@ class Effect(ABC):
     """Kinds of model it applies to."""
     equivalent_to: ClassVar[tuple[str, ...]] = ()
     """Effects that some data cannot tell from it."""
+    labels: ClassVar[tuple[str, ...]] = ()
+    """Values beside the parameters that say which points are meant, by their node numbers."""
     separated_by: ClassVar[str]
     """The test that would separate it from these."""
     fidelity: ClassVar[float] = 0.0
     """How far, relative to the shift the effect makes, its own idealisation may be off (1 sigma) [-]."""
+    damping_doubt: ClassVar[float] = 0.0
+    """How far the effect leaves the damping in doubt beside what it predicts: 1 sigma of ln zeta [-]."""
 
     @abstractmethod
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -95,6 +118,10 @@ class Effect(ABC):
         """Take prior quantiles, one per parameter, to values of the parameters."""
         parameters = self.parameters(predictor)
         return {p.name: p.value(u) for p, u in zip(parameters, coordinates, strict=True)}
+
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return the forms in which the effect may come; those that the data exclude need not be listed."""
+        return (Variant(),)
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Return why the effect cannot be examined on this specimen and test, or None."""

@@ -24,7 +24,7 @@ class FactorEffect(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the state with the factor applied."""
-        return State(factors=dict.fromkeys(self.factors, values["factor"]))
+        return State(factors={name: values["factor"] for name in self.factors})
 
 
 class Modulus(FactorEffect):

@@ -23,6 +23,9 @@ COEFFICIENTS = ("alpha", "beta", "loss_factor")
 ROUNDING = 1e-4
 """Eigenvalues of a free body under this share of its first elastic one are rounding [-]."""
 
+VISCOUS, STRUCTURAL = 0.0, -1.0
+"""Powers of the frequency in the losses that are constant matrices."""
+
 WHOLE = -1
 """The region number that stands for the whole structure."""
 
@@ -105,7 +108,7 @@ def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[
     damping : Damping
         The model's coefficients; its ``ratios`` are modal and no matrix.
     state : State
-        Factors, dampers and added damping.
+        Factors, dampers, added damping, and those losses that are constant matrices; see :func:`modal_losses`.
 
     Returns
     -------
@@ -127,7 +130,38 @@ def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[
             structural += np.tensordot(own["loss_factor"], stiff, axes=1)
     for added in state.damping:
         viscous += added[:n, :n]
+    for loss in state.losses:
+        if loss.power == VISCOUS:
+            viscous += loss.matrix[:n, :n]
+        elif loss.power == STRUCTURAL:
+            structural += loss.matrix[:n, :n]
     return viscous, structural
+
+
+def modal_losses(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return the decay rates 2 zeta omega of a state's losses that are no constant matrix.
+
+    Parameters
+    ----------
+    state : State
+        Its losses.
+    values : (n_modes,) array
+        Eigenvalues [rad^2/s^2].
+    vectors : (r, n_modes) array
+        Mass-normalised modes.
+
+    Returns
+    -------
+    (n_modes,) array [1/s]
+    """
+    n = len(vectors)
+    omega = np.sqrt(np.maximum(values, 0.0))
+    total = np.zeros(len(values))
+    for loss in state.losses:
+        if loss.power not in (VISCOUS, STRUCTURAL):
+            own = np.einsum("ir,ij,jr->r", vectors, loss.matrix[:n, :n], vectors)
+            total += np.where(omega > 0, np.maximum(omega, 1e-12) ** loss.power, 0.0) * own
+    return total
 
 
 def region_matrices(reduced: Reduced, state: State) -> tuple[FloatArray, FloatArray]:

@@ -23,6 +23,12 @@ from updating.models.state import State
 from updating.models.structure import FieldStructure
 from updating.models.terms import product
 
+ROTATION, TRANSLATION = frozenset({"rotation"}), frozenset({"translation"})
+"""What a clamp may release."""
+
+ROUNDING = 1e-10
+"""What is left of a vector below this share is rounding [-]."""
+
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
 
@@ -38,7 +44,8 @@ class Reduced:
     basis : (n_dofs, r) array
         Columns orthonormal in the nominal mass: clamped ones first, then what the releases add [kg^-1/2].
     ranks : mapping of frozenset to int
-        For each set of releases (none, the rotation, both), how many leading columns belong to it.
+        For each set of releases (none, the rotation, the translation, both), how many leading columns belong to it;
+        where the translation alone is released, :meth:`matrices` holds the slopes that other columns have.
     """
 
     structure: Structure
@@ -114,7 +121,27 @@ class Reduced:
         for kind, added in (("stiffness", state.stiffness), ("mass", state.mass)):
             for matrix in added:
                 total[kind] += matrix[:n, :n]
+        if state.released == TRANSLATION:
+            return self._without_slopes(total["stiffness"], total["mass"])
         return total["stiffness"], total["mass"]
+
+    def _without_slopes(self, stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the matrices with the slopes at the clamps held.
+
+        What turns there is cut off from all else and put on a frequency above every other.
+        """
+        held, turning = self._slopes
+        above = 1e3 * float(np.abs(np.diag(stiffness)).max()) * turning
+        return held @ stiffness @ held + above, held @ mass @ held + turning
+
+    @cached_property
+    def _slopes(self) -> tuple[FloatArray, FloatArray]:
+        """Projections (r, r) on what has no slope at the clamps, and on the rest."""
+        slopes = self.basis[self.structure.fixed["rotation"]]
+        _, size, directions = np.linalg.svd(slopes, full_matrices=False)
+        turning = directions[size > 1e-8 * size[0]]
+        rest = turning.T @ turning
+        return np.eye(len(rest)) - rest, rest
 
     @cached_property
     def sums(self) -> tuple[FloatArray, ...]:
@@ -198,9 +225,10 @@ def reduce_structure(
     ranks = {frozenset[str](): clamped.shape[1]}
     basis = clamped
     if structure.fixed:
-        for released in (frozenset({"rotation"}), frozenset({"rotation", "translation"})):
+        for released in (ROTATION, TRANSLATION, ROTATION | TRANSLATION):
             basis = extend_basis(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
             ranks[released] = basis.shape[1]
+        ranks[TRANSLATION] = basis.shape[1]
     return Reduced(structure, basis, ranks)
 
 
@@ -208,8 +236,12 @@ def extend_basis(
     basis: FloatArray, extra: FloatArray, mass: Sparse, *, tolerance: float = 1e-9
 ) -> FloatArray:
     """Append the directions of ``extra`` that ``basis`` lacks, orthonormal in the mass."""
+    before = np.einsum("ij,ij->j", extra, mass @ extra)
     for _ in range(2):
         extra = extra - basis @ (basis.T @ (mass @ extra))
+    extra = extra[:, np.einsum("ij,ij->j", extra, mass @ extra) > ROUNDING**2 * before]
+    if not extra.shape[1]:
+        return basis
     gram = extra.T @ (mass @ extra)
     scale = np.sqrt(np.maximum(np.diag(gram), 1e-300))
     values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import reduce
 from types import MappingProxyType
+from typing import TypeVar
 
 from acquisition.arrays import FloatArray
 from updating.models.spec import Theory
@@ -13,6 +14,29 @@ from updating.models.spec import Theory
 
 def _nothing() -> Mapping[str, float]:
     return MappingProxyType({})
+
+
+Key = TypeVar("Key")
+
+Role = tuple[str, int]
+"""Part of a point in an FRF, ``"seen"`` or ``"hit"``, and the point's index."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loss:
+    """Something that damps: mode r decays at the rate omega_r^power phi_r^T matrix phi_r.
+
+    Parameters
+    ----------
+    matrix : (r, r) array
+        In the coordinates of the reduced basis [SI].
+    power : float
+        0 for a viscous matrix C, -1 for a structural one D (stiffness times loss factor), 1/2 for Stokes' layer
+        of a viscous fluid [-].
+    """
+
+    matrix: FloatArray
+    power: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +54,12 @@ class State:
     ratios : tuple of float, optional
         Damping ratios of the elastic modes in place of all coefficients, the last for all modes above: those
         identified, for instance [-].
-    stiffness, mass, damping : tuple of (r, r) arrays
+    stiffness, mass : tuple of (r, r) arrays
         Matrices added in the coordinates of the reduced basis [SI].
+    damping : tuple of (r, r) arrays
+        Viscous matrices that take the place of the damping the model expects: what a baseline measured [SI].
+    losses : tuple of Loss
+        What damps beside all that.
     released : frozenset of str
         Parts of the clamps that no longer hold by themselves: ``rotation``, ``translation``.
     theory : str, optional
@@ -40,6 +68,16 @@ class State:
         Factor of the measured level over the true one [-].
     decay : float
         Decay rate that the measurement adds to every mode [1/s].
+    delay : float
+        By how much the responses lag the force [s].
+    point_gains : mapping of (role, point) to float
+        Factor of the measured level over the true one at one point; -1 for a reversed sign [-].
+    exchanged : tuple of (role, point, point)
+        Points whose labels were exchanged.
+    moved : mapping of (role, point) to tuple of float
+        How far from its stated place, along the in-plane axes, a point was really hit or seen [m].
+    slope : float
+        Relative change of the frequencies per newton of the hammer's peak force [1/N].
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -53,18 +91,18 @@ class State:
     theory: Theory | None = None
     gain: float = 1.0
     decay: float = 0.0
+    losses: tuple[Loss, ...] = ()
+    delay: float = 0.0
+    point_gains: Mapping[Role, float] = field(default_factory=lambda: MappingProxyType({}))
+    exchanged: tuple[tuple[str, int, int], ...] = ()
+    moved: Mapping[Role, tuple[float, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    slope: float = 0.0
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
-        factors = dict(self.factors)
-        for name, value in other.factors.items():
-            factors[name] = factors.get(name, 1.0) * value
-        regional = dict(self.regional)
-        for key, value in other.regional.items():
-            regional[key] = regional.get(key, 1.0) * value
         return State(
-            MappingProxyType(factors),
-            MappingProxyType(regional),
+            MappingProxyType(_multiplied(self.factors, other.factors)),
+            MappingProxyType(_multiplied(self.regional, other.regional)),
             MappingProxyType({**self.dampers, **other.dampers}),
             self.ratios if other.ratios is None else other.ratios,
             self.stiffness + other.stiffness,
@@ -74,7 +112,20 @@ class State:
             other.theory or self.theory,
             self.gain * other.gain,
             self.decay + other.decay,
+            self.losses + other.losses,
+            self.delay + other.delay,
+            MappingProxyType(_multiplied(self.point_gains, other.point_gains)),
+            self.exchanged + other.exchanged,
+            MappingProxyType({**self.moved, **other.moved}),
+            self.slope + other.slope,
         )
+
+
+def _multiplied(first: Mapping[Key, float], second: Mapping[Key, float]) -> dict[Key, float]:
+    product = dict(first)
+    for key, value in second.items():
+        product[key] = product.get(key, 1.0) * value
+    return product
 
 
 NOMINAL = State()
