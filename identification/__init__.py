@@ -1,6 +1,8 @@
 """From FRFs to modes with uncertainties."""
 
+from identification.health import frf_health, mode_coherence
 from identification.identify import identify
+from identification.levels import LevelDependence, level_dependence, why_no_level_dependence
 from identification.mac import (
     auto_mac,
     comac,
@@ -28,6 +30,7 @@ from identification.stabilisation import StabilisationChart, stabilise
 __all__ = [
     "ESTIMATORS",
     "Correlation",
+    "LevelDependence",
     "ModalModel",
     "Pair",
     "PoleEstimator",
@@ -47,14 +50,17 @@ __all__ = [
     "fit_residues",
     "frac",
     "frac_table",
+    "frf_health",
     "from_sdypy",
     "identify",
+    "level_dependence",
     "lsce",
     "lscf",
     "mac",
     "mac_table",
     "macx",
     "modal_constants",
+    "mode_coherence",
     "mode_shapes",
     "mpc",
     "msf",
@@ -64,4 +70,5 @@ __all__ = [
     "stabilise",
     "subspace_mac",
     "to_sdypy",
+    "why_no_level_dependence",
 ]

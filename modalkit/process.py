@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from acquisition import StudyError, read_modes
-from identification import ModalModel
+from acquisition import StudyError, Windows, read_modes
+from identification import ModalModel, frf_health, level_dependence
 from modalkit.files import Progress
 from modalkit.handling import Handling
 from modalkit.reading import Processed, read
@@ -69,6 +69,7 @@ def open_study(study: Study, *, with_baseline: bool = True) -> Session:
         study.accepted(),
     )
     own = [w for part in (processed, identified) if part is not None for w in part.warnings]
+    own += _health(processed, identified)
     own += [f"baseline: {w}" for part in before if part is not None for w in part.warnings]
     return Session(study, case, processed, identified, tuple(dict.fromkeys(own)))
 
@@ -150,7 +151,30 @@ def _measure(
         raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
     processed, identified = _identified(study, table)
     with _naming(study):
-        return measured_from_identified(identified, axes, spec, **options), processed, identified
+        measured = measured_from_identified(identified, axes, spec, **options)
+    return _with_levels(measured, processed, identified), processed, identified
+
+
+def _health(processed: Processed | None, identified: ModalModel | None) -> tuple[str, ...]:
+    if processed is None or identified is None:
+        return ()
+    return frf_health(identified, processed.hits)
+
+
+def _with_levels(measured: Measured, processed: Processed, identified: ModalModel) -> Measured:
+    """Add how frequencies follow the force of the hits, where these tell.
+
+    FRFs freed from the mass of a sensor are not those of single hits, so nothing is said of them.
+    """
+    told = processed.handling
+    if told.sensor_masses or not processed.judged:
+        return measured
+    windows = Windows(decay=told.window) if told.window else None
+    judged = [(j.test, j.verdicts) for j in processed.judged]
+    found = level_dependence(identified, judged, windows=windows)
+    if found is None:
+        return measured
+    return replace(measured, slope=found.slope, slope_sigma=found.slope_sigma, level=found.level)
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from typing import Any
 
 from acquisition import HitVerdict, rejected_points
 from identification import ModalModel, mpc
-from updating import LIBRARY, Diagnosis
+from updating import Diagnosis
 from updating.diagnosis.result import Ranked
 
 
@@ -155,53 +155,3 @@ def _ranked_record(row: Ranked) -> dict[str, Any]:
         "plausible": row.plausible,
         "fit_p_value": row.p_value,
     }
-
-
-def effects_record() -> dict[str, Any]:
-    """Return the library of effects as ``modalkit.effects/1``."""
-    return {
-        "schema": "modalkit.effects/1",
-        "effects": [
-            {
-                "name": effect.name,
-                "channel": effect.channel,
-                "summary": effect.summary,
-                "footprint": effect.footprint,
-                "models": list(effect.models),
-                "equivalent_to": list(effect.equivalent_to),
-                "separated_by": effect.separated_by,
-                "parameters": [
-                    {"name": p.name, "unit": p.unit, "low": p.low, "high": p.high, "log": p.log, "why": p.why}
-                    for p in effect.parameters(example)
-                ],
-            }
-            for effect in LIBRARY.values()
-            for example in [_example()]
-        ],
-    }
-
-
-def _example() -> Any:
-    """Return a predictor of the beam whose priors the list shows: 376 x 30.5 x 4.7625 mm steel, clamped."""
-    import numpy as np
-
-    from updating import Material, Measured, Predictor, Spec
-
-    steel = Material(210e9, 7850.0)
-    spec = Spec("beam", 0.376, 0.0305, 0.0047625, (10,), ("x0",), "euler-bernoulli", steel)
-    one = np.ones(1)
-    index = np.zeros(1, dtype=int)
-    measured = Measured(
-        28 * one,
-        one,
-        one,
-        one,
-        np.array([[0.376]]),
-        (1,),
-        index,
-        index,
-        np.ones((1, 1)),
-        np.ones((1, 1)),
-        True,
-    )
-    return Predictor(spec, measured)

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from joint import joint_test
 from published import PAPER, PUBLISHED, PUBLISHED_DAMPING, TABLES, TAPE_PAPER
 from tape import RIGS, TapeRig, tape_frfs
 
@@ -244,6 +245,19 @@ def make_tape(rig: TapeRig, folder: Path) -> Path:
     return target
 
 
+def make_joint(folder: Path) -> Path:
+    """Write the universal file of the beam whose clamp gives, and return where it is."""
+    target = folder / "beam_joint" / "beam_joint.uff"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    write_uff(
+        target,
+        tests=joint_test(),
+        title="synthetic hammer test, beam_joint: all invented",
+        precision="single",
+    )
+    return target
+
+
 def write_modes(name: str, folder: Path) -> None:
     """Write the published frequencies beside a test, and the damping ratios where there are any."""
     (folder / name / "modes.csv").write_text("\n".join(_lines(name)) + "\n", encoding="utf-8")
@@ -273,6 +287,7 @@ def main(arguments: Sequence[str]) -> None:
     folder = Path(arguments[0]) if arguments else Path(__file__).resolve().parent
     made = [(rig.name, make(rig, folder)) for rig in rigs()]
     made += [(rig.name, make_tape(rig, folder)) for rig in RIGS]
+    made.append(("beam_joint", make_joint(folder)))
     for name, path in made:
         print(f"{path}: {path.stat().st_size / 1e6:.2f} MB")
         if name in PUBLISHED:

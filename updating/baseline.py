@@ -63,12 +63,19 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     finite = np.isfinite(baseline.damping)
     damping: tuple[FloatArray, ...] = ()
     if finite.any():
-        ratios = np.full(len(prediction.frequency), float(np.median(baseline.damping[finite])))
+        ratios = _unmeasured(prediction.damping, partner[finite], baseline.damping[finite])
         ratios[partner[finite]] = baseline.damping[finite]
         omega = 2 * np.pi * prediction.frequency
         omega[partner] = 2 * np.pi * baseline.frequency
         damping = (_padded((momenta * (2 * ratios * omega)) @ momenta.T, size),)
     return State(factors=scaled.factors, stiffness=stiffness, damping=damping)
+
+
+def _unmeasured(expected: FloatArray, partner: IntArray, measured: FloatArray) -> FloatArray:
+    """Return damping ratios for all modes: the model's, raised as those measured are; their median without a model."""
+    if np.isfinite(expected).all() and (expected > 0).all():
+        return np.asarray(expected * np.median(measured / expected[partner]))
+    return np.full(len(expected), float(np.median(measured)))
 
 
 def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]:

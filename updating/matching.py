@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.errors import EstimationError
 from identification import pair
 from updating.measured import Measured

@@ -192,7 +192,7 @@ class Predictor:
         read = reading(self.measured, total)
         rows = self._rows(total, read.points)
         shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
-        by = [self._by_factor(total, values, vectors, chosen, name, rows, read.points) for name in factors]
+        by = self._by_factors(total, values, vectors, chosen, factors, rows, read.points) if factors else []
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         frequency = shift * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         level = read.gain[:, None]
@@ -247,32 +247,46 @@ class Predictor:
         names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         return np.stack([read.product(shapes[n], shapes["w"]) for n in names])
 
-    def _by_factor(
+    def _by_factors(
         self,
         state: State,
         values: FloatArray,
         vectors: FloatArray,
         chosen: IntArray,
-        name: str,
+        names: Sequence[str],
         rows: dict[str, FloatArray],
         places: FloatArray,
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return derivatives of ln f and of the shapes at the points by the logarithm of a factor."""
-        stiffness, mass = self.reduced.log_sensitivity(state, name)
-        k = vectors.T @ stiffness @ vectors[:, chosen]
-        m = vectors.T @ mass @ vectors[:, chosen]
+    ) -> list[tuple[FloatArray, FloatArray]]:
+        """Return derivatives of ln f and of the shapes at the points by the logarithms of factors."""
+        modes = vectors[:, chosen]
         lam = values[chosen]
-        by_value = k[chosen, np.arange(len(chosen))] - lam * m[chosen, np.arange(len(chosen))]
+        terms = [
+            (term, (vectors.T @ (matrix @ modes)) * (-lam if term.kind == "mass" else 1.0))
+            for term, matrix in self.reduced.scaled_terms(state)
+        ]
         gap = lam[None, :] - values[:, None]
         near = np.abs(gap) < 1e-9 * np.abs(lam).max()
-        weights = np.where(near, 0.0, (k - lam * m) / np.where(near, 1.0, gap))
-        weights[chosen, np.arange(len(chosen))] = -0.5 * m[chosen, np.arange(len(chosen))]
+        apart = np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
         n = vectors.shape[0]
-        change = rows["w"][:, :n] @ (vectors @ weights)
-        if name == "length":
-            shift = (self.growth - places[:, :1]) * np.ones((1, n))
-            change = change + (shift * rows["wx"][:, :n]) @ vectors[:, chosen]
-        return by_value / (2 * np.maximum(lam, 1e-12)), change
+        basis = rows["w"][:, :n] @ vectors
+        own = np.arange(len(chosen))
+        found = []
+        for name in names:
+            whole = np.zeros((len(values), len(chosen)))
+            heavier = np.zeros(len(chosen))
+            for term, part in terms:
+                if power := term.powers.get(name, 0.0):
+                    whole += power * part
+                    if term.kind == "mass":
+                        heavier -= power * part[chosen, own] / np.where(lam == 0, 1.0, lam)
+            weights = apart * whole
+            weights[chosen, own] = -0.5 * heavier
+            change = basis @ weights
+            if name == "length":
+                shift = (self.growth - places[:, :1]) * np.ones((1, n))
+                change = change + (shift * rows["wx"][:, :n]) @ modes
+            found.append((whole[chosen, own] / (2 * np.maximum(lam, 1e-12)), change))
+        return found
 
     def _damping(self, state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
         """Return modal damping ratios: what is expected of the specimen, plus what the state adds."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -62,3 +63,14 @@ def reading(measured: Measured, state: State) -> Reading:
         points.append((measured.points[point] + np.resize(np.asarray([*away, 0.0, 0.0]), 3)[:dim])[None, :])
         ends[role] = np.where(ends[role] == point, len(measured.points) + i, ends[role])
     return Reading(np.concatenate(points), ends["seen"], ends["hit"], gain)
+
+
+def roving(measured: Measured) -> Literal["seen", "hit"]:
+    """Return the end that was moved from point to point: the hammer, or the sensor."""
+    seen, hit = np.unique(measured.seen), np.unique(measured.hit[measured.hit >= 0])
+    return "seen" if len(seen) > len(hit) else "hit"
+
+
+def fixed_sensors(measured: Measured) -> IntArray:
+    """Return the points whose sensors stayed while the hammer went round."""
+    return np.unique(measured.seen) if roving(measured) == "hit" else np.zeros(0, dtype=np.int64)

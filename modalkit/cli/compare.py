@@ -73,14 +73,17 @@ def tables(
     ] = None,
     form: Annotated[TableFormat, typer.Option("--format", help="md, csv or latex")] = TableFormat.md,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="file to write")] = None,
+    fluid: Annotated[
+        bool, typer.Option("--fluid", help="paper A's wet tables with the water computed, in every way")
+    ] = False,
     figures: Figures = None,
 ) -> None:
     """Make the papers' tables through the whole chain, our value beside the published one."""
-    from modalkit.tables import render, work
+    from modalkit.tables import fluid_work, render, work
 
     check_place(output)
     with working("making the tables"):
-        made = work(paper)
+        made = fluid_work(paper) if fluid else work(paper)
         text = render(made.tables(), form.value)
     if output is None:
         out.print(text, markup=False)

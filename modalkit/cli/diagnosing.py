@@ -11,8 +11,9 @@ import typer
 from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
 from modalkit.cli.options import Figures
 from modalkit.letter import letter
+from modalkit.library import effects_record, effects_table
 from modalkit.process import Session, open_study
-from modalkit.records import diagnosis_record, effects_record
+from modalkit.records import diagnosis_record
 from modalkit.study import read_study
 from modalkit.write import check_json_place, write_json
 from updating import Diagnosis
@@ -76,6 +77,7 @@ def diagnosis_figures(diagnosis: Diagnosis, session: Session) -> dict[str, Any]:
 
 def effects(
     json: Annotated[Path | None, typer.Option("--json", help="file for the library as JSON")] = None,
+    table: Annotated[bool, typer.Option("--table", help="print one row each, in Markdown")] = False,
 ) -> None:
     """List the effects that can be named, with priors, footprints and what separates them."""
     record = effects_record()
@@ -83,19 +85,28 @@ def effects(
         write_json(json, record)
         out.print(f"written: {json}", markup=False)
         return
+    if table:
+        typer.echo(effects_table(record), nl=False)
+        return
     for effect in record["effects"]:
-        out.print(f"{effect['name']} ({effect['channel']}; {', '.join(effect['models'])})", style="bold")
-        out.print(f"  {effect['summary']}", markup=False)
-        out.print(f"  seen as: {effect['footprint']}", markup=False)
-        for p in effect["parameters"]:
-            scale = "log-uniform" if p["log"] else "uniform"
-            unit = "" if p["unit"] == "-" else f" {p['unit']}"
-            out.print(
-                f"  {p['name']}: {p['low']:.4g} to {p['high']:.4g}{unit}, {scale}: {p['why']}", markup=False
-            )
-        if effect["equivalent_to"]:
-            out.print(f"  mistaken for: {', '.join(effect['equivalent_to'])}", markup=False)
-        out.print(f"  separated by: {effect['separated_by']}", markup=False)
-    out.print(
-        "\nPriors that scale with the specimen are shown for a steel cantilever of 376 x 30.5 x 4.7625 mm."
-    )
+        show_effect(effect)
+    out.print(f"\nPriors that scale with the specimen are shown for {record['specimen']}.", markup=False)
+
+
+def show_effect(effect: dict[str, Any]) -> None:
+    """Print one effect: what it is, how it shows, its priors, and what it is mistaken for."""
+    out.print(f"{effect['name']} ({effect['channel']}; {', '.join(effect['models'])})", style="bold")
+    out.print(f"  {effect['summary']}", markup=False)
+    out.print(f"  seen as: {effect['footprint']}", markup=False)
+    for p in effect["parameters"]:
+        scale = "log-uniform" if p["log"] else "uniform"
+        unit = "" if p["unit"] == "-" else f" {p['unit']}"
+        text = f"  {p['name']}: {p['low']:.4g} to {p['high']:.4g}{unit}, {scale}: {p['why']}"
+        out.print(text, markup=False)
+    if effect["labels"]:
+        out.print(f"  {', '.join(effect['labels'])}: node numbers of the test", markup=False)
+    if effect["not_for"]:
+        out.print(f"  not for: {', '.join(effect['not_for'])}", markup=False)
+    if effect["equivalent_to"]:
+        out.print(f"  mistaken for: {', '.join(effect['equivalent_to'])}", markup=False)
+    out.print(f"  separated by: {effect['separated_by']}", markup=False)

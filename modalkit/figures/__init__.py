@@ -6,6 +6,7 @@ from modalkit.figures.evolution import evolution_figure
 from modalkit.figures.frac import frac_figure
 from modalkit.figures.frf import frf_figure
 from modalkit.figures.hits import hits_figure
+from modalkit.figures.localisation import localisation_figure
 from modalkit.figures.matrix import auto_mac_figure, mac_figure
 from modalkit.figures.overlay import overlay_figure
 from modalkit.figures.save import save_figures
@@ -21,6 +22,7 @@ __all__ = [
     "frac_figure",
     "frf_figure",
     "hits_figure",
+    "localisation_figure",
     "mac_figure",
     "overlay_figure",
     "save_figures",

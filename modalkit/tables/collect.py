@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from acquisition import InputError
 from modalkit.tables.chain import Walk, sample_folder, walk_all
 from modalkit.tables.chain_b import open_taped
+from modalkit.tables.fluid_a import fluid_tables
 from modalkit.tables.joint import joint_table
 from modalkit.tables.paper_a import tables_a
 from modalkit.tables.paper_b import tables_b
@@ -47,6 +48,45 @@ class Work:
 
         made = figures_a(self.walks)
         return made if self.staged is None else {**made, **figures_b(self.staged)}
+
+
+@dataclass(frozen=True)
+class FluidWork:
+    """Paper A's wet tables with the water computed; there are no figures.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the sample studies are.
+    """
+
+    folder: Path
+
+    def tables(self) -> list[PaperTable]:
+        """Return the tables of all variants."""
+        return fluid_tables(self.folder)
+
+    def figures(self) -> dict[str, Figure]:
+        """Return nothing."""
+        return {}
+
+
+def fluid_work(paper: str | None = None) -> FluidWork:
+    """Return paper A's wet tables, to be worked out with the water computed.
+
+    Parameters
+    ----------
+    paper : {"A"}, optional
+        Which paper; there is no water in the other.
+
+    Raises
+    ------
+    InputError
+        If another paper is asked for.
+    """
+    if paper is not None and paper.upper() != "A":
+        raise InputError(f"no water in paper {paper!r}; use --fluid with --paper A (submerged structures)")
+    return FluidWork(sample_folder())
 
 
 def work(paper: str | None = None) -> Work:

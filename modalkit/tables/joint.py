@@ -75,22 +75,25 @@ def joint_table(folder: Path | None = None) -> PaperTable:
     )
 
 
+def joint_values(variant: Variant, cases: list[Case]) -> list[dict[str, float]]:
+    """Return extension [m], mass of the accelerometer [kg] and factor on E that a variant finds, by case."""
+    result = _updated(variant, cases)
+    found = {(p.name, p.study): p for p in result.parameters}
+    shared = {name: found[name, None].value for name in COMMON}
+    return [{**shared, "E": modulus} for modulus in _moduli(result, cases)]
+
+
 def _updated(variant: Variant, cases: list[Case]) -> Update:
     names = [variant.beam, variant.plate]
     return update(cases, parameters=names, shared=variant.shared, weights="relative")
 
 
 def _row(variant: Variant, result: Update, cases: list[Case]) -> dict[str, object]:
-    titles = [case.title for case in cases]
     found = {(p.name, p.study): p for p in result.parameters}
-    moduli = []
-    for title in titles:
-        own = found.get(("E", title)) or found.get(("E", None))
-        moduli.append(1.0 if own is None or own.factor is None else own.factor)
     ours = (
         1e3 * found["length", None].value,
         1e3 * found["sensor_mass", None].value,
-        *moduli,
+        *_moduli(result, cases),
         result.rms_percent(),
     )
     row: dict[str, object] = {"variant": variant.name}
@@ -98,6 +101,13 @@ def _row(variant: Variant, result: Update, cases: list[Case]) -> dict[str, objec
         row[name] = reference
         row[f"{name.split(' [', maxsplit=1)[0]}, ours"] = own_value
     return row
+
+
+def _moduli(result: Update, cases: list[Case]) -> list[float]:
+    """Return the factor on E of every case, 1 where it was held."""
+    found = {(p.name, p.study): p for p in result.parameters}
+    owns = [found.get(("E", case.title)) or found.get(("E", None)) for case in cases]
+    return [1.0 if own is None or own.factor is None else own.factor for own in owns]
 
 
 def _sigmas(results: list[Update]) -> pd.DataFrame:

@@ -17,7 +17,8 @@ from updating.diagnosis.evidence import explain
 from updating.diagnosis.fit import Point, climb, evaluate
 from updating.diagnosis.gaussian import gaussian, marginal, whiten
 from updating.diagnosis.goodness import p_value
-from updating.diagnosis.problem import KNOWN_SCATTER, SCALES, Comparison, Problem
+from updating.diagnosis.comparison import KNOWN_SCATTER, SCALES, Comparison
+from updating.diagnosis.problem import Problem
 
 COARSE = replace(BEAM, elements=(8,), theory="euler-bernoulli")
 HIT = np.array([0.1, 0.25, 0.376])
@@ -133,7 +134,7 @@ def comparison(seed: int, n: int = 24, p: int = 5, *, residual: bool = False) ->
         noise = np.sqrt(variance) * np.where(channel == 2, scale, 1.0) * rng.standard_normal(n)
         size = nuisance @ rng.standard_normal(p) + noise
     mode = np.tile(np.arange(n // 3), 3)
-    return Comparison(size, nuisance, variance, channel, mode, None, KNOWN_SCATTER, 2)  # type: ignore[arg-type]
+    return Comparison(size, nuisance, variance, channel, mode, (), KNOWN_SCATTER, np.arange(2))
 
 
 def full(data: Comparison, scale: float, keep: np.ndarray) -> np.ndarray:
@@ -203,7 +204,7 @@ def test_p_values_of_what_it_does_not_allow_are_small(channel: int) -> None:
 def test_one_scale_is_one_gaussian() -> None:
     data = comparison(9)
     logpdf = multivariate_normal.logpdf(data.residual, cov=full(data, 4.0, np.ones(24, bool)))
-    assert gaussian(data, 4.0).log_likelihood == pytest.approx(logpdf, rel=1e-9)
+    assert gaussian(data, [4.0])[0].log_likelihood == pytest.approx(logpdf, rel=1e-9)
 
 
 def test_a_pair_has_the_parameters_of_both() -> None:

@@ -117,19 +117,25 @@ def assemble(
     prediction, scale_prior
         As in :class:`Comparison`.
     """
+    rows = np.cumsum([0, *(len(block.residual) for block in blocks)])
     count = len(sigmas)
-    tolerances = np.concatenate([block.factors for block in blocks]) * sigmas
-    named = block_diag(*(block.named for block in blocks))
-    own = block_diag(*(block.own for block in blocks))
+    named = np.cumsum([count, *(block.named.shape[1] for block in blocks)])
+    own = np.cumsum([named[-1], *(block.own.shape[1] for block in blocks)])
+    nuisance = np.zeros((rows[-1], own[-1]))
+    for i, block in enumerate(blocks):
+        here = slice(rows[i], rows[i + 1])
+        nuisance[here, :count] = block.factors * sigmas
+        nuisance[here, named[i] : named[i + 1]] = block.named
+        nuisance[here, own[i] : own[i + 1]] = block.own
     return Comparison(
-        np.concatenate([block.residual for block in blocks]) + tolerances @ shift,
-        np.hstack([tolerances, named, own]),
+        np.concatenate([block.residual for block in blocks]) + nuisance[:, :count] @ shift,
+        nuisance,
         np.concatenate([block.variance for block in blocks]),
         np.concatenate([np.full(len(block.residual), block.channel) for block in blocks]),
         np.concatenate([block.mode for block in blocks]),
         (prediction,),
         scale_prior,
-        np.arange(count + named.shape[1]),
+        np.arange(named[-1]),
     )
 
 

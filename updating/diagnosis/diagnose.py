@@ -10,13 +10,17 @@ import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from acquisition.arrays import FloatArray
+from acquisition.errors import InputError
 from updating.baseline import correct, doubt_in_mass
 from updating.case import Case
+from updating.diagnosis.gates import on_levels, on_modes, remarks_on, shortfall
 from updating.diagnosis.goodness import p_value
 from updating.diagnosis.next_test import propose
+from updating.diagnosis.posed import Posed
 from updating.diagnosis.problem import Problem
-from updating.diagnosis.result import Diagnosis, Gap, Shrink
+from updating.diagnosis.result import Diagnosis, Gap, Shrink, Where
 from updating.diagnosis.search import Search, search
+from updating.diagnosis.several import Several
 from updating.diagnosis.shrink import shrinkage
 from updating.diagnosis.verdict import decide, is_significant, rank
 from updating.diagnosis.where import locate
@@ -50,31 +54,77 @@ def diagnose(
     EstimationError
         If no measured mode has a partner in the model.
     """
-    rng = np.random.default_rng(1) if rng is None else rng
-    effects = list(LIBRARY.values()) if library is None else list(library)
     with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
-        return _diagnose(case, effects, rng)
+        problem, warnings = pose(case)
+        accepted = {name for name, _ in case.accepted}
+        return _diagnose(problem, (case.title,), accepted, library, rng, warnings)
 
 
-def _diagnose(case: Case, effects: list[Effect], rng: np.random.Generator) -> Diagnosis:
-    problem, warnings = pose(case)
-    accepted = {name for name, _ in case.accepted}
-    found = search(problem, [e for e in effects if e.name not in accepted])
+def diagnose_together(
+    cases: Sequence[Case],
+    *,
+    shared: Sequence[str] = (),
+    library: Sequence[Effect] | None = None,
+    rng: np.random.Generator | None = None,
+) -> Diagnosis:
+    """Diagnose several specimens whose gaps have causes in common.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        One per specimen.
+    shared : sequence of str
+        Effects whose parameters are one and the same on all specimens (one accelerometer, one kind of clamp); those
+        of all others are free on each.
+    library, rng
+        As in :func:`diagnose`.
+
+    Raises
+    ------
+    InputError
+        If a shared effect is not in the library, or two cases bear one title.
+    EstimationError
+        If no measured mode of a specimen has a partner in its model.
+    """
+    effects = list(LIBRARY.values()) if library is None else list(library)
+    if unknown := [name for name in shared if name not in {effect.name for effect in effects}]:
+        raise InputError(f"--shared {unknown[0]}: there is no such effect; `modalkit effects` lists them")
+    titles = tuple(case.title for case in cases)
+    if len(set(titles)) < len(titles):
+        raise InputError(f"two studies are titled alike ({', '.join(titles)}); give each its own title")
+    with threadpool_limits(1, user_api="blas"):
+        posed = [pose(case) for case in cases]
+        several = Several(tuple(problem for problem, _ in posed), titles, frozenset(shared))
+        accepted = {name for case in cases for name, _ in case.accepted}
+        warnings = [f"{t}: {w}" for t, (_, own) in zip(titles, posed, strict=True) for w in own]
+        return _diagnose(several, titles, accepted, library, rng, warnings)
+
+
+def _diagnose(
+    problem: Posed,
+    titles: tuple[str, ...],
+    accepted: set[str],
+    library: Sequence[Effect] | None,
+    rng: np.random.Generator | None,
+    warnings: list[str],
+) -> Diagnosis:
+    effects = list(LIBRARY.values()) if library is None else list(library)
+    found = search(problem, [effect for effect in effects if effect.name not in accepted])
     chance = p_value(found.nothing.best)
     significant = is_significant(found, chance)
     verdict, sets = decide(found, significant=significant)
     return Diagnosis(
-        case.title,
+        " and ".join(titles),
         significant,
         chance,
-        _gap(problem),
-        locate(problem, found, significant=significant),
-        _shrink(problem, found, rng, significant=significant),
+        _gap(problem, titles),
+        _locate(problem, found, significant=significant),
+        _shrink(problem, found, np.random.default_rng(1) if rng is None else rng, significant=significant),
         verdict,
         sets,
         rank(problem, found),
         propose(problem, found, sets),
-        (*warnings, *_remarks(problem, found)),
+        tuple(dict.fromkeys((*warnings, *_remarks(problem, found)))),
         found.not_examined,
     )
 
@@ -107,6 +157,7 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
         baseline_order,
         accepted,
         paired.trusted,
+        shortfall(predictor, paired.order),
     )
     return problem, warnings
 
@@ -119,25 +170,43 @@ def _corrected(before: Paired) -> Callable[[Predictor], State]:
     return build
 
 
-def _gap(problem: Problem) -> Gap:
-    test, model = problem.measured, problem.nominal
-    error = 100 * (model.frequency / test.frequency - 1)
-    sigma = 100 * np.sqrt((test.frequency_sigma / test.frequency) ** 2 + test.repeatability**2)
-    mac = np.diag(mac_of_constants(test, model)) if test.has_shapes else np.full(len(error), np.nan)
-    modes = pd.DataFrame(
-        {
+def _locate(problem: Posed, found: Search, *, significant: bool) -> Where:
+    """Say where the cause sits, on the first of several specimens."""
+    if not isinstance(problem, Several):
+        return locate(problem.specimens[0], found, significant=significant)
+    rows = tuple(replace(row, explanation=problem.restrict(row.explanation)) for row in found.weighed)
+    part = replace(found, nothing=problem.restrict(found.nothing), weighed=rows)
+    return locate(problem.specimens[0], part, significant=significant)
+
+
+def _gap(problem: Posed, titles: tuple[str, ...]) -> Gap:
+    tables = []
+    for title, one in zip(titles, problem.specimens, strict=True):
+        test, model = one.measured, one.nominal
+        mac = (
+            np.diag(mac_of_constants(test, model))
+            if test.has_shapes
+            else np.full(len(test.frequency), np.nan)
+        )
+        columns = {
+            "study": title,
             "test [Hz]": test.frequency,
             "model [Hz]": model.frequency,
-            "error [%]": error,
-            "sigma [%]": sigma,
+            "error [%]": 100 * (model.frequency / test.frequency - 1),
+            "sigma [%]": 100 * np.hypot(test.frequency_sigma / test.frequency, test.repeatability),
             "MAC": mac,
             "test damping": test.damping,
             "model damping": model.damping,
-        },
-        index=pd.RangeIndex(1, len(error) + 1, name="mode"),
-    )
-    rms = float(np.sqrt(np.mean(error**2)))
-    return Gap(modes, rms, float(np.sqrt(np.mean(sigma**2))), _frac(problem))
+        }
+        count = len(test.frequency)
+        tables.append(pd.DataFrame(columns, index=pd.RangeIndex(1, count + 1, name="mode")))
+    modes = pd.concat(tables)
+    frac = np.concatenate([_frac(one) for one in problem.specimens])
+    return Gap(modes, _rms(modes["error [%]"]), _rms(modes["sigma [%]"]), frac)
+
+
+def _rms(values: pd.Series) -> float:
+    return float(np.sqrt(np.mean(np.square(values.to_numpy(dtype=float)))))
 
 
 def _frac(problem: Problem) -> FloatArray:
@@ -147,7 +216,9 @@ def _frac(problem: Problem) -> FloatArray:
     return np.asarray(np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300))
 
 
-def _shrink(problem: Problem, found: Search, rng: np.random.Generator, *, significant: bool) -> Shrink:
+def _shrink(
+    problem: Posed, found: Search, rng: np.random.Generator, *, significant: bool
+) -> Shrink:
     named = [row for row in found.weighed if row.names]
     best = named[0].explanation if named else found.nothing
     runner_up = named[1].explanation if len(named) > 1 else None
@@ -155,20 +226,7 @@ def _shrink(problem: Problem, found: Search, rng: np.random.Generator, *, signif
     return result if significant else replace(result, closed=None)
 
 
-def _mesh_error(problem: Problem) -> float:
-    """Return the largest relative change of a paired beam mode when the mesh is refined [-]."""
-    spec = problem.predictor.spec
-    if spec.kind != "beam":
-        return 0.0
-    rank = 1 + int(problem.order.max())
-    coarse, fine = (
-        Predictor(one, problem.measured).predict(count=rank).frequency
-        for one in (spec, spec.with_elements(2 * spec.elements[0]))
-    )
-    return float(np.abs(np.log(fine / coarse)).max())
-
-
-def _remarks(problem: Problem, found: Search) -> list[str]:
+def _remarks(problem: Posed, found: Search) -> list[str]:
     """Return what the reader ought to know about how the answer was reached."""
     remarks = []
     leader = next((row for row in found.weighed if row.names), None)
@@ -177,11 +235,11 @@ def _remarks(problem: Problem, found: Search) -> list[str]:
             "the beam theory of the model leaves out shear and rotary inertia by more than the noise; "
             "every effect was weighed with and without them"
         )
-    finer = _mesh_error(problem)
-    if finer > problem.measured.repeatability:
-        remarks.append(
-            f"the mesh alone moves a mode by {100 * finer:.2g} %, more than the noise: use more elements"
-        )
-    if len(problem.measured.frequency) < 3:
-        remarks.append(f"only {len(problem.measured.frequency)} modes are paired: little can be told apart")
+    for one in problem.specimens:
+        if one.shortfall is not None:
+            remarks += remarks_on(one.shortfall, one.measured, one.predictor.spec)
+        remarks += on_modes(one.measured, one.predictor.predict(at_least=one.reach).frequency, one.order)
+        wet = one.predictor.environment.fluid_density is not None
+        wet |= any("fluid" in name for row in found.weighed[:1] for name in row.names)
+        remarks += on_levels(one.measured, fluid=wet)
     return remarks

@@ -7,7 +7,7 @@ several peaks, and for a parameter the data do not see, where a Laplace approxim
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import logsumexp
@@ -17,7 +17,7 @@ from scipy.stats import t as student
 from acquisition.arrays import FloatArray
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.fit import Peak, Point, climb, evaluate
-from updating.diagnosis.problem import Problem
+from updating.diagnosis.posed import Posed
 
 PRIOR_SHARE = 0.25
 """Share of the samples drawn from the prior itself."""
@@ -28,8 +28,11 @@ FREEDOM = 5
 ROUNDS = 2
 """How often the samples are drawn anew when too few of them carry the weight."""
 
-HOPELESS = 30.0
-"""So far below a rival's log-likelihood no prior brings a candidate back."""
+MOST = 256
+"""Most samples drawn at a time..."""
+
+DRAFT = 512
+"""...and for a draft, which costs no predictions."""
 
 ENOUGH = 10.0
 """Effective number of samples that is enough."""
@@ -54,6 +57,12 @@ class Explanation:
         Posterior samples as prior quantiles [-].
     weights : (m,) array
         Their weights, summing to 1 [-].
+    peaks : tuple of Peak
+        The maxima found.
+    draft : bool
+        Whether the samples were weighed by parabolas only.
+    other : float
+        Logarithm of what the evidence of the other theory adds, relative to this one's [-].
     """
 
     candidate: Candidate
@@ -61,6 +70,9 @@ class Explanation:
     best: Point
     samples: FloatArray
     weights: FloatArray
+    peaks: tuple[Peak, ...] = ()
+    draft: bool = False
+    other: float = 0.0
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -69,18 +81,18 @@ class Explanation:
 
 
 def explain(
-    problem: Problem,
+    problem: Posed,
     candidate: Candidate,
     *,
     starts: list[FloatArray] | None = None,
     density: int = 16,
-    bar: float = -np.inf,
+    draft: bool = False,
 ) -> Explanation:
     """Weigh a candidate.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Problem or Several
         Test and model.
     candidate : Candidate
         Effects.
@@ -88,8 +100,9 @@ def explain(
         Prior quantiles to start from; left out, the effects' own.
     density : int
         Samples: this many times two to the number of parameters, at most 512.
-    bar : float
-        Log-likelihood that a rival reaches; what stays hopelessly below it is integrated with few samples [-].
+    draft : bool
+        Whether the samples are weighed by the parabolas through the peaks instead of by predictions: enough to
+        tell the hopeless from the rest.
 
     Returns
     -------
@@ -103,24 +116,72 @@ def explain(
     peaks = _peaks(problem, candidate, places)
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
-    hopeless = peaks[0].point.marginal.log_likelihood < bar - HOPELESS
-    count = 16 if hopeless else min(density * 2 ** len(places[0]), 512)
-    for _ in range(1 if hopeless else ROUNDS):
+    if draft:
+        samples, proposal = _draw(peaks, DRAFT)
+        log_weight = _parabolas(peaks, samples) - proposal
+        return _weighed(candidate, peaks[0].point, samples, log_weight, peaks, draft=True)
+    return _sampled(problem, candidate, peaks, density)
+
+
+def finish(problem: Posed, explanation: Explanation, *, density: int = 32) -> Explanation:
+    """Weigh a draft by predictions, from the maxima it found.
+
+    Parameters
+    ----------
+    problem : Problem or Several
+        Test and model.
+    explanation : Explanation
+        A draft.
+    density : int
+        As in :func:`explain`.
+    """
+    found = _sampled(problem, explanation.candidate, list(explanation.peaks), density)
+    return replace(found, log_evidence=found.log_evidence + explanation.other, other=explanation.other)
+
+
+def _sampled(problem: Posed, candidate: Candidate, peaks: list[Peak], density: int) -> Explanation:
+    count = min(density * 2 ** len(peaks[0].gradient), MOST)
+    for _ in range(ROUNDS):
         samples, proposal = _draw(peaks, count)
         points = [evaluate(problem, candidate, u) for u in samples]
         log_weight = np.array([p.marginal.log_likelihood for p in points]) - proposal
-        total = float(logsumexp(log_weight))
-        weights = np.exp(log_weight - total)
+        weights = np.exp(log_weight - logsumexp(log_weight))
         if 1 / np.sum(weights**2) >= ENOUGH:
             break
         peaks = [*peaks, _moments(problem, candidate, samples, weights)]
-        count = min(2 * count, 512)
+        count = min(2 * count, MOST)
     best = max([*points, *(p.point for p in peaks)], key=lambda p: p.marginal.log_likelihood)
+    return _weighed(candidate, best, samples, log_weight, peaks)
+
+
+def _weighed(
+    candidate: Candidate,
+    best: Point,
+    samples: FloatArray,
+    log_weight: FloatArray,
+    peaks: list[Peak],
+    *,
+    draft: bool = False,
+) -> Explanation:
+    total = float(logsumexp(log_weight))
     evidence = total - float(np.log(len(samples))) + candidate.log_weight
-    return Explanation(candidate, evidence, best, samples, weights)
+    return Explanation(
+        candidate, evidence, best, samples, np.exp(log_weight - total), tuple(peaks), draft
+    )
 
 
-def _moments(problem: Problem, candidate: Candidate, samples: FloatArray, weights: FloatArray) -> Peak:
+def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
+    """Return the highest of the log-likelihood's parabolas through the peaks, at some samples [-]."""
+    found = []
+    for peak in peaks:
+        away = samples - peak.point.coordinates
+        slope = peak.gradient * _at_edge(peak)
+        curve = 0.5 * np.einsum("si,ij,sj->s", away, peak.normal, away)
+        found.append(peak.point.marginal.log_likelihood + away @ slope - curve)
+    return np.asarray(np.max(found, axis=0))
+
+
+def _moments(problem: Posed, candidate: Candidate, samples: FloatArray, weights: FloatArray) -> Peak:
     """Return a component about the mean of the weighted samples: where the first ones missed the bulk."""
     best = climb(problem, candidate, samples[int(np.argmax(weights))], rounds=4)
     spread = samples - best.point.coordinates
@@ -128,7 +189,7 @@ def _moments(problem: Problem, candidate: Candidate, samples: FloatArray, weight
     return Peak(best.point, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
 
 
-def _peaks(problem: Problem, candidate: Candidate, places: list[FloatArray]) -> list[Peak]:
+def _peaks(problem: Posed, candidate: Candidate, places: list[FloatArray]) -> list[Peak]:
     if len(places) > CLIMBS:
         looks = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
         places = [places[i] for i in np.argsort(looks)[::-1][:CLIMBS]]
@@ -180,7 +241,8 @@ def _scale(peak: Peak) -> FloatArray:
     """Return the covariance to draw with: a little wider than the peak, no wider than its slope at an edge."""
     k = len(peak.gradient)
     precision = peak.normal + np.diag(peak.gradient**2 * _at_edge(peak)) + 4.0 * np.eye(k)
-    return np.asarray(1.4 * np.linalg.inv(precision))
+    values, vectors = np.linalg.eigh((precision + precision.T) / 2)
+    return np.asarray((vectors * (1.4 / np.maximum(values, 1.0))) @ vectors.T)
 
 
 def _at_edge(peak: Peak) -> FloatArray:

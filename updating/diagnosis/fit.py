@@ -8,9 +8,9 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.candidate import Candidate
-from updating.diagnosis.gaussian import Marginal, marginal, whiten
 from updating.diagnosis.comparison import Comparison
-from updating.diagnosis.problem import Problem
+from updating.diagnosis.gaussian import Marginal, marginal, whiten
+from updating.diagnosis.posed import Posed
 
 STEP = 1e-3
 """Finite-difference step in prior quantiles."""
@@ -31,11 +31,14 @@ class Point:
         Data against prediction there.
     marginal : Marginal
         Its marginal likelihood.
+    about : (p,) array, optional
+        Nuisances about which tolerances were linearised; None is about none [standard deviations].
     """
 
     coordinates: FloatArray
     comparison: Comparison
     marginal: Marginal
+    about: FloatArray | None = None
 
     @property
     def possible(self) -> bool:
@@ -68,32 +71,32 @@ class Peak:
 
 
 def evaluate(
-    problem: Problem, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
+    problem: Posed, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
 ) -> Point:
     """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide."""
     comparison = problem.at(candidate, coordinates)
-    result = marginal(comparison, keep)
+    result, about = marginal(comparison, keep), None
     for _ in range(2 if problem.wide else 0):
-        comparison = problem.at(candidate, coordinates, np.clip(result.shift, -FARTHEST, FARTHEST))
+        about = np.clip(result.shift, -FARTHEST, FARTHEST)
+        comparison = problem.at(candidate, coordinates, about)
         result = marginal(comparison, keep)
-    return Point(coordinates, comparison, result)
+    return Point(coordinates, comparison, result, about)
 
 
-def sensitivities(problem: Problem, candidate: Candidate, point: Point) -> FloatArray:
+def sensitivities(problem: Posed, candidate: Candidate, point: Point) -> FloatArray:
     """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
-    shift = np.clip(point.marginal.shift, -FARTHEST, FARTHEST) if problem.wide else None
     columns = []
     for i, u in enumerate(point.coordinates):
         step = STEP if u < 0.5 else -STEP
         moved = point.coordinates.copy()
         moved[i] += step
-        there = problem.at(candidate, moved, shift)
+        there = problem.at(candidate, moved, point.about)
         columns.append((point.comparison.residual - there.residual) / step)
     return np.stack(columns, axis=1) if columns else np.zeros((len(point.comparison.residual), 0))
 
 
 def climb(
-    problem: Problem,
+    problem: Posed,
     candidate: Candidate,
     start: FloatArray,
     *,
@@ -104,7 +107,7 @@ def climb(
 
     Parameters
     ----------
-    problem : Problem
+    problem : Problem or Several
         Test and model.
     candidate : Candidate
         Effects.
@@ -133,7 +136,7 @@ def climb(
             normal, gradient = _curvature(problem, candidate, point, keep)
         else:
             damping *= 10
-        if abs(gain) < 1e-3 or damping > 1e6:
+        if abs(gain) < 0.01 or damping > 1e6:
             break
     return Peak(point, normal, gradient)
 
@@ -147,7 +150,7 @@ def _step(normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: fl
 
 
 def _curvature(
-    problem: Problem, candidate: Candidate, point: Point, keep: BoolArray | None
+    problem: Posed, candidate: Candidate, point: Point, keep: BoolArray | None
 ) -> tuple[FloatArray, FloatArray]:
     columns = np.nan_to_num(sensitivities(problem, candidate, point))
     return whiten(point.comparison, columns, point.marginal.scale, keep)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import chi2, norm
 
+from updating.diagnosis.comparison import CHANNELS, SCALES, SHAPES
 from updating.diagnosis.fit import Point
 from updating.diagnosis.gaussian import gaussian, marginal
-from updating.diagnosis.comparison import CHANNELS, SCALES, SHAPES
+
 
 def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     """Return the p-value of each channel and of all data together.

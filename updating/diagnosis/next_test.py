@@ -14,9 +14,10 @@ from itertools import combinations
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.diagnosis.comparison import Comparison
 from updating.diagnosis.evidence import Explanation
 from updating.diagnosis.fit import sensitivities
-from updating.diagnosis.comparison import Comparison
+from updating.diagnosis.posed import Posed
 from updating.diagnosis.problem import Problem
 from updating.diagnosis.result import NextTest
 from updating.diagnosis.search import Search
@@ -41,20 +42,21 @@ class _Trial:
     extra: Callable[[Predictor], State] | None = None
 
 
-def propose(problem: Problem, found: Search, sets: tuple[tuple[str, ...], ...]) -> tuple[NextTest, ...]:
+def propose(posed: Posed, found: Search, sets: tuple[tuple[str, ...], ...]) -> tuple[NextTest, ...]:
     """Return the tests that would separate what is left, the most telling first.
 
     Parameters
     ----------
-    problem : Problem
+    posed : Problem or Several
         Test and model.
     found : Search
         What was weighed.
     sets : tuple of tuple of str
         Sets of effects of the answer; with fewer than two there is nothing to separate.
     """
-    if len(sets) < 2:
+    if len(sets) < 2 or len(posed.specimens) > 1:
         return ()
+    problem = posed.specimens[0]
     rows = {row.names: row.explanation for row in found.weighed}
     rivals = [rows[names] for names in sets[:4]]
     tests = []

@@ -17,6 +17,7 @@ from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.diagnosis.before import Before
 from updating.diagnosis.candidate import Candidate, Doubt
 from updating.diagnosis.comparison import KNOWN_SCATTER, UNKNOWN_SCATTER, Block, Comparison, assemble
+from updating.diagnosis.gates import Shortfall
 from updating.effects.base import Effect, Parameter, Variant
 from updating.matching import match
 from updating.measured import Measured
@@ -36,6 +37,18 @@ LEAST_NOISE = 1e-6
 
 UNKNOWN_LEVEL = 0.2
 """A calibration worse than this is found by least squares before anything is linearised."""
+
+HALF = 0.5
+"""How much of what a plate's theory leaves out is expected, and in doubt [-]..."""
+
+UNEVEN = 0.15
+"""...and how much of it is in doubt mode by mode [-]."""
+
+COMPLEX = 1.0
+"""Imaginary part of a mode over its damping ratio times its size, where damping is not proportional [-]."""
+
+MOST_TURNED = 30.0
+"""No sensor is taken to sit nearer to a node than where a mode moves this much less than elsewhere [-]."""
 
 TURNED = 0.03
 """How far damping that is not proportional, and filters, turn a mode's constants (1 sigma) [rad]."""
@@ -66,6 +79,8 @@ class Problem:
         Effects put into the model beforehand, the first of the predictor's additions.
     trusted : (n_frf,) bool array, optional
         Rows by whose shapes modes are paired; left out, all.
+    shortfall : Shortfall, optional
+        How far the mesh, and a plate's theory, leave each mode's frequency off.
     """
 
     predictor: Predictor
@@ -76,6 +91,7 @@ class Problem:
     baseline_order: IntArray | None = None
     accepted: tuple[Effect, ...] = ()
     trusted: BoolArray | None = None
+    shortfall: Shortfall | None = None
 
     @property
     def specimens(self) -> tuple[Problem, ...]:
@@ -224,12 +240,29 @@ class Problem:
             variance, by = variance + doubt, by - known
         variance = variance + self._accepted_variance
         n = len(test.frequency)
-        named, own = np.zeros((n, 0)), np.zeros((n, 0))
+        named = np.zeros((n, 0))
+        expected, own, uneven = self._unmodelled
+        variance = variance + uneven
         if fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
             doubtful = fidelity * np.log(now.frequency / self.nominal.frequency)
             variance, named = variance + doubtful**2, doubtful[:, None]
-        return Block(0, np.log(test.frequency / now.frequency), variance, by, named, own, np.arange(n))
+        residual = np.log(test.frequency / now.frequency) - expected
+        return Block(0, residual, variance, by, named, own, np.arange(n))
+
+    @cached_property
+    def _unmodelled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return what mesh and theory leave off in ln f: its expectation, columns of doubt, variance mode by mode.
+
+        A baseline has taken it out. A beam's theory is an effect of its own; a plate's is no effect, and since the
+        estimate may be half of itself off and a test may come from a thin plate, half of it is expected.
+        """
+        found, n = self.shortfall, len(self.measured.frequency)
+        if found is None or not found.known or self.baseline is not None:
+            return np.zeros(n), np.zeros((n, 0)), np.zeros(n)
+        theory = found.theory if self.predictor.spec.kind == "plate" else np.zeros(n)
+        columns = np.stack([found.mesh, HALF * theory], axis=1)
+        return HALF * theory, columns, (UNEVEN * theory) ** 2 + (HALF * found.mesh) ** 2
 
     @cached_property
     def _accepted_variance(self) -> FloatArray:
@@ -282,10 +315,11 @@ class Problem:
         residual = test.phase - expected + np.pi * turns
         n_chains, n_modes = residual.shape
         columns = np.repeat(TURNED * np.eye(n_modes)[None], n_chains, axis=0).reshape(-1, n_modes)
+        spread = test.phase_sigma**2 + (0.3 * TURNED) ** 2 + self._complexity**2
         block = Block(
             3,
             residual.ravel(),
-            (test.phase_sigma**2 + (0.3 * TURNED) ** 2).ravel(),
+            spread.ravel(),
             np.zeros((residual.size, len(self.names))),
             np.zeros((residual.size, 0)),
             columns,
@@ -293,6 +327,25 @@ class Problem:
         )
         assert test.chain is not None
         return block, np.where(turns[test.chain] % 2 == 0, 1.0, -1.0)
+
+    @cached_property
+    def _complexity(self) -> FloatArray:
+        """Return how far damping may turn the constants that a chain sees, (n_chains, n_modes) [rad].
+
+        Whether damping is viscous or structural turns them by the damping ratio; where it is not proportional, a
+        mode takes on imaginary parts of about the damping ratio times its size, which weigh most where the sensor
+        sits near a node of it.
+        """
+        test = self.measured
+        assert test.chain is not None
+        member = (test.chain == np.arange(int(test.chain.max()) + 1)[:, None]).astype(float)
+        ratio = np.where(np.isfinite(test.damping), test.damping, 0.0)
+        prediction = self.nominal
+        rows = self.predictor.nominal_rows["w"][:, : len(prediction.vectors)] @ prediction.vectors
+        seen = np.stack([np.abs(rows[test.seen[test.chain == c]]).mean(axis=0) for c in range(len(member))])
+        typical = np.sqrt(np.mean(rows**2, axis=0))
+        away = typical / np.maximum(seen, typical / MOST_TURNED)
+        return np.asarray(ratio * np.hypot(1.0, COMPLEX * away))
 
     def _slopes(self, whole: State, now: Prediction, fidelity: float) -> Block:
         """Return by how much more than predicted frequencies depend on the force, times its mean."""

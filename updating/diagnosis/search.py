@@ -15,21 +15,24 @@ from scipy.special import logsumexp
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.candidate import Candidate
-from updating.diagnosis.evidence import Explanation, explain
+from updating.diagnosis.evidence import Explanation, explain, finish
 from updating.diagnosis.fit import sensitivities
 from updating.diagnosis.gaussian import whiten
 from updating.diagnosis.goodness import p_value
-from updating.diagnosis.problem import Problem
+from updating.diagnosis.posed import Posed
 from updating.effects import Effect, Variant
 
-REJECTED = 0.01
-"""An explanation that fits worse than this is rejected."""
+REJECTED = 0.003
+"""An explanation that fits worse than this is rejected..."""
 
-CLOSER_LOOKS = 3
-"""How many explanations at most are weighed with more samples..."""
+DOUBTED = 0.02
+"""...and where no single effect fits better than this, pairs are weighed beside them."""
 
-WORTH_A_CLOSER_LOOK = 0.03
-"""...and from which probability on."""
+WITHIN_REACH = 7.0
+"""Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]."""
+
+LOOKS = 3
+"""How often what is within reach is sought."""
 
 PAIRS = 8
 """How many pairs are weighed, those a linear look finds the most promising."""
@@ -74,19 +77,19 @@ class Search:
     not_examined: dict[str, str]
 
 
-def examine(problem: Problem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
+def examine(problem: Posed, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
     """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
     obstacles = {effect.name: problem.applies(effect) for effect in library}
     possible = [effect for effect in library if obstacles[effect.name] is None]
     return possible, {name: why for name, why in obstacles.items() if why is not None}
 
 
-def search(problem: Problem, library: Sequence[Effect]) -> Search:
+def search(problem: Posed, library: Sequence[Effect]) -> Search:
     """Weigh nothing, every single effect, and pairs if no single one fits.
 
     Parameters
     ----------
-    problem : Problem
+    problem : Problem or Several
         Test and model.
     library : sequence of Effect
         Effects to consider.
@@ -94,16 +97,26 @@ def search(problem: Problem, library: Sequence[Effect]) -> Search:
     effects, obstacles = examine(problem, library)
     nothing = explain(problem, Candidate())
     twin = _falls_short(problem, effects)
-    singles: list[Explanation] = []
-    for effect in effects:
-        for form in problem.forms(effect):
-            singles.append(_single(problem, effect, form, twin=twin, bar=_bar([nothing, *singles])))
-    found = [nothing, *singles]
-    if max(_fit(e) for e in found) < REJECTED:
-        found += _pairs(problem, singles)
-    rows = sorted(_weigh(found), key=lambda row: -row.probability)
-    closer = [_closer(problem, row) if i < CLOSER_LOOKS else row.explanation for i, row in enumerate(rows)]
-    return Search(nothing, _merged(_weigh(closer)), obstacles)
+    drafts = [_single(problem, e, form, twin=twin) for e in effects for form in problem.forms(e)]
+    found = _finished(problem, [nothing, *drafts])
+    if max(_fit(e) for e in found) < DOUBTED:
+        found = _finished(problem, found + _pairs(problem, found[1:]))
+    return Search(nothing, _merged(_weigh(found)), obstacles)
+
+
+def _finished(problem: Posed, found: list[Explanation]) -> list[Explanation]:
+    """Weigh by predictions what drafts left within reach of the best; the rest stays as drafted."""
+    finished = list(found)
+    for look in range(LOOKS):
+        rows = _weigh(finished)
+        bar = max(row.probability for row in rows) * np.exp(-WITHIN_REACH)
+        left = [i for i, row in enumerate(rows) if row.explanation.draft and row.probability > bar]
+        if not left:
+            break
+        left.sort(key=lambda i: -rows[i].probability)
+        for i in left if look else left[:1]:  # the best first: it may put the others out of reach
+            finished[i] = finish(problem, finished[i])
+    return finished
 
 
 def _merged(rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
@@ -122,21 +135,6 @@ def _merged(rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
     return tuple(sorted(merged, key=lambda row: -row.probability))
 
 
-def _closer(problem: Problem, row: Weighed) -> Explanation:
-    """Weigh what matters again with more samples, from where it was best."""
-    explanation = row.explanation
-    if row.probability < WORTH_A_CLOSER_LOOK or not explanation.samples.shape[1]:
-        return explanation
-    finer = explain(problem, explanation.candidate, starts=[explanation.best.coordinates], density=64)
-    lost = explanation.log_evidence - finer.log_evidence
-    return explanation if lost > 1.0 else finer  # it had more peaks than one
-
-
-def _bar(found: list[Explanation]) -> float:
-    """Return the best log-likelihood so far."""
-    return max(e.best.marginal.log_likelihood for e in found)
-
-
 def _fit(explanation: Explanation) -> float:
     return p_value(explanation.best, explanation.samples.shape[1])
 
@@ -148,7 +146,7 @@ def _weigh(found: list[Explanation]) -> list[Weighed]:
     return [Weighed(e, float(p), _fit(e)) for e, p in zip(found, probability, strict=True)]
 
 
-def _falls_short(problem: Problem, effects: list[Effect]) -> bool:
+def _falls_short(problem: Posed, effects: list[Effect]) -> bool:
     """Tell whether every effect must also be weighed on the better beam theory.
 
     It must where the theory shifts frequencies by more than a part of the noise, unless the better theory alone
@@ -167,18 +165,18 @@ def _falls_short(problem: Problem, effects: list[Effect]) -> bool:
     return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
 
 
-def _single(problem: Problem, effect: Effect, form: Variant, *, twin: bool, bar: float) -> Explanation:
+def _single(problem: Posed, effect: Effect, form: Variant, *, twin: bool) -> Explanation:
     """Weigh one form of an effect; where the theory falls short, on either theory and half the evidence of each."""
-    plain = explain(problem, Candidate((effect,), chosen=(form,)), bar=bar)
+    plain = explain(problem, Candidate((effect,), chosen=(form,)), draft=True)
     if not twin or effect.name == "shear":
         return plain
-    better = explain(problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), bar=bar)
+    better = explain(problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), draft=True)
     total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
     chosen = max(plain, better, key=lambda e: e.log_evidence)
-    return replace(chosen, log_evidence=total)
+    return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
 
 
-def _pairs(problem: Problem, singles: list[Explanation]) -> list[Explanation]:
+def _pairs(problem: Posed, singles: list[Explanation]) -> list[Explanation]:
     """Weigh the pairs that a linear look at every pair finds the most promising."""
     possible = [e for e in singles if e.best.possible]
     reached = _linear_looks(problem, possible)
@@ -199,8 +197,7 @@ def _pairs(problem: Problem, singles: list[Explanation]) -> list[Explanation]:
         middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]
         a, b = first.best.coordinates, second.best.coordinates
         starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
-        bar = _bar([*singles, *found])
-        found.append(explain(problem, _joined(first, second), starts=starts, bar=bar))
+        found.append(explain(problem, _joined(first, second), starts=starts, draft=True))
     return found
 
 
@@ -209,7 +206,7 @@ def _joined(first: Explanation, second: Explanation) -> Candidate:
     return Candidate(a.effects + b.effects, theory=a.theory or b.theory, chosen=a.forms + b.forms)
 
 
-def _linear_looks(problem: Problem, singles: list[Explanation]) -> FloatArray:
+def _linear_looks(problem: Posed, singles: list[Explanation]) -> FloatArray:
     """Return the log-likelihood that a linear step from each single's best, with each other, would reach.
 
     Returns

@@ -6,16 +6,17 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.comparison import CHANNELS
 from updating.diagnosis.evidence import Explanation
 from updating.diagnosis.fit import climb, evaluate
-from updating.diagnosis.comparison import CHANNELS
 from updating.diagnosis.goodness import carrier
+from updating.diagnosis.posed import Posed
 from updating.diagnosis.problem import Problem
 from updating.diagnosis.result import Closed, Shrink
 
 
 def shrinkage(
-    problem: Problem,
+    problem: Posed,
     nothing: Explanation,
     best: Explanation,
     runner_up: Explanation | None,
@@ -25,7 +26,7 @@ def shrinkage(
 
     Parameters
     ----------
-    problem : Problem
+    problem : Problem or Several
         Test and model.
     nothing, best, runner_up : Explanation
         The nominal model with its tolerances, the best explanation, and the one behind it.
@@ -60,33 +61,39 @@ def _rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0
 
 
-def _raw(problem: Problem, metric: str) -> FloatArray:
+def _raw(problem: Posed, metric: str) -> FloatArray:
     """Return the errors of the nominal model as it stands, no tolerance moved."""
     comparison = evaluate(problem, Candidate(), np.zeros(0)).comparison
     plain = problem.at(Candidate(), np.zeros(0))
     return np.asarray(plain.residual[comparison.channel == CHANNELS.index(metric)])
 
 
-def _noise(problem: Problem, metric: str) -> FloatArray:
+def _noise(problem: Posed, metric: str) -> FloatArray:
     """Return the variance that repeating the test (and the baseline) alone would give, per datum of a channel."""
     plain = problem.at(Candidate(), np.zeros(0))
     rows = plain.channel == CHANNELS.index(metric)
     if metric == "frequency":
-        tests = [problem.measured] + ([] if problem.baseline is None else [problem.baseline])
-        noise = [np.mean((t.frequency_sigma / t.frequency) ** 2) + t.repeatability**2 for t in tests]
-        return np.full(int(rows.sum()), sum(noise))
+        return np.concatenate([_repeated(one) for one in problem.specimens])
     variance = plain.variance[rows]
     if metric == "damping":
-        variance = variance - problem.damping_doubt**2
+        doubts = [np.full(len(one.damping_known), one.damping_doubt) for one in problem.specimens]
+        variance = variance - np.concatenate(doubts) ** 2
     return np.asarray(np.maximum(variance, 0.0))
 
 
-def held_out(problem: Problem, explanation: Explanation, metric: str) -> FloatArray:
+def _repeated(problem: Problem) -> FloatArray:
+    """Return the variance of ln f that repeating the test (and the baseline) gives, per mode [-]."""
+    tests = [problem.measured] + ([] if problem.baseline is None else [problem.baseline])
+    noise = [np.mean((t.frequency_sigma / t.frequency) ** 2) + t.repeatability**2 for t in tests]
+    return np.full(len(problem.measured.frequency), sum(noise))
+
+
+def held_out(problem: Posed, explanation: Explanation, metric: str) -> FloatArray:
     """Predict each mode from all others, and return the errors of the prediction [-].
 
     Parameters
     ----------
-    problem : Problem
+    problem : Problem or Several
         Test and model.
     explanation : Explanation
         What is refitted without each mode in turn, starting from its best parameters.

@@ -6,7 +6,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.evidence import Explanation
-from updating.diagnosis.problem import Problem
+from updating.diagnosis.posed import Posed
 from updating.diagnosis.result import ParameterEstimate, Ranked, Verdict
 from updating.diagnosis.search import REJECTED, Search, Weighed
 
@@ -66,7 +66,7 @@ def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:
     return tuple(sets)
 
 
-def rank(problem: Problem, found: Search) -> tuple[Ranked, ...]:
+def rank(problem: Posed, found: Search) -> tuple[Ranked, ...]:
     """Turn what was weighed into rows of the ranking, the empty set left out."""
     rows = [row for row in found.weighed if row.names]
     total = sum(row.probability for row in found.weighed)
@@ -88,12 +88,12 @@ def _close(a: Weighed, b: Weighed) -> bool:
     return bool(2 * abs(best[0] - best[1]) < CLOSE)
 
 
-def _plausible(problem: Problem, explanation: Explanation) -> bool:
+def _plausible(problem: Posed, explanation: Explanation) -> bool:
     """Tell whether no parameter is driven to the end of its prior."""
     return not any(e.at_bound for e in estimates(problem, explanation).values())
 
 
-def estimates(problem: Problem, explanation: Explanation) -> dict[str, ParameterEstimate]:
+def estimates(problem: Posed, explanation: Explanation) -> dict[str, ParameterEstimate]:
     """Return posterior median and 95 % interval of every parameter and derived quantity, and what its form fixes."""
     candidate = explanation.candidate
     searched = problem.parameters(candidate)

@@ -1,16 +1,28 @@
-"""Where the cause sits: which channel, which place, which points."""
+"""Where the cause sits: which modes, which channel, which place, which points, which regions."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.diagnosis.clusters import Cluster, clusters, sampled_places
+from updating.diagnosis.contributions import contributions
 from updating.diagnosis.problem import Problem
-from updating.diagnosis.result import Place, Where, Zone
+from updating.diagnosis.result import Place, Seat, Where, Zone
 from updating.diagnosis.search import Search, Weighed
-from updating.models import Region
+from updating.diagnosis.verdict import decide
+from updating.localisation import areas, centres, regions_at, weigh_regions
 
 CHANNELS = ("stiffness", "mass", "damping", "measurement")
+
+REACH = 0.05
+"""A test point within this share of the span of a place is concerned [-]."""
+
+NEGLIGIBLE = 1e-4
+"""An explanation less probable than this has no say in the regions [-]."""
+
+LABELS = (".point", ".points")
+"""How parameters that hold nodes of the test end."""
 
 
 def locate(problem: Problem, found: Search, *, significant: bool) -> Where:
@@ -25,101 +37,100 @@ def locate(problem: Problem, found: Search, *, significant: bool) -> Where:
     significant : bool
         Whether there is a gap at all; if not, the channel is ``none``.
     """
-    channels = dict.fromkeys(CHANNELS, 0.0)
-    nothing = 0.0
+    shares, nothing = _channels(found)
+    seen = contributions(problem)
+    if not significant:
+        zones = _zones(problem, _by_explanations(problem, found))
+        told = {**shares, "none": nothing}
+        return Where("none", told, None, (), (), zones, modes=seen.modes, band=seen.summary)
+    top = max(shares, key=lambda n: shares[n])
+    leader = next((row for row in found.weighed if row.names), None)
+    seats = () if leader is None else clusters(problem, leader.explanation, top)
+    places = tuple(_place(cluster.place) for cluster in seats)
+    unknown = decide(found, significant=True)[0] == "unknown"
+    probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
+    return Where(
+        top,
+        {**shares, "none": nothing},
+        places[0] if places else None,
+        places,
+        _points(problem, leader, seats),
+        _zones(problem, probability),
+        "regions" if unknown else "explanations",
+        tuple(Seat(_place(c.place), _place(c.spread), c.weight) for c in seats),
+        seen.modes,
+        seen.summary,
+    )
+
+
+def _channels(found: Search) -> tuple[dict[str, float], float]:
+    """Return the probability of each channel given that there is a cause, and that of none."""
+    channels, nothing = dict.fromkeys(CHANNELS, 0.0), 0.0
     for row in found.weighed:
         acting = [effect.channel for effect in row.explanation.candidate.effects]
         for name in acting:
             channels[name] += row.probability / len(acting)
         nothing += row.probability if not acting else 0.0
     explained = sum(channels.values())
-    shares = {n: float(v / explained) if explained > 0 else 0.0 for n, v in channels.items()}
-    top = max(shares, key=lambda n: shares[n])
-    if not significant:
-        return Where("none", {**shares, "none": nothing}, None, (), (), _zones(problem, found))
-    leader = next((row for row in found.weighed if row.names), None)
-    places = () if leader is None else _places(problem, leader, top)
-    return Where(
-        top,
-        {**shares, "none": nothing},
-        places[0] if places else None,
-        places,
-        _points(problem, leader, places),
-        _zones(problem, found),
-    )
+    return {n: float(v / explained) if explained > 0 else 0.0 for n, v in channels.items()}, nothing
 
 
-def _places(problem: Problem, row: Weighed, channel: str) -> tuple[Place, ...]:
-    """Return where the effects of a channel sit, of all effects if none of it has a place."""
-    explanation = row.explanation
-    candidate, coordinates = explanation.candidate, explanation.best.coordinates.tolist()
-    places = candidate.locations(problem.predictor, coordinates, channel=channel)
-    places = places or candidate.locations(problem.predictor, coordinates)
-    return tuple((float(p[0]), float(p[1]), float(p[2])) for p in places)
+def _place(place: FloatArray) -> Place:
+    return float(place[0]), float(place[1]), float(place[2])
 
 
-def _points(problem: Problem, leader: Weighed | None, places: tuple[Place, ...]) -> tuple[int, ...]:
-    """Return the test nodes at the places, within a twentieth of the length."""
-    if leader is None or not places or not len(problem.measured.points):
+def _points(problem: Problem, leader: Weighed | None, seats: tuple[Cluster, ...]) -> tuple[int, ...]:
+    """Return the test nodes an effect speaks of, else those at the places."""
+    if leader is None:
         return ()
-    points = problem.measured.points
-    reach = 0.05 * problem.predictor.spec.length
-    found = []
-    for place in places:
-        distance = np.linalg.norm(points - np.array(place[: points.shape[1]]), axis=1)
-        if distance.min() <= reach:
-            found.append(problem.measured.nodes[int(np.argmin(distance))])
-    return tuple(dict.fromkeys(found))
+    explanation = leader.explanation
+    values = problem.values(explanation.candidate, explanation.best.coordinates)
+    named = [v for name, v in values.items() if name.endswith(LABELS)]
+    if named:
+        return tuple(dict.fromkeys(int(n) for v in named for n in np.atleast_1d(np.asarray(v)).tolist()))
+    test, spec = problem.measured, problem.predictor.spec
+    if not seats or not len(test.points):
+        return ()
+    dim = test.points.shape[1]
+    away = np.linalg.norm(np.stack([c.place[:dim] for c in seats])[:, None] - test.points[None], axis=2)
+    near = away.min(axis=1) <= REACH * max(spec.length, spec.width if dim > 1 else 0.0)
+    return tuple(dict.fromkeys(test.nodes[int(i)] for i in away.argmin(axis=1)[near]))
 
 
-def _zones(problem: Problem, found: Search) -> tuple[Zone, ...]:
-    """Spread each explanation over the regions: a seated one by its place, any other by area."""
-    regions = problem.predictor.spec.regions
-    area = np.array([_area(region, problem.predictor.spec.width) for region in regions])
-    even = area / area.sum()
-    total = np.zeros(len(regions))
-    for row in found.weighed:
-        if not row.names:
-            continue
-        total += row.probability * _spread(problem, row, even)
-    if total.sum() > 0:
-        total = total / total.sum()
+def _zones(problem: Problem, probability: FloatArray) -> tuple[Zone, ...]:
+    regions, middle = problem.predictor.spec.regions, centres(problem)
     return tuple(
-        Zone(region.name, _centre(region, problem.predictor.spec.width), float(p))
-        for region, p in zip(regions, total, strict=True)
+        Zone(region.name, _place(at), float(p))
+        for region, at, p in zip(regions, middle, probability, strict=True)
     )
+
+
+def _by_explanations(problem: Problem, found: Search) -> FloatArray:
+    """Spread each explanation over the regions: a seated one by its places, any other by area."""
+    even = areas(problem)
+    total = np.zeros(len(even))
+    for row in found.weighed:
+        if row.names and row.probability > NEGLIGIBLE:
+            total += row.probability * _spread(problem, row, even)
+    return np.asarray(total / total.sum() if total.sum() > 0 else even)
 
 
 def _spread(problem: Problem, row: Weighed, even: FloatArray) -> FloatArray:
     explanation = row.explanation
-    regions = problem.predictor.spec.regions
-    heavy = np.argsort(explanation.weights)[::-1][:200]
-    share = np.zeros(len(regions))
-    for index in heavy:
-        places = explanation.candidate.locations(problem.predictor, explanation.samples[index].tolist())
-        if not places:
-            return even
-        for place in places:
-            share[_region_at(regions, place)] += explanation.weights[index] / len(places)
-    return np.asarray(share / max(share.sum(), 1e-300))
+    values = problem.values(explanation.candidate, explanation.best.coordinates)
+    if any(
+        name.endswith(".region") for name in values
+    ):  # one form per region, of which only the best is kept
+        channel = next(e.channel for e in explanation.candidate.effects if f"{e.name}.region" in values)
+        return _by_regions(problem, channel)
+    sampled = sampled_places(problem, explanation)
+    if not sampled.weights.sum() > 0:
+        return even
+    shares = regions_at(problem.predictor.spec, sampled.places)
+    return np.asarray(sampled.weights @ shares / sampled.weights.sum())
 
 
-def _region_at(regions: tuple[Region, ...], place: Place) -> int:
-    """Return the region that holds a place, or the nearest one."""
-
-    def distance(region: Region) -> float:
-        away = max(region.x[0] - place[0], 0.0, place[0] - region.x[1])
-        if region.y is None:
-            return away
-        return float(np.hypot(away, max(region.y[0] - place[1], 0.0, place[1] - region.y[1])))
-
-    return int(np.argmin([distance(region) for region in regions]))
-
-
-def _area(region: Region, width: float) -> float:
-    return (region.x[1] - region.x[0]) * (width if region.y is None else region.y[1] - region.y[0])
-
-
-def _centre(region: Region, width: float) -> Place:
-    y = (0.0 if region.y is None else sum(region.y) / 2) if region.y is not None else 0.0
-    return (float(sum(region.x) / 2), float(y), 0.0)
+def _by_regions(problem: Problem, channel: str) -> FloatArray:
+    """Return the probability of each region by the evidence of a change of it alone."""
+    kinds = [kind for kind in ("stiffness", "mass", "damping") if channel in (kind, "measurement")]
+    return weigh_regions(problem.specimens[0], tuple(kinds)).regions  # type: ignore[arg-type]

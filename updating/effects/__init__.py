@@ -9,22 +9,25 @@ from collections.abc import Mapping
 from typing import Any
 
 from acquisition.errors import StudyError
+from updating.effects.axial_load import AxialLoad
 from updating.effects.base import Channel, Effect, Parameter, Variant
-from updating.effects.clamp import ClampRotation
+from updating.effects.clamp import ClampRotation, ClampTranslation
+from updating.effects.damping import UniformDamping
+from updating.effects.delay import TimeDelay
 from updating.effects.factor import Density, Modulus, SectionScale, Thickness
-from updating.effects.fluid import FluidAddedMass
+from updating.effects.fluid import FluidAddedMass, FluidDamping
+from updating.effects.gain import CalibrationGain
+from updating.effects.joint_nonlinearity import JointNonlinearity
 from updating.effects.length import Length
 from updating.effects.local_stiffness import LocalStiffness
-from updating.effects.mass import SensorMass
-from updating.effects.measurement import (
-    CalibrationGain,
-    ExponentialWindow,
-    Polarity,
-    PositionError,
-    SwappedPoints,
-    TimeDelay,
-)
+from updating.effects.mass import LumpedMass, SensorMass
+from updating.effects.orthotropy import Orthotropy
+from updating.effects.patch import DampingPatch
+from updating.effects.polarity import Polarity
+from updating.effects.position_error import PositionError
 from updating.effects.shear import Shear
+from updating.effects.swapped_points import SwappedPoints
+from updating.effects.window import ExponentialWindow
 from updating.models.state import State
 from updating.prediction import Predictor
 
@@ -37,10 +40,18 @@ LIBRARY: dict[str, Effect] = {
         SectionScale(),
         Length(),
         ClampRotation(),
+        ClampTranslation(),
         SensorMass(),
+        LumpedMass(),
         LocalStiffness(),
         Shear(),
+        Orthotropy(),
+        AxialLoad(),
+        JointNonlinearity(),
         FluidAddedMass(),
+        FluidDamping(),
+        DampingPatch(),
+        UniformDamping(),
         ExponentialWindow(),
         CalibrationGain(),
         TimeDelay(),

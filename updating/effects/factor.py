@@ -24,7 +24,8 @@ class FactorEffect(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the state with the factor applied."""
-        return State(factors={name: values["factor"] for name in self.factors})
+        factor: float = values["factor"]
+        return State(factors=dict.fromkeys(self.factors, factor))
 
 
 class Modulus(FactorEffect):
@@ -35,7 +36,7 @@ class Modulus(FactorEffect):
     summary = "The modulus of elasticity differs from the model's by more than its tolerance."
     footprint = "All frequencies by one factor, shapes and modal constants unchanged."
     models = ("beam", "plate", "matrices")
-    equivalent_to = ("density", "thickness", "length")
+    equivalent_to = ("density", "thickness", "length", "clamp_rotation")
     separated_by = "absolute level (calibrated FRFs), a known added mass, or a measured density"
     factors = ("E",)
     low, high = 0.4, 2.5
@@ -48,9 +49,7 @@ class Density(FactorEffect):
     name = "density"
     channel = "mass"
     summary = "The density (or a mass spread evenly) differs from the model's by more than its tolerance."
-    footprint = (
-        "All frequencies by one factor; modal constants by the inverse square of that factor's inverse."
-    )
+    footprint = "All frequencies by one factor, modal constants by the square of it; shapes unchanged."
     models = ("beam", "plate", "matrices")
     equivalent_to = ("E", "thickness", "length", "fluid_added_mass")
     separated_by = "weigh the specimen; absolute level; a known added mass"

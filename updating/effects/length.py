@@ -12,7 +12,7 @@ class Length(Effect):
     channel = "stiffness"
     summary = "The free length differs from the model's; at a clamp, the structure bends some way inside it."
     footprint = "All frequencies by nearly one factor; points move relative to the clamp, so shapes tell."
-    equivalent_to = ("E", "density", "thickness")
+    equivalent_to = ("E", "density", "thickness", "clamp_rotation")
     separated_by = "shapes at points near the clamp, absolute level, or a free-free test of the same specimen"
     fidelity = 0.01
 
@@ -25,6 +25,12 @@ class Length(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the stretched structure."""
         return State(factors={"length": 1 + values["extension"] / predictor.spec.length})
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need a model that has a length."""
+        return (
+            "not for imported matrices: their length is in their numbers" if predictor.spec.imported else None
+        )
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return the clamped edges across x, where the length is in doubt."""

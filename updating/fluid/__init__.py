@@ -1,9 +1,10 @@
-"""Added mass of plates and beams in a fluid at rest, by potential flow."""
+"""Added mass and viscous damping of plates and beams in a fluid at rest, by potential flow."""
 
 from .domain import FluidDomain
 from .operator import AddedMassOperator
 from .plate import added_mass, beam_added_mass, beam_matrix, beam_operator, quadrature_grid
 from .section import heave_coefficient, strip_theory
+from .stokes import edge_reach, layer_depth, slip_coefficient, slip_matrix
 
 __all__ = [
     "AddedMassOperator",
@@ -12,7 +13,11 @@ __all__ = [
     "beam_added_mass",
     "beam_matrix",
     "beam_operator",
+    "edge_reach",
     "heave_coefficient",
+    "layer_depth",
     "quadrature_grid",
+    "slip_coefficient",
+    "slip_matrix",
     "strip_theory",
 ]

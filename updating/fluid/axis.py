@@ -89,6 +89,40 @@ class JumpAxis:
         spline = make_interp_spline(points, np.eye(points.size), k=min(5, points.size - 1))
         return np.asarray((functions * weight) @ spline(where), dtype=np.float64)
 
+    @property
+    def gram(self) -> FloatArray:
+        """Integrals of the products of every two functions over the plate, shape (terms, terms). [m]"""
+        _, functions, weight = self._quadrature()
+        return np.asarray((functions * weight) @ functions.T, dtype=np.float64)
+
+    def slopes(self, reach: float) -> FloatArray:
+        """Integrals of the products of every two slopes, to within ``reach`` of the free edges.
+
+        At a free edge a slope grows like the inverse root of the distance, so the integral of its square like
+        a logarithm. With u = ln tan(angle / 2), in which the functions are sines of the angle, it is smooth.
+
+        Parameters
+        ----------
+        reach : float
+            Distance from a free edge at which the integral ends, above zero. [m]
+
+        Returns
+        -------
+        FloatArray
+            Shape (terms, terms). [1/m]
+        """
+        node, weight = np.polynomial.legendre.leggauss(12 * self.terms + 96)
+        if self.spans:
+            wave = np.pi * np.arange(self.terms) / self.side
+            sines = np.sin(0.5 * np.pi * np.arange(self.terms)[:, None] * (node + 1.0)) * wave[:, None]
+            return np.asarray((sines * (0.5 * self.side * weight)) @ sines.T, dtype=np.float64)
+        last = -math.log(math.tan(0.5 * math.acos(1.0 - min(reach / self.half, 0.5))))
+        low, high = (0.0 if self.high_touches else -last), (0.0 if self.low_touches else last)
+        angle = 2.0 * np.arctan(np.exp(0.5 * (low + high) + 0.5 * (high - low) * node))
+        order = self.degrees[:, None] + 1.0
+        cosines = order * np.cos(order * angle)
+        return np.asarray((cosines * (0.5 * (high - low) * weight)) @ cosines.T / self.half, dtype=np.float64)
+
     def _quadrature(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return points on the plate (n,) [m], the functions there (terms, n), and weights (n,) [m].
 

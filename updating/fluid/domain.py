@@ -51,12 +51,12 @@ class FluidDomain:
         if not (x0 < x1 and y0 < y1):
             raise InputError(f"fluid domain: walls {self.walls} are not in the order x0 < x1, y0 < y1")
 
-    def shifted(self, dy: float) -> FluidDomain:
-        """Return the same domain seen from axes whose y is larger by ``dy``. [m]"""
+    def shifted(self, dy: float, *, dx: float = 0.0) -> FluidDomain:
+        """Return the same domain seen from axes whose x and y are larger by ``dx`` and ``dy``. [m]"""
         if self.walls is None:
             return self
         x0, x1, y0, y1 = self.walls
-        return FluidDomain(self.free_surface, self.bottom, (x0, x1, y0 + dy, y1 + dy))
+        return FluidDomain(self.free_surface, self.bottom, (x0 + dx, x1 + dx, y0 + dy, y1 + dy))
 
     def stiffness(self, kappa: FloatArray, thickness: float) -> FloatArray:
         r"""Normal velocity per unit potential jump, for a harmonic of wavenumber ``kappa`` in x and y.

@@ -108,11 +108,14 @@ class AddedMassOperator:
         InputError
             If the shapes do not match the grid or the grid is not ascending or leaves the plate.
         """
+        reduced = self.loads(shapes, x, y) @ self.factor
+        return np.asarray(reduced @ reduced.T, dtype=np.float64)
+
+    def loads(self, shapes: FloatArray, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Integrals of the functions times the shapes, (n_modes, n), with arguments as in :meth:`matrix`. [m^2]"""
         _check_grid(shapes, (x, y), (self.along.side, self.across.side))
         left, right = self.along.projection(x), self.across.projection(y)
-        load = (left @ shapes @ right.T).reshape(len(shapes), -1)
-        reduced = load @ self.factor
-        return np.asarray(reduced @ reduced.T, dtype=np.float64)
+        return np.asarray((left @ shapes @ right.T).reshape(len(shapes), -1), dtype=np.float64)
 
 
 def _check_grid(shapes: FloatArray, grid: tuple[FloatArray, FloatArray], sides: tuple[float, float]) -> None:

@@ -13,12 +13,32 @@ from acquisition.errors import InputError
 
 
 def _sides(logit: float) -> tuple[float, float, float]:
-    """Return thickness and breadth of the rectangle outside which the unit circle's exterior maps, and m."""
+    """Return thickness and breadth of the rectangle outside which the unit circle's exterior maps, and 1 - m."""
     m = 1.0 / (1.0 + math.exp(-logit))
     complement = 1.0 / (1.0 + math.exp(logit))
     thickness = 4.0 * float(ellipe(m) - complement * ellipk(m))
     breadth = 4.0 * float(ellipe(complement) - m * ellipkm1(m))
     return thickness, breadth, complement
+
+
+def mapped_sides(ratio: float) -> tuple[float, float, float]:
+    """Return the rectangle of given t/b as the image of the unit circle: thickness, breadth and 1 - m.
+
+    The map is that of :func:`heave_coefficient` with c = 1, m = sin(alpha)^2 and alpha where the corner lies.
+
+    Raises
+    ------
+    InputError
+        If the ratio is not between 1e-9 and a hundred.
+    """
+    if not 1e-9 <= ratio <= 100.0:
+        raise InputError(f"section: thickness over breadth is {ratio}; it must lie between 0 and 100")
+
+    def miss(logit: float) -> float:
+        thickness, breadth, _ = _sides(logit)
+        return math.log(thickness / breadth / ratio)
+
+    return _sides(float(brentq(miss, -28.0, 7.0, xtol=1e-12)))
 
 
 def heave_coefficient(ratio: float) -> float:
@@ -48,16 +68,9 @@ def heave_coefficient(ratio: float) -> float:
     ----------
     Newman, Marine Hydrodynamics (1977), chapter 4 (added mass from the map's coefficients); Wendel (1956).
     """
-    if not 0.0 <= ratio <= 100.0:
-        raise InputError(f"section: thickness over breadth is {ratio}; it must lie between 0 and 100")
-    if ratio < 1e-9:
+    if 0.0 <= ratio < 1e-9:
         return 1.0
-
-    def miss(logit: float) -> float:
-        thickness, breadth, _ = _sides(logit)
-        return math.log(thickness / breadth / ratio)
-
-    thickness, breadth, complement = _sides(float(brentq(miss, -28.0, 7.0, xtol=1e-12)))
+    thickness, breadth, complement = mapped_sides(ratio)
     return (4.0 * math.pi * complement - breadth * thickness) * 4.0 / (math.pi * breadth**2)
 
 

@@ -46,13 +46,56 @@ class Component:
         return {n: self._matrix(values, d, cells, n_dofs) for n, d in self.names.items()}
 
     @cached_property
+    def _grid(self) -> tuple[tuple[FloatArray, ...], IntArray]:
+        """Edges of the elements along each axis, and the degrees of freedom of the node at each crossing.
+
+        Degrees of freedom of a node come in the order w, wx for a beam and w, wx, wy, wxy for a plate.
+        """
+        mesh = self.basis.mesh
+        edges = tuple(np.unique(np.round(axis, 12)) for axis in mesh.p)
+        place = tuple(
+            np.abs(edge[:, None] - axis[None, :]).argmin(axis=0)
+            for edge, axis in zip(edges, mesh.p, strict=True)
+        )
+        nodal = np.asarray(self.basis.nodal_dofs)
+        numbers = np.zeros((*(len(edge) for edge in edges), len(nodal)), dtype=np.int64)
+        numbers[place] = nodal.T
+        return edges, numbers
+
+    def at(self, points: FloatArray, n_dofs: int) -> dict[str, Sparse]:
+        """Return the displacement and its slopes at any points (n_points, dim) [m], each (n_points, n_dofs).
+
+        The displacement is a product of Hermite cubics, of beams along x and of plates along x and y, so it is
+        read from the four (or sixteen) degrees of freedom around a point without the element library's help.
+        """
+        if "w" not in self.names:
+            return self._elsewhere(points, n_dofs)
+        dim = len(self._grid[0])
+        names = {"w": (0,) * dim, "wx": (1, 0)[:dim]} | ({"wy": (0, 1)} if dim == 2 else {})
+        if len(points) == 0:
+            return {name: Sparse((0, n_dofs)) for name in names}
+        edges, numbers = self._grid
+        axes = [_hermite(edge, points[:, i]) for i, edge in enumerate(edges)]
+        cells = tuple(cell for cell, _ in axes)
+        ends = np.stack(np.meshgrid(*[(0, 1)] * dim, indexing="ij"), axis=-1).reshape(-1, dim)
+        columns = np.stack([numbers[tuple(c + e for c, e in zip(cells, end, strict=True))] for end in ends], 1)
+        found = {}
+        for name, derivative in names.items():
+            parts = [shape[d] for (_, shape), d in zip(axes, derivative, strict=True)]
+            # nodal order: w, wx, wy, wxy, that is (value, slope along x) for each of (value, slope along y)
+            values = parts[0] if dim == 1 else np.einsum("pai,pbj->pabji", *parts)
+            data = values.reshape(len(points), -1)
+            start = np.arange(len(points) + 1) * data.shape[1]
+            place = columns.reshape(len(points), -1).ravel() + self.offset
+            found[name] = Sparse((data.ravel(), place, start), shape=(len(points), n_dofs))
+        return found
+
+    @cached_property
     def _finder(self) -> Any:
         return self.basis.mesh.element_finder(mapping=self.basis.mapping)
 
-    def at(self, points: FloatArray, n_dofs: int) -> dict[str, Sparse]:
-        """Return the fields at any points (n_points, dim) [m], each (n_points, n_dofs)."""
-        if len(points) == 0:
-            return {name: Sparse((0, n_dofs)) for name in self.names}
+    def _elsewhere(self, points: FloatArray, n_dofs: int) -> dict[str, Sparse]:
+        """Return all fields at any points by the element library."""
         mesh, mapping = self.basis.mesh, self.basis.mapping
         low, high = mesh.p.min(axis=1), mesh.p.max(axis=1)
         inside = np.clip(points, low, high).T
@@ -144,3 +187,25 @@ def plate_fields(length: float, width: float, elements: tuple[int, int]) -> Fiel
     basis = skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6)
     names = {"w": (), "wx": (0,), "wy": (1,), "wxx": (0, 0), "wyy": (1, 1), "wxy": (0, 1)}
     return Fields((Component(basis, 0, names),), 2)
+
+
+def _hermite(edges: FloatArray, x: FloatArray) -> tuple[IntArray, tuple[FloatArray, FloatArray]]:
+    """Return the element each place lies in, and Hermite's cubics and their slopes there.
+
+    Returns
+    -------
+    cell : (n,) int array
+    shapes : pair of (n, 2, 2) arrays
+        Value and slope of the cubics of each end's displacement [-] and slope [m]; places outside count as the end.
+    """
+    x = np.clip(x, edges[0], edges[-1])
+    cell = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2)
+    h = edges[cell + 1] - edges[cell]
+    t = (x - edges[cell]) / h
+    value = np.stack(
+        [(1 + 2 * t) * (1 - t) ** 2, h * t * (1 - t) ** 2, t**2 * (3 - 2 * t), h * t**2 * (t - 1)], axis=1
+    )
+    slope = np.stack(
+        [6 * t * (t - 1) / h, (1 - t) * (1 - 3 * t), 6 * t * (1 - t) / h, t * (3 * t - 2)], axis=1
+    )
+    return cell, (value.reshape(-1, 2, 2), slope.reshape(-1, 2, 2))

@@ -7,7 +7,7 @@ are sums of small precomputed ones, so a prediction costs one dense eigenproblem
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,7 +17,7 @@ from scipy import sparse
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from updating.models.base import FACTORS, Structure
+from updating.models.base import FACTORS, Structure, Term
 from updating.models.fields import Fields, Sparse
 from updating.models.state import State
 from updating.models.structure import FieldStructure
@@ -56,6 +56,11 @@ class Reduced:
     def sampled(self) -> dict[str, FloatArray]:
         """Fields of the basis at the quadrature points, each (n_points, r)."""
         return {n: np.asarray(m @ self.basis) for n, m in self._fielded.fields.sampled.items()}
+
+    @cached_property
+    def kept(self) -> dict[Hashable, FloatArray]:
+        """What others computed from the structure alone, for all tests of it."""
+        return {}
 
     @property
     def fields(self) -> Fields:
@@ -168,6 +173,14 @@ class Reduced:
             if power:
                 change[term.kind] += power * term.scale(state.factors) * parts[:n, :n]
         return change["stiffness"], change["mass"]
+
+    def scaled_terms(self, state: State) -> list[tuple[Term, FloatArray]]:
+        """Return every term with its matrix under a state's factors, on the columns its releases admit [SI]."""
+        n = self.ranks[state.released]
+        return [
+            (term, term.scale(state.factors) * whole[:n, :n])
+            for term, whole in zip(self.structure.terms, self._totals(state), strict=True)
+        ]
 
     def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return displacement and slopes of the basis at points (n_points, dim) [m], each (n_points, r).

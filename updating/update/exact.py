@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.clamp import edge_slopes
-from updating.effects.mass import sensor_places
+from updating.effects.mass import sensor_places, sensor_share
 from updating.models.fields import Sparse
 from updating.models.solve import DENSE
 from updating.models.state import State
@@ -53,7 +53,8 @@ def full_modes(
     structure = predictor.reduced.structure
     stiffness, mass = structure.matrices(state)
     if "sensor_mass" in effects:
-        mass = Sparse(mass + effects["sensor_mass"]["mass"] * structure.unit_mass(sensor_places(predictor)))
+        points, share = sensor_places(predictor), sensor_share(predictor)
+        mass = Sparse(mass + share * effects["sensor_mass"]["mass"] * structure.unit_mass(points))
     if "clamp_rotation" in effects:
         stiffness = Sparse(stiffness + effects["clamp_rotation"]["stiffness"] * edge_slopes(structure))
     first = structure.rigid_modes

@@ -11,10 +11,8 @@ from acquisition import Dof, FrfSet, HammerTest, bootstrap_frfs
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import EstimationError
 from identification import ModalModel
-from identification.grams import Weights
-from identification.refine import fit_at, refine
-from identification.residues import uniform_weights
-from identification.weighing import absorbed_by, left_over, noise_weights
+from identification.levels import weights_of
+from identification.refine import refine
 
 STEPS = 12
 """Steps of each refit, which begins where the identification ended."""
@@ -55,7 +53,7 @@ def redrawn_frequencies(
         If the FRFs of the model are not those of the test, or a point has a single hit.
     """
     poles = np.concatenate([model.poles, model.background_poles])
-    weights, powers = _weights(model), model.background.powers
+    weights, powers = weights_of(model), model.background.powers
     found = np.empty((n, len(model)))
     rows: IntArray | None = None
     place = np.argsort(np.argsort(np.abs(poles)))[: len(model)]  # a fit sorts its poles
@@ -67,15 +65,6 @@ def redrawn_frequencies(
         fit = refine(data, poles, weights, powers=powers, iterations=STEPS, tolerance=1e-8, enough=AT_REST)
         found[i] = np.abs(fit.poles[place]) / (2 * np.pi)
     return found
-
-
-def _weights(model: ModalModel) -> Weights:
-    """Return the reciprocal variances of the noise about the identified model."""
-    poles, powers = np.concatenate([model.poles, model.background_poles]), model.background.powers
-    plain = uniform_weights(model.frfs)
-    fit = fit_at(model.frfs, poles, plain, powers, True)
-    residual = left_over(model.frfs, fit)
-    return noise_weights(model.frfs, residual, absorbed_by(model.frfs, fit, plain))[0]
 
 
 def _rows(wanted: FrfSet, drawn: FrfSet) -> IntArray:

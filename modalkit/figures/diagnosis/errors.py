@@ -116,9 +116,9 @@ def _fit(problem: Problem, candidate: Candidate, leader: Ranked) -> tuple[Compar
         }
         states.append(effect.state(stage, values))
     state = combine([*states, State(theory=candidate.theory)])
-    comparison = problem.compare(state, fidelity=candidate.fidelity)
+    comparison = problem.compare(state, doubt=candidate.doubt)
     result = marginal(comparison)
     for _ in range(2 if problem.wide else 0):
-        comparison = problem.compare(state, result.shift[: len(problem.names)], fidelity=candidate.fidelity)
+        comparison = problem.compare(state, result.shift[: len(problem.names)], doubt=candidate.doubt)
         result = marginal(comparison)
     return comparison, result

@@ -143,7 +143,7 @@ def draw_where(axes: Axes, diagnosis: Diagnosis, case: Case | None, *, width: fl
     axes.set_xlim(0, width)
     axes.set_ylim(0, height)
     body = outline(diagnosis, case)
-    frame = _Frame.fit(body, width, height)
+    frame = Frame.fit(body, width, height)
     coloured = not body.even and diagnosis.where.channel != "none"
     _zones(axes, body, frame, coloured=coloured)
     if coloured:
@@ -154,8 +154,8 @@ def draw_where(axes: Axes, diagnosis: Diagnosis, case: Case | None, *, width: fl
 
 
 @dataclass(frozen=True)
-class _Frame:
-    """From metres to inches on the panel."""
+class Frame:
+    """From metres to inches on the panel: what :func:`draw_where` draws in."""
 
     left: float
     bottom: float
@@ -165,7 +165,8 @@ class _Frame:
     tall: float
 
     @classmethod
-    def fit(cls, body: Outline, width: float, height: float) -> _Frame:
+    def fit(cls, body: Outline, width: float, height: float) -> Frame:
+        """Fit a structure into a panel of some size [in]."""
         above, below, side = 0.62, 0.62, 0.22
         if body.width == 0:
             scale = (width - 2 * side) / body.length
@@ -176,17 +177,20 @@ class _Frame:
         return cls((width - wide) / 2, (height - tall - above + below) / 2, scale, scale, wide, tall)
 
     def x(self, metres: float) -> float:
+        """Return where a place along the structure lies [in]."""
         return self.left + self.scale * metres
 
     def y(self, metres: float) -> float:
+        """Return where a place across it lies [in]."""
         return self.bottom + (self.across * metres if self.across else 0.0)
 
     @property
     def top(self) -> float:
+        """Upper edge of the structure [in]."""
         return self.bottom + self.tall
 
 
-def _zones(axes: Axes, body: Outline, frame: _Frame, *, coloured: bool) -> None:
+def _zones(axes: Axes, body: Outline, frame: Frame, *, coloured: bool) -> None:
     for x0, x1, y0, y1, probability in body.zones:
         low = frame.y(y0)
         high = frame.y(y1) if body.width else frame.top
@@ -213,7 +217,7 @@ def _zones(axes: Axes, body: Outline, frame: _Frame, *, coloured: bool) -> None:
     axes.add_patch(edge)
 
 
-def _clamps(axes: Axes, body: Outline, frame: _Frame) -> None:
+def _clamps(axes: Axes, body: Outline, frame: Frame) -> None:
     depth = 0.11
     places = {
         "x0": (frame.left - depth, frame.bottom - 0.08, depth, frame.tall + 0.16),
@@ -228,7 +232,7 @@ def _clamps(axes: Axes, body: Outline, frame: _Frame) -> None:
         )
 
 
-def _points(axes: Axes, body: Outline, frame: _Frame) -> None:
+def _points(axes: Axes, body: Outline, frame: Frame) -> None:
     """Draw test points as rings and sensors as squares, and say below what they are."""
     beam = body.width == 0
     at = np.array([[frame.x(x), frame.bottom if beam else frame.y(y)] for x, y in body.points]).reshape(-1, 2)
@@ -249,7 +253,7 @@ def _points(axes: Axes, body: Outline, frame: _Frame) -> None:
         axes.text(right, line, size, fontsize=SMALL, color=MUTED, ha="right", va="center")
 
 
-def _cause(axes: Axes, diagnosis: Diagnosis, body: Outline, frame: _Frame, width: float) -> None:
+def _cause(axes: Axes, diagnosis: Diagnosis, body: Outline, frame: Frame, width: float) -> None:
     """Ring the places found and name the first above the structure."""
     where, plate = diagnosis.where, body.width > 0
     base = frame.top + 0.42
@@ -259,6 +263,8 @@ def _cause(axes: Axes, diagnosis: Diagnosis, body: Outline, frame: _Frame, width
             "measurement": "in the measurement, not in the structure",
         }
         text = texts.get(where.channel, "no single place: it acts on all of it")
+        if diagnosis.verdict == "unknown":
+            text = "no place is known: nothing explains the gap"
         axes.text(0.0, base, text, fontsize=TEXT, color=MUTED)
         return
     places = where.locations or (where.location,)

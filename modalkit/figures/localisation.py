@@ -1,0 +1,213 @@
+"""Where the gap sits, on a page of its own: the structure with its zones, and what every mode adds."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from acquisition.arrays import FloatArray
+from modalkit.figures.diagnosis.where import Frame, draw_where, outline
+from modalkit.figures.style import (
+    BLUE,
+    GRID,
+    INK,
+    MARGIN,
+    MUTED,
+    ORANGE,
+    SIGNED,
+    SMALL,
+    TEXT,
+    WIDTH,
+    bare,
+    caption,
+    caption_height,
+    heading,
+    new_figure,
+    place,
+    shortened,
+    text_width,
+)
+from modalkit.figures.words import located, share
+from updating import Case, Diagnosis
+
+LEFT, RIGHT = 7.1, 3.6
+"""Widths of the structure and of the list of zones [in]."""
+
+TALL = 2.7
+"""Height of both [in]."""
+
+LISTED = 8
+"""Most zones in the list."""
+
+ROW = 0.34
+"""Height of a row of the table of modes [in]."""
+
+FAR = 10.0
+"""Standard deviations at which the colour of a cell is full."""
+
+MOST = 20
+"""Most modes in the table: those that add the most."""
+
+
+def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figure:
+    """Draw the probability of each zone, the places found, the points concerned, and what each mode adds to the gap.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The answer.
+    case : Case, optional
+        What was diagnosed; without it neither test points nor clamps are drawn.
+
+    Returns
+    -------
+    Figure
+    """
+    where = diagnosis.where
+    title, note = _title(diagnosis), _note(diagnosis)
+    columns = _columns(diagnosis)
+    above, low = caption_height(title, note), ROW * (len(columns) + 1)
+    top = above + 0.75
+    figure = new_figure(top + TALL + (0.8 + low + 0.35 if columns else 0.3))
+    caption(figure, title, note)
+    structure = place(figure, MARGIN, top, LEFT, TALL, name="where")
+    draw_where(structure, diagnosis, case, width=LEFT, height=TALL)
+    _concerned(structure, diagnosis, case)
+    heading(figure, MARGIN, top - 0.42, "Where it sits")
+    heading(figure, WIDTH - MARGIN - RIGHT, top - 0.42, "Probability of each zone")
+    _list(place(figure, WIDTH - MARGIN - RIGHT, top - 0.2, RIGHT, TALL + 0.2, name="zones"), diagnosis)
+    if columns and where.modes is not None:
+        under = top + TALL + 0.8
+        heading(
+            figure,
+            MARGIN,
+            under - 0.16,
+            "What every mode adds, in standard deviations of noise and tolerances",
+        )
+        table = place(figure, MARGIN, under, WIDTH - 2 * MARGIN, low, name="modes")
+        _table(table, diagnosis, columns, low)
+    return figure
+
+
+def _title(diagnosis: Diagnosis) -> str:
+    where = diagnosis.where
+    if where.channel == "none":
+        return "There is no gap beyond tolerances and noise"
+    top = max(where.zones, key=lambda z: z.probability, default=None)
+    if diagnosis.verdict == "unknown" and top is not None:
+        return f"Nothing explains the gap; a change of {top.name} alone would come nearest"
+    if where.channel == "measurement" and (where.points or where.location is None):
+        named = f" of point{'s' * (len(where.points) > 1)} {', '.join(map(str, where.points))}"
+        return f"The gap sits in the measurement{named if where.points else ''}, not in the structure"
+    if where.location is not None:
+        others = len(where.locations) - 1
+        more = f", or at {'another place' if others == 1 else f'{others} other places'}" if others else ""
+        return f"The gap sits {located(diagnosis)}{more}"
+    return f"The gap has no single place: it is one of {where.channel} all over the structure"
+
+
+def _note(diagnosis: Diagnosis) -> str:
+    where = diagnosis.where
+    by = "zones as if one of them alone were changed" if where.zones_by == "regions" else ""
+    return "  ·  ".join(part for part in (where.band.rstrip("."), by) if part)
+
+
+def _columns(diagnosis: Diagnosis) -> list[str]:
+    """Return the kinds of data that the table of modes holds."""
+    modes = diagnosis.where.modes
+    return [] if modes is None else [str(name) for name in modes.columns if str(name).endswith("[sigma]")]
+
+
+def _concerned(axes: Axes, diagnosis: Diagnosis, case: Case | None) -> None:
+    """Fill the test points concerned and write their nodes."""
+    if case is None or not diagnosis.where.points:
+        return
+    body = outline(diagnosis, case)
+    frame = Frame.fit(body, LEFT, TALL)
+    for node in diagnosis.where.points:
+        if node not in case.measured.nodes:
+            continue
+        along, across = body.points[case.measured.nodes.index(node)]
+        x, y = frame.x(along), frame.y(across) if body.width else frame.bottom
+        axes.scatter([x], [y], s=46, color=ORANGE, edgecolor=INK, linewidth=1.1, clip_on=False, zorder=7)
+        axes.text(
+            x + 0.1,
+            y - 0.17,
+            f"point {node}",
+            fontsize=SMALL,
+            color=ORANGE,
+            fontweight="bold",
+            ha="right" if x > 0.85 * LEFT else "left",
+            zorder=8,
+        )
+
+
+def _list(axes: Axes, diagnosis: Diagnosis) -> None:
+    """Draw the most probable zones as bars."""
+    bare(axes)
+    height = TALL + 0.2
+    axes.set_xlim(0, RIGHT)
+    axes.set_ylim(-height, 0)
+    zones = sorted(diagnosis.where.zones, key=lambda z: -z.probability)
+    left, right = 1.1, 0.75
+    full = RIGHT - left - right
+    for i, zone in enumerate(zones[:LISTED]):
+        y = -(i + 0.5) * height / (LISTED + 1)
+        name = shortened(zone.name, 72 * (left - 0.15), SMALL)
+        axes.text(left - 0.1, y, name, fontsize=SMALL, color=INK, ha="right", va="center")
+        axes.barh(y, full, left=left, height=0.1, color=GRID)
+        axes.barh(y, full * min(zone.probability, 1.0), left=left, height=0.1, color=BLUE)
+        axes.text(RIGHT, y, share(zone.probability), fontsize=SMALL, color=INK, ha="right", va="center")
+    if len(zones) > LISTED:
+        rest = f"{len(zones) - LISTED} more, together {share(sum(z.probability for z in zones[LISTED:]))}"
+        axes.text(
+            left, -(LISTED + 0.5) * height / (LISTED + 1), rest, fontsize=SMALL, color=MUTED, va="center"
+        )
+
+
+def _table(axes: Axes, diagnosis: Diagnosis, columns: list[str], height: float) -> None:
+    """Draw modes from left to right, kinds of data from above to below."""
+    bare(axes)
+    modes = diagnosis.where.modes
+    assert modes is not None
+    wide = WIDTH - 2 * MARGIN
+    axes.set_xlim(0, wide)
+    axes.set_ylim(-height, 0)
+    kept = np.sort(np.argsort(-modes["share [%]"].to_numpy(float), kind="stable")[:MOST])
+    names = [column.removesuffix(" [sigma]") for column in columns]
+    left = max(text_width(name, TEXT) for name in [*names, "mode"]) / 72 + 0.15
+    cell = min((wide - left) / max(len(kept), 1), 1.1)
+    hertz = modes["test [Hz]"].to_numpy(float)
+    for i, mode in enumerate(kept.tolist()):
+        x = left + (i + 0.5) * cell
+        long = f"{mode + 1}: {hertz[mode]:.4g} Hz"
+        label = long if text_width(long, SMALL) < 72 * cell - 4 else f"{mode + 1}"
+        axes.text(x, -0.5 * ROW, label, fontsize=SMALL, color=MUTED, ha="center", va="center")
+    axes.text(left - 0.12, -0.5 * ROW, "mode", fontsize=TEXT, color=MUTED, ha="right", va="center")
+    for k, (name, column) in enumerate(zip(names, columns, strict=True)):
+        y = -(k + 1.5) * ROW
+        axes.text(left - 0.12, y, name, fontsize=TEXT, color=INK, ha="right", va="center")
+        _cells(axes, modes[column].to_numpy(float)[kept], left, y, cell)
+
+
+def _cells(axes: Axes, values: FloatArray, left: float, y: float, cell: float) -> None:
+    for i, value in enumerate(values.tolist()):
+        known = bool(np.isfinite(value))
+        colour = SIGNED(0.5 + 0.5 * float(np.clip(value / FAR, -1, 1))) if known else "white"
+        corner = (left + i * cell, y - 0.5 * ROW)
+        axes.add_patch(Rectangle(corner, cell, ROW, facecolor=colour, edgecolor="white", linewidth=1.5))
+        text = f"{value:.1f}" if abs(value) < 99.5 else f"{value:.0f}"
+        axes.text(
+            left + (i + 0.5) * cell,
+            y,
+            text.replace("-", "−") if known else "–",
+            fontsize=SMALL,
+            color="white" if known and abs(value) > 0.7 * FAR else INK,
+            ha="center",
+            va="center",
+        )
+
+
+__all__ = ["localisation_figure"]

@@ -1,0 +1,179 @@
+"""How frequencies follow the force of the hits: slopes there and not there, and tests that cannot tell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from acquisition import (
+    Dof,
+    HammerPlan,
+    HammerTest,
+    ModalSystem,
+    Windows,
+    estimate_frfs,
+    hammer_test,
+    judge_hits,
+    modal_system,
+)
+from identification import LevelDependence, identify, level_dependence, why_no_level_dependence
+
+FREQUENCY = np.array([40.0, 105.0, 178.0, 260.0])
+BAND = (15.0, 320.0)
+SLOPES = np.array([-3e-5, 2e-5, 0.0, -1e-5])
+PLAN = HammerPlan(
+    rate=1024.0,
+    samples=1024,
+    hits=4,
+    level_scatter=0.4,
+    width=4e-3,
+    width_scatter=0.0,
+    response_noise=2e-3,
+    force_noise=0.02,
+)
+
+
+def structure(
+    slope: np.ndarray | float, points: int = 4, damping_slope: float = 0.0, shift: Sequence[float] = (0.0,)
+) -> Callable[[float], ModalSystem]:
+    rng = np.random.default_rng(5)
+    seen, hit = rng.standard_normal((2, 4)), rng.standard_normal((points, 4))
+
+    def at(level: float) -> ModalSystem:
+        return modal_system(
+            frequency=FREQUENCY * np.exp(slope * level + shift[0]),
+            damping=0.01 * np.ones(4) + damping_slope * level,
+            response_shapes=seen,
+            point_shapes=hit,
+            responses=[Dof(98, 3), Dof(99, 3)],
+            points=[Dof(i + 1, 3) for i in range(points)],
+        )
+
+    return at
+
+
+def struck(
+    at: Callable[[float], ModalSystem], seed: int, plan: HammerPlan = PLAN
+) -> tuple[HammerTest, np.ndarray]:
+    """A test, and the level each hit had."""
+    levels: list[float] = []
+
+    def noted(level: float) -> ModalSystem:
+        levels.append(level)
+        return at(level)
+
+    test = hammer_test(noted, plan, rng=np.random.default_rng(seed))
+    return test, np.array(levels[-sum(p.count for p in test.points) :])
+
+
+def found(test: HammerTest, windows: Windows | None = None) -> LevelDependence:
+    model = identify(estimate_frfs(test, windows=windows), band=BAND)
+    assert len(model) == 4
+    told = level_dependence(model, [(test, ())], windows=windows)
+    assert told is not None
+    return told
+
+
+@pytest.mark.parametrize("windows", [None, Windows(decay=3.0)])
+def test_slopes_come_out_per_mode(windows: Windows | None) -> None:
+    at = structure(SLOPES)
+    test, true = struck(at, 3)
+    told = found(test, windows)
+    # levels are the peaks of the records, which the filter before the converter changes by some per cent
+    scale = np.sum(told.levels * true) / np.sum(true**2)
+    assert 0.9 < scale < 1.05
+    off = (told.slope - SLOPES / scale) / told.slope_sigma
+    assert np.abs(off).max() < 4
+    assert np.abs(SLOPES[[0, 1]] / told.slope_sigma[[0, 1]]).min() > 5, (
+        "the test is too poor to mean anything"
+    )
+    assert told.weakest < told.level < told.strongest
+    assert told.shifts.shape == (16, 4)
+
+
+def test_the_shift_of_a_hit_is_that_of_its_frequency() -> None:
+    quiet = replace(PLAN, response_noise=0.0, force_noise=0.0, adc_bits=None, samples=2048)
+    test, true = struck(structure(SLOPES), 1, quiet)
+    told = found(test)
+    model = identify(estimate_frfs(test), band=BAND)
+    exact = np.log(FREQUENCY) + SLOPES * true[:, None] - np.log(model.modal.frequency)
+    assert np.abs(exact).max() > 10 * 2e-4
+    assert told.shifts == pytest.approx(exact, abs=2e-4)  # a fiftieth of a half-width
+
+
+def test_damping_has_a_slope_too() -> None:
+    test, true = struck(structure(0.0, damping_slope=4e-5), 2)
+    told = found(test)
+    scale = np.sum(told.levels * true) / np.sum(true**2)
+    off = (told.damping_slope - 4e-5 / scale) / told.damping_slope_sigma
+    assert np.abs(off).max() < 4
+    assert (4e-5 / told.damping_slope_sigma).max() > 5
+
+
+@pytest.mark.parametrize(("slope", "seeds"), [(0.0, 30), (-2e-5, 12)])
+def test_intervals_cover(slope: float, seeds: int) -> None:
+    scores = []
+    for seed in range(seeds):
+        test, true = struck(structure(slope, points=3), 100 + seed)
+        told = found(test)
+        scale = np.sum(told.levels * true) / np.sum(true**2)
+        scores.append((told.slope - slope / scale) / told.slope_sigma)
+    inside = np.mean(np.abs(scores) < 1.96)
+    count = 4 * seeds
+    assert inside > 0.95 - 3.5 * np.sqrt(0.95 * 0.05 / count)
+    assert np.sqrt(np.mean(np.square(scores))) > 0.7, "too wide"
+    assert abs(np.mean(scores)) < 4 / np.sqrt(count), "biased"
+
+
+def test_drift_from_point_to_point_is_no_slope() -> None:
+    """Points hit harder one after the other while the structure warms up: offsets take it."""
+    runs = []
+    for i in range(4):
+        at = structure(0.0, shift=(0.002 * i,))
+        test, _ = struck(at, 20 + i, replace(PLAN, peak=40.0 * (1 + i)))
+        runs.append(replace(test, points=test.points[i : i + 1]))
+    joined = replace(runs[0], points=tuple(r.points[0] for r in runs))
+    told = found(joined)
+    naive = np.polyfit(told.levels, told.shifts[:, 1], 1)[0]
+    assert naive > 5e-6
+    assert np.abs(told.slope / told.slope_sigma).max() < 4
+    assert told.slope_sigma[1] < naive
+
+
+def test_refused_hits_do_not_count() -> None:
+    test, _ = struck(structure(0.0), 4, replace(PLAN, bad={(0, 1): "double", (2, 3): "double"}))
+    verdicts = judge_hits(test)
+    refused = sum(not v.used for v in verdicts)
+    assert refused >= 2
+    model = identify(estimate_frfs(test, verdicts=verdicts), band=BAND)
+    told = level_dependence(model, [(test, verdicts)])
+    assert told is not None
+    assert len(told.levels) == 16 - refused
+
+
+@pytest.mark.parametrize(
+    ("plan", "reason"),
+    [(replace(PLAN, level_scatter=0.02), "span"), (replace(PLAN, hits=1), "twice or more")],
+)
+def test_tests_that_cannot_tell_say_why(plan: HammerPlan, reason: str) -> None:
+    test, _ = struck(structure(0.0), 5, plan)
+    why = why_no_level_dependence([(test, ())])
+    assert why is not None
+    assert reason in why
+    assert level_dependence(identify(estimate_frfs(test), band=BAND), [(test, ())]) is None
+
+
+def test_the_level_is_the_one_that_averages_stand_for() -> None:
+    """The averaged FRFs of a softening structure have the frequency of the level given, not of the plain mean."""
+    test, true = struck(
+        structure(-5e-5, points=1), 6, replace(PLAN, hits=12, response_noise=1e-4, level_scatter=0.5)
+    )
+    model = identify(estimate_frfs(test), band=BAND)
+    told = level_dependence(model, [(test, ())])
+    assert told is not None
+    stands_for = np.log(model.modal.frequency / FREQUENCY) / -5e-5 * np.mean(told.levels / true)
+    assert np.median(stands_for) == pytest.approx(told.level, rel=0.1)
+    assert told.level > 1.1 * told.levels.mean()

@@ -1,0 +1,63 @@
+"""The page on where the gap sits: zones, places, points concerned, and what every mode adds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from test_figures import assert_legible, case_of, diagnosis_of, panels, words
+
+from modalkit.figures import localisation_figure
+from updating import Diagnosis
+
+
+def diagnosis_with(kind: str, verdict: str, *, modes: int = 6, points: tuple[int, ...] = (2,)) -> Diagnosis:
+    plain = diagnosis_of(kind, verdict=verdict)
+    names = ["frequency [sigma]", "damping [sigma]", "shape and level [sigma]", "share [%]"]
+    values = np.linspace(-12, 140, modes)
+    table = pd.DataFrame(
+        {"test [Hz]": np.linspace(20, 1800, modes), **dict.fromkeys(names, values)}, index=range(1, modes + 1)
+    )
+    table.loc[2, "damping [sigma]"] = np.nan
+    band = "The gap is carried most by the shape and level of modes 2 to 4 (168.8 to 954.9 Hz): up to 8.08 sigma."
+    by = "regions" if verdict == "unknown" else "explanations"
+    return replace(plain, where=replace(plain.where, modes=table, band=band, points=points, zones_by=by))
+
+
+@pytest.mark.parametrize("kind", ["beam", "plate"])
+@pytest.mark.parametrize("verdict", ["named", "class", "unknown", "none"])
+def test_localisation_is_legible_for_every_verdict(kind: str, verdict: str) -> None:
+    figure = localisation_figure(diagnosis_with(kind, verdict, points=()), case_of(kind))
+    assert {"where", "zones", "modes"} <= set(panels(figure))
+    assert_legible(figure)
+
+
+@pytest.mark.parametrize("kind", ["beam", "plate"])
+def test_points_concerned_are_named(kind: str) -> None:
+    said = words(localisation_figure(diagnosis_with(kind, "named"), case_of(kind)))
+    assert "point 2" in said
+
+
+@pytest.mark.parametrize("modes", [3, 12, 30])
+def test_as_many_modes_as_fit_are_shown(modes: int) -> None:
+    figure = localisation_figure(diagnosis_with("beam", "named", modes=modes))
+    assert_legible(figure)
+    assert len(panels(figure)["modes"].patches) == 3 * min(modes, 20)
+
+
+def test_unknown_says_that_nothing_explains_and_how_zones_were_weighed() -> None:
+    said = words(localisation_figure(diagnosis_with("beam", "unknown")))
+    assert "Nothing explains the gap" in said
+    assert "as if one of them alone were changed" in said
+
+
+def test_a_measurement_is_not_in_the_structure() -> None:
+    plain = diagnosis_with("beam", "named")
+    reversed_point = replace(plain, where=replace(plain.where, channel="measurement", points=(3,)))
+    assert "in the measurement of point 3, not in the structure" in words(localisation_figure(reversed_point))
+
+
+def test_without_a_table_of_modes_the_structure_stands_alone() -> None:
+    figure = localisation_figure(diagnosis_of("plate"))
+    assert "modes" not in panels(figure)
+    assert_legible(figure)

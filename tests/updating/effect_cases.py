@@ -1,0 +1,249 @@
+"""Specimens on which every effect is tried, and every effect put into the full matrices by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from imported_cases import imported_beam, seen_from, spec_of
+from scipy import sparse
+from updating_cases import BEAM, PLATE, POINTS, blank
+
+from updating import LIBRARY, Effect, Predictor
+from updating.models import FieldStructure, Spec
+from updating.models.fields import Sparse
+
+THIN = replace(BEAM, theory="euler-bernoulli")
+CORNERS = np.array([[x, y] for x in np.linspace(0.09, 0.376, 4) for y in (0.0, 0.11, 0.2)])
+
+
+def imported() -> Predictor:
+    """A cantilever of four regions, given by its matrices, struck along z at five points."""
+    spec = replace(spec_of(imported_beam(20, parts=(5, 10, 15))), damping=BEAM.damping)
+    points = np.column_stack([np.linspace(0.1, 0.5, 5), np.zeros((5, 2))])
+    seen = seen_from(points, np.tile([0.0, 0.0, 1.0], (5, 1)), np.array([20.0, 400.0]))
+    return Predictor(spec, replace(seen, damping=np.full(2, 0.01), damping_sigma=np.full(2, 0.001)))
+
+
+def complex_test(points: np.ndarray) -> Any:
+    """A test that carries phases, and levels of the hammer, as far as effects ask for them."""
+    test = blank(points)
+    chains = len(set(test.seen.tolist()))
+    return replace(test, phase=np.zeros((chains, 2)), phase_sigma=np.full((chains, 2), 0.01))
+
+
+LOOK = {
+    "beam": Predictor(THIN, complex_test(POINTS)),
+    "timoshenko": Predictor(BEAM, complex_test(POINTS)),
+    "plate": Predictor(PLATE, complex_test(CORNERS)),
+    "no shapes": Predictor(THIN, blank(POINTS[:0], shapes_only=True)),
+    "free": Predictor(replace(THIN, clamped=()), complex_test(POINTS)),
+    "matrices": imported(),
+}
+
+
+def admits(name: str, place: str) -> bool:
+    """Tell whether an effect can be examined."""
+    return LIBRARY[name].why_not(LOOK[place]) is None
+
+
+def form(effect: Effect, predictor: Predictor, quantile: float = 0.45, **ends: float) -> dict[str, Any]:
+    """Return the values of an effect's first form at a quantile of all parameters."""
+    parameters = effect.parameters(predictor)
+    values = effect.values(predictor, [ends.get(p.name, quantile) for p in parameters])
+    first = effect.variants(predictor)
+    return {**values, **(first[-1].values if first else {})}
+
+
+def full_modes(name: str, predictor: Predictor, values: dict[str, Any], count: int) -> np.ndarray:
+    """Solve the sparse matrices of the full model with an effect put into them by hand [Hz]."""
+    structure = predictor.reduced.structure
+    assert isinstance(structure, FieldStructure)
+    k, m, released = structure.matrix("stiffness"), structure.matrix("mass"), frozenset[str]()
+    change = CHANGES[name](structure, values)
+    k = Sparse(k + change.get("stiffness", 0 * k))
+    m = Sparse(m + change.get("mass", 0 * m))
+    released = change.get("released", released)
+    first = structure.rigid_modes
+    found = structure.eigen(first + count, stiffness=k, mass=m, released=released)[0][first:]
+    return np.sqrt(found) / (2 * np.pi)
+
+
+def _row(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Sparse]:
+    return structure.fields.at(np.array([[values[n] for n in ("x", "y")[: structure.fields.dim]]]))
+
+
+def _body(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    """A steel cube of side a: m a^2 / 6 about its own axes."""
+    mass, rows = values["mass"], _row(structure, values)
+    side = (mass / 7850.0) ** (1 / 3)
+    total = mass * (rows["w"].T @ rows["w"])
+    for name in ("wx", "wy"):
+        if name in rows:
+            total = total + mass * side**2 / 6 * (rows[name].T @ rows[name])
+    return {"mass": total}
+
+
+def _sensor(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    end = (POINTS[-1],) if structure.fields.dim == 1 else CORNERS[-1]
+    row = structure.fields.at(np.atleast_2d(end))["w"]
+    return {"mass": values["mass"] * (row.T @ row)}
+
+
+def _edge(structure: FieldStructure, field: str, power: int) -> Callable[[dict[str, Any]], Sparse]:
+    """A spring along x = 0 by the trapezoidal rule over ten thousandths of the width."""
+    fields, spec = structure.fields, structure.spec
+    if spec.kind == "beam":
+        name = (
+            "r" if field == "slope" and spec.theory == "timoshenko" else {"slope": "wx", "shift": "w"}[field]
+        )
+        part = next(c for c in fields.components if name in c.names)
+        rows, weights = part.at(np.zeros((1, 1)), fields.n_dofs)[name], np.ones(1)
+    else:
+        y = np.linspace(0, spec.width, 2001)
+        rows = fields.at(np.column_stack([0 * y, y]))["wx" if field == "slope" else "w"]
+        weights = np.full(2001, spec.width / 2000)
+        weights[[0, -1]] /= 2
+    unit = Sparse(rows.T @ sparse.diags_array(weights) @ rows)
+    return lambda values: values["stiffness"] * unit
+
+
+def _rotation(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    return {"stiffness": _edge(structure, "slope", 1)(values), "released": frozenset({"rotation"})}
+
+
+def _translation(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    return {"stiffness": _edge(structure, "shift", 3)(values), "released": frozenset({"translation"})}
+
+
+def _box(structure: FieldStructure, values: dict[str, Any], edge: float) -> np.ndarray:
+    points, spec = structure.fields.points, structure.spec
+    least = np.array([spec.length, spec.width][: points.shape[1]]) / np.array(spec.elements) / 3
+    centre = np.array([values[n] for n in ("x", "y")[: points.shape[1]]])
+    steep = np.maximum(edge * values["extent"], least)
+    return np.prod(0.5 + 0.5 * np.tanh((values["extent"] / 2 - abs(points - centre)) / steep), axis=1)
+
+
+def _soft(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    return {"stiffness": structure.matrix("stiffness", -values["loss"] * _box(structure, values, 0.125))}
+
+
+def _layer(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    inside = _box(structure, values, 0.0)
+    heavy = structure.matrix("mass", values["mass"] * inside) - structure.point_masses()
+    return {"stiffness": structure.matrix("stiffness", values["stiffness"] * inside), "mass": heavy}
+
+
+def _tension(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    fields, spec = structure.fields, structure.spec
+    force = values["force"] / (1 if spec.kind == "beam" else spec.width)
+    slope = fields.sampled["wx"]
+    return {"stiffness": force * (slope.T @ sparse.diags_array(fields.weights) @ slope)}
+
+
+def _across(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    spec, fields = structure.spec, structure.fields
+    nu, ratio = spec.material.poisson, values["ratio"]
+    rigidity = spec.material.E * spec.thickness**3 / (12 * (1 - nu**2)) * sparse.diags_array(fields.weights)
+    xx, yy, xy = (fields.sampled[n] for n in ("wxx", "wyy", "wxy"))
+    mixed = xx.T @ rigidity @ yy
+    root = np.sqrt(ratio) - 1
+    change = (ratio - 1) * (yy.T @ rigidity @ yy) + root * nu * (mixed + mixed.T)
+    return {"stiffness": change + root * 2 * (1 - nu) * (xy.T @ rigidity @ xy)}
+
+
+def _nothing(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    return {}
+
+
+def _scaled(powers: dict[str, float]) -> Callable[[FieldStructure, dict[str, Any]], dict[str, Any]]:
+    def change(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+        return {k: (values["factor"] ** p - 1) * structure.matrix(k) for k, p in powers.items()}
+
+    return change
+
+
+CHANGES: dict[str, Callable[[FieldStructure, dict[str, Any]], dict[str, Any]]] = {
+    "E": _scaled({"stiffness": 1}),
+    "density": _scaled({"mass": 1}),
+    "section_scale": _scaled({"stiffness": 1, "mass": 1}),
+    "clamp_rotation": _rotation,
+    "clamp_translation": _translation,
+    "sensor_mass": _sensor,
+    "lumped_mass": _body,
+    "local_stiffness": _soft,
+    "damping_patch": _layer,
+    "axial_load": _tension,
+    "orthotropy": _across,
+    "uniform_damping": _nothing,
+    "exponential_window": _nothing,
+    "calibration_gain": _nothing,
+    "time_delay": _nothing,
+    "polarity": _nothing,
+    "swapped_points": _nothing,
+    "position_error": _nothing,
+}
+"""What each effect adds to the full matrices; those of length, thickness, shear and the fluid are tested elsewhere."""
+
+
+def scaled(spec: Spec, size: float) -> Spec:
+    """Return the same specimen a few times as large in all directions."""
+    return replace(
+        spec, length=size * spec.length, width=size * spec.width, thickness=size * spec.thickness, regions=()
+    )
+
+
+CONTRACT = {
+    "E": {"factor"},
+    "density": {"factor"},
+    "thickness": {"factor"},
+    "section_scale": {"factor"},
+    "length": {"extension"},
+    "clamp_rotation": {"stiffness"},
+    "clamp_translation": {"stiffness"},
+    "sensor_mass": {"mass"},
+    "lumped_mass": {"mass", "x", "y"},
+    "local_stiffness": {"x", "y", "extent", "loss"},
+    "shear": set(),
+    "orthotropy": {"ratio"},
+    "axial_load": {"force"},
+    "fluid_added_mass": {"fluid_density"},
+    "fluid_damping": {"viscosity"},
+    "damping_patch": {"x", "y", "extent", "loss_factor", "mass", "stiffness"},
+    "uniform_damping": {"alpha", "beta", "loss_factor"},
+    "joint_nonlinearity": {"slope"},
+    "exponential_window": {"decay"},
+    "calibration_gain": {"gain"},
+    "time_delay": {"delay"},
+    "polarity": {"points"},
+    "swapped_points": {"points"},
+    "position_error": {"point", "dx", "dy"},
+}
+"""Names and parameters that examinations outside this repository rest on."""
+
+VANISHING = {
+    "E": {"factor": 1.0},
+    "density": {"factor": 1.0},
+    "thickness": {"factor": 1.0},
+    "section_scale": {"factor": 1.0},
+    "length": {"extension": 0.0},
+    "clamp_rotation": {},
+    "clamp_translation": {},
+    "sensor_mass": {"mass": 0.0},
+    "lumped_mass": {"mass": 0.0},
+    "local_stiffness": {"loss": 0.0},
+    "orthotropy": {"ratio": 1.0},
+    "axial_load": {"force": 0.0},
+    "fluid_added_mass": {"fluid_density": 0.0},
+    "fluid_damping": {"viscosity": 0.0},
+    "damping_patch": {"loss_factor": 0.0, "mass": 0.0, "stiffness": 0.0},
+    "uniform_damping": {"alpha": 0.0, "beta": 0.0, "loss_factor": 0.0},
+    "exponential_window": {"decay": 0.0},
+    "calibration_gain": {"gain": 1.0},
+    "time_delay": {"delay": 0.0},
+    "position_error": {"dx": 0.0, "dy": 0.0},
+    "joint_nonlinearity": {"slope": 0.0},
+}
+"""Values at which an effect is none."""

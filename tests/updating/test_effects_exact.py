@@ -1,0 +1,248 @@
+"""Effects beside closed forms, transcendental equations, transfer matrices and complex eigen-solutions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from effect_cases import LOOK, THIN, form, imported
+from imported_cases import DEPTH as THICKNESS
+from imported_cases import LENGTH, WIDTH, beam_matrices, clamp
+from scipy import linalg, optimize
+from updating_cases import BEAM, PLATE, POINTS, ExactBeam, blank
+
+from updating import LIBRARY, Material, Predictor, Spec
+from updating.effects.axial_load import buckling_load
+from updating.effects.box import mirror_images
+from updating.effects.mass import sensor_places
+from updating.models import PointMass, Region, build_structure
+from updating.models.state import State
+
+EI = 210e9 * BEAM.width * BEAM.thickness**3 / 12
+LINE = 7850.0 * BEAM.width * BEAM.thickness
+SIZE = (BEAM.length, BEAM.width, BEAM.thickness)
+
+
+def predicted(name: str, place: str, count: int = 5, **values: float) -> np.ndarray:
+    predictor = LOOK[place]
+    return predictor.predict(LIBRARY[name].state(predictor, values), count=count).frequency
+
+
+def hertz(roots: np.ndarray) -> np.ndarray:
+    """Frequencies of an Euler-Bernoulli beam from the roots lambda = beta L."""
+    return roots**2 / (2 * np.pi * BEAM.length**2) * np.sqrt(EI / LINE)
+
+
+def roots_of(function: object, count: int) -> np.ndarray:
+    grid = np.linspace(0.2, (count + 1) * np.pi, 3000)
+    values = np.array([function(u) for u in grid])  # type: ignore[operator]
+    found = np.flatnonzero(np.sign(values[1:]) != np.sign(values[:-1]))[:count]
+    return np.array([optimize.brentq(function, grid[i], grid[i + 1], xtol=1e-13) for i in found])
+
+
+@pytest.mark.parametrize("share", [0.01, 0.1, 0.45])
+def test_a_body_at_the_tip(share: float) -> None:
+    """Rayleigh's equation of a cantilever with a mass and its rotary inertia at the tip (Laura et al. 1974)."""
+    mass = share * LINE * BEAM.length
+    turning = mass * (mass / 7850.0) ** (2 / 3) / 6 / (LINE * BEAM.length**3)
+
+    def rayleigh(u: float) -> float:
+        s, c, sh, ch = np.sin(u), np.cos(u), np.sinh(u), np.cosh(u)
+        whole = 1 + c * ch + share * u * (c * sh - s * ch)
+        return float(
+            (whole - turning * u**3 * (ch * s + sh * c) + share * turning * u**4 * (1 - c * ch)) / ch
+        )
+
+    found = predicted("lumped_mass", "beam", mass=mass, x=BEAM.length)
+    assert found == pytest.approx(hertz(roots_of(rayleigh, 5)), rel=5e-5)
+
+
+@pytest.mark.parametrize("place", ["beam", "timoshenko"])
+@pytest.mark.parametrize("ratio", [8.0, 300.0, 3e4])
+def test_a_clamp_that_shifts_but_does_not_turn(place: str, ratio: float) -> None:
+    spring, shear = ratio * EI / BEAM.length**3, place == "timoshenko"
+    exact = ExactBeam(*SIZE, translation=spring, shear=shear, rotary=shear).frequencies(5)
+    assert predicted("clamp_translation", place, stiffness=spring) == pytest.approx(exact, rel=1e-4)
+
+
+@pytest.mark.parametrize("place", ["beam", "timoshenko"])
+@pytest.mark.parametrize(("turn", "shift"), [(20.0, 500.0), (300.0, 1e4)])
+def test_a_clamp_that_shifts_and_turns_as_a_pair(place: str, turn: float, shift: float) -> None:
+    predictor, shear = LOOK[place], place == "timoshenko"
+    values = {"clamp_rotation": turn * EI / BEAM.length, "clamp_translation": shift * EI / BEAM.length**3}
+    state = State()
+    for name, stiffness in values.items():
+        state = state.plus(LIBRARY[name].state(predictor, {"stiffness": stiffness}))
+    exact = ExactBeam(
+        *SIZE,
+        translation=values["clamp_translation"],
+        rotation=values["clamp_rotation"],
+        shear=shear,
+        rotary=shear,
+    )
+    found = predictor.predict(state, count=5).frequency
+    assert found == pytest.approx(exact.frequencies(5), rel=1e-4)
+
+
+def test_a_shifting_clamp_holds_its_slope_in_frfs_too() -> None:
+    """What turns is cut off from all else: FRFs far below it show nothing of it."""
+    predictor = LOOK["beam"]
+    state = LIBRARY["clamp_translation"].state(predictor, {"stiffness": 100 * EI / BEAM.length**3})
+    still = 1j * 2 * np.pi * np.array([1e-3])
+    given = predictor.receptance(still, state)[-1, 0].real
+    assert given == pytest.approx(BEAM.length**3 / (3 * EI) + BEAM.length**3 / (100 * EI), rel=1e-4)
+
+
+def axially_loaded(force: float, count: int) -> np.ndarray:
+    """Cantilever under a dead load along it: (w, w', M, S) carried from the clamp to the tip."""
+
+    def tip(hertz: float) -> float:
+        omega = 2 * np.pi * hertz
+        rate = np.array([[0, 1, 0, 0], [0, 0, 1 / EI, 0], [0, force, 0, 1], [LINE * omega**2, 0, 0, 0]])
+        carried = linalg.expm(rate * BEAM.length)[2:, 2:]
+        return float(np.linalg.det(carried))
+
+    grid = np.linspace(2.0, 2200.0, 6000)
+    values = np.array([tip(f) for f in grid])
+    found = np.flatnonzero(np.sign(values[1:]) != np.sign(values[:-1]))[:count]
+    return np.array([optimize.brentq(tip, grid[i], grid[i + 1], xtol=1e-10) for i in found])
+
+
+@pytest.mark.parametrize("share", [-0.7, 0.5, 4.0])
+def test_a_beam_under_tension_and_thrust(share: float) -> None:
+    force = share * np.pi**2 * EI / (4 * BEAM.length**2)
+    assert predicted("axial_load", "beam", force=force) == pytest.approx(axially_loaded(force, 5), rel=2e-5)
+
+
+@pytest.mark.parametrize(("clamped", "factor"), [(("x0",), 0.25), (("x0", "x1"), 4.0)])
+def test_euler_buckles(clamped: tuple[str, ...], factor: float) -> None:
+    predictor = Predictor(replace(THIN, clamped=clamped), blank(POINTS[:3]))
+    critical = buckling_load(predictor)
+    assert critical == pytest.approx(factor * np.pi**2 * EI / BEAM.length**2, rel=1e-4)
+    nearly = LIBRARY["axial_load"].state(predictor, {"force": -0.9999 * critical})
+    first = predictor.predict(count=1).frequency[0]
+    assert predictor.predict(nearly, count=1).frequency[0] < 0.03 * first
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.9, 1.8])
+def test_huber_is_a_change_of_scale_across(ratio: float) -> None:
+    """With D_1 and D_xy from the geometric mean the plate is an isotropic one of width W ratio^(-1/4)."""
+    narrower = replace(PLATE, width=PLATE.width * ratio**-0.25, regions=())
+    values = build_structure(narrower).eigen(5)[0]
+    found = predicted("orthotropy", "plate", ratio=ratio)
+    assert found == pytest.approx(np.sqrt(values) / (2 * np.pi), rel=5e-4)
+
+
+@pytest.mark.parametrize("place", ["beam", "plate", "matrices"])
+def test_uniform_damping_has_a_closed_form(place: str) -> None:
+    predictor, alpha, beta, eta = LOOK[place], 3.0, 2e-6, 0.004
+    state = LIBRARY["uniform_damping"].state(predictor, {"alpha": alpha, "beta": beta, "loss_factor": eta})
+    plain, found = predictor.predict(count=4), predictor.predict(state, count=4)
+    omega = 2 * np.pi * plain.frequency
+    added = alpha / (2 * omega) + beta * omega / 2 + eta / 2
+    assert found.damping - plain.damping == pytest.approx(added, rel=1e-6)
+    window = LIBRARY["exponential_window"].state(predictor, {"decay": 4.0})
+    alone = LIBRARY["uniform_damping"].state(predictor, {"alpha": 8.0, "beta": 0.0, "loss_factor": 0.0})
+    both = [predictor.predict(s, count=4).damping for s in (window, alone)]
+    assert both[0] == pytest.approx(both[1], rel=1e-9)
+
+
+def complex_beam(
+    first: int, last: int, values: dict[str, float], *, clamped: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies and damping ratios of (K + i eta K_patch) by 100 textbook elements, some of them covered."""
+    (k, m), (kp, mp) = beam_matrices(100), beam_matrices(100, first, last)
+    if clamped:
+        k, m, kp, mp = (clamp(a) for a in (k, m, kp, mp))
+    kp = (1 + values["stiffness"]) * kp, values["stiffness"] * kp
+    stiff = k.toarray() + kp[1].toarray() + 1j * values["loss_factor"] * kp[0].toarray()
+    squares = linalg.eig(stiff, m.toarray() + values["mass"] * mp.toarray(), right=False)
+    squares = squares[np.argsort(squares.real)][0 if clamped else 2 :][:6]
+    return np.sqrt(squares.real) / (2 * np.pi), squares.imag / squares.real / 2
+
+
+@pytest.mark.parametrize("clamped", [True, False])
+@pytest.mark.parametrize("layer", [(0.0, 0.0), (0.12, 0.05)])
+def test_a_patch_beside_the_complex_eigen_solution(*, clamped: bool, layer: tuple[float, float]) -> None:
+    """Tape on segments 6 to 8 of ten, as in paper B, and a longer one."""
+    edges = ("x0",) if clamped else ()
+    spec = Spec("beam", LENGTH, WIDTH, THICKNESS, (40,), edges, "euler-bernoulli", Material(210e9, 7850.0))
+    spec = replace(spec, damping=replace(BEAM.damping, alpha=0.0, beta=0.0))
+    predictor = Predictor(spec, blank(np.linspace(0.05, 0.5, 6)))
+    for first, last in ((50, 80), (20, 55)):
+        size = {"x": (first + last) / 200 * LENGTH, "extent": (last - first) / 100 * LENGTH}
+        values = {**size, "loss_factor": 0.03, "mass": layer[0], "stiffness": layer[1]}
+        found = predictor.predict(LIBRARY["damping_patch"].state(predictor, values), count=6)
+        frequency, damping = complex_beam(first, last, values, clamped=clamped)
+        assert found.frequency == pytest.approx(frequency, rel=5e-4)
+        assert found.damping == pytest.approx(damping, rel=0.015)
+
+
+@pytest.mark.parametrize("loss", [0.3, 0.7])
+def test_a_soft_box_has_the_frequencies_of_its_compliance(loss: float) -> None:
+    """A box with sharp edges and the same compliance at the same place, by transfer matrices."""
+    values = {"x": 0.15, "extent": 0.03, "loss": loss}
+    compliance = LIBRARY["local_stiffness"].derived(LOOK["beam"], values)["compliance"][0]
+    sharp = compliance / (compliance + 0.03)
+    exact = ExactBeam(*SIZE, soft=(0.135, 0.165, sharp), shear=False, rotary=False).frequencies(5)
+    plain = ExactBeam(*SIZE, shear=False, rotary=False).frequencies(5)
+    found = predicted("local_stiffness", "beam", **values)
+    worst = np.abs(found - exact).max() / np.abs(exact - plain).max()
+    assert worst < LIBRARY["local_stiffness"].fidelity
+
+
+def test_regions_of_imported_matrices_soften_and_damp() -> None:
+    predictor = LOOK["matrices"]
+    for name in ("local_stiffness", "damping_patch"):
+        effect = LIBRARY[name]
+        assert {v.values["region"] for v in effect.variants(predictor)} == {0, 1, 2, 3}
+    soft = predictor.predict(LIBRARY["local_stiffness"].state(predictor, {"region": 1, "loss": 0.4}), count=4)
+    k, m = (clamp(a) for a in beam_matrices(20))
+    lost = 0.4 * clamp(beam_matrices(20, 5, 10)[0])
+    exact = np.sqrt(linalg.eigh((k - lost).toarray(), m.toarray(), eigvals_only=True)[:4]) / (2 * np.pi)
+    assert soft.frequency == pytest.approx(exact, rel=1e-6)
+    layer = {"region": 2, "loss_factor": 0.02, "mass": 0.1, "stiffness": 0.0}
+    covered = predictor.predict(LIBRARY["damping_patch"].state(predictor, layer), count=4)
+    assert (covered.frequency < predictor.predict(count=4).frequency).all()
+
+
+def test_matrices_without_parts_say_why_nothing_softens() -> None:
+    spec = replace(imported().spec, regions=())
+    whole = replace(spec.imported, stiffness_parts=(), mass_parts=())  # type: ignore[type-var]
+    predictor = Predictor(
+        replace(spec, imported=whole, regions=(Region("all", (0, 1), (0, 1)),)), LOOK["matrices"].measured
+    )
+    for name in ("local_stiffness", "damping_patch"):
+        assert "stiffness_parts" in (LIBRARY[name].why_not(predictor) or "")
+
+
+def test_an_accelerometer_that_roves_loads_the_mean_of_its_places() -> None:
+    """To first order: the mean frequency of a model loaded at one place after the other, to 2 % of the shift."""
+    predictor = LOOK["beam"]
+    test = predictor.measured
+    roving = predictor.looking(replace(test, seen=test.hit, hit=test.seen))
+    assert LIBRARY["sensor_mass"].why_not(roving) is None
+    mass = 0.001 * LINE * BEAM.length
+    found = roving.predict(LIBRARY["sensor_mass"].state(roving, {"mass": mass}), count=5).frequency
+    one_by_one = [
+        predicted("lumped_mass", "beam", mass=mass, x=float(x)) for x in sensor_places(roving)[:, 0]
+    ]
+    plain = predictor.predict(count=5).frequency
+    assert found / plain - 1 == pytest.approx(np.mean(one_by_one, axis=0) / plain - 1, rel=0.02)
+
+
+def test_a_mirror_image_is_another_place() -> None:
+    free = replace(THIN, clamped=())
+    at = (0.1, 0.0, 0.0)
+    assert mirror_images(free, at) == (at, pytest.approx((0.276, 0.0, 0.0)))
+    assert mirror_images(THIN, at) == (at,)
+    assert mirror_images(replace(free, masses=(PointMass((0.3,), 0.01),)), at) == (at,)
+    assert len(mirror_images(free, (0.188, 0.0, 0.0))) == 1
+    assert len(mirror_images(PLATE, (0.1, 0.05, 0.0))) == 2
+    assert len(mirror_images(replace(PLATE, clamped=()), (0.1, 0.05, 0.0))) == 4
+    both = [
+        predicted("damping_patch", "free", **form(LIBRARY["damping_patch"], LOOK["free"]) | {"x": x})
+        for x in (0.1, 0.276)
+    ]
+    assert both[0] == pytest.approx(both[1], rel=1e-7)

@@ -1,0 +1,135 @@
+"""The effects of the fluid, through the library: inertia, losses, what is wet, what is told."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+from test_fluid_stokes import sader
+from updating_cases import BEAM, PLATE, POINTS, blank
+
+from updating import Damping, Environment, Material, Predictor
+from updating.effects import accepted_state
+from updating.effects.fluid import WATER, FluidAddedMass, FluidDamping, fluid_density, unit_mass
+from updating.fluid import FluidDomain, added_mass, beam_added_mass, quadrature_grid
+from updating.models import PointMass
+from updating.models.state import State
+
+INF = float("inf")
+STRIP = replace(
+    BEAM,
+    length=2.0,
+    width=0.03,
+    thickness=2e-5,
+    theory="euler-bernoulli",
+    material=Material(5e16, 7850.0, 0.3),
+    damping=Damping(ratios=(0.0,)),
+    elements=(20,),
+)
+"""So slender and thin that Sader's strips can stand for it, and so stiff that it vibrates at some hertz in water."""
+
+
+def accept(name: str, **values: float):
+    return lambda predictor: accepted_state(predictor, name, values)
+
+
+@pytest.mark.parametrize("mode", [2, 3, 4])
+def test_a_thin_cantilever_in_water_is_damped_as_by_sader(mode: int) -> None:
+    """Q = (4 rho_s t / pi rho b + Re Gamma) / Im Gamma, J. Appl. Phys. 84 (1998) 64, Eq. 30; Re = 4e3 to 1.5e4."""
+    frequency = (3.0, 6.0, 10.0)[mode - 2]
+    measured = replace(blank(POINTS * STRIP.length / BEAM.length), frequency=np.full(2, frequency))
+    predictor = Predictor(STRIP, measured)
+    inertia = FluidAddedMass().state(predictor, {"fluid_density": WATER})
+    found = predictor.predict(inertia.plus(FluidDamping().state(predictor, {"viscosity": 1e-3})), count=5)
+    reynolds = WATER * 2 * np.pi * found.frequency[mode] * STRIP.width**2 / 4 / 1e-3
+    heavy = 4 * STRIP.material.density * STRIP.thickness / (np.pi * WATER * STRIP.width)
+    gamma = sader(reynolds)
+    assert 4e3 < reynolds < 1.5e4
+    assert found.damping[mode] == pytest.approx(gamma.imag / (2 * (heavy + gamma.real)), rel=0.05)
+
+
+@pytest.mark.parametrize("spec", [BEAM, PLATE], ids=["beam", "plate"])
+def test_losses_go_with_the_roots_of_viscosity_and_density(spec) -> None:
+    points = POINTS if spec is BEAM else np.column_stack([POINTS, POINTS / 2])
+    predictor = Predictor(replace(spec, damping=Damping(ratios=(0.0,))), blank(points))
+    damping = FluidDamping()
+    one, four = (predictor.predict(damping.state(predictor, {"viscosity": v}), count=4) for v in (1e-3, 4e-3))
+    assert four.damping == pytest.approx(2 * one.damping, rel=1e-9)
+    assert four.frequency == pytest.approx(one.frequency, rel=1e-9)
+    assert (np.diff(one.damping) < 0).all()
+    heavy = replace(predictor, environment=Environment(fluid_density=4 * WATER))
+    more = heavy.predict(damping.state(heavy, {"viscosity": 1e-3}), count=4)
+    assert more.damping == pytest.approx(2 * one.damping, rel=0.02)
+    assert damping.derived(heavy, {"viscosity": 2e-3})["density_viscosity"][0] == pytest.approx(8e-3 * WATER)
+
+
+def test_the_density_is_that_of_an_accepted_fluid_before_that_of_the_environment() -> None:
+    told = Predictor(BEAM, blank(POINTS), Environment(fluid_density=1000.0))
+    assert fluid_density(told) == 1000.0
+    both = replace(
+        told, additions=(accept("sensor_mass", mass=0.01), accept("fluid_added_mass", fluid_density=870.0))
+    )
+    assert fluid_density(both) == pytest.approx(870.0)
+    assert fluid_density(Predictor(BEAM, blank(POINTS))) == WATER
+
+
+@pytest.mark.parametrize("extension", [0.018, -0.01])
+def test_what_an_accepted_length_puts_into_the_clamp_is_not_wet(extension: float) -> None:
+    """Against a model of that length from the start, wetted over its free part."""
+    spec = replace(BEAM, theory="euler-bernoulli", length=BEAM.length + extension)
+    dry = Predictor(spec, blank(POINTS))
+    free = min(BEAM.length, spec.length)
+    x, _ = quadrature_grid(free, 0.1, 24)
+    shapes = dry.reduced.rows(x[:, None] + spec.length - free)["w"].T
+    wall = FluidDomain(walls=(0.0, INF, -INF, INF))
+    added = beam_added_mass(shapes, x, length=free, width=spec.width, thickness=spec.thickness, domain=wall)
+    expected = dry.predict(State(mass=(WATER * added,)), count=4).frequency
+    nominal = replace(spec, length=BEAM.length)
+    additions = (accept("length", extension=extension), accept("fluid_added_mass", fluid_density=WATER))
+    around = Environment(walls=(max(-extension, 0.0), INF, -INF, INF))
+    found = Predictor(nominal, blank(POINTS), around, additions).predict(count=4).frequency
+    assert found == pytest.approx(expected, rel=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("clamped", "walls"),
+    [
+        (("x0",), (0.0, INF, -INF, INF)),
+        (("x1",), (-INF, 0.376, -INF, INF)),
+        (("y0",), (-INF, INF, 0.0, INF)),
+        (("y1",), (-INF, INF, -INF, 0.2)),
+        (("x0", "x1", "y0", "y1"), (-INF, INF, -INF, INF)),
+        ((), (-INF, INF, -INF, INF)),
+    ],
+)
+def test_one_clamped_edge_lets_no_fluid_pass(clamped, walls) -> None:
+    spec = replace(PLATE, clamped=clamped, elements=(6, 4))
+    predictor = Predictor(spec, blank(np.array([[0.2, 0.1], [0.3, 0.15]])))
+    x, y = quadrature_grid(0.376, 0.2, 24)
+    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+    shapes = predictor.reduced.rows(points)["w"].T.reshape(-1, 24, 24)
+    expected = added_mass(
+        shapes, x, y, length=0.376, width=0.2, thickness=spec.thickness, domain=FluidDomain(walls=walls)
+    )
+    np.testing.assert_allclose(unit_mass(predictor), expected, rtol=1e-9, atol=1e-12)
+
+
+def test_coupling_by_the_fluid_is_kept() -> None:
+    """Modes that the fluid mixes come out lower and higher than each by itself; a sum of frequencies is no proof."""
+    predictor = Predictor(PLATE, blank(np.array([[0.2, 0.1], [0.3, 0.15]])))
+    squared, vectors = predictor.reduced.eigen(State())
+    added = WATER * vectors.T @ unit_mass(predictor)[: len(squared), : len(squared)] @ vectors
+    wet = predictor.predict(FluidAddedMass().state(predictor, {"fluid_density": WATER}), count=8).frequency
+    coupled = np.sqrt(eigh(np.diag(squared), np.eye(len(squared)) + added, eigvals_only=True))[:8] / 2 / np.pi
+    assert wet == pytest.approx(coupled, rel=1e-9)
+    alone = np.sqrt(np.sort(squared / (1 + np.diag(added))))[:8] / 2 / np.pi
+    assert np.abs(wet / alone - 1).max() > 0.02
+
+
+def test_a_mass_told_beforehand_is_no_fluid() -> None:
+    spec = replace(BEAM, masses=(PointMass((0.376,), 0.01),))
+    assert (
+        fluid_density(Predictor(spec, blank(POINTS), additions=(accept("sensor_mass", mass=0.02),))) == WATER
+    )

@@ -1,0 +1,241 @@
+"""Every method finds a region that is grossly changed, or says nothing; evidence equals a brute-force integral."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from imported_cases import LENGTH, imported_beam, seen_from, spec_of
+from scipy.special import logsumexp
+from updating_cases import BEAM as FINE
+from updating_cases import PLATE, POINTS, ExactBeam, blank, case_of, observed, specimen, struck
+
+from updating import Measured, Predictor
+from updating.diagnosis.candidate import Doubt
+from updating.diagnosis.diagnose import pose
+from updating.diagnosis.gaussian import marginal
+from updating.diagnosis.problem import Problem
+from updating.localisation import (
+    METHODS,
+    BestSubspace,
+    Comac,
+    ConstitutiveError,
+    ForceResidual,
+    Localiser,
+    RegionEvidence,
+    areas,
+    boxes,
+    regions_at,
+    weigh_regions,
+)
+from updating.localisation.changes import changes, columns
+from updating.localisation.force_residual import region_parts
+from updating.localisation.shapes import dynamic, serep, shapes_of
+from updating.models.state import NOMINAL, Loss, State
+
+BEAM = FINE.with_elements(20)
+SHARP = ((ConstitutiveError(), 2), (BestSubspace(), 1), (RegionEvidence(), 1))
+"""The methods that are good for something, and among how many of the most suspect the region must be."""
+
+
+@cache
+def soft(zone: int, loss: float, *, as_designed: bool = False, shapes_only: bool = False) -> Problem:
+    """An exact Timoshenko beam that has lost stiffness in one of ten zones, tested at five points."""
+    rng = np.random.default_rng(3)
+    edges = (BEAM.length * zone / 10, BEAM.length * (zone + 1) / 10, loss)
+    plain = ExactBeam(BEAM.length, BEAM.width, BEAM.thickness, soft=edges)
+    test = struck(plain if as_designed else specimen(rng, soft=edges), rng)
+    if shapes_only:
+        test = replace(test, hit=np.full(5, -1), seen=np.arange(5), absolute=False)
+    return pose(case_of(test, BEAM))[0]
+
+
+@cache
+def altered(state: str) -> Problem:
+    """A beam from a finer mesh of the model, with mass or damping in its eighth zone."""
+    predictor = Predictor(FINE.with_elements(60), blank(POINTS))
+    if state == "mass":
+        what = State(regional={(7, "density"): 1.5})
+    else:
+        whole = np.zeros((predictor.reduced.basis.shape[1],) * 2)
+        part = region_parts(replace(soft(0, 0.1), predictor=predictor), "stiffness")[7]
+        whole[: len(part), : len(part)] = part
+        what = State(losses=(Loss(0.2 * whole, -1.0),))
+    found = predictor.predict(what, count=5)
+    test = observed(found.frequency, found.damping, found.constants, POINTS, np.random.default_rng(5))
+    return pose(case_of(test, BEAM))[0]
+
+
+@pytest.mark.parametrize("method", METHODS, ids=repr)
+@pytest.mark.parametrize("shapes_only", [False, True])
+def test_scores_are_one_sound_number_per_region(method: Localiser, shapes_only: bool) -> None:
+    problem = soft(3, 0.4, shapes_only=shapes_only)
+    assert method.possible(problem)
+    scores = method.scores(problem)
+    assert scores.shape == (10,)
+    assert np.isfinite(scores).all()
+    assert (scores >= 0).all()
+    assert scores.max() > 0
+
+
+@pytest.mark.parametrize(("method", "among"), SHARP, ids=repr)
+@pytest.mark.parametrize("zone", [1, 4, 6])
+def test_a_zone_that_lost_half_its_stiffness_is_the_most_suspect(
+    method: Localiser, among: int, zone: int
+) -> None:
+    scores = method.scores(soft(zone, 0.5, as_designed=True))
+    assert np.sum(scores > scores[zone]) < among
+
+
+@pytest.mark.parametrize("zone", range(10))
+def test_evidence_and_subspace_find_a_tenth_under_tolerances(zone: int) -> None:
+    problem = soft(zone, 0.12 if zone < 8 else 0.5)
+    assert np.argmax(RegionEvidence().scores(problem)) == zone
+    assert np.argmax(BestSubspace().scores(problem)) == zone
+
+
+@pytest.mark.parametrize("kind", ["mass", "damping"])
+def test_the_kind_of_change_and_its_size_are_found_too(kind: str) -> None:
+    found = weigh_regions(altered(kind))
+    assert max(found.by_kind, key=lambda k: found.by_kind[k]) == kind
+    assert np.argmax(found.regions) == 7
+    expected = {"mass": 1.5, "damping": 0.2}[kind]
+    assert np.exp(found.severity[found.kinds.index(kind), 7]) == pytest.approx(expected, rel=0.25)  # type: ignore[arg-type]
+    assert np.argmax(BestSubspace().scores(altered(kind), kind=kind)) == 7  # type: ignore[arg-type]
+
+
+def test_evidence_is_the_integral_over_the_severity(monkeypatch: pytest.MonkeyPatch) -> None:
+    # noise that grows with the severity is taken from the nearest node, so the integral is exact without it only
+    monkeypatch.setattr("updating.localisation.evidence.DOUBT", Doubt())
+    problem = soft(4, 0.1)
+    found = weigh_regions(problem, ("stiffness",))
+    reference = marginal(problem.compare(NOMINAL)).log_likelihood
+    for region in (4, 2):
+        state = changes(problem, "stiffness")[region].state
+        severity = np.linspace(-3.0, 1.1, 411)
+        likely = np.array([marginal(problem.compare(state(s))).log_likelihood for s in severity])
+        # the prior: half of it on softening over 3, half on stiffening over 1.1, both even
+        density = np.where(severity < 0, 0.5 / 3.0, 0.5 / 1.1) * 0.01
+        brute = float(logsumexp(likely + np.log(density))) - reference
+        assert found.log_evidence[0, region] == pytest.approx(brute, abs=0.15)
+
+
+def test_columns_are_the_sensitivities_of_the_model() -> None:
+    problem = soft(3, 0.3)
+    factor = problem.names.index("E")
+    whole = problem.compare(NOMINAL).nuisance[:, factor] / problem.sigmas[factor]
+    undamped = problem.compare(NOMINAL).channel != 1
+    found = columns(problem, "stiffness").sum(axis=1)
+    assert found[undamped] == pytest.approx(whole[undamped], abs=2e-3 * np.abs(whole).max())
+
+
+def test_shapes_come_back_from_the_constants() -> None:
+    beam = ExactBeam(BEAM.length, BEAM.width, BEAM.thickness)
+    frequency = beam.frequencies(5)
+    shape = beam.shapes(frequency, POINTS)
+    every = np.array([(a, b) for a in range(5) for b in (1, 4)])
+    measured = observed(frequency, np.full(5, 0.01), shape * shape[-1], POINTS, np.random.default_rng(0))
+    constants = shape[every[:, 0]] * shape[every[:, 1]]
+    test = replace(
+        measured,
+        seen=every[:, 1],
+        hit=every[:, 0],
+        constants=3.0 * constants,
+        constants_sigma=0.01 * np.abs(constants) + 1e-3,
+    )
+    shapes = shapes_of(pose(case_of(test, BEAM))[0])
+    assert np.abs(shapes.measured) == pytest.approx(np.abs(shape), rel=1e-2, abs=1e-2 * np.abs(shape).max())
+
+
+def test_expansions_keep_what_was_measured_and_add_what_the_model_knows() -> None:
+    problem = soft(2, 0.02)
+    shapes = shapes_of(problem)
+    for whole in (serep(problem, shapes), dynamic(shapes)):
+        at = shapes.rows @ whole
+        assert at == pytest.approx(shapes.measured, abs=0.03 * np.abs(shapes.measured).max())
+
+
+def test_frequencies_alone_leave_nothing_to_the_shape_methods() -> None:
+    test = soft(3, 0.4).measured
+    alone = replace(
+        test, seen=np.zeros(0, int), hit=np.zeros(0, int), constants=np.zeros((0, 5)), constants_sigma=np.zeros((0, 5))
+    )  # fmt: skip
+    problem = pose(case_of(alone, BEAM))[0]
+    for method in (ForceResidual(), ConstitutiveError(), Comac()):
+        assert not method.possible(problem)
+    scores = RegionEvidence().scores(problem)
+    assert scores.sum() == pytest.approx(1.0)
+    assert scores[3] > 1 / 10
+
+
+def test_a_model_without_damping_is_not_suspected_of_it() -> None:
+    from updating import Damping
+
+    problem = pose(case_of(soft(3, 0.4).measured, replace(BEAM, damping=Damping())))[0]
+    assert not RegionEvidence().possible(problem, kind="damping")
+    assert weigh_regions(problem).kinds == ("stiffness", "mass")
+
+
+def test_without_a_gap_evidence_is_the_prior_by_area() -> None:
+    rng = np.random.default_rng(8)
+    found = weigh_regions(pose(case_of(struck(specimen(rng), rng), BEAM))[0])
+    assert found.log_evidence.max() < 3.0
+    assert found.regions.max() < 0.6
+
+
+def test_a_soft_spot_astride_two_regions_is_put_into_one_of_them() -> None:
+    rng = np.random.default_rng(11)
+    spot = (0.14, 0.16, 0.6)
+    found = weigh_regions(pose(case_of(struck(specimen(rng, soft=spot), rng), BEAM))[0])
+    assert found.regions[3] + found.regions[4] > 0.9
+    assert found.by_kind["stiffness"] > 0.9
+
+
+def test_regions_of_imported_matrices_are_weighed_too() -> None:
+    beam = imported_beam(20, parts=(5, 10, 15))
+    points = np.zeros((5, 3))
+    points[:, 0] = LENGTH * np.linspace(0.2, 1.0, 5)
+    directions = np.tile([0.0, 0.0, 1.0], (5, 1))
+    spec = spec_of(beam)
+    seen = seen_from(points, directions, np.linspace(10.0, 300.0, 4))
+    found = Predictor(spec, seen).predict(State(regional={(2, "E"): 0.7}), count=4)
+    noise = np.random.default_rng(1).standard_normal((2, 5, 4))
+    test = replace(
+        seen,
+        frequency=found.frequency * (1 + 5e-4 * noise[0, 0]),
+        frequency_sigma=5e-4 * found.frequency,
+        constants=found.constants * (1 + 0.01 * noise[1]),
+        constants_sigma=0.01 * np.abs(found.constants) + 1e-4,
+    )
+    problem = pose(case_of(test, spec))[0]
+    assert areas(problem).shape == (4,)
+    assert np.argmax(weigh_regions(problem).regions) == 2
+    assert weigh_regions(problem).kinds[0] == "stiffness"
+
+
+def test_areas_and_places_of_a_plate() -> None:
+    measured = replace(blank(np.array([[0.376, 0.2]])), constants=np.ones((1, 2)))
+    problem = Problem(Predictor(PLATE, measured), measured, case_of(measured).tolerances, np.arange(2))
+    assert areas(problem) == pytest.approx(np.full(15, 1 / 15))
+    assert boxes(PLATE)[0, :2] == pytest.approx(np.array([[0, 0.0752], [0, 0.2 / 3]]))
+    shares = regions_at(PLATE, np.array([[0.01, 0.01, 0.0], [0.376, 0.1, 0.0], [0.0752, 0.01, 0.0]]))
+    assert np.argmax(shares[0]) == 0
+    assert np.argmax(shares[1]) == 13
+    assert shares[2].max() == pytest.approx(0.5)
+
+
+def test_the_order_of_the_points_does_not_matter() -> None:
+    problem = soft(5, 0.3)
+    test = problem.measured
+    turn = np.array([3, 1, 4, 0, 2])
+    other: Measured = replace(
+        test,
+        points=test.points[turn],
+        nodes=tuple(test.nodes[i] for i in turn),
+        seen=np.full(5, int(np.argmax(turn == 4))),
+        constants=test.constants[turn],
+        constants_sigma=test.constants_sigma[turn],
+    )
+    turned = pose(case_of(other, BEAM))[0]
+    for method in METHODS:
+        assert method.scores(turned) == pytest.approx(method.scores(problem), rel=1e-3, abs=1e-6)

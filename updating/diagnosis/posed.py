@@ -1,0 +1,66 @@
+"""What can be diagnosed, one specimen or several: the face that the search sees."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.comparison import Comparison
+from updating.effects.base import Effect, Parameter, Variant
+from updating.measured import Measured
+from updating.models.state import State
+from updating.prediction import Prediction, Predictor
+
+if TYPE_CHECKING:
+    from updating.diagnosis.problem import Problem
+
+
+class Posed(Protocol):
+    """A problem of one specimen or of several; where one has to stand for all, the first does."""
+
+    @property
+    def specimens(self) -> tuple[Problem, ...]:
+        """The problem of each specimen."""
+
+    @property
+    def predictor(self) -> Predictor:
+        """The model of the first specimen."""
+
+    @property
+    def measured(self) -> Measured:
+        """The test of the first specimen."""
+
+    @property
+    def nominal(self) -> Prediction:
+        """The nominal prediction of the first specimen."""
+
+    @property
+    def wide(self) -> bool:
+        """Whether tolerances are too wide for one linearisation."""
+
+    def applies(self, effect: Effect) -> str | None:
+        """Return why an effect cannot be examined, or None."""
+
+    def forms(self, effect: Effect) -> tuple[Variant, ...]:
+        """Return the forms in which an effect may come."""
+
+    def starts(self, candidate: Candidate) -> list[FloatArray]:
+        """Return prior quantiles from which to search."""
+
+    def parameters(self, candidate: Candidate) -> tuple[tuple[str, Parameter], ...]:
+        """Return the parameters that are searched, as (effect.parameter, prior)."""
+
+    def values(self, candidate: Candidate, coordinates: FloatArray) -> dict[str, float]:
+        """Return all values at prior quantiles, by effect.parameter."""
+
+    def derived(self, candidate: Candidate, coordinates: FloatArray) -> dict[str, tuple[float, str]]:
+        """Return derived quantities at prior quantiles, by effect.name."""
+
+    def at(
+        self, candidate: Candidate, coordinates: FloatArray, shift: FloatArray | None = None
+    ) -> Comparison:
+        """Compare all data with a candidate at prior quantiles, linearised about some nuisances."""
+
+    def compare(self, state: State) -> Comparison:
+        """Compare all data with one state of every specimen."""

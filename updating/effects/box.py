@@ -1,0 +1,143 @@
+"""A stretch of a beam or a rectangle of a plate, as shares at the quadrature points."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.effects.base import Values
+from updating.models.spec import Spec
+from updating.prediction import Predictor
+
+Place = tuple[float, float, float]
+
+CELLS = 200
+"""So many cells a plate is divided into at most, by elements, where boxes are summed up from cells."""
+
+SOFT = 1 / 8
+"""Width of the edges of a damaged place relative to its extent [-]."""
+
+SHARP = 1 / 3
+"""Width of the edges of anything relative to an element: what the quadrature still resolves [-]."""
+
+LIKE = 1e-6
+"""So near to each other, relative to the size, two places are one [-]."""
+
+
+def shares(predictor: Predictor, values: Values, *, soft: float = 0.0) -> FloatArray:
+    """Return how far every quadrature point lies inside a box about ``x`` (and ``y``), shape (n_points,) [-].
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The specimen.
+    values : mapping
+        ``x``, for plates ``y``, and ``extent``: the length of the stretch, or the side of the square [m].
+    soft : float
+        Width of the edges relative to the extent, at least what the mesh resolves [-].
+    """
+    points, spec = predictor.reduced.fields.points, predictor.spec
+    dim = points.shape[1]
+    centre = np.array([values[name] for name in ("x", "y")[:dim]])
+    spacing = np.array([spec.length, spec.width])[:dim] / np.array(spec.elements)
+    edge = np.maximum(values["extent"] * soft, SHARP * spacing)
+    inside = np.prod(0.5 * (1 + np.tanh((values["extent"] / 2 - np.abs(points - centre)) / edge)), axis=1)
+    return np.where(inside > 1e-4, inside, 0.0)
+
+
+def covered(predictor: Predictor, kind: str, inside: FloatArray) -> FloatArray:
+    """Return stiffness or mass of the bare structure in a box, on the reduced basis, shape (r, r) [SI].
+
+    On plates from matrices of some hundred cells, kept once for all boxes: a cell that an edge cuts counts with its
+    mean share.
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The specimen.
+    kind : {"stiffness", "mass"}
+        Which matrix.
+    inside : (n_points,) array
+        Shares at the quadrature points, of :func:`shares` [-].
+    """
+    reduced, factors = predictor.reduced, predictor.base.factors
+    if predictor.spec.kind == "beam":
+        return reduced.weighted(kind, inside, factors)
+    cell = _cells(predictor.spec, reduced.fields.points)
+    size = np.bincount(cell, reduced.fields.weights)
+    share = np.bincount(cell, reduced.fields.weights * inside) / size
+    key = (f"{kind} of cells", *sorted(factors.items()))
+    if key not in reduced.kept:
+        reduced.kept[key] = _cell_matrices(predictor, kind, cell)
+    chosen = np.flatnonzero(share)
+    return np.asarray(np.tensordot(share[chosen], reduced.kept[key][chosen], axes=1))
+
+
+def _cells(spec: Spec, points: FloatArray) -> IntArray:
+    """Return the cell in which each quadrature point lies, (n_points,)."""
+    groups = max(1, math.ceil(math.sqrt(math.prod(spec.elements) / CELLS)))
+    counts = [math.ceil(n / groups) for n in spec.elements]
+    sides = np.array([spec.length, spec.width]) / np.array(spec.elements) * groups
+    index = np.minimum((points / sides).astype(int), np.array(counts) - 1)
+    return np.asarray(index[:, 0] * counts[1] + index[:, 1])
+
+
+def _cell_matrices(predictor: Predictor, kind: str, cell: IntArray) -> FloatArray:
+    """Return stiffness or mass of every cell, (n_cells, r, r) [SI]."""
+    weights = [(cell == index).astype(float) for index in range(int(cell.max()) + 1)]
+    return np.stack([predictor.reduced.weighted(kind, inside, predictor.base.factors) for inside in weights])
+
+
+def place(values: Values) -> Place:
+    """Return the middle of the box in model axes [m]."""
+    return (float(values["x"]), float(values.get("y", 0.0)), 0.0)
+
+
+def starting_places(spec: Spec) -> tuple[tuple[float, ...], ...]:
+    """Return prior quantiles of the place from which a search starts: a row of eight, a grid of 4 x 2 on plates."""
+    along = (np.arange(8) + 0.5) / 8
+    if spec.kind == "beam":
+        return tuple((float(u),) for u in along)
+    return tuple((float(u), v) for u in along[::2] for v in (0.2, 0.8))
+
+
+def mirror_images(spec: Spec, at: Place) -> tuple[Place, ...]:
+    """Return a place and its images where the model is its own mirror image, each once [m].
+
+    What sits at one of them shifts all frequencies, and damps all modes, as at any other: shapes alone tell them
+    apart.
+    """
+    size = (spec.length, spec.width)
+    flips = [(False, True) if _symmetric(spec, axis) else (False,) for axis in range(min(spec.dim, 2))]
+    found: list[Place] = []
+    for flip in product(*flips):
+        x, y = (size[i] - at[i] if i < len(flip) and flip[i] else at[i] for i in range(2))
+        if all(abs(x - p[0]) + abs(y - p[1]) > LIKE * spec.length for p in found):
+            found.append((x, y, at[2]))
+    return tuple(found)
+
+
+def _symmetric(spec: Spec, axis: int) -> bool:
+    """Tell whether supports, masses and regions are their own mirror image along an axis."""
+    if spec.kind == "matrices":
+        return False
+    names = ("x0", "x1") if axis == 0 else ("y0", "y1")
+    if len({name in spec.clamped for name in names}) > 1:
+        return False
+    size = spec.length if axis == 0 else spec.width
+    bodies = {(_rounded(m.at, spec), m.mass, m.inertia) for m in spec.masses if m.mass > 0}
+    turned = {
+        (_rounded([size - c if i == axis else c for i, c in enumerate(m.at)], spec), m.mass, m.inertia)
+        for m in spec.masses
+        if m.mass > 0
+    }
+    own = ("E", "density", "thickness", "area", "inertia", "alpha", "beta", "loss_factor")
+    plain = all(getattr(region, name) is None for region in spec.regions for name in own)
+    return plain and bodies == turned
+
+
+def _rounded(at: list[float] | tuple[float, ...], spec: Spec) -> tuple[int, ...]:
+    return tuple(round(c / (LIKE * spec.length)) for c in at)

@@ -1,0 +1,48 @@
+"""The calibration of the measurement chain."""
+
+from __future__ import annotations
+
+from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.points import indices
+from updating.models.state import State
+from updating.prediction import Predictor
+from updating.reading import fixed_sensors
+
+
+class CalibrationGain(Effect):
+    """The absolute level of all FRFs, or of those of one of several sensors, is off by one factor."""
+
+    name = "calibration_gain"
+    channel = "measurement"
+    summary = (
+        "The calibration of the measurement chain is off: every FRF is too large or too small by one factor."
+    )
+    footprint = "Modal constants by one factor; frequencies, damping and shapes unchanged."
+    models = ("beam", "plate", "matrices")
+    equivalent_to = ("section_scale",)
+    separated_by = "a calibration with a known free mass"
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the gain."""
+        why = "wrong sensitivity, charge range, or hammer tip factor"
+        return (Parameter("gain", "-", 0.4, 2.5, why, log=True),)
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need absolute level."""
+        return None if predictor.measured.absolute else "the data carry no absolute level"
+
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return the whole chain, and each sensor where there are several."""
+        sensors = fixed_sensors(predictor.measured)
+        if len(sensors) < 2:
+            return (Variant(),)
+        each = tuple(Variant({"points": (predictor.measured.nodes[s],)}, 0.5 / len(sensors)) for s in sensors)
+        return (Variant(weight=0.5), *each)
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the gain."""
+        if "points" not in values:
+            return State(gain=values["gain"])
+        return State(
+            point_gains={("seen", p): values["gain"] for p in indices(predictor.measured, values["points"])}
+        )

@@ -1,0 +1,42 @@
+"""Localisation: in which region of the model the error sits.
+
+Siblings with one face: each takes a test beside a model and gives every region a score. The classical ones are here
+to be compared with; :func:`weigh_regions` is what a diagnosis uses.
+"""
+
+from updating.localisation.base import KINDS, Kind, Localiser, areas
+from updating.localisation.comac import Comac
+from updating.localisation.evidence import RegionEvidence, RegionPosterior, weigh_regions
+from updating.localisation.force_residual import ForceResidual
+from updating.localisation.mece import ConstitutiveError
+from updating.localisation.places import boxes, centres, regions_at
+from updating.localisation.subspace import BestSubspace
+
+METHODS: tuple[Localiser, ...] = (
+    ForceResidual("serep"),
+    ForceResidual("dynamic"),
+    Comac(),
+    ConstitutiveError(),
+    BestSubspace(nuisances=False),
+    BestSubspace(),
+    RegionEvidence(),
+)
+"""All methods, with their usual options."""
+
+__all__ = [
+    "KINDS",
+    "METHODS",
+    "BestSubspace",
+    "Comac",
+    "ConstitutiveError",
+    "ForceResidual",
+    "Kind",
+    "Localiser",
+    "RegionEvidence",
+    "RegionPosterior",
+    "areas",
+    "boxes",
+    "centres",
+    "regions_at",
+    "weigh_regions",
+]
