@@ -73,6 +73,7 @@ def main() -> None:
     parser.add_argument("--leave-out", action="store_true", help="take the hidden effect out of the library")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--markdown", type=Path, help="file for the tables")
     parser.add_argument("--score", action="store_true", help="run nothing")
     chosen = parser.parse_args()
     rows = read(chosen.out)
@@ -84,8 +85,11 @@ def main() -> None:
             file.write(json.dumps(row, default=list) + "\n")
             file.flush()
     drawn = [row for row in rows if row["verdict"] != "undrawn"]
-    print(f"{len(drawn)} trials, {len(rows) - len(drawn)} without a specimen\n")
-    print(summary(drawn), "\n", by_effect(drawn), sep="\n")
+    lost = f"{len(drawn)} trials, {len(rows) - len(drawn)} without a specimen"
+    text = "\n\n".join([lost, summary(drawn), by_effect(drawn)])
+    print(text)
+    if chosen.markdown is not None:
+        chosen.markdown.write_text(text + "\n")
 
 
 if __name__ == "__main__":

@@ -43,6 +43,7 @@ from acquisition import (  # noqa: E402
     write_uff,
 )
 from identification import ModalModel, identify  # noqa: E402
+from modalkit.diagnosing import diagnose_studies  # noqa: E402
 from modalkit.fitting import update_studies  # noqa: E402
 from modalkit.handling import Handling  # noqa: E402
 from modalkit.process import Session, open_study  # noqa: E402
@@ -73,6 +74,7 @@ __all__ = [
     "correlate",
     "decide",
     "diagnose",
+    "diagnose_studies",
     "estimate_frfs",
     "hits_table",
     "identify",

@@ -118,7 +118,7 @@ def _gap_record(diagnosis: Diagnosis) -> dict[str, Any]:
     gap = diagnosis.gap
     modes = [
         {
-            "study": diagnosis.title,
+            "study": row["study"],
             "test_hz": row["test [Hz]"],
             "model_hz": row["model [Hz]"],
             "error_percent": row["error [%]"],

@@ -2,7 +2,7 @@
 
 from updating.axes import Axes
 from updating.case import Case
-from updating.diagnosis.diagnose import diagnose
+from updating.diagnosis.diagnose import diagnose, diagnose_together
 from updating.diagnosis.result import Diagnosis
 from updating.effects import LIBRARY, Effect, Parameter, register
 from updating.environment import Environment
@@ -31,6 +31,7 @@ __all__ = [
     "Tolerances",
     "build_structure",
     "diagnose",
+    "diagnose_together",
     "measured_from_identified",
     "measured_from_modes",
     "register",

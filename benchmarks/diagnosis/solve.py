@@ -295,7 +295,7 @@ class _Plate:
 
     def clamp_springs(self) -> sparse.csr_array:
         b, n = self.body, self.lines[0].size * self.lines[1].size
-        total = sparse.csr_array((self.size, self.size))
+        total = sparse.csr_array((self.size, self.size), dtype=np.float64)
         for edge in b.clamped:
             nodes, line, across = self._edge(edge)
             along = _gram(line.values, line.weights)

@@ -14,6 +14,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from acquisition.errors import InputError
+
 _PIPE_WIDTH = 160  # characters a table may take where no terminal says how wide it is
 
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else _PIPE_WIDTH)
@@ -52,6 +54,21 @@ def reading(then: str = "reading") -> Iterator[Callable[[float], None]]:
                 bar.update(task, completed=part)
 
         yield told
+
+
+def check_once(studies: Sequence[Path]) -> None:
+    """Refuse a study that is given twice.
+
+    Raises
+    ------
+    InputError
+        If one is.
+    """
+    seen: set[Path] = set()
+    for path in studies:
+        if path.resolve() in seen:
+            raise InputError(f"{path}: given twice; the same test is no further information")
+        seen.add(path.resolve())
 
 
 def several(count: int, noun: str) -> str:

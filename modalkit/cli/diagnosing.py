@@ -8,8 +8,9 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 
-from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
+from modalkit.cli.common import check_once, out, show_figures, show_table, show_warnings, working
 from modalkit.cli.options import Figures
+from modalkit.diagnosing import diagnose_studies, warnings_of
 from modalkit.letter import letter
 from modalkit.library import effects_record, effects_table
 from modalkit.process import Session, open_study
@@ -17,7 +18,6 @@ from modalkit.records import diagnosis_record
 from modalkit.study import read_study
 from modalkit.write import check_json_place, write_json
 from updating import Diagnosis
-from updating import diagnose as examine
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -27,24 +27,29 @@ def add_commands(app: typer.Typer) -> None:
 
 
 def diagnose(
-    study: Annotated[Path, typer.Argument(help="study file")],
+    studies: Annotated[list[Path], typer.Argument(help="study file(s)")],
+    shared: Annotated[
+        str, typer.Option(help="effects of one and the same size in several studies, comma-separated")
+    ] = "",
     json: Annotated[Path | None, typer.Option("--json", help="file for the diagnosis as JSON")] = None,
     figures: Figures = None,
 ) -> None:
     """Say where the gap between test and model lies, what causes it, and how far it closes."""
     check_json_place(json)
+    check_once(studies)
+    names = tuple(name.strip() for name in shared.split(",") if name.strip())
     with working("reading and identifying"):
-        session = open_study(read_study(study))
+        sessions = [open_study(read_study(path)) for path in studies]
     with working("weighing the effects"):
-        diagnosis = examine(session.case)
-    show_diagnosis(diagnosis, session)
+        diagnosis = diagnose_studies(sessions, names)
+    show_diagnosis(diagnosis, *sessions)
     if json is not None:
-        write_json(json, diagnosis_record(diagnosis, session.warnings))
+        write_json(json, diagnosis_record(diagnosis, warnings_of(sessions)))
         out.print(f"written: {json}", markup=False)
-    show_figures(figures, lambda: diagnosis_figures(diagnosis, session))
+    show_figures(figures, lambda: diagnosis_figures(diagnosis, *sessions))
 
 
-def show_diagnosis(diagnosis: Diagnosis, session: Session) -> None:
+def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     """Print a diagnosis: five lines, then the tables."""
     out.print(diagnosis.title, style="bold", markup=False)
     for line in letter(diagnosis):
@@ -52,7 +57,8 @@ def show_diagnosis(diagnosis: Diagnosis, session: Session) -> None:
     out.print()
     digits = {"test [Hz]": 3, "model [Hz]": 3, "error [%]": 3, "sigma [%]": 3, "MAC": 3}
     gap = diagnosis.gap
-    show_table(gap.modes, f"Gap: {gap.rms_percent:.3g} % r.m.s. over {len(gap.modes)} modes", digits=digits)
+    modes = gap.modes if len(sessions) > 1 else gap.modes.drop(columns="study", errors="ignore")
+    show_table(modes, f"Gap: {gap.rms_percent:.3g} % r.m.s. over {len(gap.modes)} modes", digits=digits)
     show_table(diagnosis.table().head(10), "Explanations, most probable first", digits={"probability": 4})
     if diagnosis.next_test:
         rows = [
@@ -62,13 +68,14 @@ def show_diagnosis(diagnosis: Diagnosis, session: Session) -> None:
         show_table(pd.DataFrame(rows), "What to measure next")
     if diagnosis.not_examined:
         out.print("Not examined: " + "; ".join(f"{n} ({why})" for n, why in diagnosis.not_examined.items()))
-    show_warnings([*diagnosis.warnings, *session.warnings])
+    show_warnings([*diagnosis.warnings, *warnings_of(sessions)])
 
 
-def diagnosis_figures(diagnosis: Diagnosis, session: Session) -> dict[str, Any]:
-    """Draw a diagnosis, and the test it rests on."""
+def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any]:
+    """Draw a diagnosis, and the test it rests on; of several, the first."""
     from modalkit.figures import diagnosis_figure, frf_figure
 
+    session = sessions[0]
     figures = {"diagnosis": diagnosis_figure(diagnosis, session.case)}
     if session.identified is not None:
         figures["frf"] = frf_figure(session.identified.frfs, session.identified)

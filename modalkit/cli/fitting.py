@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
-from acquisition.errors import InputError
-from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
+from modalkit.cli.common import check_once, out, show_figures, show_table, show_warnings, working
 from modalkit.cli.options import Figures
 from modalkit.fitting import update_studies
 from modalkit.json_update import to_json
@@ -44,10 +43,7 @@ def update(
 ) -> None:
     """Update the parameters named in the study's update table, by eigenvalues or by FRFs."""
     check_json_place(json)
-    if twice := [
-        path for i, path in enumerate(studies) if path.resolve() in {p.resolve() for p in studies[:i]}
-    ]:
-        raise InputError(f"{twice[0]}: given twice; the same test is no further information")
+    check_once(studies)
     with working("reading and identifying"):
         sessions = [open_study(read_study(path), with_baseline=False) for path in studies]
     names = tuple(name.strip() for name in shared.split(",") if name.strip())

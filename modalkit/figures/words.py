@@ -97,16 +97,18 @@ def chance(p_value: float) -> str:
 
 
 def quantity(estimate: ParameterEstimate) -> str:
-    """Write a value with its 95 % interval in a unit that suits it: ``12.1 g [11.5, 12.6]``."""
-    factor, unit = _unit(estimate)
-    value, low, high = (_digits(factor * v) for v in (estimate.value, estimate.low95, estimate.high95))
-    return f"{value}{' ' + unit if unit else ''} [{low}, {high}]"
+    """Write a value with its 95 % interval in a unit that suits it: ``12.1 g [11.5, 12.6]``; points as they are."""
+    value, low, high = estimate.value, estimate.low95, estimate.high95
+    if low is None or high is None or not isinstance(value, float):
+        return str(estimate)
+    factor, unit = _unit(estimate.unit, max(abs(value), abs(high)))
+    told, bottom, top = (_digits(factor * v) for v in (value, low, high))
+    return f"{told}{' ' + unit if unit else ''} [{bottom}, {top}]"
 
 
-def _unit(estimate: ParameterEstimate) -> tuple[float, str]:
-    unit = "" if estimate.unit == "-" else estimate.unit.replace("^2", "²").replace("^3", "³")
-    small = max(abs(estimate.value), abs(estimate.high95)) < 0.1
-    return {"kg": (1e3, "g"), "m": (1e3, "mm")}.get(unit, (1.0, unit)) if small else (1.0, unit)
+def _unit(unit: str, size: float) -> tuple[float, str]:
+    unit = "" if unit == "-" else unit.replace("^2", "²").replace("^3", "³")
+    return {"kg": (1e3, "g"), "m": (1e3, "mm")}.get(unit, (1.0, unit)) if size < 0.1 else (1.0, unit)
 
 
 def _digits(value: float) -> str:

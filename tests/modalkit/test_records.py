@@ -14,8 +14,8 @@ from acquisition import HitVerdict
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from modalkit import write
-from modalkit.process import process
 from modalkit.library import effects_record
+from modalkit.process import process
 from modalkit.records import diagnosis_record, modes_record
 from modalkit.study import read_study
 from modalkit.write import plain, write_json, write_text

@@ -12,12 +12,12 @@ from updating_cases import BEAM, DOUBTS, ExactBeam, blank, case_of, observed
 
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.comparison import KNOWN_SCATTER, SCALES, Comparison
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.evidence import explain
 from updating.diagnosis.fit import Point, climb, evaluate
 from updating.diagnosis.gaussian import gaussian, marginal, whiten
 from updating.diagnosis.goodness import p_value
-from updating.diagnosis.comparison import KNOWN_SCATTER, SCALES, Comparison
 from updating.diagnosis.problem import Problem
 
 COARSE = replace(BEAM, elements=(8,), theory="euler-bernoulli")

@@ -81,7 +81,9 @@ class Candidate:
         theory = self.theory
         if theory is None and "shear" in self.names:
             theory = "timoshenko"
-        return predictor if theory is None else predictor.under(theory)
+        if theory is None or predictor.spec.kind != "beam":  # of several specimens, beams alone have another theory
+            return predictor
+        return predictor.under(theory)
 
     def parameters(self, predictor: Predictor) -> tuple[tuple[str, Parameter], ...]:
         """Return the parameters that are searched, as (effect.parameter, prior)."""
@@ -116,7 +118,8 @@ class Candidate:
 
     def assemble(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
         """Return the state of the model at values of the effects' parameters."""
-        return combine([*(effect.state(stage, values) for effect, values in parts), State(theory=self.theory)])
+        theory = State(theory=self.theory if stage.spec.kind == "beam" else None)
+        return combine([*(effect.state(stage, values) for effect, values in parts), theory])
 
     def locations(
         self, predictor: Predictor, coordinates: Sequence[float], *, channel: str | None = None

@@ -15,6 +15,9 @@ from updating.diagnosis.posed import Posed
 STEP = 1e-3
 """Finite-difference step in prior quantiles."""
 
+AT_REST = 0.01
+"""A climb is at rest when a step gains less than this [-]."""
+
 FARTHEST = 6.0
 """Tolerances are followed so far from nominal, in standard deviations."""
 
@@ -121,8 +124,9 @@ def climb(
     point = evaluate(problem, candidate, start, keep=keep)
     if not point.possible:
         return Peak(point, np.eye(len(start)), np.zeros(len(start)))
-    damping = 1e-3
-    normal, gradient = _curvature(problem, candidate, point, keep)
+    damping, fresh = 1e-3, True
+    columns = sensitivities(problem, candidate, point)
+    normal, gradient = _curvature(point, columns, keep)
     for _ in range(rounds if len(start) else 0):
         free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
         if not free.any():
@@ -132,13 +136,28 @@ def climb(
         trial = evaluate(problem, candidate, there, keep=keep)
         gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
         if gain > 0:
+            columns, fresh = _secant(columns, point, trial), False
             point, damping = trial, damping / 5
-            normal, gradient = _curvature(problem, candidate, point, keep)
-        else:
+        elif fresh:
             damping *= 10
-        if abs(gain) < 0.01 or damping > 1e6:
+        if abs(gain) < AT_REST or damping > 1e6:
             break
+        if gain <= 0 and not fresh:
+            columns, fresh = sensitivities(problem, candidate, point), True
+        normal, gradient = _curvature(point, columns, keep)
+    if not fresh:
+        columns = sensitivities(problem, candidate, point)
+        normal, gradient = _curvature(point, columns, keep)
     return Peak(point, normal, gradient)
+
+
+def _secant(columns: FloatArray, before: Point, now: Point) -> FloatArray:
+    """Correct sensitivities by what a step has shown (Broyden 1965)."""
+    step = now.coordinates - before.coordinates
+    change = before.comparison.residual - now.comparison.residual
+    if not np.isfinite(change).all() or not step.any():
+        return columns
+    return np.asarray(columns + np.outer(change - columns @ step, step) / float(step @ step))
 
 
 def _step(normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: float) -> FloatArray:
@@ -149,8 +168,5 @@ def _step(normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: fl
     return np.asarray(step * min(1.0, 0.3 / max(np.abs(step).max(), 1e-12)))
 
 
-def _curvature(
-    problem: Posed, candidate: Candidate, point: Point, keep: BoolArray | None
-) -> tuple[FloatArray, FloatArray]:
-    columns = np.nan_to_num(sensitivities(problem, candidate, point))
-    return whiten(point.comparison, columns, point.marginal.scale, keep)
+def _curvature(point: Point, columns: FloatArray, keep: BoolArray | None) -> tuple[FloatArray, FloatArray]:
+    return whiten(point.comparison, np.nan_to_num(columns), point.marginal.scale, keep)

@@ -28,6 +28,9 @@ REJECTED = 0.003
 DOUBTED = 0.02
 """...and where no single effect fits better than this, pairs are weighed beside them."""
 
+PROBABLE = 6.0
+"""Explanations whose logarithm of the probability lies further behind the best do not count as explanations [-]."""
+
 WITHIN_REACH = 7.0
 """Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]."""
 
@@ -99,9 +102,16 @@ def search(problem: Posed, library: Sequence[Effect]) -> Search:
     twin = _falls_short(problem, effects)
     drafts = [_single(problem, e, form, twin=twin) for e in effects for form in problem.forms(e)]
     found = _finished(problem, [nothing, *drafts])
-    if max(_fit(e) for e in found) < DOUBTED:
+    if not _explained(found):
         found = _finished(problem, found + _pairs(problem, found[1:]))
     return Search(nothing, _merged(_weigh(found)), obstacles)
+
+
+def _explained(found: list[Explanation]) -> bool:
+    """Tell whether any of the probable explanations fits beyond doubt."""
+    rows = _weigh(found)
+    top = max(row.probability for row in rows)
+    return any(row.p_value >= DOUBTED for row in rows if row.probability > top * np.exp(-PROBABLE))
 
 
 def _finished(problem: Posed, found: list[Explanation]) -> list[Explanation]:

@@ -33,12 +33,12 @@ class DampingPatch(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return place, extent, loss factor, and what the layer adds of mass and stiffness."""
-        lossy = "from an elastic band to a constrained layer that covers the part well"
+        lossy = "from tape, which must damp to be one, to a constrained layer that covers the part well"
         layer = (
-            Parameter("loss_factor", "-", 1e-3, 0.5, lossy, log=True),
-            Parameter("mass", "-", 0.0, 0.3, "share of the bare structure's mass there, to a third"),
+            Parameter("loss_factor", "-", 5e-3, 0.5, lossy, log=True),
+            Parameter("mass", "-", 0.0, 0.12, "share of the bare structure's mass there: a layer, no body"),
             Parameter(
-                "stiffness", "-", 0.0, 0.3, "share of the bare structure's stiffness there, to a third"
+                "stiffness", "-", 0.0, 0.12, "share of the bare structure's stiffness there: a layer, no rib"
             ),
         )
         spec = predictor.spec

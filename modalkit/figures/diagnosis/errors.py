@@ -9,10 +9,10 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating import LIBRARY, Case, Diagnosis
 from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.comparison import CHANNELS, Comparison
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.gaussian import Marginal, marginal
-from updating.diagnosis.goodness import CHANNELS
-from updating.diagnosis.problem import Comparison, Problem
+from updating.diagnosis.problem import Problem
 from updating.diagnosis.result import Ranked
 from updating.models.state import State, combine
 
