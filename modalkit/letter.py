@@ -2,7 +2,35 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from itertools import combinations
+
+from modalkit.quantities import number, place, size
 from updating import LIBRARY, Diagnosis
+from updating.diagnosis.held_out import BELIEVED
+from updating.diagnosis.result import NextTest, Ranked, Shrink
+
+EQUAL_BY_PHYSICS = {
+    frozenset({"calibration_gain", "section_scale"}): (
+        "both scale every FRF and nothing else: no hammer test tells them apart; calibrate the chain, or weigh and "
+        "measure the specimen"
+    ),
+    frozenset({"exponential_window", "uniform_damping"}): (
+        "both add one decay to every mode: no hammer test tells them apart; look the window up in the analyser's "
+        "settings"
+    ),
+}
+"""Effects that make one and the same change, and what to do about it."""
+
+IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
+"""Parameters that the line on the place tells."""
+
+SHOWN = 4
+"""So many parameters are told in the line on the cause."""
+
+LIKELY = 0.5
+"""A region is named if it holds so much of the probability [-]."""
 
 
 def letter(diagnosis: Diagnosis) -> list[str]:
@@ -23,76 +51,202 @@ def _cause(diagnosis: Diagnosis) -> str:
         return (
             "unknown: the gap is real, and nothing in the library explains it, alone or in the pairs weighed"
         )
-    names = [" + ".join(s) for s in diagnosis.sets]
     if diagnosis.verdict == "named":
-        summary = " ".join(LIBRARY[n].summary for n in diagnosis.sets[0] if n in LIBRARY)
-        return f"{names[0]}. {summary} {_values(diagnosis)}".strip()
-    return "these data cannot tell apart: " + ", ".join(names)
+        names = diagnosis.sets[0]
+        summary = " ".join(LIBRARY[n].summary for n in names if n in LIBRARY)
+        return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
+    said = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
+    exact = _equal(diagnosis)
+    return f"{said}; {exact.partition(':')[0]}" if exact else said
+
+
+def _equal(diagnosis: Diagnosis) -> str:
+    """Return what is said of a class whose members make one and the same change, or nothing."""
+    if any(len(names) > 1 for names in diagnosis.sets):
+        return ""
+    return EQUAL_BY_PHYSICS.get(frozenset(diagnosis.effects), "")
+
+
+def _row(diagnosis: Diagnosis, names: tuple[str, ...]) -> Ranked | None:
+    return next((row for row in diagnosis.ranking if row.effects == names), None)
 
 
 def _values(diagnosis: Diagnosis) -> str:
-    top = next((r for r in diagnosis.ranking if r.effects == diagnosis.sets[0]), None)
-    if top is None or not top.parameters:
+    """Return the sizes of a named cause, and whether they are believable."""
+    row = _row(diagnosis, diagnosis.sets[0])
+    if row is None:
         return ""
-    parts = [f"{name.split('.')[-1]} {e}" for name, e in top.parameters.items()]
-    return "(" + "; ".join(parts) + ")"
+    told = []
+    for name, estimate in row.parameters.items():
+        effect, _, parameter = name.partition(".")
+        shape = estimate.low95 is None and not isinstance(estimate.value, str | tuple)
+        if parameter in IN_THE_PLACE or (shape and "point" not in parameter):
+            continue
+        bare = parameter.replace("_", " ")
+        whose = f"{effect} " if parameter == "factor" and len(row.effects) > 1 else ""
+        told.append(
+            f"{whose}{bare} {size(estimate)}" + (", the end of its range" if estimate.at_bound else "")
+        )
+    text = f"({'; '.join(told[:SHOWN])}; 95 % in brackets)" if told else ""
+    return (
+        text
+        if row.plausible
+        else f"{text} That size is hardly believable: look for another cause, too.".strip()
+    )
+
+
+def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
+    """Return a set of effects, with its size where it is one number."""
+    row, said = _row(diagnosis, names), " + ".join(names)
+    if row is None or len(row.parameters) != 1 or len(names) > 1:
+        return said
+    (estimate,) = row.parameters.values()
+    if not isinstance(estimate.value, float):
+        return said
+    bare = size(estimate).partition(" (")[0]
+    return f"{said} ({'x ' if estimate.unit == '-' else ''}{bare})"
 
 
 def _where(diagnosis: Diagnosis) -> str:
     where = diagnosis.where
-    if where.channel == "none":
+    if diagnosis.verdict == "none" or where.channel == "none":
         return "nowhere: every channel agrees"
-    text = f"{where.channel} ({100 * where.channels[where.channel]:.0f} %)"
     if diagnosis.verdict == "unknown":
-        return text + " is where the least bad explanations act; do not trust it"
-    if where.location is not None:
-        places = [f"x = {x:.3f} m" + (f", y = {y:.3f} m" if y else "") for x, y, _ in where.locations[:3]]
-        text += ", at " + " and ".join(dict.fromkeys(places))
-        text += f" (nearest test point {', '.join(map(str, where.points))})" if where.points else ""
-    else:
-        text += ", spread over the whole structure" if where.channel != "measurement" else ""
-    return text
+        band = f"{where.band} " if where.band else ""
+        return f"{band}The {where.channel} is where the least bad explanations act; do not trust it."
+    text = f"{where.channel} ({100 * where.channels[where.channel]:.0f} %)"
+    if where.location is None:
+        return text + (
+            ", spread over the whole structure" if where.channel != "measurement" else _points(where.points)
+        )
+    places = list(dict.fromkeys(place(at) for at in where.locations[:3]))
+    text += ", at " + (" and ".join(places) if places else place(where.location))
+    zone = max(where.zones, key=lambda z: z.probability, default=None)
+    nearest = min(where.zones, key=lambda z: math.dist(z.center, where.location or z.center), default=None)
+    if zone is not None and zone is nearest and zone.probability >= LIKELY and len(places) < 2:
+        text += f", region {zone.name}"
+    near = "s" if len(where.points) > 1 else ""
+    return text + (f" (nearest test point{near} {', '.join(map(str, where.points))})" if where.points else "")
+
+
+def _points(points: tuple[int, ...]) -> str:
+    if not points:
+        return ""
+    return f", point{'s' if len(points) > 1 else ''} {', '.join(map(str, points))}"
 
 
 def _closes(diagnosis: Diagnosis) -> str:
     shrink = diagnosis.shrink
-    if diagnosis.verdict == "none":
-        return f"nothing to close; r.m.s. {shrink.metric} error {shrink.before:.3g} %, noise floor {shrink.floor:.2g} %"
-    text = (
-        f"r.m.s. {shrink.metric} error {shrink.before:.3g} % -> {shrink.after:.2g} % fitted, "
-        f"{shrink.held_after:.2g} % on modes held out (noise floor {shrink.floor:.2g} %)"
+    say = _teller(shrink)
+    what = (
+        "misfit of all data"
+        if shrink.metric == "combined"
+        else f"{shrink.metric.replace('frf', 'FRF')} error"
     )
-    others = [f"tolerances alone {shrink.held_nuisance:.2g} %"]
+    if diagnosis.verdict == "none":
+        return f"nothing to close; r.m.s. {what} {say(shrink.before)}, noise floor {say(shrink.floor)}"
+    text = (
+        f"r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted, "
+        f"{say(shrink.held_after)} on modes held out (noise floor {say(shrink.floor)})"
+    )
+    others = [f"tolerances alone {say(shrink.held_nuisance)}" + _stretched(shrink)]
     if shrink.held_runner_up is not None:
-        others.insert(0, f"runner-up {shrink.held_runner_up:.2g} %")
+        others.insert(0, f"runner-up {say(shrink.held_runner_up)}")
     text += "; held out, " + ", ".join(others)
-    if shrink.closed is not None:
+    if shrink.points is not None:
+        text += f"; on points held out {number(shrink.points.before)} % -> {number(shrink.points.after)} %"
+    if shrink.closed is not None and diagnosis.verdict != "unknown":
         c = shrink.closed
-        text += f"; closes {c.value:.0f} % [{c.low95:.0f}, {c.high95:.0f}] of what can be closed"
+        text += f"; closes {c.value:.0f} % ({c.low95:.0f} to {c.high95:.0f}) of what can be closed"
     return text
+
+
+def _teller(shrink: Shrink) -> Callable[[float], str]:
+    if shrink.metric == "combined":
+        return lambda value: f"{value / 100:.2g} sigma"
+    return lambda value: f"{float(f'{value:.2g}' if value < 10 else f'{value:.3g}'):g} %"
+
+
+def _stretched(shrink: Shrink) -> str:
+    if shrink.stretch <= BELIEVED:
+        return ""
+    return f" (kept within {BELIEVED:g} sigma; to explain it they would have to be {shrink.stretch:.0f} sigma off)"
 
 
 def _sure(diagnosis: Diagnosis) -> str:
     chance = f"chance alone makes such a gap with p = {diagnosis.p_value:.1g}"
-    if diagnosis.verdict in {"none", "unknown"}:
+    if diagnosis.verdict == "none":
         return chance
-    total = sum(r.probability for r in diagnosis.ranking if r.effects in diagnosis.sets)
-    fit = max(r.p_value for r in diagnosis.ranking if r.effects in diagnosis.sets)
-    rest = [r for r in diagnosis.ranking if r.effects not in diagnosis.sets]
-    behind = f"; next {' + '.join(rest[0].effects)} {100 * rest[0].probability:.1g} %" if rest else ""
-    return f"{100 * total:.1f} % of the probability{behind}; the fit has p = {fit:.2g}; {chance}"
+    if diagnosis.verdict == "unknown":
+        return chance + _left_out(diagnosis)
+    chosen = [row for row in diagnosis.ranking if row.effects in diagnosis.sets]
+    total, fit = sum(row.probability for row in chosen), max(row.p_value for row in chosen)
+    rest = [row for row in diagnosis.ranking if row.effects not in diagnosis.sets]
+    behind = f"; next {' + '.join(rest[0].effects)} {_percent(rest[0].probability)}" if rest else ""
+    fits = "fits within the noise" if fit >= 0.05 else "fits, but not well"
+    together = f"{_percent(total)} probable" + (" together" if len(diagnosis.sets) > 1 else "")
+    return f"{together}{behind}; {fits} (p = {fit:.2g}); {chance}"
+
+
+def _percent(share: float) -> str:
+    """Return a probability in per cent, never rounded to certainty."""
+    if share > 0.999:
+        return "over 99.9 %"
+    return "below 0.1 %" if share < 0.001 else f"{100 * share:.3g} %"
+
+
+def _left_out(diagnosis: Diagnosis) -> str:
+    """Say how many effects the data did not allow to examine: one of them may be it."""
+    lacking = [
+        why for why in diagnosis.not_examined.values() if why.startswith(("no ", "it takes", "the data"))
+    ]
+    if not lacking:
+        return ""
+    return f"; {len(lacking)} effects could not be examined for want of data (listed below)"
 
 
 def _next(diagnosis: Diagnosis) -> str:
-    if diagnosis.verdict == "class" and diagnosis.next_test:
+    if diagnosis.verdict == "none":
+        return "nothing; the model may be used within its tolerances"
+    if diagnosis.verdict == "class" and (exact := _equal(diagnosis)):
+        return exact.partition("; ")[2]
+    if diagnosis.next_test:
         test = diagnosis.next_test[0]
-        return f"{test.measure}: separates {' from '.join(test.separates)} by {test.expected_sigma:.0f} sigma"
-    if diagnosis.verdict == "class":
-        ways = dict.fromkeys(LIBRARY[n].separated_by for n in diagnosis.effects if n in LIBRARY)
-        return "; ".join(ways)
+        if diagnosis.verdict == "unknown":
+            return test.measure
+        confirm = "to confirm it, " if diagnosis.verdict == "named" else ""
+        return f"{confirm}{test.measure}: {separated(test)}"
+    names = diagnosis.sets[0] if diagnosis.verdict == "named" else diagnosis.effects
+    ways = "; ".join(dict.fromkeys(LIBRARY[n].separated_by for n in names if n in LIBRARY))
     if diagnosis.verdict == "named":
-        tests = [LIBRARY[n].separated_by for n in diagnosis.sets[0] if n in LIBRARY]
-        return "no rival is left to separate; to confirm: " + "; ".join(tests)
+        return f"no rival is left to separate; to confirm: {ways}"
     if diagnosis.verdict == "unknown":
         return "look at the modes that miss most below; more points there, and a test of the bare specimen"
-    return "nothing; the model may be used within its tolerances"
+    return ways
+
+
+def separated(test: NextTest) -> str:
+    """Say what a test separates, and how well."""
+    by = "" if math.isnan(test.expected_sigma) else f" by {number(round(test.expected_sigma))} sigma"
+    if not test.pairs:
+        return f"separates {' from '.join(test.separates)}{by}" if test.separates else ""
+    firsts = list(dict.fromkeys(a for a, _ in test.pairs))
+    seconds = list(dict.fromkeys(b for _, b in test.pairs))
+    if test.whole and len(firsts) > 1:
+        return f"separates all that is left{by}"
+    common = [s for s in firsts + seconds if all(s in pair for pair in test.pairs)]
+    if common:
+        others = list(dict.fromkeys(b if a == common[0] else a for a, b in test.pairs))
+        return f"separates {' + '.join(common[0])} from {_either(others)}{by}"
+    every = list(dict.fromkeys(firsts + seconds))
+    lacking = [(a, b) for a, b in combinations(every, 2) if not {(a, b), (b, a)} & set(test.pairs)]
+    if len(lacking) < len(test.pairs):
+        but = [f"{' + '.join(a)} from {' + '.join(b)}" for a, b in lacking]
+        return f"separates all but {' and '.join(but)}{by}"
+    each = [f"{' + '.join(a)} from {' + '.join(b)}" for a, b in test.pairs]
+    return f"separates {'; '.join(each)}{by}"
+
+
+def _either(sets: list[tuple[str, ...]]) -> str:
+    said = [" + ".join(names) for names in sets]
+    return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
+from typing import Any
 
 import numpy as np
 
 from acquisition.errors import InputError, StudyError
+from modalkit.accepting import SOME, nodes
 from updating import LIBRARY, Predictor
 from updating.models.state import State
 
-EffectValues = tuple[str, Mapping[str, float]]
+EffectValues = tuple[str, Mapping[str, Any]]
 
 
-def departure(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:
+def departure(name: str, values: Mapping[str, Any]) -> Callable[[Predictor], State]:
     """Return the function that puts an effect into a predictor's model."""
     return lambda predictor: LIBRARY[name].state(predictor, values)
 
 
-def parse_effect(text: str) -> tuple[str, dict[str, float]]:
-    """Read an effect written NAME or NAME:PARAM=VALUE,PARAM=VALUE.
+def parse_effect(text: str) -> tuple[str, dict[str, Any]]:
+    """Read an effect written NAME or NAME:PARAM=VALUE,PARAM=VALUE; points are node numbers, as points=3/4.
 
     Raises
     ------
@@ -32,11 +35,16 @@ def parse_effect(text: str) -> tuple[str, dict[str, float]]:
         near = get_close_matches(name, LIBRARY, n=3)
         meant = f"did you mean {' or '.join(near)}?" if near else "`modalkit effects` lists them"
         raise InputError(f"--effect {text}: there is no effect {name!r}; {meant}")
-    values = {}
+    values: dict[str, Any] = {}
     for entry in filter(None, (part.strip() for part in rest.split(","))):
-        parameter, equals, number = (part.strip() for part in entry.partition("="))
+        parameter, equals, told = (part.strip() for part in entry.partition("="))
+        if parameter in values:
+            raise InputError(f"--effect {text}: {parameter} stands twice")
+        if parameter in LIBRARY[name].labels:
+            values[parameter] = _points(text, parameter, told)
+            continue
         try:
-            values[parameter] = float(number)
+            values[parameter] = float(told)
         except ValueError:
             equals = ""
         if not equals or not np.isfinite(values[parameter]):
@@ -44,30 +52,59 @@ def parse_effect(text: str) -> tuple[str, dict[str, float]]:
     return name, values
 
 
+def _points(text: str, label: str, told: str) -> Any:
+    """Return the node numbers written 3 or 3/4."""
+    try:
+        found = [int(part) for part in told.split("/")]
+        return nodes(label, found if label == SOME or len(found) > 1 else found[0])
+    except (ValueError, StudyError) as error:
+        wanted = f"{label}=3/4" if label == SOME else f"{label}=3"
+        raise InputError(f"--effect {text}: {told!r} are no node numbers; write {wanted}") from error
+
+
 def check_effect(
-    predictor: Predictor, name: str, values: Mapping[str, float], *, where: str = "--effect"
+    predictor: Predictor, name: str, values: Mapping[str, Any], *, where: str = "--effect"
 ) -> None:
     """Refuse an effect that does not fit the model, and parameters that do not fit the effect."""
     effect = LIBRARY[name]
     if effect.channel == "measurement" and predictor.spec.kind in effect.models:
         obstacle = None  # what a diagnosis would need of the data is no obstacle to simulating them
     else:
-        obstacle = effect.why_not(predictor)
+        obstacle = effect.why_not(_with_damping(predictor))
     if obstacle is not None:
         raise StudyError(f"{where} {name}: {obstacle}")
     takes = {p.name: p for p in effect.parameters(predictor)}
-    if set(values) != set(takes):
-        wanted = ", ".join(f"{p.name} [{p.unit}]" for p in takes.values()) or "no parameters"
+    if set(values) != {*takes, *effect.labels}:
+        told = [f"{label} (node numbers)" for label in effect.labels]
+        wanted = ", ".join([*told, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"
         raise StudyError(f"{where} {name}: it takes {wanted}, found {', '.join(sorted(values)) or 'none'}")
+    for label in effect.labels:
+        given = values[label] if isinstance(values[label], tuple) else (values[label],)
+        if missing := [node for node in given if node not in predictor.measured.nodes]:
+            there = ", ".join(map(str, predictor.measured.nodes[:12]))
+            raise StudyError(f"{where} {name}: the test has no point {missing[0]}; it has {there}")
     for p in takes.values():
         if p.log and not values[p.name] > 0:
             raise StudyError(f"{where} {name}: {p.name} = {values[p.name]:g} {p.unit} must be positive")
 
 
+def _with_damping(predictor: Predictor) -> Predictor:
+    """Return the predictor of a test in which damping was measured, as it is in one that is simulated."""
+    test = predictor.measured
+    return predictor.looking(replace(test, damping=np.full(len(test.frequency), 0.01)))
+
+
+def written(value: Any) -> str:
+    """Return a value as it is written on the command line."""
+    if isinstance(value, tuple):
+        return "/".join(map(str, value))
+    return f"{value:g}"
+
+
 def said(effects: Sequence[EffectValues]) -> str:
     """Return effects as they are written on the command line."""
     parts = [
-        name + (":" if values else "") + ",".join(f"{k}={v:g}" for k, v in values.items())
+        name + (":" if values else "") + ",".join(f"{k}={written(v)}" for k, v in values.items())
         for name, values in effects
     ]
     return " ".join(parts) or "no effect"

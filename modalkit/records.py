@@ -84,7 +84,7 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
             "verdict": diagnosis.verdict,
             "effects": diagnosis.effects,
             "sets": diagnosis.sets,
-            "ranking": [_ranked_record(r) for r in diagnosis.ranking],
+            "ranking": [_ranked_record(r, named=r.effects in diagnosis.sets) for r in diagnosis.ranking],
         },
         "shrink": {
             "metric": shrink.metric,
@@ -96,6 +96,14 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
                 "runner_up_percent": shrink.held_runner_up,
                 "nuisance_only_percent": shrink.held_nuisance,
                 "noise_floor_percent": shrink.floor,
+                "nuisance_stretch_sigma": shrink.stretch,
+                "points": None
+                if shrink.points is None
+                else {
+                    "before_percent": shrink.points.before,
+                    "after_percent": shrink.points.after,
+                    "nuisance_only_percent": shrink.points.nuisance,
+                },
             },
             "closed_percent": None
             if shrink.closed is None
@@ -106,7 +114,11 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
             },
         },
         "next_test": [
-            {"measure": t.measure, "separates": t.separates, "expected_sigma": t.expected_sigma}
+            {
+                "measure": t.measure,
+                "separates": t.separates,
+                "expected_sigma": t.expected_sigma,
+            }
             for t in diagnosis.next_test
         ],
         "not_examined": diagnosis.not_examined,
@@ -137,7 +149,9 @@ def _gap_record(diagnosis: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _ranked_record(row: Ranked) -> dict[str, Any]:
+def _ranked_record(row: Ranked, *, named: bool) -> dict[str, Any]:
+    """Return a row of the ranking; lists of points stand in the rows of the answer alone, numbers in all."""
+    told = {n: e for n, e in row.parameters.items() if named or not isinstance(e.value, tuple)}
     return {
         "effects": row.effects,
         "probability": row.probability,
@@ -150,7 +164,7 @@ def _ranked_record(row: Ranked) -> dict[str, Any]:
                 "high95": e.high95,
                 "at_bound": e.at_bound,
             }
-            for name, e in row.parameters.items()
+            for name, e in told.items()
         },
         "plausible": row.plausible,
         "fit_p_value": row.p_value,

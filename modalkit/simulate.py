@@ -20,6 +20,8 @@ from modalkit.rig.damping import damped_spec
 from modalkit.rig.systems import known_sensors, remounted, systems
 from modalkit.study import Study
 from updating import Predictor, Spec
+from updating.models.state import State
+from updating.reading import reading
 from updating.simulation import damped_modes, simulated
 
 
@@ -156,7 +158,8 @@ def simulate_test(
         own = i < len(whole) - len(effects)
         check_effect(nominal, name, values, where="[[model.effect]]" if own else "--effect")
     departures = [*known_sensors(ready.study, rig), *(departure(name, values) for name, values in whole)]
-    model = simulated(nominal, *departures)
+    state = nominal.looking(nominal.measured, (*nominal.additions, *departures)).base
+    model = simulated(nominal, *departures, points=_places(rig, state))
     modes = damped_modes(model.hung())
     factors, level = np.ones(len(modes.poles)), 1.0
     if ready.options.remount:
@@ -165,7 +168,7 @@ def simulate_test(
     title = f"simulated, {ready.study.name}: {said(effects)}; seed {seed}"
     tests = [
         hammer_test(remounted(system, factors), plan, rng=rng, geometry=rig.geometry)
-        for system in systems(model.hung(), rig)
+        for system in systems(model.hung(), rig, state)
     ]
     poles = modes.poles * factors - model.decay
     inside = (poles.imag > 2 * np.pi * rig.band[0]) & (poles.imag < 2 * np.pi * rig.band[1])
@@ -174,6 +177,11 @@ def simulate_test(
         remarks = (*remarks, f"free: hung on cords, rigid-body modes at {_listed(poles[: model.rigid])} Hz")
     stated = tuple(replace(test, decay=rig.plan.decay, source=title) for test in tests)
     return SimulatedTest(title, stated, tuple(effects), replace(rig, plan=plan), poles[inside], remarks)
+
+
+def _places(rig: Rig, state: State) -> FloatArray | None:
+    """Return all places from which the model is seen where some are not those stated [m]."""
+    return reading(rig.measured, state).points if state.moved else None
 
 
 def _mounting(study: Study, count: int, rng: np.random.Generator) -> tuple[FloatArray, float]:

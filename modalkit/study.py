@@ -5,10 +5,12 @@ from __future__ import annotations
 import tomllib
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
 from acquisition.errors import StudyError
+from modalkit.accepting import accepted_values
 from modalkit.matrices import matrices_of, matrices_spec
 from modalkit.study_errors import explain, known_keys
 from modalkit.study_tables import (
@@ -21,7 +23,6 @@ from modalkit.study_tables import (
     UpdateTable,
 )
 from updating.axes import Axes
-from updating.effects import LIBRARY
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
 from updating.models.imported import Imported
@@ -155,27 +156,19 @@ class Study(Strict):
         damping = values.pop("damping")
         return Tolerances(values, damping)
 
-    def accepted(self) -> tuple[tuple[str, dict[str, float]], ...]:
-        """Return the effects put into the model, with the values of their parameters.
+    def accepted(self) -> tuple[tuple[str, dict[str, Any]], ...]:
+        """Return the effects put into the model, with the values of their parameters and the points they speak of.
 
         Raises
         ------
         StudyError
-            If one is unknown or a parameter is missing.
+            If one is unknown, or a value is neither a number nor, where points are meant, node numbers.
         """
         entries = [] if self.model is None else self.model.effect
-        found = []
-        for entry in entries:
-            values = {k: v for k, v in entry.items() if k != "name"}
-            name = entry.get("name")
-            if name not in LIBRARY:
-                raise StudyError(
-                    f"{self.path}: [[model.effect]] knows no effect {name!r}; `modalkit effects` lists them"
-                )
-            if wrong := [k for k, v in values.items() if not isinstance(v, int | float)]:
-                raise StudyError(f"{self.path}: [[model.effect]] {name}: {', '.join(wrong)} must be a number")
-            found.append((name, {k: float(v) for k, v in values.items()}))
-        return tuple(found)
+        try:
+            return tuple(accepted_values(entry) for entry in entries)
+        except StudyError as error:
+            raise StudyError(f"{self.path}: {error}") from error
 
     def surroundings(self) -> Environment:
         """Return the environment."""

@@ -245,7 +245,8 @@ class Turned:
     real, imaginary : (n_frf, n_modes) arrays
         Along and across the direction to which most of a mode's constants point [1/kg].
     phase, phase_sigma : (n_chains, n_modes) arrays
-        That direction, from -pi/2 to pi/2, and its standard deviation [rad].
+        That direction, within a quarter turn of all chains' together so that no sign is lost between them, and its
+        standard deviation [rad].
     chain : (n_frf,) int array
         Which chain measured each FRF.
     """
@@ -288,7 +289,8 @@ def turn(constants: ComplexArray, sigma: FloatArray, seen: IntArray, hit: IntArr
         chain = np.zeros(len(seen), dtype=np.int64)
     count = int(chain.max()) + 1
     member = (chain == np.arange(count)[:, None]).astype(float)
-    phase = np.angle(member @ constants**2) / 2
+    common = np.angle(np.sum(constants**2, axis=0)) / 2
+    phase = common + np.angle((member @ constants**2) * np.exp(-2j * common)) / 2
     real, imaginary = (part(constants * np.exp(-1j * phase[chain])) for part in (np.real, np.imag))
     power = np.maximum(member @ real**2, 1e-300)
     excess = np.maximum(np.mean(imaginary**2, axis=0) - np.mean(sigma**2, axis=0), 0.0)

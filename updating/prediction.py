@@ -294,8 +294,8 @@ class Predictor:
         if not self.expects(state):
             return np.asarray(np.full(len(values), np.nan))
         viscous, structural = self._damping_matrices(state)
-        c = np.einsum("ir,ij,jr->r", vectors, viscous, vectors)
-        d = np.einsum("ir,ij,jr->r", vectors, structural, vectors)
+        c = np.sum(vectors * (viscous @ vectors), axis=0)
+        d = np.sum(vectors * (structural @ vectors), axis=0) if structural.any() else np.zeros(len(values))
         added = modal_losses(state, values, vectors) / (2 * omega) + state.decay / omega
         return np.asarray(c / (2 * omega) + d / (2 * omega**2) + self._ratios(state, len(values)) + added)
 

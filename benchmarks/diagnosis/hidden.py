@@ -72,6 +72,10 @@ class Cause:
     inside: bool = True
 
 
+FASTEST = 60.0
+"""No window decays faster [1/s]."""
+
+
 def _signed(rng: np.random.Generator) -> float:
     return float(rng.choice([-1.0, 1.0]))
 
@@ -181,7 +185,7 @@ def _draw_axial(rng: np.random.Generator, s: Specimen, k: float) -> Values:
 
 def _draw_damping(rng: np.random.Generator, s: Specimen, k: float) -> Values:
     rate = k * _log(rng, 1.0, 4.0) * (s.spec.damping.alpha or 0.0)
-    return {"alpha": float(rate), "beta": 0.0, "loss_factor": 0.0}
+    return {"alpha": float(min(rate, 2 * FASTEST)), "beta": 0.0, "loss_factor": 0.0}
 
 
 def _draw_stiff_damping(rng: np.random.Generator, s: Specimen, k: float) -> Values:
@@ -235,7 +239,7 @@ def _draw_gain(rng: np.random.Generator, s: Specimen, k: float) -> Values:
 
 
 def _draw_window(rng: np.random.Generator, s: Specimen, k: float) -> Values:
-    return {"decay": k * _log(rng, 1.0, 4.0) * (s.spec.damping.alpha or 0.0) / 2}
+    return {"decay": min(k * _log(rng, 1.0, 4.0) * (s.spec.damping.alpha or 0.0) / 2, FASTEST)}
 
 
 def _draw_delay(rng: np.random.Generator, s: Specimen, k: float) -> Values:
@@ -350,7 +354,7 @@ CAUSES: dict[str, Cause] = {
             lambda scene, v: scene.body(across=v["ratio"]),
             kinds=("plate",),
         ),
-        Cause("axial_load", _draw_axial, lambda scene, v: scene.body(axial=v["force"])),
+        Cause("axial_load", _draw_axial, lambda scene, v: scene.body(axial=v["force"]), clamped=True),
         Cause("fluid_added_mass", _draw_fluid, _act_fluid),
         Cause("fluid_damping", _draw_drag, lambda scene, v: scene.body(drag=v["drag"]), "damping"),
         Cause("damping_patch", _draw_patch, _act_patch, "damping"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy import linalg, sparse
@@ -295,16 +296,16 @@ class _Plate:
 
     def clamp_springs(self) -> sparse.csr_array:
         b, n = self.body, self.lines[0].size * self.lines[1].size
-        total = sparse.csr_array((self.size, self.size), dtype=np.float64)
+        total: Any = sparse.csr_array((self.size, self.size))
         for edge in b.clamped:
             nodes, line, across = self._edge(edge)
-            along = _gram(line.values, line.weights)
+            along: Any = _gram(line.values, line.weights)
             for field, spring in ((0, b.translation), (across, b.rotation)):
                 if spring:
                     where = np.arange(len(nodes)), nodes + field * n
                     pick = sparse.csr_array((np.ones(len(nodes)), where), shape=(len(nodes), self.size))
-                    total = total + sparse.csr_array(spring * (pick.T @ along @ pick))
-        return sparse.csr_array(total)
+                    total = total + spring * (pick.T @ along @ pick)
+        return total.tocsr()  # type: ignore[no-any-return]
 
 
 def _attached_stiffness(body: Body, lines: tuple[Line, ...], size: int) -> sparse.csr_array:

@@ -103,6 +103,7 @@ def _read(document: Mapping[str, Any]) -> Answer:
         for row in reversed(rows)
         if len(row["effects"]) == 1
         for name, p in row["parameters"].items()
+        if not isinstance(p["value"], list)
     }
     places = list(where.get("locations") or ([where["location"]] if where.get("location") else []))
     closed = document["shrink"].get("closed_percent")

@@ -11,13 +11,14 @@ import typer
 from modalkit.cli.common import check_once, out, show_figures, show_table, show_warnings, working
 from modalkit.cli.options import Figures
 from modalkit.diagnosing import diagnose_studies, warnings_of
-from modalkit.letter import letter
+from modalkit.letter import letter, separated
 from modalkit.library import effects_record, effects_table
 from modalkit.process import Session, open_study
 from modalkit.records import diagnosis_record
 from modalkit.study import read_study
 from modalkit.write import check_json_place, write_json
 from updating import Diagnosis
+from updating.diagnosis.result import NextTest
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -62,13 +63,26 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     show_table(diagnosis.table().head(10), "Explanations, most probable first", digits={"probability": 4})
     if diagnosis.next_test:
         rows = [
-            {"measure next": t.measure, "separates": " / ".join(t.separates), "sigma": t.expected_sigma}
+            {"measure next": t.measure, "separates": _separates(t), "sigma": t.expected_sigma}
             for t in diagnosis.next_test
         ]
         show_table(pd.DataFrame(rows), "What to measure next")
     if diagnosis.not_examined:
-        out.print("Not examined: " + "; ".join(f"{n} ({why})" for n, why in diagnosis.not_examined.items()))
+        out.print("Not examined: " + _not_examined(diagnosis.not_examined), markup=False)
     show_warnings([*diagnosis.warnings, *warnings_of(sessions)])
+
+
+def _separates(test: NextTest) -> str:
+    """Return what a test separates, for a table whose last column says how well."""
+    return separated(test).removeprefix("separates ").partition(" by ")[0]
+
+
+def _not_examined(effects: dict[str, str]) -> str:
+    """Return the effects that could not be examined, gathered by the reason."""
+    by_reason: dict[str, list[str]] = {}
+    for name, why in effects.items():
+        by_reason.setdefault(why, []).append(name)
+    return "; ".join(f"{', '.join(names)} ({why})" for why, names in by_reason.items())
 
 
 def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any]:

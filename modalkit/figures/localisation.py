@@ -29,14 +29,17 @@ from modalkit.figures.style import (
     shortened,
     text_width,
 )
-from modalkit.figures.words import located, share
+from modalkit.figures.words import located, phrase, share
 from updating import Case, Diagnosis
 
 LEFT, RIGHT = 7.1, 3.6
 """Widths of the structure and of the list of zones [in]."""
 
-TALL = 2.7
-"""Height of both [in]."""
+TALL, FLAT = 2.7, 2.0
+"""Height of both for a plate, and for a beam [in]."""
+
+ALIKE = 0.01
+"""Zones whose probabilities differ by less are in no order [-]."""
 
 LISTED = 8
 """Most zones in the list."""
@@ -70,16 +73,17 @@ def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figur
     columns = _columns(diagnosis)
     above, low = caption_height(title, note), ROW * (len(columns) + 1)
     top = above + 0.75
-    figure = new_figure(top + TALL + (0.8 + low + 0.35 if columns else 0.3))
+    tall = TALL if outline(diagnosis, case).width else FLAT
+    figure = new_figure(top + tall + (0.8 + low + 0.35 if columns else 0.3))
     caption(figure, title, note)
-    structure = place(figure, MARGIN, top, LEFT, TALL, name="where")
-    draw_where(structure, diagnosis, case, width=LEFT, height=TALL)
-    _concerned(structure, diagnosis, case)
+    structure = place(figure, MARGIN, top, LEFT, tall, name="where")
+    draw_where(structure, diagnosis, case, width=LEFT, height=tall)
+    _concerned(structure, diagnosis, case, tall)
     heading(figure, MARGIN, top - 0.42, "Where it sits")
     heading(figure, WIDTH - MARGIN - RIGHT, top - 0.42, "Probability of each zone")
-    _list(place(figure, WIDTH - MARGIN - RIGHT, top - 0.2, RIGHT, TALL + 0.2, name="zones"), diagnosis)
+    _list(place(figure, WIDTH - MARGIN - RIGHT, top - 0.2, RIGHT, tall + 0.2, name="zones"), diagnosis, tall)
     if columns and where.modes is not None:
-        under = top + TALL + 0.8
+        under = top + tall + 0.8
         heading(
             figure,
             MARGIN,
@@ -104,6 +108,9 @@ def _title(diagnosis: Diagnosis) -> str:
     if where.location is not None:
         others = len(where.locations) - 1
         more = f", or at {'another place' if others == 1 else f'{others} other places'}" if others else ""
+        leader = diagnosis.ranking[0].effects if diagnosis.ranking else ()
+        if diagnosis.verdict == "class" and leader:
+            return f"If it is {phrase(leader)}: {located(diagnosis)}{more}"
         return f"The gap sits {located(diagnosis)}{more}"
     return f"The gap has no single place: it is one of {where.channel} all over the structure"
 
@@ -120,12 +127,12 @@ def _columns(diagnosis: Diagnosis) -> list[str]:
     return [] if modes is None else [str(name) for name in modes.columns if str(name).endswith("[sigma]")]
 
 
-def _concerned(axes: Axes, diagnosis: Diagnosis, case: Case | None) -> None:
+def _concerned(axes: Axes, diagnosis: Diagnosis, case: Case | None, tall: float) -> None:
     """Fill the test points concerned and write their nodes."""
-    if case is None or not diagnosis.where.points:
+    if case is None or not diagnosis.where.points or diagnosis.verdict == "unknown":
         return
     body = outline(diagnosis, case)
-    frame = Frame.fit(body, LEFT, TALL)
+    frame = Frame.fit(body, LEFT, tall)
     for node in diagnosis.where.points:
         if node not in case.measured.nodes:
             continue
@@ -144,13 +151,14 @@ def _concerned(axes: Axes, diagnosis: Diagnosis, case: Case | None) -> None:
         )
 
 
-def _list(axes: Axes, diagnosis: Diagnosis) -> None:
-    """Draw the most probable zones as bars."""
+def _list(axes: Axes, diagnosis: Diagnosis, tall: float) -> None:
+    """Draw the most probable zones as bars; where all are alike, the first ones."""
     bare(axes)
-    height = TALL + 0.2
+    height = tall + 0.2
     axes.set_xlim(0, RIGHT)
     axes.set_ylim(-height, 0)
-    zones = sorted(diagnosis.where.zones, key=lambda z: -z.probability)
+    alike = np.ptp([z.probability for z in diagnosis.where.zones] or [0.0]) < ALIKE
+    zones = sorted(diagnosis.where.zones, key=lambda z: 0.0 if alike else -z.probability)
     left, right = 1.1, 0.75
     full = RIGHT - left - right
     for i, zone in enumerate(zones[:LISTED]):
@@ -180,10 +188,11 @@ def _table(axes: Axes, diagnosis: Diagnosis, columns: list[str], height: float) 
     left = max(text_width(name, TEXT) for name in [*names, "mode"]) / 72 + 0.15
     cell = min((wide - left) / max(len(kept), 1), 1.1)
     hertz = modes["test [Hz]"].to_numpy(float)
-    for i, mode in enumerate(kept.tolist()):
+    labels = [f"{mode + 1}: {hertz[mode]:.4g} Hz" for mode in kept.tolist()]
+    if max(text_width(label, SMALL) for label in labels) > 72 * cell - 4:
+        labels = [f"{mode + 1}" for mode in kept.tolist()]
+    for i, label in enumerate(labels):
         x = left + (i + 0.5) * cell
-        long = f"{mode + 1}: {hertz[mode]:.4g} Hz"
-        label = long if text_width(long, SMALL) < 72 * cell - 4 else f"{mode + 1}"
         axes.text(x, -0.5 * ROW, label, fontsize=SMALL, color=MUTED, ha="center", va="center")
     axes.text(left - 0.12, -0.5 * ROW, "mode", fontsize=TEXT, color=MUTED, ha="right", va="center")
     for k, (name, column) in enumerate(zip(names, columns, strict=True)):
@@ -199,6 +208,7 @@ def _cells(axes: Axes, values: FloatArray, left: float, y: float, cell: float) -
         corner = (left + i * cell, y - 0.5 * ROW)
         axes.add_patch(Rectangle(corner, cell, ROW, facecolor=colour, edgecolor="white", linewidth=1.5))
         text = f"{value:.1f}" if abs(value) < 99.5 else f"{value:.0f}"
+        text = "0.0" if text == "-0.0" else text
         axes.text(
             left + (i + 0.5) * cell,
             y,

@@ -71,6 +71,13 @@ def percent(value: float) -> str:
     return f"{value:.{digits}f} %"
 
 
+def gap_size(value: float, metric: str) -> str:
+    """Write the size of a gap [%]; of all data together, where 100 % are one standard deviation, in these."""
+    if metric != "combined":
+        return percent(value)
+    return f"{value / 100:.3g} σ" if math.isfinite(value) else "–"
+
+
 def share(probability: float) -> str:
     """Write a probability as a percentage that is never a false 0 or 100."""
     if probability >= 0.9995:
@@ -182,10 +189,10 @@ def evidence(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         parts.append(f"frequencies differ by {percent(diagnosis.gap.rms_percent)} r.m.s.")
         return "  ·  ".join(parts)
-    parts.append(
-        f"{METRICS[shrink.metric]} gap {percent(shrink.held_before)} → {percent(shrink.held_after)} on modes "
-        f"held out, noise floor {percent(shrink.floor)}"
+    before, after, floor = (
+        gap_size(value, shrink.metric) for value in (shrink.held_before, shrink.held_after, shrink.floor)
     )
+    parts.append(f"{METRICS[shrink.metric]} gap {before} → {after} on modes held out, noise floor {floor}")
     if shrink.closed is not None:
         closed = shrink.closed
         low, high = f"{closed.low95:.0f}", f"{closed.high95:.0f}"

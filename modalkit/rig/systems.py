@@ -13,12 +13,24 @@ from acquisition.errors import StudyError
 from modalkit.rig.base import Rig
 from modalkit.study import Study
 from updating import Predictor
-from updating.models.state import State
+from updating.models.state import NOMINAL, State
+from updating.reading import reading
 from updating.simulation import Simulated, modal_system
 
 
-def systems(model: Simulated, rig: Rig) -> list[ModalSystem]:
-    """Return the poles and residues between the points, one system for all points that share their responses."""
+def systems(model: Simulated, rig: Rig, state: State = NOMINAL) -> list[ModalSystem]:
+    """Return the poles and residues between the points, one system for all points that share their responses.
+
+    Parameters
+    ----------
+    model : Simulated
+        The model; where points were misplaced, seen from all places of :func:`updating.reading.reading`.
+    rig : Rig
+        How it is hit.
+    state : State
+        What is wrong with the measurement of single points: signs, labels, places; and the delay.
+    """
+    read = reading(rig.measured, replace(state, gain=1.0))
     heard: dict[Dof, dict[Dof, int]] = {}
     for row, (response, reference) in enumerate(zip(rig.responses, rig.references, strict=True)):
         heard.setdefault(reference, {})[response] = row
@@ -28,17 +40,25 @@ def systems(model: Simulated, rig: Rig) -> list[ModalSystem]:
     found = []
     for responses, references in groups.items():
         rows = np.array([[heard[at][seen] for at in references] for seen in responses])
-        found.append(
-            modal_system(
-                model,
-                seen=rig.measured.seen[rows[:, 0]],
-                hit=rig.measured.hit[rows[0]],
-                responses=responses,
-                points=references,
-                signs=rig.signs[rows],
-            )
+        system = modal_system(
+            model,
+            seen=read.seen[rows[:, 0]],
+            hit=read.hit[rows[0]],
+            responses=responses,
+            points=references,
+            signs=rig.signs[rows] * read.gain[rows],
         )
+        found.append(_late(system, state.delay))
     return found
+
+
+def _late(system: ModalSystem, delay: float) -> ModalSystem:
+    """Return a system whose responses lag: each residue holds exp(-s tau) at its pole."""
+    if not delay:
+        return system
+    factor = np.exp(-system.poles * delay)
+    gradients = None if system.gradients is None else system.gradients * factor
+    return replace(system, residues=system.residues * factor, gradients=gradients)
 
 
 def remounted(system: ModalSystem, factors: FloatArray) -> ModalSystem:

@@ -330,8 +330,12 @@ def test_a_mass_that_the_study_takes_out_is_on_the_model_before(tmp_path: Path) 
     assert back == pytest.approx(bare, rel=2e-4)
 
 
+NODES = {"points": "3/4", "point": "3"}
 EVERYTHING = {
-    name: ",".join(f"{p.name}={p.value(0.6):.9g}" for p in effect.parameters(MODEL))
+    name: ",".join(
+        [f"{label}={NODES[label]}" for label in effect.labels]
+        + [f"{p.name}={p.value(0.6):.9g}" for p in effect.parameters(MODEL)]
+    )
     for name, effect in LIBRARY.items()
 }
 

@@ -11,6 +11,7 @@ from updating_cases import BEAM, DOUBTS, PLATE, POINTS, blank
 
 from acquisition import Dof, FrfSet, Geometry, HammerPlan, estimate_frfs, hammer_test, judge_hits
 from identification import identify
+from modalkit.joining import together
 from updating import Axes, Case, Measured, Predictor, Spec, Tolerances, measured_from_identified
 from updating.models.state import State
 from updating.simulation import modal_system, simulated
@@ -48,8 +49,15 @@ ROD = Bench(
     BEAM.with_elements(20), BEAM.with_elements(60), POINTS[:, None], (5,), (10.0, 1700.0), 5120.0, 3.2, 6e-4
 )
 SHEET = Bench(
-    replace(PLATE, regions=()), replace(PLATE, elements=(16, 9), regions=()), GRID, (20,), (5.0, 480.0), 1280.0, 6.4, 2e-3
-)  # fmt: skip
+    replace(PLATE, regions=()),
+    replace(PLATE, elements=(16, 9), regions=()),
+    GRID,
+    (20,),
+    (5.0, 480.0),
+    1280.0,
+    6.4,
+    2e-3,
+)
 
 
 @dataclass(frozen=True)
@@ -113,8 +121,8 @@ def _ratios(bench: Bench, rng: np.random.Generator) -> np.ndarray:
 
 def _measured(bench: Bench, off: State, faults: Faults, roving: Roving, rng: np.random.Generator) -> Measured:
     frfs = hits_to_frfs(bench, off, faults, roving, rng)
-    scatter = frfs.decay - faults.decay  # the analyst takes out what he knows of
-    modal = identify(replace(frfs, decay=scatter), band=bench.band)
+    told = frfs.decay - faults.decay  # the analyst takes out what he knows of
+    modal = identify(replace(frfs, decay=told), band=bench.band)
     return measured_from_identified(modal, Axes(), bench.nominal)
 
 
@@ -129,7 +137,11 @@ def hits_to_frfs(
     for a, b in zip(faults.exchanged[::2], faults.exchanged[1::2], strict=True):
         true[[a - 1, b - 1]] = true[[b - 1, a - 1]]
     fixed = [int(s) - 1 for s in bench.sensors]
-    model = simulated(Predictor(bench.truth, blank(np.squeeze(bench.points))), off, points=np.vstack([true, bench.points[fixed]]))
+    model = simulated(
+        Predictor(bench.truth, blank(np.squeeze(bench.points))),
+        off,
+        points=np.vstack([true, bench.points[fixed]]),
+    )
     ends, names = np.arange(count), tuple(Dof(i + 1, 3) for i in range(count))
     places, stay = count + np.arange(len(fixed)), tuple(Dof(s, 3) for s in bench.sensors)
     flat = np.zeros((count, 3))
@@ -153,7 +165,7 @@ def hits_to_frfs(
             for i in range(count)
         ]
     sets = [estimate_frfs(test, verdicts=judge_hits(test)) for test in tests]
-    whole = _joined(sets).band(0.0, bench.rate / 2.56)
+    whole = together(sets).band(0.0, bench.rate / 2.56)
     moving = whole.references if roving == "hammer" else whole.responses
     still = whole.responses if roving == "hammer" else whole.references
     signs = [
@@ -161,9 +173,3 @@ def hits_to_frfs(
         for m, s in zip(moving, still, strict=True)
     ]
     return replace(whole, values=whole.values * np.array(signs)[:, None])
-
-
-def _joined(sets: list[FrfSet]) -> FrfSet:
-    from modalkit.joining import together
-
-    return together(sets)

@@ -5,13 +5,15 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from imported_cases import LENGTH, imported_beam, seen_from, spec_of
 from scipy.special import logsumexp
+from scipy.stats import norm
 from updating_cases import BEAM as FINE
 from updating_cases import PLATE, POINTS, ExactBeam, blank, case_of, observed, specimen, struck
 
 from updating import Measured, Predictor
-from updating.diagnosis.candidate import Doubt
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.gaussian import marginal
 from updating.diagnosis.problem import Problem
@@ -21,6 +23,7 @@ from updating.localisation import (
     Comac,
     ConstitutiveError,
     ForceResidual,
+    Kind,
     Localiser,
     RegionEvidence,
     areas,
@@ -28,8 +31,10 @@ from updating.localisation import (
     regions_at,
     weigh_regions,
 )
-from updating.localisation.changes import changes, columns
+from updating.localisation.changes import NODES, changes, columns
+from updating.localisation.evidence import DOUBT
 from updating.localisation.force_residual import region_parts
+from updating.localisation.severity import Between, integrate, refine
 from updating.localisation.shapes import dynamic, serep, shapes_of
 from updating.models.state import NOMINAL, Loss, State
 
@@ -104,20 +109,68 @@ def test_the_kind_of_change_and_its_size_are_found_too(kind: str) -> None:
     assert np.argmax(BestSubspace().scores(altered(kind), kind=kind)) == 7  # type: ignore[arg-type]
 
 
-def test_evidence_is_the_integral_over_the_severity(monkeypatch: pytest.MonkeyPatch) -> None:
-    # noise that grows with the severity is taken from the nearest node, so the integral is exact without it only
-    monkeypatch.setattr("updating.localisation.evidence.DOUBT", Doubt())
-    problem = soft(4, 0.1)
-    found = weigh_regions(problem, ("stiffness",))
-    reference = marginal(problem.compare(NOMINAL)).log_likelihood
+def brute(problem: Problem, kind: Kind, region: int) -> float:
+    """Log evidence of a region's change, every severity predicted: steps halved until no more is gained."""
+    state = changes(problem, kind)[region].state
+    low, high = NODES[kind][0], NODES[kind][-1]
+
+    def likely(severity: np.ndarray) -> np.ndarray:
+        looks = [problem.compare(state(s), doubt=DOUBT) for s in severity.tolist()]
+        return np.array([marginal(look).log_likelihood for look in looks])
+
+    grid = np.r_[np.linspace(low, 0.0, 31)[:-1], np.linspace(0.0, high, 31)]
+    values = likely(grid)
+    for _ in range(9):
+        ends = np.maximum(values[1:], values[:-1])
+        steep = np.pad(np.abs(np.diff(values)) > 0.3, 1)
+        coarse = (ends > values.max() - 14) & (steep[1:-1] | steep[:-2] | steep[2:])
+        middle = ((grid[1:] + grid[:-1]) / 2)[coarse]
+        order = np.argsort(np.r_[grid, middle])
+        grid, values = np.r_[grid, middle][order], np.r_[values, likely(middle)][order]
+    # the prior: half of it on either side of the model, both even
+    density = 0.5 / np.where(grid[:-1] < 0, -low, high)
+    top = values.max()
+    share = np.exp(values - top)
+    total = np.sum(density * np.diff(grid) * (share[1:] + share[:-1]) / 2)
+    return float(top + np.log(total)) - marginal(problem.compare(NOMINAL)).log_likelihood
+
+
+@pytest.mark.parametrize(("zone", "loss"), [(4, 0.1), (2, 0.5)])
+@pytest.mark.parametrize("kind", ["stiffness", "mass"])
+def test_evidence_is_the_integral_over_the_severity(zone: int, loss: float, kind: Kind) -> None:
+    problem = soft(zone, loss)
+    found = weigh_regions(problem, (kind,))
     for region in (4, 2):
-        state = changes(problem, "stiffness")[region].state
-        severity = np.linspace(-3.0, 1.1, 411)
-        likely = np.array([marginal(problem.compare(state(s))).log_likelihood for s in severity])
-        # the prior: half of it on softening over 3, half on stiffening over 1.1, both even
-        density = np.where(severity < 0, 0.5 / 3.0, 0.5 / 1.1) * 0.01
-        brute = float(logsumexp(likely + np.log(density))) - reference
-        assert found.log_evidence[0, region] == pytest.approx(brute, abs=0.15)
+        assert found.log_evidence[0, region] == pytest.approx(brute(problem, kind, region), abs=0.1)
+
+
+def test_likelihood_between_the_severities_predicted_is_that_of_a_prediction() -> None:
+    problem = soft(4, 0.1)
+    state = changes(problem, "stiffness")[4].state
+    nodes = [*NODES["stiffness"].tolist(), 0.0]
+    between = Between({s: problem.compare(state(s), doubt=DOUBT) for s in nodes})
+    asked = np.array([-0.25, -0.1, -0.05, 0.05])
+    exact = [marginal(problem.compare(state(s), doubt=DOUBT)).log_likelihood for s in asked.tolist()]
+    assert between.log_likelihoods(asked) == pytest.approx(np.array(exact), abs=0.1)
+
+
+@given(
+    peaks=st.lists(
+        st.tuples(st.integers(-29, 9).map(lambda i: i / 10 + 0.037), st.floats(1e-3, 1.0)),
+        min_size=1,
+        max_size=2,
+    ),
+)
+def test_refined_steps_carry_the_integral_of_any_peaks(peaks: list[tuple[float, float]]) -> None:
+    def likely(severity: np.ndarray) -> np.ndarray:
+        parts = [norm.logpdf(severity, at, wide) for at, wide in peaks]
+        return np.asarray(logsumexp(np.stack(parts), axis=0))
+
+    # as in a region's evidence, a peak is found whose flanks reach to the next severity looked at
+    first = np.unique(np.r_[np.linspace(-3.0, 0.0, 21), np.linspace(0, 1.1, 21), [at for at, _ in peaks]])
+    _, score = integrate(*refine(likely, first))
+    expected = np.sum([norm.cdf(1.1, at, wide) - norm.cdf(-3.0, at, wide) for at, wide in peaks])
+    assert float(logsumexp(score)) == pytest.approx(float(np.log(expected)), abs=0.05)
 
 
 def test_columns_are_the_sensitivities_of_the_model() -> None:

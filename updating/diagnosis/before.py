@@ -90,14 +90,27 @@ class Before:
 
     def _overlap(self, now: Prediction) -> FloatArray:
         """Return the squares of the modal overlaps, (n_modes, n_baseline) [-]."""
+        kept, found = self._last
+        if kept is now:
+            return found
         before = self.prediction.vectors
         n = min(len(now.vectors), len(before))
         mass = self.predictor.once("nominal mass", lambda: self.predictor.reduced.matrices(NOMINAL)[1])
-        norm = np.outer(
-            np.einsum("ir,ij,jr->r", now.vectors[:n], mass[:n, :n], now.vectors[:n]),
-            np.einsum("ir,ij,jr->r", before[:n], mass[:n, :n], before[:n]),
-        )
-        return np.asarray((now.vectors[:n].T @ mass[:n, :n] @ before[:n]) ** 2 / np.maximum(norm, 1e-300))
+        momenta = mass[:n, :n] @ before[:n]
+        own = np.sum(now.vectors[:n] * (mass[:n, :n] @ now.vectors[:n]), axis=0)
+        norm = np.outer(own, np.sum(before[:n] * momenta, axis=0))
+        overlap = np.asarray((now.vectors[:n].T @ momenta) ** 2 / np.maximum(norm, 1e-300))
+        self._remembered[:] = [(now, overlap)]
+        return overlap
+
+    @cached_property
+    def _remembered(self) -> list[tuple[Prediction | None, FloatArray]]:
+        """The overlap asked for last: every channel of a comparison asks for the same."""
+        return [(None, np.zeros((0, 0)))]
+
+    @property
+    def _last(self) -> tuple[Prediction | None, FloatArray]:
+        return self._remembered[0]
 
     def frequency(self, now: Prediction) -> tuple[FloatArray, FloatArray]:
         """Return variance of and sensitivities already known in ln f of the present modes.

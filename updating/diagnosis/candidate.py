@@ -108,7 +108,7 @@ class Candidate:
                 fixed = parameter.name in form.values
                 quantiles.append(MIDDLE if fixed else coordinates[start])
                 start += not fixed
-            parts.append((effect, {**effect.values(stage, quantiles), **form.values}))
+            parts.append((effect, effect.settled(stage, {**effect.values(stage, quantiles), **form.values})))
         return parts
 
     def state(self, predictor: Predictor, coordinates: Sequence[float]) -> State:

@@ -123,7 +123,7 @@ def _diagnose(
         verdict,
         sets,
         rank(problem, found),
-        propose(problem, found, sets),
+        propose(problem, found, sets, verdict),
         tuple(dict.fromkeys((*warnings, *_remarks(problem, found)))),
         found.not_examined,
     )
@@ -221,7 +221,9 @@ def _shrink(
 ) -> Shrink:
     named = [row for row in found.weighed if row.names]
     best = named[0].explanation if named else found.nothing
-    runner_up = named[1].explanation if len(named) > 1 else None
+    # what holds the best set and more is no rival of it
+    rivals = [row.explanation for row in named[1:] if not set(best.names) <= set(row.names)]
+    runner_up = rivals[0] if rivals else None
     result = shrinkage(problem, found.nothing, best, runner_up, rng)
     return result if significant else replace(result, closed=None)
 

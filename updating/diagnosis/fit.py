@@ -18,6 +18,9 @@ STEP = 1e-3
 AT_REST = 0.01
 """A climb is at rest when a step gains less than this [-]."""
 
+STRAINED = 0.01
+"""Relative change of a tolerance's property that a linearisation bears [-]."""
+
 FARTHEST = 6.0
 """Tolerances are followed so far from nominal, in standard deviations."""
 
@@ -80,7 +83,10 @@ def evaluate(
     comparison = problem.at(candidate, coordinates)
     result, about = marginal(comparison, keep), None
     for _ in range(2 if problem.wide else 0):
-        about = np.clip(result.shift, -FARTHEST, FARTHEST)
+        wanted = np.clip(result.shift, -FARTHEST, FARTHEST)
+        if problem.strain(wanted if about is None else wanted - about) < STRAINED:
+            break
+        about = wanted
         comparison = problem.at(candidate, coordinates, about)
         result = marginal(comparison, keep)
     return Point(coordinates, comparison, result, about)

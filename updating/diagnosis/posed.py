@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 from acquisition.arrays import FloatArray
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.comparison import Comparison
-from updating.effects.base import Effect, Parameter, Variant
+from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.measured import Measured
 from updating.models.state import State
 from updating.prediction import Prediction, Predictor
@@ -39,6 +39,9 @@ class Posed(Protocol):
     def wide(self) -> bool:
         """Whether tolerances are too wide for one linearisation."""
 
+    def strain(self, shift: FloatArray) -> float:
+        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
+
     def applies(self, effect: Effect) -> str | None:
         """Return why an effect cannot be examined, or None."""
 
@@ -56,6 +59,12 @@ class Posed(Protocol):
 
     def derived(self, candidate: Candidate, coordinates: FloatArray) -> dict[str, tuple[float, str]]:
         """Return derived quantities at prior quantiles, by effect.name."""
+
+    def place(self, candidate: Candidate, coordinates: FloatArray) -> tuple[State, ...]:
+        """Return the state of each specimen at prior quantiles."""
+
+    def parts(self, candidate: Candidate, coordinates: FloatArray) -> tuple[list[tuple[Effect, Values]], ...]:
+        """Return the effects on each specimen with their values at prior quantiles."""
 
     def at(
         self, candidate: Candidate, coordinates: FloatArray, shift: FloatArray | None = None

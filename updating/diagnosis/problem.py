@@ -18,7 +18,7 @@ from updating.diagnosis.before import Before
 from updating.diagnosis.candidate import Candidate, Doubt
 from updating.diagnosis.comparison import KNOWN_SCATTER, UNKNOWN_SCATTER, Block, Comparison, assemble
 from updating.diagnosis.gates import Shortfall
-from updating.effects.base import Effect, Parameter, Variant
+from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.matching import match
 from updating.measured import Measured
 from updating.models.base import FACTORS
@@ -127,6 +127,10 @@ class Problem:
         """Return the state of each specimen at prior quantiles."""
         return (candidate.state(self.predictor, coordinates.tolist()),)
 
+    def parts(self, candidate: Candidate, coordinates: FloatArray) -> tuple[list[tuple[Effect, Values]], ...]:
+        """Return the effects on each specimen with their values at prior quantiles."""
+        return (candidate.split(candidate.stage(self.predictor), coordinates.tolist()),)
+
     def at(
         self, candidate: Candidate, coordinates: FloatArray, shift: FloatArray | None = None
     ) -> Comparison:
@@ -201,6 +205,11 @@ class Problem:
     def wide(self) -> bool:
         """Whether tolerances are too wide for one linearisation."""
         return bool(len(self.sigmas)) and float(self.sigmas.max()) > 0.04
+
+    def strain(self, shift: FloatArray) -> float:
+        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
+        moved = np.abs(shift[: len(self.names)] * self.sigmas)
+        return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
 
     def compare(self, state: State, shift: FloatArray | None = None, *, doubt: Doubt = NO_DOUBT) -> Comparison:
         """Compare the test with a state of the model.
@@ -306,7 +315,7 @@ class Problem:
         )
 
     def _phases(self, whole: State, now: Prediction) -> tuple[Block, FloatArray]:
-        """Return how far each chain turns each mode beyond the delay, and by what sign a turn past pi/2 is undone."""
+        """Return how far each chain turns each mode beyond the delay, and the factor a delay makes on constants."""
         test = self.measured
         assert test.phase is not None
         assert test.phase_sigma is not None
@@ -326,7 +335,9 @@ class Problem:
             np.tile(np.arange(n_modes), n_chains),
         )
         assert test.chain is not None
-        return block, np.where(turns[test.chain] % 2 == 0, 1.0, -1.0)
+        # the residue of exp(-s tau) H(s) holds exp(-s tau) at the pole, whose decay makes it larger
+        grown = np.exp(2 * np.pi * test.frequency * np.nan_to_num(test.damping) * whole.delay)
+        return block, np.where(turns[test.chain] % 2 == 0, grown, -grown)
 
     @cached_property
     def _complexity(self) -> FloatArray:

@@ -146,8 +146,36 @@ class Closed:
 
 
 @dataclass(frozen=True)
+class HeldPoints:
+    """R.m.s. error of the modal constants at points held out part by part [%]."""
+
+    before: float
+    after: float
+    nuisance: float
+
+
+@dataclass(frozen=True)
 class Shrink:
-    """How far the gap shrinks, on the data fitted and on modes held out in turn [%]."""
+    """How far the gap shrinks, on the data fitted and on modes held out in turn [%].
+
+    Parameters
+    ----------
+    metric : str
+        What the errors are of: frequency, damping, frf, or combined, where 100 % is one standard deviation.
+    before, after : float
+        R.m.s. error of the nominal model, and once the best explanation is fitted [%].
+    held_before, held_after, held_runner_up, held_nuisance : float
+        The same on modes held out, with the best explanation, the one behind it, and the tolerances alone; in all of
+        them no doubt is taken further than is believed of it [%].
+    floor : float
+        What repeating the test alone would give [%].
+    closed : Closed, optional
+        Share of the closable gap that closes on modes held out; None where there is next to nothing to close.
+    stretch : float
+        By how much a tolerance would have to be off if tolerances alone were to explain the data [sigma].
+    points : HeldPoints, optional
+        The errors at points held out, where the gap shows in the FRFs.
+    """
 
     metric: Metric
     before: float
@@ -158,15 +186,33 @@ class Shrink:
     held_nuisance: float
     floor: float
     closed: Closed | None
+    stretch: float = 0.0
+    points: HeldPoints | None = None
 
 
 @dataclass(frozen=True)
 class NextTest:
-    """A measurement, what it separates, and by how many sigma."""
+    """A measurement, what it separates, and by how many sigma.
+
+    Parameters
+    ----------
+    measure : str
+        What to do.
+    separates : tuple of str
+        The effects of the explanations it separates.
+    expected_sigma : float
+        By how many sigma at least; nan for advice where there is nothing to separate [-].
+    pairs : tuple of (set, set)
+        Which explanations it separates from which.
+    whole : bool
+        Whether these are all that are left.
+    """
 
     measure: str
     separates: tuple[str, ...]
     expected_sigma: float
+    pairs: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = ()
+    whole: bool = True
 
 
 @dataclass(frozen=True, eq=False)

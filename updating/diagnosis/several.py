@@ -66,6 +66,19 @@ class Several:
         """Whether any specimen's tolerances are too wide for one linearisation."""
         return any(problem.wide for problem in self.specimens)
 
+    def strain(self, shift: FloatArray) -> float:
+        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
+        ends = np.cumsum([0, *self._counts])
+        return max(
+            problem.strain(shift[a:b])
+            for problem, a, b in zip(self.specimens, ends, ends[1:], strict=False)
+        )
+
+    @cached_property
+    def _counts(self) -> list[int]:
+        """How many nuisances each specimen has."""
+        return [problem.at(Candidate(), np.zeros(0)).nuisance.shape[1] for problem in self.specimens]
+
     def applies(self, effect: Effect) -> str | None:
         """Return why an effect can be examined on none of the specimens, or None."""
         if effect.labels:
@@ -167,6 +180,13 @@ class Several:
         split = self._split(candidate, coordinates)
         return tuple(
             self._state(candidate, problem, own) for problem, own in zip(self.specimens, split, strict=True)
+        )
+
+    def parts(self, candidate: Candidate, coordinates: FloatArray) -> tuple[list[tuple[Effect, Values]], ...]:
+        """Return the effects on each specimen with their values at prior quantiles."""
+        return tuple(
+            [(effect, own[effect.name]) for effect in candidate.effects if effect.name in own]
+            for own in self._split(candidate, coordinates)
         )
 
     def _state(self, candidate: Candidate, problem: Problem, own: Mapping[str, Values]) -> State:

@@ -1,18 +1,22 @@
-"""How far the gap shrinks, on the data that were fitted and on modes held out in turn."""
+"""How far the gap shrinks, on the data that were fitted and on modes and points held out in turn."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
 from updating.diagnosis.candidate import Candidate
-from updating.diagnosis.comparison import CHANNELS
+from updating.diagnosis.comparison import Comparison
 from updating.diagnosis.evidence import Explanation
-from updating.diagnosis.fit import climb, evaluate
-from updating.diagnosis.goodness import carrier
+from updating.diagnosis.held_out import believed, modes_held_out, points_held_out
+from updating.diagnosis.metric import Squares, metric_of, noise_squares, squares
 from updating.diagnosis.posed import Posed
-from updating.diagnosis.problem import Problem
-from updating.diagnosis.result import Closed, Shrink
+from updating.diagnosis.result import Closed, HeldPoints, Metric, Shrink
+
+DRAWS = 400
+"""Of the bootstrap."""
+
+CLOSABLE = 1.5
+"""A gap within this many times the floor has nothing to close [-]."""
 
 
 def shrinkage(
@@ -24,6 +28,10 @@ def shrinkage(
 ) -> Shrink:
     """Compare the gap before and after.
 
+    Before is the nominal model as it stands, no tolerance moved. In all that comes after, tolerances, calibration and
+    the level of damping are refitted, too, but none is taken further than is believed of it: a refit of the tolerances
+    alone would else close any gap that moves all modes alike, by an absurd modulus.
+
     Parameters
     ----------
     problem : Problem or Several
@@ -31,109 +39,85 @@ def shrinkage(
     nothing, best, runner_up : Explanation
         The nominal model with its tolerances, the best explanation, and the one behind it.
     rng : Generator
-        For the bootstrap over modes.
+        For the bootstrap.
     """
-    metric = carrier(nothing.best)
-    rows = nothing.best.comparison.channel == CHANNELS.index(metric)
-    mode = nothing.best.comparison.mode[rows]
-    raw = _relative(_raw(problem, metric), metric)
-    fitted = _relative(best.best.left_over[rows], metric)
-    floor = _rms(np.sqrt(_noise(problem, metric)))
-    held = held_out(problem, best, metric)
-    other = None if runner_up is None else held_out(problem, runner_up, metric)
-    alone = held_out(
-        problem, Explanation(Candidate(), 0.0, nothing.best, nothing.samples, nothing.weights), metric
-    )
+    metric = metric_of(nothing.best)
+    plain = problem.at(Candidate(), np.zeros(0))
+
+    def held(explanation: Explanation) -> Squares:
+        return squares(modes_held_out(problem, explanation), plain, metric)
+
+    before, after = squares(plain.residual, plain, metric), held(best)
+    fitted = believed(best.best.comparison, best.best.marginal.scale)
+    floor = noise_squares(problem.specimens, plain, metric)
     return Shrink(
-        metric,  # type: ignore[arg-type]
-        100 * _rms(raw),
-        100 * _rms(fitted),
-        100 * _rms(raw),
-        100 * _rms(held),
-        None if other is None else 100 * _rms(other),
-        100 * _rms(alone),
-        100 * floor,
-        _closed(raw, held, mode, floor, rng),
+        metric,
+        100 * before.rms,
+        100 * squares(fitted, plain, metric).rms,
+        100 * before.rms,
+        100 * after.rms,
+        None if runner_up is None else 100 * held(runner_up).rms,
+        100 * held(nothing).rms,
+        100 * floor.rms,
+        closed(before, after, floor, rng),
+        _stretch(nothing),
+        _points(problem, nothing, best, plain, metric),
     )
 
 
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0
+def _stretch(nothing: Explanation) -> float:
+    """Return by how much the tolerances alone would have to be off to explain the data best [sigma]."""
+    shift = nothing.best.marginal.shift[nothing.best.comparison.doubts]
+    return float(np.abs(shift).max(initial=0.0))
 
 
-def _raw(problem: Posed, metric: str) -> FloatArray:
-    """Return the errors of the nominal model as it stands, no tolerance moved."""
-    comparison = evaluate(problem, Candidate(), np.zeros(0)).comparison
-    plain = problem.at(Candidate(), np.zeros(0))
-    return np.asarray(plain.residual[comparison.channel == CHANNELS.index(metric)])
+def _points(
+    problem: Posed, nothing: Explanation, best: Explanation, plain: Comparison, metric: Metric
+) -> HeldPoints | None:
+    """Return the errors of the modal constants at points held out; None where another metric tells the gap."""
+    if metric not in {"frf", "combined"}:
+        return None
+    after, alone = points_held_out(problem, best), points_held_out(problem, nothing)
+    if after is None or alone is None:
+        return None
+    errors = [
+        100 * squares(np.where(after[1], residual, 0.0), plain, "frf").rms
+        for residual in (plain.residual, after[0], alone[0])
+    ]
+    return HeldPoints(*errors)
 
 
-def _noise(problem: Posed, metric: str) -> FloatArray:
-    """Return the variance that repeating the test (and the baseline) alone would give, per datum of a channel."""
-    plain = problem.at(Candidate(), np.zeros(0))
-    rows = plain.channel == CHANNELS.index(metric)
-    if metric == "frequency":
-        return np.concatenate([_repeated(one) for one in problem.specimens])
-    variance = plain.variance[rows]
-    if metric == "damping":
-        doubts = [np.full(len(one.damping_known), one.damping_doubt) for one in problem.specimens]
-        variance = variance - np.concatenate(doubts) ** 2
-    return np.asarray(np.maximum(variance, 0.0))
-
-
-def _repeated(problem: Problem) -> FloatArray:
-    """Return the variance of ln f that repeating the test (and the baseline) gives, per mode [-]."""
-    tests = [problem.measured] + ([] if problem.baseline is None else [problem.baseline])
-    noise = [np.mean((t.frequency_sigma / t.frequency) ** 2) + t.repeatability**2 for t in tests]
-    return np.full(len(problem.measured.frequency), sum(noise))
-
-
-def held_out(problem: Posed, explanation: Explanation, metric: str) -> FloatArray:
-    """Predict each mode from all others, and return the errors of the prediction [-].
+def closed(before: Squares, after: Squares, floor: Squares, rng: np.random.Generator) -> Closed | None:
+    """Return the share of the closable gap that closes, with a bootstrap over modes and over the test's scatter.
 
     Parameters
     ----------
-    problem : Problem or Several
-        Test and model.
-    explanation : Explanation
-        What is refitted without each mode in turn, starting from its best parameters.
-    metric : str
-        Channel whose errors are returned.
+    before, after, floor : Squares
+        Errors of the nominal model, on modes held out, and those of a test repeated.
+    rng : Generator
+        Draws the modes anew, and of each the errors that hitting again would add.
     """
-    mode = explanation.best.comparison.mode
-    channel = explanation.best.comparison.channel == CHANNELS.index(metric)
-    errors = np.zeros(len(mode))
-    for left_out in np.unique(mode):
-        keep = mode != left_out
-        if not keep.any():
-            continue
-        start = explanation.best.coordinates
-        point = climb(problem, explanation.candidate, start, keep=keep, rounds=4).point
-        errors[~keep] = point.left_over[~keep]
-    return _relative(errors[channel], metric)
-
-
-def _relative(residual: FloatArray, metric: str) -> FloatArray:
-    """Take logarithmic residuals, test over model, to relative errors of the model [-]."""
-    return np.asarray(residual if metric == "frf" else np.exp(-residual) - 1)
-
-
-def _closed(
-    before: FloatArray, after: FloatArray, mode: np.ndarray, floor: float, rng: np.random.Generator
-) -> Closed | None:
-    """Return the share of the closable gap that closes, with a bootstrap over the modes."""
-    if _rms(before) < 1.5 * floor:
+    if before.rms < CLOSABLE * floor.rms:
         return None
-
-    def share(b: FloatArray, a: FloatArray) -> float:
-        closable = np.mean(b**2) - floor**2
-        return float(100 * (1 - (np.mean(a**2) - floor**2) / closable)) if closable > 0 else np.nan
-
-    modes = np.unique(mode)
-    draws = []
-    for _ in range(400):
-        drawn = np.concatenate([np.flatnonzero(mode == m) for m in rng.choice(modes, len(modes))])
-        draws.append(share(before[drawn], after[drawn]))
+    value = _share(before, after, floor, np.arange(len(before.count)))
+    draws = [_drawn(before, after, floor, rng) for _ in range(DRAWS)]
     low, high = np.nanpercentile(draws, [2.5, 97.5])
-    value = min(share(before, after), 100.0)
+    value = min(value, 100.0)
     return Closed(value, float(min(low, value)), float(max(min(high, 100.0), value)))
+
+
+def _share(before: Squares, after: Squares, floor: Squares, modes: np.ndarray) -> float:
+    count = max(before.count[modes].sum(), 1.0)
+    b, a, s = (part.total[modes].sum() / count for part in (before, after, floor))
+    return float(100 * (1 - (a - s) / (b - s))) if b > s else np.nan
+
+
+def _drawn(before: Squares, after: Squares, floor: Squares, rng: np.random.Generator) -> float:
+    """Return the share for modes drawn with replacement, their errors after scattered as the noise has it."""
+    modes = rng.choice(len(before.count), len(before.count))
+    size = np.sqrt(after.total[modes])
+    noise = np.sqrt(floor.total[modes] / np.maximum(floor.count[modes], 1.0))
+    scattered = (size + noise * rng.standard_normal(len(modes))) ** 2 - noise**2
+    count = max(before.count[modes].sum(), 1.0)
+    b, s = before.total[modes].sum() / count, floor.total[modes].sum() / count
+    return float(100 * (1 - (scattered.sum() / count - s) / (b - s))) if b > s else np.nan

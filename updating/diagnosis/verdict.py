@@ -94,7 +94,7 @@ def _plausible(problem: Posed, explanation: Explanation) -> bool:
 
 
 def estimates(problem: Posed, explanation: Explanation) -> dict[str, ParameterEstimate]:
-    """Return posterior median and 95 % interval of every parameter and derived quantity, and what its form fixes."""
+    """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means."""
     candidate = explanation.candidate
     searched = problem.parameters(candidate)
     keep = np.argsort(explanation.weights)[::-1][:300]
@@ -106,9 +106,9 @@ def estimates(problem: Posed, explanation: Explanation) -> dict[str, ParameterEs
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
         at_bound = bool(min(explanation.best.coordinates[i], 1 - explanation.best.coordinates[i]) < 1e-3)
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, at_bound)
-    for name, value in drawn[0].items():
-        if name not in result:
-            result[name] = ParameterEstimate(value, "node" if "point" in name else "-", None, None, False)
+    labels = {f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels}
+    for name in labels & drawn[0].keys():
+        result[name] = ParameterEstimate(drawn[0][name], "node", None, None, False)
     derived = [problem.derived(candidate, u) for u in samples]
     for name, (_, unit) in derived[0].items():
         low, middle, high = _quantiles(np.array([d[name][0] for d in derived]), weights)

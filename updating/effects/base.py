@@ -119,6 +119,10 @@ class Effect(ABC):
         parameters = self.parameters(predictor)
         return {p.name: p.value(u) for p, u in zip(parameters, coordinates, strict=True)}
 
+    def settled(self, predictor: Predictor, values: Values) -> Values:
+        """Return the values, what a form fixes among them, brought to what is possible together."""
+        return values
+
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the forms in which the effect may come; those that the data exclude need not be listed."""
         return (Variant(),)

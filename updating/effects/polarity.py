@@ -6,14 +6,20 @@ import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import shape_obstacle
-from updating.effects.points import indices, places
-from updating.effects.shape_look import PROMISING, ShapeLook
+from updating.effects.points import indices, places, points_of
+from updating.effects.shape_look import PROMISING, look_at
 from updating.models.state import Role, State
 from updating.prediction import Predictor
 from updating.reading import roving
 
 MANY = 4
 """At most so many points of one test are reversed."""
+
+FEWER = 0.5
+"""Prior probability that no more points are reversed than so far [-]."""
+
+OTHER_END = 0.2
+"""Prior probability that it is one of several points at the end that stayed [-]."""
 
 
 class Polarity(Effect):
@@ -39,27 +45,27 @@ class Polarity(Effect):
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the sets of points whose reversal brings the shapes nearest to the model's."""
         role = roving(predictor.measured)
-        found = ShapeLook(predictor)
-        points = found.points(role)
+        found = look_at(predictor)
+        points = points_of(predictor.measured, role)
         chosen: list[int] = []
-        variants = []
+        variants: list[Variant] = []
         share = 1.0
-        for _ in range(min(MANY, max(len(points) // 2, 1))):
+        for count in range(1, min(MANY, max(len(points) // 2, 1)) + 1):
             left = [p for p in points if p not in chosen]
             misfits = [found.misfit({(role, p): -1.0 for p in (*chosen, q)}) for q in left]
-            best = int(np.argmin(misfits))
-            chosen.append(left[best])
-            share *= (
-                0.5 / len(left) * len(chosen)
-            )  # one of the sets of this many points, and fewer are likelier
-            variants.append(self._variant(predictor, role, chosen, share))
-            if len(chosen) == 1:
-                others = np.argsort(misfits)[1:PROMISING]
-                variants += [self._variant(predictor, role, [left[i]], share) for i in others]
-        other = "seen" if role == "hit" else "hit"
-        if len(found.points(other)) > 1:
-            variants += [self._variant(predictor, other, [p], 0.1) for p in found.points(other)[:PROMISING]]
-        return tuple(variants)
+            order = np.argsort(misfits)
+            share *= FEWER * count / len(left)  # one of the sets of so many points
+            near = order[: PROMISING if count == 1 else 1]
+            variants += [self._variant(predictor, role, [*chosen, left[i]], share) for i in near]
+            chosen.append(left[order[0]])
+        return (*variants, *self._fixed(predictor, "seen" if role == "hit" else "hit"))
+
+    def _fixed(self, predictor: Predictor, role: str) -> list[Variant]:
+        """Return each of several points of the end that stayed."""
+        points = points_of(predictor.measured, role)
+        if len(points) < 2:
+            return []
+        return [self._variant(predictor, role, [p], OTHER_END / len(points)) for p in points]
 
     def _variant(self, predictor: Predictor, role: str, points: list[int], weight: float) -> Variant:
         return Variant({"points": tuple(predictor.measured.nodes[p] for p in points), "role": role}, weight)

@@ -6,11 +6,14 @@ import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import shape_obstacle
-from updating.effects.points import indices, places
-from updating.effects.shape_look import PROMISING, ShapeLook
+from updating.effects.points import indices, places, points_of
+from updating.effects.shape_look import PROMISING, look_at
 from updating.models.state import State
 from updating.prediction import Predictor
 from updating.reading import roving
+
+FARTHEST = 0.15
+"""How far from its stated place a point is sought, of the length [-]."""
 
 
 class PositionError(Effect):
@@ -27,7 +30,7 @@ class PositionError(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return how far it lies from where it was stated."""
-        far = 0.15 * predictor.spec.length
+        far = FARTHEST * predictor.spec.length
         why = "from what a tape measure gets wrong to the next point of a coarse grid"
         return tuple(Parameter(name, "m", -far, far, why) for name in ("dx", "dy")[: predictor.spec.dim])
 
@@ -45,10 +48,20 @@ class PositionError(Effect):
         """Return the points that spoil the agreement of the shapes most."""
         test = predictor.measured
         role = roving(test)
-        found = ShapeLook(predictor)
-        points = found.points(role)
+        found = look_at(predictor)
+        points = points_of(test, role)
         worst = np.argsort([found.without(role, p) for p in points])[:PROMISING]
         return tuple(Variant({"point": test.nodes[points[i]]}, 1.0 / len(points)) for i in worst)
+
+    def settled(self, predictor: Predictor, values: Values) -> Values:
+        """Return how far the point lies away, its range cut off where the structure ends."""
+        (at,), spec = places(predictor.measured, (values["point"],)), predictor.spec
+        settled, sizes = dict(values), (spec.length, spec.width)[: spec.dim]
+        for name, stated, size in zip(("dx", "dy"), at, sizes, strict=False):
+            far = FARTHEST * spec.length
+            low, high = max(-far, -stated), min(far, size - stated)
+            settled[name] = low + (high - low) * (values[name] + far) / (2 * far)
+        return settled
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the point moved."""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.matching import match
+from updating.measured import Measured
 from updating.models.state import Role, State
 from updating.prediction import Predictor
 from updating.reading import reading
@@ -14,22 +17,27 @@ PROMISING = 3
 """How many points, or pairs of points, a look at the shapes passes on to be weighed."""
 
 
+DOUBT = 0.02
+"""Share of a mode's mean square by which model and test may differ at any point [-]."""
+
+
+@dataclass(frozen=True, eq=False)
 class ShapeLook:
-    """How near the shapes come to the nominal model's under a reading of the points; a quick look for a shortlist."""
+    """The nominal model's shapes beside a test's, for a shortlist.
 
-    def __init__(self, predictor: Predictor) -> None:
-        test = predictor.measured
-        self.predictor, self.test = predictor, test
-        prediction = predictor.predict(at_least=len(test.frequency) + 3)
-        order = match(test, prediction, np.arange(len(test.frequency)))
-        self.vectors = prediction.vectors[:, order]
-        rows = predictor.nominal_rows["w"][:, : len(self.vectors)]
-        self.shapes = rows @ self.vectors
-        self.weight = 1.0 / (test.constants_sigma**2 + 0.02 * np.mean(test.constants**2, axis=0))
+    Parameters
+    ----------
+    test : Measured
+        The test.
+    shapes : (n_points, n_modes) array
+        Its modes in the model, at its points [kg^-1/2].
+    weight : (n_frf, n_modes) array
+        Inverse variances of the constants [kg^2].
+    """
 
-    def points(self, role: str) -> list[int]:
-        """Return the points that appear in a role."""
-        return sorted({int(p) for p in (self.test.hit if role == "hit" else self.test.seen) if p >= 0})
+    test: Measured
+    shapes: FloatArray
+    weight: FloatArray
 
     def misfit(self, gains: dict[Role, float], exchanged: tuple[tuple[str, int, int], ...] = ()) -> float:
         """Return the weighted misfit of the shapes, each mode scaled to fit [-]."""
@@ -48,3 +56,13 @@ class ShapeLook:
         overlap = np.sum(weight * data * predicted, axis=0)
         power = np.maximum(np.sum(weight * predicted**2, axis=0), 1e-300)
         return float(np.sum(weight * data**2) - np.sum(overlap**2 / power))
+
+
+def look_at(predictor: Predictor) -> ShapeLook:
+    """Return the shapes of a predictor's test and model, modes paired."""
+    test = predictor.measured
+    prediction = predictor.predict(at_least=len(test.frequency) + 3)
+    vectors = prediction.vectors[:, match(test, prediction, np.arange(len(test.frequency)))]
+    shapes = predictor.nominal_rows["w"][:, : len(vectors)] @ vectors
+    weight = 1.0 / (test.constants_sigma**2 + DOUBT * np.mean(test.constants**2, axis=0))
+    return ShapeLook(test, shapes, weight)

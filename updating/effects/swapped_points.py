@@ -8,8 +8,8 @@ import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import shape_obstacle
-from updating.effects.points import indices, places
-from updating.effects.shape_look import PROMISING, ShapeLook
+from updating.effects.points import indices, places, points_of
+from updating.effects.shape_look import PROMISING, look_at
 from updating.models.state import State
 from updating.prediction import Predictor
 from updating.reading import roving
@@ -39,8 +39,8 @@ class SwappedPoints(Effect):
         """Return the pairs whose exchange brings the shapes nearest to the model's."""
         test = predictor.measured
         role = roving(test)
-        found = ShapeLook(predictor)
-        pairs = list(combinations(found.points(role), 2))
+        found = look_at(predictor)
+        pairs = list(combinations(points_of(test, role), 2))
         misfits = [found.misfit({}, ((role, a, b),)) for a, b in pairs]
         best = np.argsort(misfits)[:PROMISING]
         return tuple(

@@ -72,7 +72,8 @@ def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, 
     damping : Damping
         The model's coefficients.
     state : State
-        Its ``dampers`` take the place of both, and its ``ratios`` that of all coefficients.
+        Its ``dampers`` take the place of both, its ``damping`` that of the regions' own, and its ``ratios`` that of
+        all coefficients.
 
     Returns
     -------
@@ -89,7 +90,8 @@ def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, 
         general = 0.0 if given is None else float(given)
         values = np.full(len(regions) + 1, general)
         for i, region in enumerate(regions):
-            own = state.dampers.get((i, name), getattr(region, name))
+            told = None if state.damping else getattr(region, name)  # a baseline has measured that too
+            own = state.dampers.get((i, name), told)
             values[i] = general if own is None else float(own)
         found[name] = values
     return found
@@ -159,7 +161,7 @@ def modal_losses(state: State, values: FloatArray, vectors: FloatArray) -> Float
     total = np.zeros(len(values))
     for loss in state.losses:
         if loss.power not in (VISCOUS, STRUCTURAL):
-            own = np.einsum("ir,ij,jr->r", vectors, loss.matrix[:n, :n], vectors)
+            own = np.sum(vectors * (loss.matrix[:n, :n] @ vectors), axis=0)
             total += np.where(omega > 0, np.maximum(omega, 1e-12) ** loss.power, 0.0) * own
     return total
 

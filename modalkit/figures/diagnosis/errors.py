@@ -7,19 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating import LIBRARY, Case, Diagnosis
-from updating.diagnosis.candidate import Candidate
+from modalkit.figures.diagnosis.fitted import Fitted, fitted
+from updating import Case, Diagnosis
 from updating.diagnosis.comparison import CHANNELS, Comparison
-from updating.diagnosis.diagnose import pose
-from updating.diagnosis.gaussian import Marginal, marginal
-from updating.diagnosis.problem import Problem
-from updating.diagnosis.result import Ranked
-from updating.models.state import State, combine
+from updating.diagnosis.metric import squares
+from updating.models.state import State
 
 LABELS = {
     "frequency": "model − test, of the frequency [%]",
     "damping": "model − test, of the damping ratio [%]",
     "frf": "r.m.s. misfit of the modal constants [%]",
+    "combined": "r.m.s. error of all data of the mode [standard deviations]",
 }
 
 
@@ -32,17 +30,17 @@ class ModeErrors:
     frequency : (n_modes,) array
         Measured frequencies [Hz].
     before, after : (n_modes,) arrays
-        Errors of the nominal model and of the best explanation [%]; ``after`` may be None.
+        Errors of the nominal model and of the best explanation, ``after`` may be None [%, or sigma if combined].
     floor, doubt : (n_modes,) arrays
-        Two standard deviations of the noise, and of noise and tolerances together [%]; ``doubt`` may be None.
+        Two standard deviations of the noise, and of noise and tolerances together; either may be None [%].
     channel : str
-        frequency, damping or frf.
+        A key of ``LABELS``.
     """
 
     frequency: FloatArray
     before: FloatArray
     after: FloatArray | None
-    floor: FloatArray
+    floor: FloatArray | None
     doubt: FloatArray | None
     channel: str
 
@@ -51,8 +49,13 @@ class ModeErrors:
         """Of the axis, with its unit."""
         return LABELS[self.channel]
 
+    @property
+    def signed(self) -> bool:
+        """Whether the errors have a sign."""
+        return self.channel in ("frequency", "damping")
 
-def mode_errors(diagnosis: Diagnosis, case: Case | None = None) -> ModeErrors:
+
+def mode_errors(diagnosis: Diagnosis, case: Case | None = None, *, best: Fitted | None = None) -> ModeErrors:
     """Return the errors of each mode.
 
     Parameters
@@ -61,14 +64,20 @@ def mode_errors(diagnosis: Diagnosis, case: Case | None = None) -> ModeErrors:
         The answer.
     case : Case, optional
         What was diagnosed. Without it only the frequency errors of the nominal model are known.
+    best : Fitted, optional
+        Its best explanation, where that is known already.
     """
     if case is None:
         modes = diagnosis.gap.modes
         test, before, sigma = (modes[n].to_numpy(float) for n in ("test [Hz]", "error [%]", "sigma [%]"))
         return ModeErrors(test, before, None, 2 * sigma, None, "frequency")
-    problem, _ = pose(case)
-    metric = diagnosis.shrink.metric if diagnosis.shrink.metric in CHANNELS else "frequency"
-    plain = problem.compare(State())
+    found = fitted(diagnosis, case) if best is None else best
+    problem = found.problem
+    metric = diagnosis.shrink.metric if diagnosis.shrink.metric in LABELS else "frequency"
+    plain, left_over = problem.compare(State()), found.left_over
+    if metric == "combined":
+        both = [_sigmas(plain, residual) for residual in (plain.residual, left_over) if residual is not None]
+        return ModeErrors(problem.measured.frequency, both[0], (*both, None)[1], None, None, metric)
     rows = plain.channel == CHANNELS.index(metric)
     if not rows.any():
         return mode_errors(diagnosis)
@@ -77,10 +86,15 @@ def mode_errors(diagnosis: Diagnosis, case: Case | None = None) -> ModeErrors:
     floor = 200 * np.sqrt(_mean(np.maximum(variance, 0.0), modes_of, count))
     total = plain.variance[rows] + np.sum(plain.nuisance[rows] ** 2, axis=1)
     doubt = 200 * np.sqrt(_mean(total, modes_of, count))
-    left_over = _left_over(problem, diagnosis)
     after = None if left_over is None else _errors(left_over[rows], modes_of, count, metric)
     before = _errors(plain.residual[rows], modes_of, count, metric)
     return ModeErrors(problem.measured.frequency, before, after, floor, doubt, metric)
+
+
+def _sigmas(plain: Comparison, residual: FloatArray) -> FloatArray:
+    """Return the r.m.s. of all data of each mode [standard deviations]."""
+    told = squares(residual, plain, "combined")
+    return np.asarray(np.sqrt(told.total / np.maximum(told.count, 1.0)))
 
 
 def _errors(residual: FloatArray, mode: FloatArray, count: int, metric: str) -> FloatArray:
@@ -94,31 +108,3 @@ def _mean(values: FloatArray, mode: FloatArray, count: int) -> FloatArray:
     """Average over the data of each mode; nan where it has none."""
     size = np.bincount(mode, minlength=count)
     return np.asarray(np.where(size > 0, np.bincount(mode, values, count) / np.maximum(size, 1), np.nan))
-
-
-def _left_over(problem: Problem, diagnosis: Diagnosis) -> FloatArray | None:
-    """Return the residual after the best explanation, and the tolerances most probable under it."""
-    leader = diagnosis.ranking[0] if diagnosis.ranking and diagnosis.verdict != "none" else None
-    if leader is None or any(name not in LIBRARY for name in leader.effects):
-        return None
-    theories = [None, "timoshenko"] if problem.predictor.spec.kind == "beam" else [None]
-    fits = [_fit(problem, Candidate(tuple(LIBRARY[n] for n in leader.effects), t), leader) for t in theories]  # type: ignore[arg-type]
-    comparison, result = max(fits, key=lambda fit: fit[1].log_likelihood)
-    return np.asarray(comparison.residual - comparison.nuisance @ result.shift)
-
-
-def _fit(problem: Problem, candidate: Candidate, leader: Ranked) -> tuple[Comparison, Marginal]:
-    stage = candidate.stage(problem.predictor)
-    states = []
-    for effect in candidate.effects:
-        values = {
-            p.name: leader.parameters[f"{effect.name}.{p.name}"].value for p in effect.parameters(stage)
-        }
-        states.append(effect.state(stage, values))
-    state = combine([*states, State(theory=candidate.theory)])
-    comparison = problem.compare(state, doubt=candidate.doubt)
-    result = marginal(comparison)
-    for _ in range(2 if problem.wide else 0):
-        comparison = problem.compare(state, result.shift[: len(problem.names)], doubt=candidate.doubt)
-        result = marginal(comparison)
-    return comparison, result

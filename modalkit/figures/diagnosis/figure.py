@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from modalkit.figures.diagnosis.causes import draw_causes
 from modalkit.figures.diagnosis.errors import ModeErrors, mode_errors
+from modalkit.figures.diagnosis.fitted import Fitted
 from modalkit.figures.diagnosis.held_out import draw_held_out, rivals
 from modalkit.figures.diagnosis.where import draw_channels, draw_where
 from modalkit.figures.dumbbell import dumbbells
@@ -26,6 +27,7 @@ from modalkit.figures.style import (
     place,
 )
 from modalkit.figures.words import answer, evidence
+from modalkit.letter import separated
 from updating import Case, Diagnosis
 
 LEFT, MIDDLE, RIGHT = (1.3, 2.5), (4.5, 3.3), (8.35, 3.3)
@@ -35,7 +37,7 @@ CHANNELS = 0.92
 """Height of the channels under the structure [in]."""
 
 
-def diagnosis_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figure:
+def diagnosis_figure(diagnosis: Diagnosis, case: Case | None = None, *, best: Fitted | None = None) -> Figure:
     """Draw how large the gap is, what causes it, where that sits, and whether it holds on modes held out.
 
     Parameters
@@ -45,12 +47,14 @@ def diagnosis_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figure:
     case : Case, optional
         What was diagnosed. With it the errors after the effect, the test points, the sensor and the clamps are
         drawn; without it only what the diagnosis itself holds.
+    best : Fitted, optional
+        Its best explanation, where that is known already.
 
     Returns
     -------
     Figure
     """
-    errors = mode_errors(diagnosis, case)
+    errors = mode_errors(diagnosis, case, best=best)
     title, note = answer(diagnosis), evidence(diagnosis)
     rows = _Rows.of(caption_height(title, note), len(errors.frequency), len(rivals(diagnosis)))
     figure = new_figure(rows.total)
@@ -88,7 +92,7 @@ def _upper(figure: Figure, diagnosis: Diagnosis, case: Case | None, errors: Mode
         errors.after,
         floor=errors.floor,
         doubt=errors.doubt,
-        signed=errors.channel != "frf",
+        signed=errors.signed,
         label=errors.label,
     )
     heading(figure, MARGIN, top - 0.42, "How large it is, mode by mode")
@@ -133,12 +137,9 @@ def _advice(diagnosis: Diagnosis, most: int) -> list[tuple[str, bool]]:
     lines: list[tuple[str, bool]] = []
     for measure in dict.fromkeys(test.measure for test in diagnosis.next_test):
         tests = [test for test in diagnosis.next_test if test.measure == measure]
-        pairs = [
-            f"{' from '.join(n.replace('_', ' ') for n in t.separates)} ({t.expected_sigma:.0f} σ)"
-            for t in tests
-        ]
+        told = "; ".join(dict.fromkeys(filter(None, map(separated, tests))))
         here = [(line, True) for line in broken(measure[:1].upper() + measure[1:], 72 * RIGHT[1], TEXT)]
-        here += [(line, False) for line in broken(f"separates {', '.join(pairs)}", 72 * RIGHT[1], SMALL)]
+        here += [(line, False) for line in broken(told.replace("_", " "), 72 * RIGHT[1], SMALL)]
         if lines and len(lines) + len(here) > most:
             break
         lines += here

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from modalkit.figures.style import BLUE, FAINT, GRID, INK, MUTED, SMALL, TEXT, shortened, tidy
-from modalkit.figures.words import METRICS, percent, short
+from modalkit.figures.words import METRICS, gap_size, short
 from updating import Diagnosis
 
 
@@ -24,7 +24,7 @@ def rivals(diagnosis: Diagnosis) -> list[tuple[str, float, bool]]:
     return rows
 
 
-def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float) -> None:
+def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float, fitted: bool = False) -> None:
     """Draw one dot per explanation on a logarithmic axis, and the noise floor as a band.
 
     Parameters
@@ -35,14 +35,19 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float) -> None:
         The answer.
     room : float
         Width left of the panel for the names [in].
+    fitted : bool
+        Whether the gap on the fitted data is drawn too, as a ring.
     """
     rows = rivals(diagnosis)
     floor = diagnosis.shrink.floor
     values = np.array([max(value, 1e-4) for _, value, _ in rows])
-    everything = np.append(values, max(floor, 1e-4))
+    inside = max(diagnosis.shrink.after, 1e-4) if fitted and diagnosis.ranking else None
+    everything = np.append(values, [max(floor, 1e-4)] + ([] if inside is None else [inside]))
     low, high = everything.min() / 2.0, everything.max() * 2.6
-    name = METRICS[diagnosis.shrink.metric]
-    tidy(axes, x=f"{name} gap on modes held out in turn, r.m.s. [%]", grid="x")
+    metric = diagnosis.shrink.metric
+    whole = 100.0 if metric == "combined" else 1.0
+    unit = "standard deviations" if metric == "combined" else "%"
+    tidy(axes, x=f"{METRICS[metric]} gap on modes held out in turn, r.m.s. [{unit}]", grid="x")
     axes.set_xscale("log")
     axes.set_xlim(low, high)
     axes.axvspan(low, max(floor, low), color=GRID, zorder=0.5, linewidth=0)
@@ -53,7 +58,7 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float) -> None:
             [values[i]], [i], s=95 if best else 70, color=colour, edgecolor="white", zorder=4, clip_on=False
         )
         axes.annotate(
-            percent(value),
+            gap_size(value, metric),
             (values[i], i),
             xytext=(9, 0),
             textcoords="offset points",
@@ -62,6 +67,8 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float) -> None:
             color=INK,
             fontweight="bold" if best else "normal",
         )
+    if inside is not None:
+        _ring(axes, inside, len(rows) - 1, metric)
     names = [shortened(label, 72 * room, TEXT, weight="bold") for label, _, _ in rows]
     axes.set_yticks(range(len(rows)), names, fontsize=TEXT)
     for label, (_, _, best) in zip(axes.get_yticklabels(), rows, strict=True):
@@ -69,17 +76,35 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float) -> None:
     axes.set_ylim(len(rows) - 0.45, -0.95)
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
-    inside = np.log(max(floor, low) / low) > 0.25 * np.log(high / low)
+    wide = np.log(max(floor, low) / low) > 0.25 * np.log(high / low)
     axes.annotate(
-        f"noise {percent(floor)}",
+        f"noise {gap_size(floor, metric)}",
         (max(floor, low), -0.62),
-        xytext=(-5 if inside else 5, 0),
+        xytext=(-5 if wide else 5, 0),
         textcoords="offset points",
-        ha="right" if inside else "left",
+        ha="right" if wide else "left",
         va="center",
         fontsize=SMALL,
         color=MUTED,
     )
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if high / low < 300 else (1.0,)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / whole:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _ring(axes: Axes, value: float, row: int, metric: str) -> None:
+    """Mark the gap on the fitted data, and say below what it is."""
+    axes.scatter(
+        [value], [row], s=70, facecolor="white", edgecolor=BLUE, linewidth=1.6, zorder=5, clip_on=False
+    )
+    axes.annotate(
+        f"{gap_size(value, metric)} fitted",
+        (value, row),
+        xytext=(0, -13),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        fontsize=SMALL,
+        color=MUTED,
+        annotation_clip=False,
+    )

@@ -257,7 +257,7 @@ def _cause(axes: Axes, diagnosis: Diagnosis, body: Outline, frame: Frame, width:
     """Ring the places found and name the first above the structure."""
     where, plate = diagnosis.where, body.width > 0
     base = frame.top + 0.42
-    if where.location is None:
+    if where.location is None or diagnosis.verdict == "unknown":
         texts = {
             "none": "no gap, so no place",
             "measurement": "in the measurement, not in the structure",

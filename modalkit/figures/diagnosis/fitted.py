@@ -1,0 +1,106 @@
+"""The best explanation of a diagnosis put back into its model, for the figures that show what it leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating import LIBRARY, Case, Diagnosis, Predictor
+from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.diagnose import pose
+from updating.diagnosis.fit import Point, climb, evaluate
+from updating.diagnosis.problem import Problem
+from updating.diagnosis.result import ParameterEstimate
+from updating.effects import Variant
+from updating.models.state import State
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A problem and its best explanation.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    candidate : Candidate, optional
+        The explanation; None where there is none, or one that is not in the library.
+    point : Point, optional
+        It at its most probable parameters and tolerances.
+    """
+
+    problem: Problem
+    candidate: Candidate | None = None
+    point: Point | None = None
+
+    @property
+    def left_over(self) -> FloatArray | None:
+        """Residual after the explanation and the most probable tolerances, None where nothing explains [-]."""
+        return None if self.point is None else self.point.left_over
+
+    def model(self) -> tuple[Predictor, State] | None:
+        """Return the model with explanation and tolerances in it, and the state that it was brought into."""
+        if self.candidate is None or self.point is None:
+            return None
+        problem, stage = self.problem, self.candidate.stage(self.problem.predictor)
+        state = self.candidate.assemble(stage, self.candidate.split(stage, self.point.coordinates.tolist()))
+        shift = self.point.marginal.shift[: len(problem.names)]
+        factors = dict(zip(problem.names, np.exp(shift * problem.sigmas).tolist(), strict=True))
+        whole = state.plus(State(factors=factors))
+        return stage.looking(stage.measured, (*stage.additions, lambda _: whole)), whole
+
+
+def fitted(diagnosis: Diagnosis, case: Case, *, alone: bool = True) -> Fitted:
+    """Return the most probable explanation of a diagnosis in the model of a case.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The answer.
+    case : Case
+        What was diagnosed, or one of several.
+    alone : bool
+        Whether it was the only one: then parameters are brought to their best, else left as the diagnosis has them.
+    """
+    problem, _ = pose(case)
+    leader = diagnosis.ranking[0] if diagnosis.ranking and diagnosis.verdict != "none" else None
+    if leader is None or any(name not in LIBRARY for name in leader.effects):
+        return Fitted(problem)
+    theories = (None, "timoshenko") if problem.predictor.spec.kind == "beam" else (None,)
+    found: list[tuple[Candidate, Point]] = []
+    for theory in theories:
+        told = _told(leader.parameters, case.title)
+        applying = [n for n in leader.effects if problem.applies(LIBRARY[n]) is None]
+        forms = tuple(_form(n, told) for n in applying)
+        candidate = Candidate(tuple(LIBRARY[n] for n in applying), theory, forms)  # type: ignore[arg-type]
+        start = _start(problem, candidate, told)
+        point = (
+            climb(problem, candidate, start, rounds=6).point if alone else evaluate(problem, candidate, start)
+        )
+        found.append((candidate, point))
+    candidate, point = max(found, key=lambda one: one[1].marginal.log_likelihood)
+    return Fitted(problem, candidate, point) if point.possible else Fitted(problem)
+
+
+def _told(parameters: Mapping[str, ParameterEstimate], title: str) -> dict[str, ParameterEstimate]:
+    """Return the estimates by effect.parameter: of one of several specimens, its own where it has some."""
+    own = f" ({title})"
+    common = {n: e for n, e in parameters.items() if " (" not in n}
+    return {**common, **{n.removesuffix(own): e for n, e in parameters.items() if n.endswith(own)}}
+
+
+def _form(name: str, told: Mapping[str, ParameterEstimate]) -> Variant:
+    """Return what the form of an effect fixes: what has no interval."""
+    own = {n.removeprefix(f"{name}."): e for n, e in told.items() if n.startswith(f"{name}.")}
+    return Variant({n: e.value for n, e in own.items() if e.low95 is None})
+
+
+def _start(problem: Problem, candidate: Candidate, told: Mapping[str, ParameterEstimate]) -> FloatArray:
+    quantiles: Sequence[float] = [
+        p.coordinate(float(told[n].value)) if n in told else 0.5  # type: ignore[arg-type]
+        for n, p in problem.parameters(candidate)
+    ]
+    return np.array(quantiles, dtype=float)

@@ -1,0 +1,69 @@
+"""How large the gap is mode by mode, before and after, on a page of its own."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from modalkit.figures.diagnosis.errors import ModeErrors
+from modalkit.figures.dumbbell import dumbbells
+from modalkit.figures.style import MARGIN, WIDTH, caption, caption_height, new_figure, place
+from modalkit.figures.words import METRICS, counted, gap_size
+from updating import Diagnosis
+
+ROW, INDENT = 0.3, 1.25
+"""Height of a row and width of its name [in]."""
+
+
+def gap_figure(diagnosis: Diagnosis, errors: ModeErrors, *, title: str = "") -> Figure:
+    """Draw the error of every mode as it was and as the best explanation leaves it.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The answer.
+    errors : ModeErrors
+        Errors of one specimen.
+    title : str
+        Which specimen, where there are several.
+
+    Returns
+    -------
+    Figure
+    """
+    said, note = _title(diagnosis, errors, of_several=bool(title)), title
+    top = caption_height(said, note) + 0.45
+    tall = max(1.3, ROW * len(errors.frequency) + 0.3)
+    figure = new_figure(top + tall + 0.65)
+    caption(figure, said, note)
+    panel = place(figure, MARGIN + INDENT, top, WIDTH - 2 * MARGIN - INDENT - 0.1, tall, name="gap")
+    dumbbells(
+        panel,
+        errors.frequency,
+        errors.before,
+        errors.after,
+        floor=errors.floor,
+        doubt=errors.doubt,
+        signed=errors.signed,
+        label=errors.label,
+        indent=INDENT,
+    )
+    return figure
+
+
+def _title(diagnosis: Diagnosis, errors: ModeErrors, *, of_several: bool) -> str:
+    name = "all data" if errors.channel == "combined" else METRICS[errors.channel]
+    modes = counted(len(errors.frequency), "mode")
+    if diagnosis.verdict == "none":
+        return f"{_capital(name)}, {modes}: what is off stays within tolerances and noise"
+    if errors.after is None:
+        return f"{_capital(name)} is what gives the gap away ({modes})"
+    shrink, metric = diagnosis.shrink, diagnosis.shrink.metric
+    if errors.channel != metric or of_several:
+        return f"{_capital(name)} of {modes}, before and after"
+    left = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
+    before, after = gap_size(shrink.before, metric), gap_size(shrink.after, metric)
+    return f"{_capital(name)} of {modes}: {before} r.m.s. before, {after} {left}"
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

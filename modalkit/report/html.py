@@ -1,0 +1,110 @@
+"""The few elements a report is made of; all text that goes in is escaped."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+
+Cell = str | float | int | None
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Parameters
+    ----------
+    name : str
+        Its heading.
+    write : function, optional
+        How a number is written; columns with it are numbers, to the right.
+    """
+
+    name: str
+    write: Callable[[float], str] | None = None
+
+
+@dataclass(frozen=True)
+class Raw:
+    """Markup that is safe already."""
+
+    markup: str
+
+
+def text(value: object) -> str:
+    """Escape a text; a newline in it ends a line."""
+    return escape(str(value), quote=True).replace("\n", "<br>")
+
+
+def element(tag: str, *inside: str | Raw, **attributes: str) -> Raw:
+    """Return an element; plain text inside it is escaped, ``class_`` is written as ``class``."""
+    told = "".join(
+        f' {k.rstrip("_").replace("_", "-")}="{escape(v, quote=True)}"' for k, v in attributes.items() if v
+    )
+    return Raw(f"<{tag}{told}>{''.join(i.markup if isinstance(i, Raw) else text(i) for i in inside)}</{tag}>")
+
+
+def joined(*parts: Raw) -> Raw:
+    """Return pieces of markup one after the other."""
+    return Raw("\n".join(part.markup for part in parts if part.markup))
+
+
+def bullets(items: Sequence[str]) -> Raw:
+    """Return a list."""
+    return element("ul", *(element("li", item) for item in items)) if items else Raw("")
+
+
+def table(
+    caption: str,
+    columns: Sequence[Column],
+    rows: Sequence[Sequence[Cell | Raw]],
+    *,
+    marked: Sequence[bool] = (),
+) -> Raw:
+    """Return a table whose first column heads its rows.
+
+    Parameters
+    ----------
+    caption : str
+        What it shows.
+    columns : sequence of Column
+        Its columns.
+    rows : sequence of sequences
+        Cells; None and nan are a dash.
+    marked : sequence of bool, optional
+        Rows that are the answer.
+    """
+    head = element("tr", *(element("th", c.name, scope="col", class_=_class(c)) for c in columns))
+    body = []
+    for i, row in enumerate(rows):
+        cells = [_cell(v, c, first=k == 0) for k, (v, c) in enumerate(zip(row, columns, strict=True))]
+        body.append(element("tr", *cells, class_="answer-row" if i < len(marked) and marked[i] else ""))
+    whole = element("table", element("caption", caption), element("thead", head), element("tbody", *body))
+    return element("div", whole, class_="scroll", tabindex="0", role="region", aria_label=caption)
+
+
+def definitions(items: Mapping[str, str], *, class_: str = "") -> Raw:
+    """Return a list of terms and what is said of them."""
+    pairs = [part for k, v in items.items() for part in (element("dt", k), element("dd", v))]
+    return element("dl", *pairs, class_=class_)
+
+
+def _class(column: Column) -> str:
+    return "n" if column.write is not None else ""
+
+
+def _cell(value: Cell | Raw, column: Column, *, first: bool) -> Raw:
+    said: str | Raw
+    if isinstance(value, Raw):
+        said = value
+    elif value is None or (isinstance(value, float) and math.isnan(value)):
+        said = "–"
+    elif isinstance(value, int | float) and column.write is not None:
+        said = column.write(float(value))
+    else:
+        said = str(value)
+    if first:
+        return element("th", said, scope="row", class_=_class(column))
+    return element("td", said, class_=_class(column))

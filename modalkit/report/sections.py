@@ -1,0 +1,276 @@
+"""What a report says, part by part: the gap, where it is, what causes it, how far it closes."""
+
+from __future__ import annotations
+
+import math
+
+import pandas as pd
+
+from modalkit.figures.words import METRICS, chance, counted, gap_size, percent, quantity, share
+from modalkit.letter import letter, separated
+from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
+from updating import LIBRARY, Diagnosis
+from updating.diagnosis.result import Ranked
+
+ROWS = 8
+"""Most explanations in the table, beside those of the answer."""
+
+ALIKE = 0.01
+"""Zones whose probabilities differ by less are not listed [-]."""
+
+
+def _number(name: str, digits: int) -> Column:
+    return Column(name, lambda value: _signed(value, digits))
+
+
+def _signed(value: float, digits: int) -> str:
+    return f"{round(value, digits) + 0.0:.{digits}f}".replace("-", "−")
+
+
+def the_letter(diagnosis: Diagnosis) -> Raw:
+    """Return the five lines."""
+    lines = dict(line.partition(":")[::2] for line in letter(diagnosis))
+    return definitions({k: v.strip() for k, v in lines.items()}, class_=f"letter {diagnosis.verdict}")
+
+
+def the_gap(diagnosis: Diagnosis) -> Raw:
+    """Return the table of the modes, one for each study."""
+    gap = diagnosis.gap
+    words = (
+        f"{percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}; chance alone, with the tolerances "
+        f"stated, makes a gap like this with {chance(diagnosis.p_value)}."
+    )
+    studies = list(dict.fromkeys(gap.modes["study"]))
+    tables = [_mode_table(gap.modes[gap.modes["study"] == name], name, len(studies) > 1) for name in studies]
+    return joined(element("p", words), *tables)
+
+
+def _mode_table(modes: pd.DataFrame, name: str, several: bool) -> Raw:
+    columns = [
+        Column("mode", lambda value: f"{value:.0f}"),
+        _number("test [Hz]", 3),
+        _number("model [Hz]", 3),
+        _number("error [%]", 3),
+        _number("sigma [%]", 3),
+        _number("MAC", 3),
+        Column("test damping", lambda value: f"{value:.3g}"),
+        Column("model damping", lambda value: f"{value:.3g}"),
+    ]
+    rows: list[list[Cell | Raw]] = [
+        [int(mode), *(row[c.name] for c in columns[1:])]  # type: ignore[call-overload]
+        for mode, row in modes.iterrows()
+    ]
+    said = (
+        f"{f'{name}: modes' if several else 'Modes'} of the test and of the model as it stands. Error is model minus "
+        "test, over test; sigma is what the test is known to."
+    )
+    return table(said, columns, rows)
+
+
+def the_place(diagnosis: Diagnosis) -> Raw:
+    """Return tables of channels, places, zones and modes."""
+    where = diagnosis.where
+    rest = {n: v for n, v in where.channels.items() if n != "none"}
+    parts = [element("p", where.band)] if where.band else []
+    parts.append(
+        table(
+            "Which part of the model or the measurement, given that there is a cause.",
+            [Column("channel"), Column("probability", share)],
+            [[n, v] for n, v in rest.items()],
+            marked=[n == where.channel and diagnosis.verdict in {"named", "class"} for n in rest],
+        )
+    )
+    if len(set(diagnosis.gap.modes["study"])) > 1:
+        first = diagnosis.gap.modes["study"].iloc[0]
+        parts.append(element("p", f"Places, zones and modes below are those of the first study, {first}."))
+    parts.append(_places(diagnosis))
+    parts += [_zones(diagnosis), _modes(diagnosis)]
+    return joined(*parts)
+
+
+def _places(diagnosis: Diagnosis) -> Raw:
+    """Return the places with their spread: those of the most probable explanation."""
+    seats = diagnosis.where.seats
+    if not seats or diagnosis.verdict not in {"named", "class"} or not diagnosis.ranking:
+        return Raw("")
+    used = [k for k in range(3) if k == 0 or any(seat.place[k] or seat.spread[k] for seat in seats)]
+    columns = [
+        Column("place", lambda value: f"{value:.0f}"),
+        *(Column(f"{'xyz'[k]} [m]") for k in used),
+        Column("probability", share),
+    ]
+    rows: list[list[Cell | Raw]] = [
+        [i + 1, *(_spread(seat.place[k], seat.spread[k]) for k in used), seat.probability]
+        for i, seat in enumerate(seats)
+    ]
+    whose = " + ".join(diagnosis.ranking[0].effects)
+    return table(
+        f"Where {whose} sits, with one standard deviation; places taken at the same time have 100 % each.",
+        columns,
+        rows,
+    )
+
+
+def _spread(at: float, sigma: float) -> str:
+    return f"{_signed(at, 3)} ± {sigma:.3f}"
+
+
+def _zones(diagnosis: Diagnosis) -> Raw:
+    where = diagnosis.where
+    if not where.zones:
+        return Raw("")
+    values = [zone.probability for zone in where.zones]
+    if max(values) - min(values) < ALIKE:
+        return element("p", f"All {len(values)} zones are alike: {share(values[0])} each.")
+    said = "Zones and the probability that the cause sits in each."
+    if where.zones_by == "regions":
+        said = (
+            "Zones as if one of them alone were changed: nothing explains the gap, so this is a hint at most."
+        )
+    columns = [Column("zone"), Column("centre [m]"), Column("probability", share)]
+    used = [k for k in range(3) if any(zone.center[k] for zone in where.zones)]
+    centre = [", ".join(f"{'xyz'[k]} = {_signed(z.center[k], 3)}" for k in used) for z in where.zones]
+    return table(
+        said, columns, [[z.name, c, z.probability] for z, c in zip(where.zones, centre, strict=True)]
+    )
+
+
+def _modes(diagnosis: Diagnosis) -> Raw:
+    modes = diagnosis.where.modes
+    if modes is None:
+        return Raw("")
+    names = [str(name) for name in modes.columns]
+    columns = [Column("mode", lambda value: f"{value:.0f}")]
+    columns += [_number(n.replace("[sigma]", "[σ]"), 2 if n == names[0] else 1) for n in names]
+    rows: list[list[Cell | Raw]] = [
+        [int(mode), *(float(row[n]) for n in names)]  # type: ignore[call-overload]
+        for mode, row in modes.iterrows()
+    ]
+    return table(
+        "What every mode adds to the gap, in standard deviations of noise and tolerances together.",
+        columns,
+        rows,
+    )
+
+
+def the_causes(diagnosis: Diagnosis) -> Raw:
+    """Return the ranking, with parameters and intervals, and what is known of the effects of the answer."""
+    rows = diagnosis.ranking
+    shown = [r for i, r in enumerate(rows) if i < ROWS or r.effects in diagnosis.sets]
+    alone = max(0.0, 1.0 - sum(r.probability for r in rows))
+    columns = [
+        Column("effects"),
+        Column("probability", share),
+        Column("fits with p", lambda value: "< 1e-15" if value < 1e-15 else f"{value:.2g}"),
+        Column("parameters, with 95 % intervals"),
+        Column("not told apart from"),
+    ]
+    cells: list[list[Cell | Raw]] = [_explanation(row) for row in shown]
+    cells.append(["(tolerances and noise alone)", alone, diagnosis.p_value, "", ""])
+    marked = [r.effects in diagnosis.sets for r in shown]
+    said = {
+        "named": "The shaded row is the answer.",
+        "class": "The shaded rows are the answer: one of them, these data cannot tell which.",
+        "unknown": "None of them explains the gap.",
+        "none": "There is no gap that would need one of them.",
+    }[diagnosis.verdict]
+    parts = [table(f"Explanations, most probable first. {said}", columns, cells, marked=marked)]
+    if len(rows) > len(shown):
+        left = sum(r.probability for r in rows if r not in shown)
+        parts.append(element("p", f"{len(rows) - len(shown)} more, together {share(left)}.", class_="quiet"))
+    parts += [_known(name) for name in diagnosis.effects if name in LIBRARY]
+    return joined(*parts)
+
+
+def _explanation(row: Ranked) -> list[Cell | Raw]:
+    told = []
+    for name, estimate in row.parameters.items():
+        if estimate.low95 is None and isinstance(estimate.value, int | float) and ".point" not in name:
+            continue  # which form of the effect it is
+        bound = ", at the end of its range" if estimate.at_bound else ""
+        said = name if len(row.effects) > 1 else name.partition(".")[2]
+        told.append(f"{said} = {quantity(estimate)}{bound}")
+    if not row.plausible and not any(e.at_bound for e in row.parameters.values()):
+        told.append("(hardly believable)")
+    near = [" + ".join(names) for names in row.equivalents[:5]]
+    if len(row.equivalents) > len(near):
+        near.append(f"{len(row.equivalents) - len(near)} more")
+    return [" + ".join(row.effects), row.probability, row.p_value, "\n".join(told), "\n".join(near)]
+
+
+def _known(name: str) -> Raw:
+    effect = LIBRARY[name]
+    said = f"{effect.summary} {effect.footprint} To separate it: {effect.separated_by}."
+    return element("p", element("strong", name), f": {said}")
+
+
+def the_shrinkage(diagnosis: Diagnosis) -> Raw:
+    """Return the gap before and after, on fitted and on held-out data."""
+    shrink, metric = diagnosis.shrink, diagnosis.shrink.metric
+    rows: list[list[Cell | Raw]] = [
+        ["the model as it stands", shrink.before, shrink.held_before],
+        ["tolerances alone", None, shrink.held_nuisance],
+    ]
+    if shrink.held_runner_up is not None:
+        name = " + ".join(diagnosis.ranking[1].effects) if len(diagnosis.ranking) > 1 else ""
+        rows.append([f"runner-up: {name}", None, shrink.held_runner_up])
+    best = " + ".join(diagnosis.ranking[0].effects) if diagnosis.ranking else "best explanation"
+    rows += [[best, shrink.after, shrink.held_after], ["noise of the test", None, shrink.floor]]
+    said = f"R.m.s. {METRICS[metric]} gap; held out: each mode predicted from all others."
+
+    def size(value: float) -> str:
+        return gap_size(value, metric)
+
+    columns = [Column("explanation"), Column("on fitted data", size), Column("on modes held out", size)]
+    marked = [False] * (len(rows) - 2) + [diagnosis.verdict in {"named", "class"}, False]
+    parts = [table(said, columns, rows, marked=marked)]
+    if (points := shrink.points) is not None:
+        parts.append(
+            element(
+                "p",
+                f"Modal constants at points held out: {percent(points.before)} before, {percent(points.after)} after, "
+                f"{percent(points.nuisance)} with the tolerances alone.",
+            )
+        )
+    if shrink.closed is not None and diagnosis.verdict in {"named", "class"}:
+        closed = shrink.closed
+        interval = f"(95 %: {closed.low95:.0f} to {closed.high95:.0f} %)"
+        said = f"Of what can be closed, {closed.value:.0f} % closes {interval}."
+        parts.append(element("p", said))
+    return joined(*parts)
+
+
+def the_next_test(diagnosis: Diagnosis) -> Raw:
+    """Return what to measure next."""
+    if not diagnosis.next_test:
+        last = letter(diagnosis)[-1].partition(":")[2].strip()
+        return element("p", last[:1].upper() + last[1:] + ".")
+    rows: list[list[Cell | Raw]] = []
+    for test in diagnosis.next_test:
+        what = separated(test).removeprefix("separates ").partition(" by ")[0]
+        sigma = None if math.isnan(test.expected_sigma) else test.expected_sigma
+        rows.append([test.measure, what, sigma])
+    columns = [Column("measure next"), Column("separates"), Column("by [σ], at least", lambda v: f"{v:.1f}")]
+    if not any(row[1] for row in rows):
+        return table("What would show more.", columns[:1], [row[:1] for row in rows])
+    return table("Tests that would separate what is left, the first first.", columns, rows)
+
+
+def not_examined(diagnosis: Diagnosis) -> Raw:
+    """Return the effects that were left out, by the reason."""
+    if not diagnosis.not_examined:
+        return element("p", "Every effect of the library was weighed.")
+    by_reason: dict[str, list[str]] = {}
+    for name, why in diagnosis.not_examined.items():
+        by_reason.setdefault(why, []).append(name)
+    rows: list[list[Cell | Raw]] = [[", ".join(names), why] for why, names in by_reason.items()]
+    words = "None of these is ruled out by the answer above."
+    return joined(
+        table("Effects that could not be weighed, and why.", [Column("effects"), Column("why")], rows),
+        element("p", words),
+    )
+
+
+def the_warnings(warnings: list[str]) -> Raw:
+    """Return the warnings, each once."""
+    return bullets(list(dict.fromkeys(warnings))) if warnings else element("p", "None.")

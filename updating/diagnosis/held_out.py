@@ -1,0 +1,131 @@
+"""Data left out of a fit and predicted from the rest, so that a gap that closes by mere freedom shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from acquisition.arrays import BoolArray, FloatArray
+from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.comparison import SHAPES, Comparison
+from updating.diagnosis.evidence import Explanation
+from updating.diagnosis.fit import Point, evaluate, sensitivities
+from updating.diagnosis.gaussian import whiten
+from updating.diagnosis.posed import Posed
+
+BELIEVED = 3.0
+"""No tolerance, and no calibration, is taken to be further off than this [standard deviations]."""
+
+STEPS = 2
+"""Most steps of a refit, from the best parameters on all data and with the slopes there."""
+
+FOLDS = 5
+"""In so many parts the points are left out."""
+
+
+def modes_held_out(posed: Posed, explanation: Explanation) -> FloatArray:
+    """Predict each mode from all others, and return measured minus predicted data, (n,) [-].
+
+    Parameters
+    ----------
+    posed : Problem or Several
+        Test and model.
+    explanation : Explanation
+        What is refitted without each mode in turn, its doubts within what is believed of them.
+    """
+    mode = explanation.best.comparison.mode
+    return held_out(posed, explanation, [mode != m for m in np.unique(mode)])
+
+
+def points_held_out(posed: Posed, explanation: Explanation) -> tuple[FloatArray, BoolArray] | None:
+    """Predict the constants at a part of the points from all other data, part by part.
+
+    Returns
+    -------
+    residual : (n,) array
+        Measured minus predicted data [-].
+    told : (n,) bool array
+        Which of them are constants.
+    None
+        Where there are too few points to leave any out.
+    """
+    groups = _groups(posed)
+    if groups is None:
+        return None
+    parts = [groups != fold for fold in range(FOLDS)]
+    return held_out(posed, explanation, parts), groups >= 0
+
+
+def _groups(posed: Posed) -> np.ndarray | None:
+    """Return which part each datum belongs to, -1 for what is no constant; None where there are few points."""
+    found = []
+    for problem in posed.specimens:
+        test = problem.measured
+        channel = problem.at(Candidate(), np.zeros(0)).channel
+        group = np.full(len(channel), -1)
+        if test.has_shapes:
+            roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
+            rank = np.unique(roving, return_inverse=True)[1] % FOLDS
+            group[channel == SHAPES] = np.repeat(rank, test.constants.shape[1])
+        found.append(group)
+    groups = np.concatenate(found)
+    return groups if len(np.unique(groups[groups >= 0])) == FOLDS else None
+
+
+def held_out(posed: Posed, explanation: Explanation, parts: Sequence[BoolArray]) -> FloatArray:
+    """Return measured minus predicted data, those outside each part predicted from those inside, (n,) [-]."""
+    best = explanation.best
+    slopes = np.nan_to_num(sensitivities(posed, explanation.candidate, best))
+    errors = np.zeros(len(best.comparison.residual))
+    for keep in parts:
+        if not keep.any():
+            continue
+        point = _refit(posed, explanation.candidate, best, slopes, keep)
+        errors[~keep] = believed(point.comparison, point.marginal.scale, keep)[~keep]
+    return errors
+
+
+def _refit(posed: Posed, candidate: Candidate, best: Point, slopes: FloatArray, keep: BoolArray) -> Point:
+    """Return the most probable point on a part of the data: chord steps from the best on all."""
+    point = evaluate(posed, candidate, best.coordinates, keep=keep)
+    for _ in range(STEPS if slopes.shape[1] else 0):
+        normal, load = whiten(point.comparison, slopes, point.marginal.scale, keep)
+        ridge = 1e-9 * np.trace(normal) * np.eye(len(load)) + 1e-6 * np.eye(len(load))
+        step = np.clip(np.linalg.solve(normal + ridge, load), -0.3, 0.3)
+        there = np.clip(point.coordinates + step, 0.0, 1.0)
+        trial = evaluate(posed, candidate, there, keep=keep)
+        gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
+        if gain <= 0:
+            break
+        point = trial
+        if gain < 0.05:
+            break
+    return point
+
+
+def believed(comparison: Comparison, scale: float, keep: BoolArray | None = None) -> FloatArray:
+    """Return what is left of a residual once all doubts, within what is believed of them, have done their best.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Residual, nuisances and noise.
+    scale : float
+        Of the noise of the shapes [-].
+    keep : (n,) bool array, optional
+        Data that are fitted; left out, all.
+    """
+    rows = slice(None) if keep is None else keep
+    weight = 1 / np.sqrt(comparison.noise(scale)[rows])
+    columns = comparison.nuisance[rows] * weight[:, None]
+    count = columns.shape[1]
+    whole = np.vstack([columns, np.eye(count)])
+    data = np.concatenate([comparison.residual[rows] * weight, np.zeros(count)])
+    shift = np.linalg.lstsq(whole, data, rcond=None)[0]
+    limit = np.full(count, np.inf)
+    limit[comparison.doubts] = BELIEVED
+    if (np.abs(shift) > limit).any():
+        shift = lsq_linear(whole, data, bounds=(-limit, limit)).x
+    return np.asarray(comparison.residual - comparison.nuisance @ shift)

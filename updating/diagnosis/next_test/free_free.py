@@ -1,0 +1,42 @@
+"""The specimen hung up free: no clamp, and nothing that a clamp does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
+from updating.diagnosis.next_test.repeat import Repeat
+from updating.diagnosis.problem import Problem
+from updating.effects.base import Effect
+
+OF_THE_CLAMP = frozenset({"clamp_rotation", "clamp_translation", "length", "joint_nonlinearity"})
+"""Effects that go with the clamp; how deep it bends the structure inside is a ``length``."""
+
+
+class FreeFree(Repeat):
+    """The specimen hung up free, as many modes as before, with the same sensor."""
+
+    family = "free-free"
+    cost = 7
+    measure = "take the specimen out of its clamp, hang it up free, and test it"
+
+    def problem(self, site: Site) -> Problem:
+        """Return the problem without clamps."""
+        problem = site.problem
+        free = replace(problem.predictor, spec=replace(problem.predictor.spec, clamped=()))
+        return replace(problem, predictor=free, shortfall=None, trusted=None)
+
+    def keeps(self, effect: Effect) -> bool:
+        """Leave out what the clamp does."""
+        return effect.name not in OF_THE_CLAMP
+
+
+class Unclamped(Maker):
+    """A free-free test, where there is a clamp and nothing else was put into the model."""
+
+    def trials(self, site: Site, rivals: tuple[Rival, ...]) -> Iterator[Trial]:
+        """Give it."""
+        predictor = site.problem.predictor
+        if predictor.spec.clamped and not predictor.additions:
+            yield FreeFree()

@@ -1,0 +1,59 @@
+"""Places on a specimen at which something may be done: test points, or a coarse grid."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.next_test.base import Site
+from updating.diagnosis.problem import Problem
+from updating.models.spec import Spec
+
+MOST = 4
+"""So many places are tried for a mass."""
+
+ALONG = (0.2, 0.4, 0.6, 0.8, 1.0)
+ACROSS = (0.05, 0.5, 0.95)
+"""The grid of places, as shares of the sides [-]."""
+
+
+def grid(spec: Spec) -> FloatArray:
+    """Return places spread over a structure, (n, dim) [m]."""
+    along = np.array(ALONG)
+    if spec.clamped == ("x1",):
+        along = 1 - along
+    if spec.kind == "beam":
+        return (spec.length * along)[:, None]
+    x, y = np.meshgrid(spec.length * along, spec.width * np.array(ACROSS), indexing="ij")
+    return np.stack([x.ravel(), y.ravel()], axis=1)
+
+
+def telling_places(problem: Problem) -> FloatArray:
+    """Return where a mass would act on the modes the most, and the least alike, (n, dim) [m]."""
+    spec, points = problem.predictor.spec, problem.measured.points
+    if not len(points):
+        if spec.imported is not None:
+            return np.zeros((0, 3))
+        points = grid(spec)
+    points = np.unique(points, axis=0)
+    vectors = problem.nominal.vectors
+    rows = problem.predictor.reduced.rows(points)["w"][:, : len(vectors)] @ vectors
+    moved = np.abs(rows) / np.maximum(np.abs(rows).max(axis=0), 1e-300)
+    first = int(np.argmax(moved.sum(axis=1)))
+    chosen = [first]
+    while len(chosen) < min(MOST, len(points)):
+        direction = moved[chosen].T
+        left = moved - (moved @ np.linalg.pinv(direction).T) @ direction.T
+        left[chosen] = 0.0
+        chosen.append(int(np.argmax(np.linalg.norm(left, axis=1))))
+    return points[list(dict.fromkeys(chosen))]
+
+
+def said(site: Site, place: FloatArray) -> str:
+    """Return how a place is called: the number of a test point there, or its coordinates."""
+    test = site.problem.measured
+    if len(test.points):
+        away = np.linalg.norm(test.points - place, axis=1)
+        if away.min() < 1e-6:
+            return f"point {test.nodes[int(np.argmin(away))]}"
+    return ", ".join(f"{axis} = {1000 * v:.0f} mm" for axis, v in zip("xyz", place.tolist(), strict=False))

@@ -1,0 +1,81 @@
+"""What to do where nothing explains the gap: look where the misfit is, and take away what may be at fault."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.comparison import SHAPES
+from updating.diagnosis.evidence import Explanation
+from updating.diagnosis.next_test.base import Site
+from updating.diagnosis.problem import Problem
+from updating.diagnosis.result import NextTest
+from updating.diagnosis.search import Search
+
+STANDS_OUT = 1.7
+"""Points whose misfit is so many times the r.m.s. over all are named [-]..."""
+
+NAMED = 3
+"""...and no more than so many of them."""
+
+FEW = 4
+"""With fewer points, more of them are asked for."""
+
+
+def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
+    """Return what to do next where nothing explains the gap.
+
+    Parameters
+    ----------
+    site : Site
+        The specimen.
+    found : Search
+        What was weighed.
+    """
+    problem = site.problem
+    spec, test = problem.predictor.spec, problem.measured
+    least_bad = next((row.explanation for row in found.weighed if row.names), found.nothing)
+    told = []
+    points = _points_that_miss(site, problem, least_bad)
+    if points:
+        told.append(
+            f"hit again, with care, point {', '.join(points)}, where even the least bad explanation misses most, and a "
+            "point or two beside it"
+        )
+    if problem.baseline is None:
+        told.append("test the specimen without what was added to it (bare, dry), as a baseline")
+    if not told:
+        told.append(
+            "take the specimen down, mount it anew and repeat the test: does the gap come back the same?"
+        )
+    if len(test.points) < FEW and spec.imported is None:
+        told.append("measure at five points or more: where shapes miss says where to look")
+    if spec.clamped and spec.imported is None:
+        told.append("hang the specimen up free and test it: is the gap the clamp's?")
+    where = f"{site.title}: " if site.title else ""
+    return tuple(NextTest(where + text, (), float("nan"), whole=False) for text in told)
+
+
+def _points_that_miss(site: Site, problem: Problem, explanation: Explanation) -> list[str]:
+    """Return the numbers of the points at which the constants are off the most."""
+    test = problem.measured
+    if not test.has_shapes:
+        return []
+    if len(site.posed.specimens) > 1:
+        return []
+    comparison = explanation.best.comparison
+    rows = comparison.channel == SHAPES
+    left = (explanation.best.left_over / np.sqrt(comparison.variance))[rows].reshape(test.constants.shape)
+    if not np.isfinite(left).all():
+        return []
+    roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
+    places, group = np.unique(roving, return_inverse=True)
+    each = _rms_by(left, group, len(places))
+    bar = STANDS_OUT * float(np.sqrt(np.mean(left**2)))
+    worst = [i for i in np.argsort(-each)[:NAMED].tolist() if each[i] > bar]
+    return [str(test.nodes[places[i]]) for i in worst]
+
+
+def _rms_by(values: FloatArray, group: np.ndarray, count: int) -> FloatArray:
+    total = np.bincount(group, np.mean(values**2, axis=1), minlength=count)
+    return np.asarray(np.sqrt(total / np.maximum(np.bincount(group, minlength=count), 1)))
