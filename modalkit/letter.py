@@ -145,10 +145,11 @@ def _closes(diagnosis: Diagnosis) -> str:
     )
     if diagnosis.verdict == "none":
         return f"nothing to close; r.m.s. {what} {say(shrink.before)}, noise floor {say(shrink.floor)}"
-    text = (
-        f"r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted, "
-        f"{say(shrink.held_after)} on modes held out (noise floor {say(shrink.floor)})"
-    )
+    who = "with the least bad explanation, " if diagnosis.verdict == "unknown" else ""
+    text = f"{who}r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted"
+    if not math.isfinite(shrink.held_after):
+        return f"{text} (noise floor {say(shrink.floor)}); with one mode none can be held out, so that proves nothing"
+    text += f", {say(shrink.held_after)} on modes held out (noise floor {say(shrink.floor)})"
     others = [f"tolerances alone {say(shrink.held_nuisance)}" + _stretched(shrink)]
     if shrink.held_runner_up is not None:
         others.insert(0, f"runner-up {say(shrink.held_runner_up)}")
@@ -174,7 +175,8 @@ def _stretched(shrink: Shrink) -> str:
 
 
 def _sure(diagnosis: Diagnosis) -> str:
-    chance = f"chance alone makes such a gap with p = {diagnosis.p_value:.1g}"
+    least = f"p = {diagnosis.p_value:.1g}" if diagnosis.p_value > 0 else "p below 1e-300"
+    chance = f"chance alone makes such a gap with {least}"
     if diagnosis.verdict == "none":
         return chance
     if diagnosis.verdict == "unknown":

@@ -66,14 +66,14 @@ def check_effect(
     predictor: Predictor, name: str, values: Mapping[str, Any], *, where: str = "--effect"
 ) -> None:
     """Refuse an effect that does not fit the model, and parameters that do not fit the effect."""
-    effect = LIBRARY[name]
+    effect, tested = LIBRARY[name], _as_tested(predictor)
     if effect.channel == "measurement" and predictor.spec.kind in effect.models:
         obstacle = None  # what a diagnosis would need of the data is no obstacle to simulating them
     else:
-        obstacle = effect.why_not(_with_damping(predictor))
+        obstacle = effect.why_not(tested)
     if obstacle is not None:
         raise StudyError(f"{where} {name}: {obstacle}")
-    takes = {p.name: p for p in effect.parameters(predictor)}
+    takes = {p.name: p for p in effect.parameters(tested)}
     if set(values) != {*takes, *effect.labels}:
         told = [f"{label} (node numbers)" for label in effect.labels]
         wanted = ", ".join([*told, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"
@@ -88,10 +88,11 @@ def check_effect(
             raise StudyError(f"{where} {name}: {p.name} = {values[p.name]:g} {p.unit} must be positive")
 
 
-def _with_damping(predictor: Predictor) -> Predictor:
-    """Return the predictor of a test in which damping was measured, as it is in one that is simulated."""
+def _as_tested(predictor: Predictor) -> Predictor:
+    """Return the predictor of a test that found some modes with their damping, as one of the simulated data will."""
     test = predictor.measured
-    return predictor.looking(replace(test, damping=np.full(len(test.frequency), 0.01)))
+    frequency = test.frequency if len(test.frequency) else predictor.predict(count=5).frequency
+    return predictor.looking(replace(test, frequency=frequency, damping=np.full(len(frequency), 0.01)))
 
 
 def written(value: Any) -> str:

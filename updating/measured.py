@@ -165,9 +165,24 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
         sigma,
         absolute=False,
         repeated=False,
-        warnings=(*placed.warnings, *check_among(placed.points, placed.keys, spec)),
+        warnings=(
+            *placed.warnings,
+            *check_among(placed.points, placed.keys, spec),
+            *_without_sigma(modes, float(options.get("repeatability", 0.0))),
+        ),
         directions=_directions(placed.keys, spec),
         **options,  # type: ignore[arg-type]
+    )
+
+
+def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
+    """Warn where nobody said how well frequencies are known."""
+    missing = int(np.sum(~np.isfinite(modes.frequency_sigma)))
+    if not missing:
+        return ()
+    return (
+        f"{missing} of {len(modes)} frequencies came without a sigma: they are taken to be as good as the stated "
+        f"repeatability, {100 * repeatability:g} %; add a column sigma [Hz] if they are worse",
     )
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any
 
 import pandas as pd
 import typer
 
+from acquisition.errors import InputError
 from modalkit.cli.common import check_once, out, show_figures, show_table, show_warnings, working
 from modalkit.cli.options import Figures
 from modalkit.diagnosing import diagnose_studies, warnings_of
@@ -33,10 +35,12 @@ def diagnose(
         str, typer.Option(help="effects of one and the same size in several studies, comma-separated")
     ] = "",
     json: Annotated[Path | None, typer.Option("--json", help="file for the diagnosis as JSON")] = None,
+    report: Annotated[Path | None, typer.Option(help="file for a report as HTML, figures in it")] = None,
     figures: Figures = None,
 ) -> None:
     """Say where the gap between test and model lies, what causes it, and how far it closes."""
     check_json_place(json)
+    _check_report(report, json)
     check_once(studies)
     names = tuple(name.strip() for name in shared.split(",") if name.strip())
     with working("reading and identifying"):
@@ -47,7 +51,33 @@ def diagnose(
     if json is not None:
         write_json(json, diagnosis_record(diagnosis, warnings_of(sessions)))
         out.print(f"written: {json}", markup=False)
-    show_figures(figures, lambda: diagnosis_figures(diagnosis, *sessions))
+    if report is not None or figures is not None:
+        _draw(diagnosis, sessions, report, figures)
+
+
+def _check_report(report: Path | None, json: Path | None) -> None:
+    """See that the report has a place of its own, before work begins whose result would be lost."""
+    if report is None:
+        return
+    from modalkit.report import check_report_place
+
+    if json is not None and report.resolve() == json.resolve():
+        raise InputError(f"{report}: asked for as report and as JSON; give each its own file")
+    check_report_place(report)
+
+
+def _draw(diagnosis: Diagnosis, sessions: list[Session], report: Path | None, figures: Path | None) -> None:
+    """Write the report and the figures, drawn once."""
+    from modalkit.report import diagnosis_report, drawings, write_report
+
+    with working("drawing"):
+        drawn = drawings(diagnosis, sessions)
+    if report is not None:
+        with working("writing the report"):
+            page = diagnosis_report(diagnosis, sessions, when=datetime.now().astimezone(), drawn=drawn)
+            write_report(report, page)
+        out.print(f"report: {report}", markup=False)
+    show_figures(figures, lambda: {name: drawing.figure for name, drawing in drawn.items()})
 
 
 def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
@@ -86,14 +116,10 @@ def _not_examined(effects: dict[str, str]) -> str:
 
 
 def diagnosis_figures(diagnosis: Diagnosis, *sessions: Session) -> dict[str, Any]:
-    """Draw a diagnosis, and the test it rests on; of several, the first."""
-    from modalkit.figures import diagnosis_figure, frf_figure
+    """Draw a diagnosis, and the tests it rests on."""
+    from modalkit.report import drawings
 
-    session = sessions[0]
-    figures = {"diagnosis": diagnosis_figure(diagnosis, session.case)}
-    if session.identified is not None:
-        figures["frf"] = frf_figure(session.identified.frfs, session.identified)
-    return figures
+    return {name: drawing.figure for name, drawing in drawings(diagnosis, sessions).items()}
 
 
 def effects(

@@ -157,6 +157,9 @@ def _list(axes: Axes, diagnosis: Diagnosis, tall: float) -> None:
     height = tall + 0.2
     axes.set_xlim(0, RIGHT)
     axes.set_ylim(-height, 0)
+    if diagnosis.verdict == "none":
+        axes.text(0, -0.35, "none: there is no cause to place", fontsize=TEXT, color=MUTED)
+        return
     alike = np.ptp([z.probability for z in diagnosis.where.zones] or [0.0]) < ALIKE
     zones = sorted(diagnosis.where.zones, key=lambda z: 0.0 if alike else -z.probability)
     left, right = 1.1, 0.75

@@ -80,11 +80,16 @@ def _own(diagnosis: Diagnosis, session: Session, best: Fitted, several: bool) ->
     title = session.case.title
     name = f"{title}: " if several else ""
     errors = mode_errors(diagnosis, session.case, best=best)
+    shown = (
+        "Error of every mode of the model as it stands (rings)"
+        if errors.after is None
+        else "Error of every mode before (rings) and after the most probable explanation (dots)"
+    )
+    bands = "" if errors.floor is None else ", with the bands that noise, and noise with the tolerances, fill"
     found = {
         "gap": Drawing(
             gap_figure(diagnosis, errors, title=title if several else ""),
-            f"{name}Error of every mode before (rings) and after the most probable explanation (dots), with the bands "
-            "that noise, and noise with the tolerances, fill.",
+            f"{name}{shown}{bands}.",
         )
     }
     if session.identified is None:

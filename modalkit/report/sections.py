@@ -72,6 +72,8 @@ def the_place(diagnosis: Diagnosis) -> Raw:
     where = diagnosis.where
     rest = {n: v for n, v in where.channels.items() if n != "none"}
     parts = [element("p", where.band)] if where.band else []
+    if diagnosis.verdict == "none":
+        return joined(*parts, _modes(diagnosis))
     parts.append(
         table(
             "Which part of the model or the measurement, given that there is a cause.",
@@ -192,7 +194,7 @@ def _explanation(row: Ranked) -> list[Cell | Raw]:
         told.append(f"{said} = {quantity(estimate)}{bound}")
     if not row.plausible and not any(e.at_bound for e in row.parameters.values()):
         told.append("(hardly believable)")
-    near = [" + ".join(names) for names in row.equivalents[:5]]
+    near = [" + ".join(names) for names in row.equivalents[:3]]
     if len(row.equivalents) > len(near):
         near.append(f"{len(row.equivalents) - len(near)} more")
     return [" + ".join(row.effects), row.probability, row.p_value, "\n".join(told), "\n".join(near)]

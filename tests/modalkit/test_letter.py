@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from modalkit.letter import letter
+from modalkit.letter import letter, separated
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.result import Closed, Gap, NextTest, ParameterEstimate, Ranked, Shrink, Where
 
@@ -68,14 +68,14 @@ def test_five_lines_for_every_verdict(diagnosis: Diagnosis) -> None:
 def test_a_named_cause_says_its_size_its_place_and_its_test() -> None:
     said = lines(NAMED)
     assert "sensor_mass" in said["Cause"]
-    assert "mass 0.0123 kg [0.0119, 0.0127]" in said["Cause"]
+    assert "mass 12.3 g (11.9 to 12.7)" in said["Cause"]
     assert LIBRARY["sensor_mass"].summary in said["Cause"]
-    assert "mass (97 %), at x = 0.376 m (nearest test point 5)" in said["Where"]
+    assert "mass (97 %), at x = 376 mm (nearest test point 5)" in said["Where"]
     assert "5 % -> 0.1 % fitted, 0.2 % on modes held out (noise floor 0.05 %)" in said["Closes"]
     assert "runner-up 1.5 %" in said["Closes"]
     assert "tolerances alone 4 %" in said["Closes"]
-    assert "closes 99 % [97, 100] of what can be closed" in said["Closes"]
-    assert "97.0 %" in said["Sure"]
+    assert "closes 99 % (97 to 100) of what can be closed" in said["Closes"]
+    assert "97 % probable" in said["Sure"]
     assert "next E 2 %" in said["Sure"]
     assert "p = 1e-12" in said["Sure"]
     assert LIBRARY["sensor_mass"].separated_by in said["Next"]
@@ -85,7 +85,7 @@ def test_a_pair_is_named_with_both() -> None:
     both = Ranked(("E", "sensor_mass"), 0.99, (), {**E.parameters, **SENSOR.parameters}, True, 0.5)
     said = lines(replace(NAMED, sets=(both.effects,), ranking=(both,)))
     assert said["Cause"].startswith("Cause:   E + sensor_mass.")
-    assert "factor 0.9 [0.89, 0.91]; mass 0.0123 kg" in said["Cause"]
+    assert "E factor 0.9 (0.89 to 0.91); mass 12.3 g" in said["Cause"]
 
 
 def test_an_effect_without_parameters_and_one_from_outside() -> None:
@@ -97,9 +97,9 @@ def test_an_effect_without_parameters_and_one_from_outside() -> None:
 
 def test_a_class_lists_all_of_it_and_the_test_that_splits_it() -> None:
     said = lines(SPLIT)
-    assert "cannot tell apart: E, density + length" in said["Cause"]
+    assert "cannot tell apart: E (x 0.9), density + length" in said["Cause"]
     assert "spread over the whole structure" in said["Where"]
-    assert "98.0 %" in said["Sure"]
+    assert "98 % probable together" in said["Sure"]
     assert "weigh the specimen: separates E from density by 8 sigma" in said["Next"]
     without = lines(replace(SPLIT, next_test=()))["Next"]
     assert LIBRARY["density"].separated_by in without
@@ -116,7 +116,7 @@ def test_the_unknown_is_not_dressed_up() -> None:
     said = lines(UNKNOWN)
     assert "unknown" in said["Cause"]
     assert "do not trust it" in said["Where"]
-    assert "0.376" not in said["Where"]
+    assert "376" not in said["Where"]
     assert "97" not in said["Sure"]
     assert "modes that miss most" in said["Next"]
 
@@ -146,7 +146,50 @@ def test_a_place_on_a_plate_has_two_coordinates_and_its_mirror_images() -> None:
     corner = (0.3, 0.15, 0.0)
     found = replace(TIP, location=corner, locations=(corner,), points=(7, 9))
     said = lines(replace(NAMED, where=found))["Where"]
-    assert said.endswith("at x = 0.300 m, y = 0.150 m (nearest test point 7, 9)")
+    assert said.endswith("at x = 300, y = 150 mm (nearest test points 7, 9)")
     both = replace(TIP, location=corner, locations=(corner, (0.3, 0.05, 0.0)), points=())
     said = lines(replace(NAMED, where=both))["Where"]
-    assert said.endswith("at x = 0.300 m, y = 0.150 m and x = 0.300 m, y = 0.050 m")
+    assert said.endswith("at x = 300, y = 150 mm and x = 300, y = 50 mm")
+
+
+def test_effects_that_are_equal_by_physics_are_called_so() -> None:
+    gain = Ranked(("calibration_gain",), 0.5, (("section_scale",),), {}, True, 0.5)
+    width = Ranked(("section_scale",), 0.49, (("calibration_gain",),), {}, True, 0.5)
+    said = lines(replace(SPLIT, sets=(gain.effects, width.effects), ranking=(gain, width), next_test=()))
+    assert "no hammer test" not in said["Next"]
+    assert "scale every FRF and nothing else" in said["Cause"]
+    assert "calibrate the chain" in said["Next"]
+
+
+def test_a_size_at_the_end_of_its_range_is_called_unlikely() -> None:
+    heavy = replace(SENSOR, parameters={"sensor_mass.mass": replace(MASS, at_bound=True)}, plausible=False)
+    said = lines(replace(NAMED, ranking=(heavy, E)))["Cause"]
+    assert "the end of its range" in said
+    assert "hardly believable" in said
+
+
+def test_tolerances_that_would_have_to_be_absurd_are_said_to_be() -> None:
+    said = lines(replace(NAMED, shrink=replace(NAMED.shrink, stretch=28.0)))["Closes"]
+    assert (
+        "tolerances alone 4 % (kept within 3 sigma; to explain it they would have to be 28 sigma off)" in said
+    )
+
+
+def test_with_one_mode_nothing_is_held_out() -> None:
+    nan = float("nan")
+    single = replace(NAMED.shrink, held_after=nan, held_nuisance=nan, held_runner_up=nan, closed=None)
+    assert "none can be held out" in lines(replace(NAMED, shrink=single))["Closes"]
+
+
+def test_all_data_together_are_told_in_standard_deviations() -> None:
+    said = lines(replace(NAMED, shrink=replace(NAMED.shrink, metric="combined", before=1200.0, after=90.0)))
+    assert "misfit of all data 12 sigma -> 0.9 sigma fitted" in said["Closes"]
+
+
+def test_a_test_says_which_it_tells_from_which() -> None:
+    a, b, c = ("E",), ("density",), ("length", "thickness")
+    whole = NextTest("weigh", ("E", "density"), 5.2, ((a, b), (a, c), (b, c)))
+    assert separated(whole) == "separates all that is left by 5 sigma"
+    one = NextTest("weigh", ("E", "density"), 5.2, ((a, b), (c, b)), whole=False)
+    assert separated(one) == "separates density from E and length + thickness by 5 sigma"
+    assert separated(NextTest("look", (), float("nan"), whole=False)) == ""

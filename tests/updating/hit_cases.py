@@ -46,7 +46,7 @@ class Bench:
 
 
 ROD = Bench(
-    BEAM.with_elements(20), BEAM.with_elements(60), POINTS[:, None], (5,), (10.0, 1700.0), 5120.0, 3.2, 6e-4
+    BEAM.with_elements(20), BEAM.with_elements(60), POINTS[:, None], (5,), (10.0, 1700.0), 5120.0, 1.6, 6e-4
 )
 SHEET = Bench(
     replace(PLATE, regions=()),
@@ -55,7 +55,7 @@ SHEET = Bench(
     (20,),
     (5.0, 480.0),
     1280.0,
-    6.4,
+    4.8,
     2e-3,
 )
 
@@ -148,8 +148,8 @@ def hits_to_frfs(
     flat[:, : true.shape[1]] = bench.points
     geometry = Geometry(tuple(range(1, count + 1)), flat)
     plan = HammerPlan(
-        rate=bench.rate, samples=round(bench.rate * bench.duration), hits=5, width=bench.width, response_noise=3e-4,
-        position_sigma=5e-4, decay=2.0 + faults.decay, gain=faults.gain, delay=faults.delay, pre_trigger=0.02,
+        rate=bench.rate, samples=round(bench.rate * bench.duration), hits=3, width=bench.width, response_noise=3e-4,
+        position_sigma=5e-4, decay=3.0 + faults.decay, gain=faults.gain, delay=faults.delay, pre_trigger=0.02,
     )  # fmt: skip
     if roving == "hammer":
         system = modal_system(model, seen=places, hit=ends, responses=stay, points=names)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from effect_cases import LOOK, THIN, form, imported
+from effect_cases import CHANGES, CORNERS, LOOK, THIN, form, imported
 from imported_cases import DEPTH as THICKNESS
 from imported_cases import LENGTH, WIDTH, beam_matrices, clamp
 from scipy import linalg, optimize
@@ -14,9 +14,10 @@ from updating_cases import BEAM, PLATE, POINTS, ExactBeam, blank
 
 from updating import LIBRARY, Material, Predictor, Spec
 from updating.effects.axial_load import buckling_load
-from updating.effects.box import mirror_images
+from updating.effects.box import SOFT, mirror_images, shares
 from updating.effects.mass import sensor_places
-from updating.models import PointMass, Region, build_structure
+from updating.models import FieldStructure, PointMass, Region, build_structure
+from updating.models.fields import Sparse
 from updating.models.state import State
 
 EI = 210e9 * BEAM.width * BEAM.thickness**3 / 12
@@ -190,6 +191,96 @@ def test_a_soft_box_has_the_frequencies_of_its_compliance(loss: float) -> None:
     found = predicted("local_stiffness", "beam", **values)
     worst = np.abs(found - exact).max() / np.abs(exact - plain).max()
     assert worst < LIBRARY["local_stiffness"].fidelity
+
+
+SPOTS = (
+    (0.13, 0.5, 0.13, 0.7),
+    (0.53, 0.15, 0.10, 0.8),
+    (0.27, 0.9, 0.08, 0.85),
+    (0.4, 0.5, 0.03, 0.95),
+    (0.0, 0.4, 0.1, 0.85),
+    (0.66, 1.0, 0.15, 0.8),
+)
+"""Places, extents (in lengths and widths) and losses of soft spots; none has more compliance than the prior admits."""
+
+
+def spotted(predictor: Predictor, spot: tuple[float, ...]) -> dict[str, float]:
+    length, width = predictor.spec.length, predictor.spec.width
+    return {"x": spot[0] * length, "y": spot[1] * width, "extent": spot[2] * length, "loss": spot[3]}
+
+
+def off_by(predictor: Predictor, spot: dict[str, float], beside: dict[str, dict[str, float]]) -> float:
+    """Worst error of twelve modes on the reduced basis beside the full matrices, in shares of the spot's shift."""
+    structure = predictor.reduced.structure
+    assert isinstance(structure, FieldStructure)
+    k, m, released, state = structure.matrix("stiffness"), structure.matrix("mass"), frozenset[str](), State()
+    for name, values in beside.items():
+        change = CHANGES[name](structure, values)
+        k, m = Sparse(k + change.get("stiffness", 0 * k)), Sparse(m + change.get("mass", 0 * m))
+        released |= change.get("released", frozenset())
+        state = state.plus(LIBRARY[name].state(predictor, values))
+    first = structure.rigid_modes
+    soft = CHANGES["local_stiffness"](structure, spot)["stiffness"]
+    full = [
+        np.sqrt(structure.eigen(first + 12, stiffness=Sparse(s), mass=m, released=released)[0][first:])
+        for s in (k, k + soft)
+    ]
+    states = (state, state.plus(LIBRARY["local_stiffness"].state(predictor, spot)))
+    found = [predictor.predict(s, count=12).frequency * 2 * np.pi for s in states]
+    shift = np.abs(np.log(full[1] / full[0]))
+    return float(np.abs(np.log(found[1] / found[0]) - np.log(full[1] / full[0])).max() / shift.max())
+
+
+@pytest.fixture(scope="module")
+def cantilever() -> Predictor:
+    return Predictor(replace(PLATE, elements=(20, 10)), blank(CORNERS))
+
+
+@pytest.mark.parametrize("spot", SPOTS)
+def test_curvature_gathers_in_a_soft_spot_of_a_plate(cantilever: Predictor, spot: tuple[float, ...]) -> None:
+    assert off_by(cantilever, spotted(cantilever, spot), {}) < 0.02
+
+
+def test_a_soft_spot_of_a_free_plate() -> None:
+    free = Predictor(replace(PLATE, elements=(20, 10), clamped=()), blank(CORNERS))
+    assert max(off_by(free, spotted(free, spot), {}) for spot in SPOTS) < 0.025
+
+
+@pytest.mark.parametrize(
+    ("beside", "most"),
+    [
+        ({"sensor_mass": {"mass": 0.02}}, 0.02),
+        ({"clamp_rotation": {"stiffness": 200.0}}, 0.03),
+        ({"clamp_translation": {"stiffness": 1e6}}, 0.05),
+        ({"clamp_rotation": {"stiffness": 200.0}, "clamp_translation": {"stiffness": 1e6}}, 0.05),
+    ],
+    ids=["sensor", "turning", "shifting", "both"],
+)
+def test_a_soft_spot_beside_another_effect(
+    cantilever: Predictor, beside: dict[str, dict[str, float]], most: float
+) -> None:
+    """Within the fidelity too where a clamp is released, unless the spot lies on the clamp itself."""
+    assert most <= LIBRARY["local_stiffness"].fidelity
+    away = [spot for spot in SPOTS if spot[0] > 0]
+    assert max(off_by(cantilever, spotted(cantilever, spot), beside) for spot in away) < most
+
+
+def test_a_soft_spot_follows_the_modulus_of_the_plate_it_is_in(cantilever: Predictor) -> None:
+    """An accepted factor of E stiffens the place and its surroundings alike: all frequencies scale by its root."""
+    spot = spotted(cantilever, SPOTS[2])
+    stiffer = cantilever.looking(cantilever.measured, (lambda _: State(factors={"E": 1.3}),))
+    both = [p.predict(LIBRARY["local_stiffness"].state(p, spot), count=8) for p in (cantilever, stiffer)]
+    assert both[1].frequency == pytest.approx(np.sqrt(1.3) * both[0].frequency, rel=1e-9)
+
+
+def test_a_plate_that_is_its_own_basis_lacks_nothing() -> None:
+    coarse = Predictor(replace(PLATE, elements=(4, 3)), blank(CORNERS))
+    spot = spotted(coarse, SPOTS[0])
+    (found,) = LIBRARY["local_stiffness"].state(coarse, spot).stiffness
+    plain = -coarse.reduced.weighted("stiffness", spot["loss"] * shares(coarse, spot, soft=SOFT))
+    n = coarse.reduced.ranks[frozenset()]
+    assert n == coarse.reduced.structure.unknowns
+    assert found[:n, :n] == pytest.approx(plain[:n, :n], abs=1e-9 * np.abs(plain[:n, :n]).max())
 
 
 def test_regions_of_imported_matrices_soften_and_damp() -> None:

@@ -13,8 +13,8 @@ from updating.effects.points import indices
 from updating.measured import turn
 
 NAMES = (
-    "E", "section_scale", "sensor_mass", "local_stiffness", "uniform_damping", "exponential_window", "calibration_gain",
-    "time_delay", "polarity", "swapped_points", "position_error",
+    "E", "section_scale", "uniform_damping", "exponential_window", "calibration_gain", "time_delay", "polarity",
+    "swapped_points", "position_error",
 )  # fmt: skip
 OFFERED = [LIBRARY[name] for name in NAMES]
 SAMPLE = 1 / ROD.rate
@@ -22,13 +22,11 @@ SAMPLE = 1 / ROD.rate
 ON_BEAMS: dict[str, tuple[Faults, str]] = {
     "a part of a sample late": (Faults(delay=0.3 * SAMPLE), "time_delay"),
     "three samples late": (Faults(delay=3 * SAMPLE), "time_delay"),
-    "half a sample early": (Faults(delay=-0.5 * SAMPLE), "time_delay"),
     "one point reversed": (Faults(turned=(2,)), "polarity"),
     "two points reversed": (Faults(turned=(1, 4)), "polarity"),
     "neighbours exchanged": (Faults(exchanged=(2, 3)), "swapped_points"),
     "far points exchanged": (Faults(exchanged=(1, 4)), "swapped_points"),
     "10 mm beside": (Faults(moved={3: (0.010,)}), "position_error"),
-    "20 mm beside": (Faults(moved={2: (-0.020,)}), "position_error"),
 }
 
 
@@ -72,11 +70,8 @@ def test_a_fault_on_a_beam_is_named(fault: str) -> None:
     ("fault", "roving", "sensors", "baseline"),
     [
         ("two points reversed", "accelerometer", (5,), False),
-        ("10 mm beside", "accelerometer", (5,), False),
-        ("neighbours exchanged", "hammer", (3, 5), False),
         ("three samples late", "hammer", (3, 5), False),
         ("far points exchanged", "accelerometer", (3, 5), True),
-        ("one point reversed", "hammer", (5,), True),
     ],
 )
 def test_a_fault_is_named_whatever_roves(
@@ -92,9 +87,7 @@ def test_a_fault_is_named_whatever_roves(
     ("roving", "sensors", "baseline"),
     [
         ("hammer", (5,), False),
-        ("accelerometer", (5,), False),
-        ("hammer", (3, 5), False),
-        ("hammer", (5,), True),
+        ("accelerometer", (3, 5), True),
     ],
 )
 def test_a_sound_measurement_has_no_fault(roving: Roving, sensors: tuple[int, ...], baseline: bool) -> None:
@@ -103,8 +96,6 @@ def test_a_sound_measurement_has_no_fault(roving: Roving, sensors: tuple[int, ..
 
 ON_PLATES = {
     "three points reversed": (Faults(turned=(3, 10, 17)), "polarity"),
-    "exchanged": (Faults(exchanged=(6, 7)), "swapped_points"),
-    "10 mm beside": (Faults(moved={7: (0.007, 0.007)}), "position_error"),
     "20 mm beside, on an edge": (Faults(moved={13: (-0.020, 0.0)}), "position_error"),
 }
 
@@ -125,7 +116,6 @@ def test_a_sensor_upside_down_is_named() -> None:
     found = diagnose(case, library=OFFERED)
     assert (found.verdict, found.sets) == ("named", (("polarity",),))
     assert found.where.points == (3,)
-    assert found.ranking[0].parameters["polarity.role"].value == "seen"
 
 
 def test_the_level_alone_is_the_calibration_or_the_section() -> None:
@@ -170,14 +160,17 @@ def test_a_point_is_sought_on_the_structure_only() -> None:
 
 def test_points_are_named_by_their_nodes() -> None:
     case = on_beam("one point reversed")
-    renamed = replace(case, measured=replace(case.measured, nodes=(70, 12, 3, 999, 5)))
-    found = diagnose(renamed, library=OFFERED)
-    assert found.where.points == (12,)
-    assert indices(renamed.measured, (999, 70)) == [3, 0]
+    other = dict(zip(case.measured.nodes, (70, 12, 3, 999, 50), strict=True))
+    nodes = tuple(other[n] for n in case.measured.nodes)
+    renamed = replace(case, measured=replace(case.measured, nodes=nodes))
+    assert diagnose(renamed, library=OFFERED).where.points == (other[2],)
+    assert indices(renamed.measured, nodes[::-1]) == [4, 3, 2, 1, 0]
 
 
 def test_an_accepted_fault_is_not_found_again() -> None:
     case = replace(on_beam("one point reversed"), accepted=(("polarity", {"points": (2,)}),))
     assert diagnose(case, library=OFFERED).verdict == "none"
     predictor = Predictor(case.spec, case.measured)
-    assert LIBRARY["polarity"].state(predictor, {"points": (2,)}).point_gains == {("hit", 1): -1.0}
+    (reversed_point,) = indices(case.measured, (2,))
+    state = LIBRARY["polarity"].state(predictor, {"points": (2,)})
+    assert state.point_gains == {("hit", reversed_point): -1.0}

@@ -70,11 +70,16 @@ class Candidate:
 
     @property
     def doubt(self) -> Doubt:
-        """What the effects leave in doubt beside their parameters."""
+        """What the effects leave in doubt beside their parameters, whatever the specimen."""
         return Doubt(
             max((effect.fidelity for effect in self.effects), default=0.0),
             max((effect.damping_doubt for effect in self.effects), default=0.0),
         )
+
+    def doubt_on(self, predictor: Predictor) -> Doubt:
+        """Return what they leave in doubt on a specimen and its test."""
+        fidelity = max((effect.fidelity_on(predictor) for effect in self.effects), default=0.0)
+        return Doubt(fidelity, self.doubt.damping)
 
     def stage(self, predictor: Predictor) -> Predictor:
         """Return the predictor the effects act on."""

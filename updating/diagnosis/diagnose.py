@@ -13,6 +13,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from updating.baseline import correct, doubt_in_mass
 from updating.case import Case
+from updating.diagnosis.doubtful import remarks_on_doubtful
 from updating.diagnosis.gates import on_levels, on_modes, remarks_on, shortfall
 from updating.diagnosis.goodness import p_value
 from updating.diagnosis.next_test import propose
@@ -171,12 +172,15 @@ def _corrected(before: Paired) -> Callable[[Predictor], State]:
 
 
 def _locate(problem: Posed, found: Search, *, significant: bool) -> Where:
-    """Say where the cause sits, on the first of several specimens."""
+    """Say where the cause sits; of several specimens, on the first on which all of the best explanation acts."""
     if not isinstance(problem, Several):
         return locate(problem.specimens[0], found, significant=significant)
-    rows = tuple(replace(row, explanation=problem.restrict(row.explanation)) for row in found.weighed)
-    part = replace(found, nothing=problem.restrict(found.nothing), weighed=rows)
-    return locate(problem.specimens[0], part, significant=significant)
+    leader = next((row.explanation for row in found.weighed if row.names), found.nothing)
+    acting = [len(problem.restrict(leader, i).names) for i in range(len(problem.specimens))]
+    i = int(np.argmax(acting))
+    rows = tuple(replace(row, explanation=problem.restrict(row.explanation, i)) for row in found.weighed)
+    part = replace(found, nothing=problem.restrict(found.nothing, i), weighed=rows)
+    return locate(problem.specimens[i], part, significant=significant, whole=found)
 
 
 def _gap(problem: Posed, titles: tuple[str, ...]) -> Gap:
@@ -238,6 +242,7 @@ def _remarks(problem: Posed, found: Search) -> list[str]:
             "every effect was weighed with and without them"
         )
     for one in problem.specimens:
+        remarks += remarks_on_doubtful(one)
         if one.shortfall is not None:
             remarks += remarks_on(one.shortfall, one.measured, one.predictor.spec)
         remarks += on_modes(one.measured, one.predictor.predict(at_least=one.reach).frequency, one.order)

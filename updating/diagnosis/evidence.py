@@ -8,6 +8,7 @@ several peaks, and for a parameter the data do not see, where a Laplace approxim
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.special import logsumexp
@@ -17,6 +18,7 @@ from scipy.stats import t as student
 from acquisition.arrays import FloatArray
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.fit import Peak, Point, climb, evaluate
+from updating.diagnosis.goodness import p_value
 from updating.diagnosis.posed import Posed
 
 PRIOR_SHARE = 0.25
@@ -37,8 +39,17 @@ DRAFT = 512
 ENOUGH = 10.0
 """Effective number of samples that is enough."""
 
+TRIED, FEW = 12, 4
+"""From how many of the starting places at most, and for how many rounds, a climb is tried..."""
+
 CLIMBS = 3
-"""How many of the starting places are climbed from."""
+"""...and how many of these climbs go on to the top."""
+
+SAME_PLACE = 0.02
+"""Peaks nearer to each other than this in every prior quantile are one [-]."""
+
+BEHIND = 12.0
+"""Peaks whose log-likelihood lies further behind the highest are left out [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +90,11 @@ class Explanation:
         """Names of the effects."""
         return self.candidate.names
 
+    @cached_property
+    def p_value(self) -> float:
+        """How well the best parameters fit: the p-value of chi-squared over all data and each channel [-]."""
+        return p_value(self.best, self.samples.shape[1])
+
 
 def explain(
     problem: Posed,
@@ -87,6 +103,7 @@ def explain(
     starts: list[FloatArray] | None = None,
     density: int = 16,
     draft: bool = False,
+    climbs: int = CLIMBS,
 ) -> Explanation:
     """Weigh a candidate.
 
@@ -103,6 +120,8 @@ def explain(
     draft : bool
         Whether the samples are weighed by the parabolas through the peaks instead of by predictions: enough to
         tell the hopeless from the rest.
+    climbs : int
+        From how many starting places, those that a short climb finds best, the search goes on to the top.
 
     Returns
     -------
@@ -113,7 +132,7 @@ def explain(
         point = evaluate(problem, candidate, np.zeros(0))
         evidence = point.marginal.log_likelihood + candidate.log_weight
         return Explanation(candidate, evidence, point, np.zeros((1, 0)), np.ones(1))
-    peaks = _peaks(problem, candidate, places)
+    peaks = _peaks(problem, candidate, places, climbs)
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
     if draft:
@@ -189,17 +208,26 @@ def _moments(problem: Posed, candidate: Candidate, samples: FloatArray, weights:
     return Peak(best.point, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
 
 
-def _peaks(problem: Posed, candidate: Candidate, places: list[FloatArray]) -> list[Peak]:
-    if len(places) > CLIMBS:
+def _peaks(
+    problem: Posed, candidate: Candidate, places: list[FloatArray], climbs: int
+) -> list[Peak]:
+    if len(places) > climbs:
         looks = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
-        places = [places[i] for i in np.argsort(looks)[::-1][:CLIMBS]]
-    found = [climb(problem, candidate, place) for place in places]
-    found.sort(key=lambda p: -p.point.marginal.log_likelihood)
+        nearest = [places[i] for i in np.argsort(looks)[::-1][:TRIED]]
+        tried = [climb(problem, candidate, place, rounds=FEW) for place in nearest]
+        tried.sort(key=lambda p: -p.point.marginal.log_likelihood)
+        places = [peak.point.coordinates for peak in _apart(tried)[:climbs]]
+    found = _apart([climb(problem, candidate, place) for place in places])
+    top = found[0].point.marginal.log_likelihood
+    return [peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < BEHIND]
+
+
+def _apart(peaks: list[Peak]) -> list[Peak]:
+    """Return the peaks that are not the same as a higher one, the highest first."""
     kept: list[Peak] = []
-    for peak in found:
-        near = any(np.abs(peak.point.coordinates - k.point.coordinates).max() < 0.02 for k in kept)
-        behind = found[0].point.marginal.log_likelihood - peak.point.marginal.log_likelihood
-        if not kept or (not near and behind < 12):
+    for peak in sorted(peaks, key=lambda p: -p.point.marginal.log_likelihood):
+        here = peak.point.coordinates
+        if all(np.abs(here - other.point.coordinates).max() >= SAME_PLACE for other in kept):
             kept.append(peak)
     return kept
 

@@ -94,14 +94,23 @@ def evaluate(
 
 def sensitivities(problem: Posed, candidate: Candidate, point: Point) -> FloatArray:
     """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
-    columns = []
+    return _slopes(problem, candidate, point, None)[0]
+
+
+def _slopes(
+    problem: Posed, candidate: Candidate, point: Point, keep: BoolArray | None
+) -> tuple[FloatArray, FloatArray]:
+    """Return the change of the prediction (n, k) and that of the log-likelihood (k,) per prior quantile."""
+    columns, rises = [], []
     for i, u in enumerate(point.coordinates):
         step = STEP if u < 0.5 else -STEP
         moved = point.coordinates.copy()
         moved[i] += step
         there = problem.at(candidate, moved, point.about)
         columns.append((point.comparison.residual - there.residual) / step)
-    return np.stack(columns, axis=1) if columns else np.zeros((len(point.comparison.residual), 0))
+        rises.append((marginal(there, keep).log_likelihood - point.marginal.log_likelihood) / step)
+    count = len(point.comparison.residual)
+    return np.stack(columns, axis=1) if columns else np.zeros((count, 0)), np.array(rises)
 
 
 def climb(
@@ -110,7 +119,7 @@ def climb(
     start: FloatArray,
     *,
     keep: BoolArray | None = None,
-    rounds: int = 12,
+    rounds: int = 20,
 ) -> Peak:
     """Climb to the nearest maximum of the marginal likelihood within the prior's range.
 
@@ -125,15 +134,17 @@ def climb(
     keep : (n,) bool array, optional
         Data to use; left out, all.
     rounds : int
-        Most steps taken.
+        Most steps taken; a climb that is at rest ends before.
     """
     point = evaluate(problem, candidate, start, keep=keep)
     if not point.possible:
         return Peak(point, np.eye(len(start)), np.zeros(len(start)))
     damping, fresh = 1e-3, True
-    columns = sensitivities(problem, candidate, point)
-    normal, gradient = _curvature(point, columns, keep)
+    columns, rise = _slopes(problem, candidate, point, keep)
+    normal, load = _curvature(point, columns, keep)
+    beside = np.nan_to_num(rise - load)  # what the noise's own change with the parameters adds to the slope
     for _ in range(rounds if len(start) else 0):
+        gradient = load + beside
         free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
         if not free.any():
             break
@@ -149,12 +160,16 @@ def climb(
         if abs(gain) < AT_REST or damping > 1e6:
             break
         if gain <= 0 and not fresh:
-            columns, fresh = sensitivities(problem, candidate, point), True
-        normal, gradient = _curvature(point, columns, keep)
+            columns, rise = _slopes(problem, candidate, point, keep)
+            fresh = True
+        normal, load = _curvature(point, columns, keep)
+        if fresh:
+            beside = np.nan_to_num(rise - load)
     if not fresh:
-        columns = sensitivities(problem, candidate, point)
-        normal, gradient = _curvature(point, columns, keep)
-    return Peak(point, normal, gradient)
+        columns, rise = _slopes(problem, candidate, point, keep)
+        normal, load = _curvature(point, columns, keep)
+        beside = np.nan_to_num(rise - load)
+    return Peak(point, normal, load + beside)
 
 
 def _secant(columns: FloatArray, before: Point, now: Point) -> FloatArray:

@@ -7,7 +7,7 @@ from scipy.stats import chi2, norm
 
 from updating.diagnosis.comparison import CHANNELS, SCALES, SHAPES
 from updating.diagnosis.fit import Point
-from updating.diagnosis.gaussian import gaussian, marginal
+from updating.diagnosis.gaussian import gaussian, marginal, whiten
 
 
 def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
@@ -26,8 +26,9 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     Returns
     -------
     dict
-        Each of ``CHANNELS`` where there are such data, ``all`` of them together, and ``doubts``:
-        whether a tolerance or the calibration had to be stretched beyond belief.
+        Each of ``CHANNELS`` where there are such data, ``all`` of them together; ``frequency
+        together`` and ``damping together``, whether all modes lie off alike, as a factor on the whole makes them; and
+        ``doubts``: whether a tolerance or the calibration had to be stretched beyond belief.
     """
     comparison = point.comparison
     if not np.isfinite(point.marginal.log_likelihood):
@@ -48,6 +49,11 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
         parts = [(part, tail) for part, (_, tail) in zip(found, tried, strict=True)]
         freedom = max(int(keep.sum()) - (fitted if name == "all" else 0), 1)
         values[name] = max(min(float(chi2.sf(part.chi2, freedom)), float(tail)) for part, tail in parts)
+    for name in ("frequency", "damping"):
+        together = (comparison.channel == CHANNELS.index(name)).astype(float)[:, None]
+        if together.any():
+            normal, load = whiten(comparison, together, point.marginal.scale)
+            values[f"{name} together"] = float(2 * norm.sf(abs(load[0]) / np.sqrt(normal[0, 0])))
     named = point.marginal.shift[comparison.doubts]
     if len(named):
         values["doubts"] = float(min(1.0, len(named) * 2 * norm.sf(np.abs(named).max())))

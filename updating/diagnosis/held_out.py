@@ -11,15 +11,14 @@ from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.comparison import SHAPES, Comparison
 from updating.diagnosis.evidence import Explanation
-from updating.diagnosis.fit import Point, evaluate, sensitivities
-from updating.diagnosis.gaussian import whiten
+from updating.diagnosis.fit import climb
 from updating.diagnosis.posed import Posed
 
 BELIEVED = 3.0
 """No tolerance, and no calibration, is taken to be further off than this [standard deviations]."""
 
-STEPS = 2
-"""Most steps of a refit, from the best parameters on all data and with the slopes there."""
+ROUNDS = 6
+"""Most steps of a refit from the best parameters on all data."""
 
 FOLDS = 5
 """In so many parts the points are left out."""
@@ -33,7 +32,7 @@ def modes_held_out(posed: Posed, explanation: Explanation) -> FloatArray:
     posed : Problem or Several
         Test and model.
     explanation : Explanation
-        What is refitted without each mode in turn, its doubts within what is believed of them.
+        What is refitted without each mode in turn.
     """
     mode = explanation.best.comparison.mode
     return held_out(posed, explanation, [mode != m for m in np.unique(mode)])
@@ -75,34 +74,21 @@ def _groups(posed: Posed) -> np.ndarray | None:
 
 
 def held_out(posed: Posed, explanation: Explanation, parts: Sequence[BoolArray]) -> FloatArray:
-    """Return measured minus predicted data, those outside each part predicted from those inside, (n,) [-]."""
-    best = explanation.best
-    slopes = np.nan_to_num(sensitivities(posed, explanation.candidate, best))
+    """Return measured minus predicted data, those outside each part predicted from those inside, (n,) [-].
+
+    Tolerances alone are kept within what is believed of them; how far an effect's fit stretches them, its p-value
+    judges. Where nothing is left to fit, the residuals are nan.
+    """
+    best, alone = explanation.best, not explanation.names
     errors = np.zeros(len(best.comparison.residual))
     for keep in parts:
         if not keep.any():
+            errors[~keep] = np.nan
             continue
-        point = _refit(posed, explanation.candidate, best, slopes, keep)
-        errors[~keep] = believed(point.comparison, point.marginal.scale, keep)[~keep]
+        point = climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point
+        left = believed(point.comparison, point.marginal.scale, keep) if alone else point.left_over
+        errors[~keep] = left[~keep]
     return errors
-
-
-def _refit(posed: Posed, candidate: Candidate, best: Point, slopes: FloatArray, keep: BoolArray) -> Point:
-    """Return the most probable point on a part of the data: chord steps from the best on all."""
-    point = evaluate(posed, candidate, best.coordinates, keep=keep)
-    for _ in range(STEPS if slopes.shape[1] else 0):
-        normal, load = whiten(point.comparison, slopes, point.marginal.scale, keep)
-        ridge = 1e-9 * np.trace(normal) * np.eye(len(load)) + 1e-6 * np.eye(len(load))
-        step = np.clip(np.linalg.solve(normal + ridge, load), -0.3, 0.3)
-        there = np.clip(point.coordinates + step, 0.0, 1.0)
-        trial = evaluate(posed, candidate, there, keep=keep)
-        gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
-        if gain <= 0:
-            break
-        point = trial
-        if gain < 0.05:
-            break
-    return point
 
 
 def believed(comparison: Comparison, scale: float, keep: BoolArray | None = None) -> FloatArray:

@@ -44,7 +44,7 @@ HALF = 0.5
 UNEVEN = 0.15
 """...and how much of it is in doubt mode by mode [-]."""
 
-COMPLEX = 1.0
+COMPLEX = 2.5
 """Imaginary part of a mode over its damping ratio times its size, where damping is not proportional [-]."""
 
 MOST_TURNED = 30.0
@@ -147,7 +147,7 @@ class Problem:
         """
         (state,) = self.place(candidate, coordinates)
         told = None if shift is None else shift[: len(self.names)]
-        return self.compare(state, told, doubt=candidate.doubt)
+        return self.compare(state, told, doubt=candidate.doubt_on(self.predictor))
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -287,7 +287,7 @@ class Problem:
     @property
     def doubt_of_accepted(self) -> float:
         """Largest fidelity of the effects put into the model beforehand [-]."""
-        return max((effect.fidelity for effect in self.accepted), default=0.0)
+        return max((effect.fidelity_on(self.predictor) for effect in self.accepted), default=0.0)
 
     def _damping_tolerance(self, now: Prediction) -> FloatArray:
         """Return the doubt in the expected damping of each mode: small where a baseline measured it [-]."""
@@ -392,13 +392,16 @@ class Problem:
             level = level * float(_projection(test.constants / scale, constants * level, axis=None))
         predicted, by = constants * level, by * level[:, :, None]
         variance = (test.constants_sigma**2 + doubt) / scale**2 + SHAPE_FLOOR**2
+        louder = np.zeros((predicted.size, 0))
         if fidelity:
-            # the part of the change that is not a mere change of the mode's level
+            # a change of the modes' levels errs as a whole, what is no mere change of level point by point
             before = self.nominal.constants / scale
-            before = before * _projection(predicted, before, axis=0)
-            variance = variance + (fidelity * (predicted - before)) ** 2
+            share = _projection(predicted, before, axis=0)
+            variance = variance + (fidelity * (predicted - share * before)) ** 2
+            louder = (fidelity * (share - 1) * before).reshape(-1, 1)
         gain = self._level_columns(predicted)
-        own = [self._position_columns(now.along * level), self._sensor_columns(now.along_seen * level)]
+        sensors = self._sensor_columns(now.along_seen * level)
+        own = [self._position_columns(now.along * level), sensors, louder]
         modes = np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel()
         if not test.absolute:
             own, gain = [gain, *own], np.zeros((predicted.size, 0))

@@ -165,8 +165,8 @@ class Shrink:
     before, after : float
         R.m.s. error of the nominal model, and once the best explanation is fitted [%].
     held_before, held_after, held_runner_up, held_nuisance : float
-        The same on modes held out, with the best explanation, the one behind it, and the tolerances alone; in all of
-        them no doubt is taken further than is believed of it [%].
+        The same on modes held out, with the best explanation, the one behind it, and the tolerances alone, none of them
+        taken further than is believed; nan where there is one mode only [%].
     floor : float
         What repeating the test alone would give [%].
     closed : Closed, optional

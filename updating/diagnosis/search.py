@@ -18,7 +18,6 @@ from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.evidence import Explanation, explain, finish
 from updating.diagnosis.fit import sensitivities
 from updating.diagnosis.gaussian import whiten
-from updating.diagnosis.goodness import p_value
 from updating.diagnosis.posed import Posed
 from updating.effects import Effect, Variant
 
@@ -145,15 +144,11 @@ def _merged(rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
     return tuple(sorted(merged, key=lambda row: -row.probability))
 
 
-def _fit(explanation: Explanation) -> float:
-    return p_value(explanation.best, explanation.samples.shape[1])
-
-
 def _weigh(found: list[Explanation]) -> list[Weighed]:
     prior = np.array([PAIR_PRIOR if len(e.names) > 1 else 1.0 for e in found])
     score = np.array([e.log_evidence for e in found]) + np.log(prior)
     probability = np.exp(score - logsumexp(score))
-    return [Weighed(e, float(p), _fit(e)) for e, p in zip(found, probability, strict=True)]
+    return [Weighed(e, float(p), e.p_value) for e, p in zip(found, probability, strict=True)]
 
 
 def _falls_short(problem: Posed, effects: list[Effect]) -> bool:
@@ -163,7 +158,7 @@ def _falls_short(problem: Posed, effects: list[Effect]) -> bool:
     explains the data: then nothing else is needed beside it.
     """
     shear = next((effect for effect in effects if effect.name == "shear"), None)
-    if shear is None or _fit(explain(problem, Candidate((shear,)))) >= REJECTED:
+    if shear is None or explain(problem, Candidate((shear,))).p_value >= REJECTED:
         return False
     count = len(problem.nominal.frequency) + 5
     here = problem.predictor.predict(count=count).frequency
@@ -202,12 +197,15 @@ def _pairs(problem: Posed, singles: list[Explanation]) -> list[Explanation]:
         looks.append((max(reached[i, j], reached[j, i]) + weight, first, second))
     looks = [look for look in looks if np.isfinite(look[0])]
     looks.sort(key=lambda look: -look[0])
+    chosen: dict[frozenset[str], tuple[Explanation, Explanation]] = {}
+    for _, first, second in looks:  # of every two effects, the most promising forms
+        chosen.setdefault(frozenset(first.names + second.names), (first, second))
     found: list[Explanation] = []
-    for _, first, second in looks[:PAIRS]:
+    for first, second in list(chosen.values())[:PAIRS]:
         middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]
         a, b = first.best.coordinates, second.best.coordinates
         starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
-        found.append(explain(problem, _joined(first, second), starts=starts, draft=True))
+        found.append(explain(problem, _joined(first, second), starts=starts, draft=True, climbs=1))
     return found
 
 

@@ -203,7 +203,7 @@ class Several:
         start = 0
         for problem, state in zip(self.specimens, states, strict=True):
             told = None if shift is None else shift[start : start + len(problem.names)]
-            part = problem.compare(state, told, doubt=candidate.doubt)
+            part = problem.compare(state, told, doubt=candidate.doubt_on(problem.predictor))
             start += part.nuisance.shape[1]
             parts.append(part)
         return join(parts)

@@ -29,8 +29,8 @@ def shrinkage(
     """Compare the gap before and after.
 
     Before is the nominal model as it stands, no tolerance moved. In all that comes after, tolerances, calibration and
-    the level of damping are refitted, too, but none is taken further than is believed of it: a refit of the tolerances
-    alone would else close any gap that moves all modes alike, by an absurd modulus.
+    the level of damping are refitted, too. Where they are refitted alone, none is taken further than is believed of
+    it: they would else close any gap that moves all modes alike, by an absurd modulus.
 
     Parameters
     ----------
@@ -48,7 +48,8 @@ def shrinkage(
         return squares(modes_held_out(problem, explanation), plain, metric)
 
     before, after = squares(plain.residual, plain, metric), held(best)
-    fitted = believed(best.best.comparison, best.best.marginal.scale)
+    alone = best.best.comparison if not best.names else None
+    fitted = best.best.left_over if alone is None else believed(alone, best.best.marginal.scale)
     floor = noise_squares(problem.specimens, plain, metric)
     return Shrink(
         metric,
@@ -97,7 +98,7 @@ def closed(before: Squares, after: Squares, floor: Squares, rng: np.random.Gener
     rng : Generator
         Draws the modes anew, and of each the errors that hitting again would add.
     """
-    if before.rms < CLOSABLE * floor.rms:
+    if before.rms < CLOSABLE * floor.rms or not np.isfinite(after.rms):
         return None
     value = _share(before, after, floor, np.arange(len(before.count)))
     draws = [_drawn(before, after, floor, rng) for _ in range(DRAWS)]

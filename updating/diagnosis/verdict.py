@@ -19,6 +19,9 @@ SIGNIFICANT = 0.005
 FAR_BETTER = 6.0
 """Logarithm of the Bayes factor at which an effect shows a gap that no single test does."""
 
+FAINT, HEAVY, FEW = 1e-4, 300, 40
+"""Parameters of explanations less probable than this are taken from few of their heaviest samples."""
+
 CLOSE = 4.0
 """Twice the difference of log-likelihood at 2 sigma: below it two explanations are equivalent."""
 
@@ -75,8 +78,8 @@ def rank(problem: Posed, found: Search) -> tuple[Ranked, ...]:
             row.names,
             row.probability / total,
             tuple(o.names for o in rows if o is not row and _close(row, o)),
-            estimates(problem, row.explanation),
-            _plausible(problem, row.explanation),
+            told := estimates(problem, row.explanation, most=HEAVY if row.probability > FAINT else FEW),
+            not any(estimate.at_bound for estimate in told.values()),
             row.p_value,
         )
         for row in rows
@@ -88,16 +91,13 @@ def _close(a: Weighed, b: Weighed) -> bool:
     return bool(2 * abs(best[0] - best[1]) < CLOSE)
 
 
-def _plausible(problem: Posed, explanation: Explanation) -> bool:
-    """Tell whether no parameter is driven to the end of its prior."""
-    return not any(e.at_bound for e in estimates(problem, explanation).values())
-
-
-def estimates(problem: Posed, explanation: Explanation) -> dict[str, ParameterEstimate]:
+def estimates(
+    problem: Posed, explanation: Explanation, *, most: int = 300
+) -> dict[str, ParameterEstimate]:
     """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means."""
     candidate = explanation.candidate
     searched = problem.parameters(candidate)
-    keep = np.argsort(explanation.weights)[::-1][:300]
+    keep = np.argsort(explanation.weights)[::-1][:most]
     weights = explanation.weights[keep] / explanation.weights[keep].sum()
     samples = [explanation.samples[i] for i in keep]
     drawn = [problem.values(candidate, u) for u in samples]

@@ -25,7 +25,7 @@ LABELS = (".point", ".points")
 """How parameters that hold nodes of the test end."""
 
 
-def locate(problem: Problem, found: Search, *, significant: bool) -> Where:
+def locate(problem: Problem, found: Search, *, significant: bool, whole: Search | None = None) -> Where:
     """Say where the cause sits, averaged over all explanations by their probability.
 
     Parameters
@@ -36,8 +36,10 @@ def locate(problem: Problem, found: Search, *, significant: bool) -> Where:
         What was weighed.
     significant : bool
         Whether there is a gap at all; if not, the channel is ``none``.
+    whole : Search, optional
+        What was weighed for several specimens, of which ``found`` holds what acts on this one.
     """
-    shares, nothing = _channels(found)
+    shares, nothing = _channels(found if whole is None else whole)
     seen = contributions(problem)
     if not significant:
         zones = _zones(problem, _by_explanations(problem, found))

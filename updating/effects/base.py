@@ -127,6 +127,10 @@ class Effect(ABC):
         """Return the forms in which the effect may come; those that the data exclude need not be listed."""
         return (Variant(),)
 
+    def fidelity_on(self, predictor: Predictor) -> float:
+        """Return how far the idealisation may be off on this specimen and test, ``fidelity`` as a rule [-]."""
+        return self.fidelity
+
     def obstacle(self, predictor: Predictor) -> str | None:
         """Return why the effect cannot be examined on this specimen and test, or None."""
         return None

@@ -19,6 +19,9 @@ from updating.prediction import Predictor
 STEEL = 7850.0
 """Density of the cube by which a mass that is all we know is given its rotary inertia [kg/m^3]."""
 
+ROVING = 0.5
+"""How far the mean over a roving sensor's places may be off: loud FRFs, and split peaks, have more weight [-]."""
+
 AXES = ("x", "y", "z")
 
 BULKS = {0.0: 0.4, 1.0: 0.35, 3.0: 0.25}
@@ -46,8 +49,9 @@ def unit_inertia(structure: Structure, points: FloatArray) -> Sparse:
 class SensorMass(Effect):
     """Each mounted sensor loads the structure with its mass; one that roves, with the mean over its places.
 
-    The mean is right to first order in the mass: the frequency found from all FRFs together is the mean of those
-    of the single measurements.
+    A sensor that roves shifts each measurement by another amount. The frequency found from all of them is about the
+    mean of these shifts; where the structure moves most the FRFs are the loudest and the shift the largest, so that
+    the mean may be off by half of itself.
     """
 
     name = "sensor_mass"
@@ -68,6 +72,10 @@ class SensorMass(Effect):
             "from the lightest accelerometer with its wax to an impedance head as heavy as half the structure"
         )
         return (Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True),)
+
+    def fidelity_on(self, predictor: Predictor) -> float:
+        """Return the doubt in the mean over the places where the sensor roves [-]."""
+        return ROVING if sensor_roves(predictor) else self.fidelity
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Need to know where the sensors sit."""
@@ -137,7 +145,8 @@ class LumpedMass(Effect):
         ends = (
             ((0.02,), (0.98,)) if predictor.spec.kind == "beam" else ((0.98, 0.02), (0.98, 0.98), (0.98, 0.5))
         )
-        return tuple((0.5, *where) for where in (*starting_places(predictor.spec), *ends))
+        places = (*starting_places(predictor.spec), *ends)
+        return tuple((0.45, *where) for where in places)
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the body."""

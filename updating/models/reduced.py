@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import linalg as dense
@@ -55,10 +56,10 @@ class Reduced:
     @cached_property
     def sampled(self) -> dict[str, FloatArray]:
         """Fields of the basis at the quadrature points, each (n_points, r)."""
-        return {n: np.asarray(m @ self.basis) for n, m in self._fielded.fields.sampled.items()}
+        return {n: np.asarray(m @ self.basis) for n, m in self.fielded.fields.sampled.items()}
 
     @cached_property
-    def kept(self) -> dict[Hashable, FloatArray]:
+    def kept(self) -> dict[Hashable, Any]:
         """What others computed from the structure alone, for all tests of it."""
         return {}
 
@@ -71,14 +72,13 @@ class Reduced:
         StudyError
             If the structure is given by imported matrices.
         """
-        return self._fielded.fields
+        return self.fielded.fields
 
     @property
-    def _fielded(self) -> FieldStructure:
+    def fielded(self) -> FieldStructure:
+        """The structure, where it has fields; else as :attr:`fields`."""
         if not isinstance(self.structure, FieldStructure):
-            raise StudyError(
-                "imported matrices have no fields: nothing can be changed at a place inside them"
-            )
+            raise StudyError("imported matrices have no fields: nothing can change at a place inside them")
         return self.structure
 
     @cached_property
@@ -106,7 +106,7 @@ class Reduced:
         """
         rows = np.flatnonzero(weights)
         total = np.zeros((self.basis.shape[1],) * 2)
-        for term in self._fielded.terms:
+        for term in self.fielded.terms:
             if term.kind == kind:
                 total += product(term, self.sampled, rows, weights[rows]) * term.scale(factors or {})
         return total

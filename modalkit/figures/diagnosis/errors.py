@@ -10,14 +10,14 @@ from acquisition.arrays import FloatArray
 from modalkit.figures.diagnosis.fitted import Fitted, fitted
 from updating import Case, Diagnosis
 from updating.diagnosis.comparison import CHANNELS, Comparison
-from updating.diagnosis.metric import squares
+from updating.diagnosis.metric import noise_squares, squares
 from updating.models.state import State
 
 LABELS = {
     "frequency": "model − test, of the frequency [%]",
     "damping": "model − test, of the damping ratio [%]",
     "frf": "r.m.s. misfit of the modal constants [%]",
-    "combined": "r.m.s. error of all data of the mode [standard deviations]",
+    "combined": "r.m.s. error of all its data [σ]",
 }
 
 
@@ -81,9 +81,9 @@ def mode_errors(diagnosis: Diagnosis, case: Case | None = None, *, best: Fitted 
     rows = plain.channel == CHANNELS.index(metric)
     if not rows.any():
         return mode_errors(diagnosis)
-    variance = plain.variance[rows] - (problem.tolerances.damping**2 if metric == "damping" else 0.0)
     count, modes_of = len(problem.measured.frequency), plain.mode[rows]
-    floor = 200 * np.sqrt(_mean(np.maximum(variance, 0.0), modes_of, count))
+    noise = noise_squares(problem.specimens, plain, metric)
+    floor = 200 * np.sqrt(noise.total / np.maximum(noise.count, 1.0))
     total = plain.variance[rows] + np.sum(plain.nuisance[rows] ** 2, axis=1)
     doubt = 200 * np.sqrt(_mean(total, modes_of, count))
     after = None if left_over is None else _errors(left_over[rows], modes_of, count, metric)

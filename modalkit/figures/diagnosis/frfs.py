@@ -31,6 +31,7 @@ from modalkit.figures.style import (
     tidy,
 )
 from updating.correlated_frfs import CorrelatedFrfs, correlate_frfs
+from updating.diagnosis.problem import UNKNOWN_LEVEL
 from updating.matching import pair_modes
 from updating.models.state import State
 from updating.prediction import Predictor
@@ -40,6 +41,10 @@ TALL, SHORT, BLOCK = 2.2, 0.7, 4.15
 
 BEYOND = 1.15
 """FRFs are drawn up to so many times the highest mode compared [-]."""
+
+
+LINES = 4096
+"""Most lines on which a model is solved for the drawing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +57,16 @@ class Overlaid:
         With the model as it stands, a baseline's correction included.
     after : CorrelatedFrfs, optional
         With the best explanation in it.
+    every : int
+        So many lines apart, of those measured.
+    levelled : bool
+        Whether the models were scaled to the level of the test, which is not known.
     """
 
     before: CorrelatedFrfs
     after: CorrelatedFrfs | None
+    every: int = 1
+    levelled: bool = False
 
 
 def overlaid(frfs: FrfSet, best: Fitted) -> Overlaid:
@@ -74,9 +85,38 @@ def overlaid(frfs: FrfSet, best: Fitted) -> Overlaid:
         If none of the FRFs is between points of the test.
     """
     top = BEYOND * float(best.problem.measured.frequency.max())
-    part = frfs.band(0.0, top) if frfs.frequency[0] < top < frfs.frequency[-1] else frfs
+    part = thinned(frfs.band(0.0, top) if frfs.frequency[0] < top < frfs.frequency[-1] else frfs)
     found, before = best.model(), best.problem.predictor
-    return Overlaid(_beside(part, best, before), None if found is None else _after(part, best, *found))
+    after = None if found is None else _after(part, best, *found)
+    both = Overlaid(_beside(part, best, before), after, round(part.df / frfs.df))
+    test = best.problem.measured
+    if test.absolute and test.calibration <= UNKNOWN_LEVEL:
+        return both
+    levelled = None if both.after is None else _levelled(both.after)
+    return replace(both, before=_levelled(both.before), after=levelled, levelled=True)
+
+
+def _levelled(both: CorrelatedFrfs) -> CorrelatedFrfs:
+    """Return a model's FRFs times the median ratio of the measured ones to them."""
+    size, own = np.abs(both.measured.values), np.abs(both.model.values)
+    known = (size > 0) & (own > 0)
+    factor = float(np.exp(np.median(np.log(size[known] / own[known])))) if known.any() else 1.0
+    return replace(both, model=replace(both.model, values=factor * both.model.values))
+
+
+def thinned(frfs: FrfSet) -> FrfSet:
+    """Return FRFs on every n-th line, where they have more than :data:`LINES`."""
+    every = -(-len(frfs.frequency) // LINES)
+    if every == 1:
+        return frfs
+    return replace(
+        frfs,
+        frequency=frfs.frequency[::every],
+        values=frfs.values[:, ::every],
+        coherence=None,
+        variance=None,
+        scatter=None,
+    )
 
 
 def _beside(frfs: FrfSet, best: Fitted, predictor: Predictor) -> CorrelatedFrfs:
@@ -139,7 +179,10 @@ def overlaid_figure(both: Overlaid, *, count: int = 4) -> Figure:
 def _words(both: Overlaid, shown: int) -> tuple[str, str]:
     before, form = both.before, NAMES[both.before.measured.form]
     count = f"{shown} of {len(before.frac)}" if shown < len(before.frac) else "all"
-    note = f"{count} FRFs. Damping of the model: {before.damping}."
+    lines = f" on every {both.every}th line" if both.every > 1 else ""
+    note = f"{count} FRFs{lines}. Damping of the model: {before.damping}."
+    if both.levelled:
+        note += " The level of the test is not known; that of the models is drawn to fit it."
     if before.measured.decay:
         note += f" All with the exponential window of {before.measured.decay:g} 1/s."
     median = f"median FRAC {np.median(before.frac):.3f}"

@@ -86,7 +86,7 @@ class Site:
         if len(self.posed.specimens) == 1:
             return explanation.best.comparison
         state = self.posed.place(explanation.candidate, explanation.best.coordinates)[self.index]
-        return self.problem.compare(state, doubt=explanation.candidate.doubt)
+        return self.problem.compare(state, doubt=explanation.candidate.doubt_on(self.problem.predictor))
 
     def doubts(self, rival: Rival) -> IntArray:
         """Return which of a rival's nuisances are this specimen's named doubts."""

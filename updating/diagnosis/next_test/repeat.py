@@ -54,7 +54,7 @@ class Repeat(Trial):
 
     def _compare(self, then: Problem, site: Site, rival: Rival, coordinates: FloatArray) -> Comparison:
         state = self._state(then, site, rival, coordinates)
-        return then.compare(state, doubt=rival.explanation.candidate.doubt)
+        return then.compare(state, doubt=rival.explanation.candidate.doubt_on(then.predictor))
 
     def _outcome(self, then: Problem, site: Site, rival: Rival) -> Outcome:
         best = rival.explanation.best

@@ -1,0 +1,62 @@
+"""Accepted effects that speak of points, in a study and on the command line."""
+
+from pathlib import Path
+
+import pytest
+
+from acquisition.errors import InputError, StudyError
+from modalkit.accepting import accepted_values
+from modalkit.named_effects import parse_effect, said
+from modalkit.study import read_study
+
+SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
+
+
+def test_points_are_node_numbers() -> None:
+    assert accepted_values({"name": "polarity", "points": [3]}) == ("polarity", {"points": (3,)})
+    told = {"name": "position_error", "point": 3, "dx": 0.01}
+    assert accepted_values(told) == ("position_error", {"point": 3, "dx": 0.01})
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        {"name": "polarity", "points": "3"},
+        {"name": "polarity", "points": [3, 3]},
+        {"name": "polarity", "points": []},
+        {"name": "polarity", "points": [True]},
+        {"name": "position_error", "point": [3], "dx": 0.01},
+        {"name": "position_error", "point": 3.5, "dx": 0.01},
+        {"name": "E", "factor": "large"},
+        {"name": "E", "factor": float("nan")},
+        {"name": "gremlin"},
+        {"factor": 1.0},
+    ],
+)
+def test_nonsense_is_refused(entry: dict[str, object]) -> None:
+    with pytest.raises(StudyError):
+        accepted_values(entry)
+
+
+def test_the_command_line_takes_them_too() -> None:
+    name, values = parse_effect("polarity:points=3/4")
+    assert (name, values) == ("polarity", {"points": (3, 4)})
+    assert said([(name, values)]) == "polarity:points=3/4"
+    assert parse_effect("position_error:point=3,dx=0.01")[1] == {"point": 3, "dx": 0.01}
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["polarity:points=a/b", "polarity:points=", "position_error:point=3/4,dx=0", "E:factor=1,factor=2"],
+)
+def test_nonsense_on_the_command_line_is_refused(text: str) -> None:
+    with pytest.raises(InputError):
+        parse_effect(text)
+
+
+def test_a_study_says_where_the_nonsense_stands(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    text = (SAMPLES / "beam_dry" / "study.toml").read_text()
+    path.write_text(text + '\n[[model.effect]]\nname = "polarity"\npoints = "3"\n')
+    with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] polarity: points"):
+        read_study(path).accepted()

@@ -1,0 +1,197 @@
+"""Several specimens diagnosed together: what they share has one value, all else one for each."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from updating_cases import BEAM as FINE
+from updating_cases import DOUBTS, POINTS, blank, observed
+from updating_cases import PLATE as FINE_PLATE
+
+from acquisition.errors import InputError
+from updating import Case, Predictor, Spec, Tolerances
+from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.diagnose import diagnose_together, pose
+from updating.diagnosis.evidence import explain
+from updating.diagnosis.result import Diagnosis
+from updating.diagnosis.several import Several
+from updating.effects import LIBRARY
+from updating.models.state import NOMINAL, State, combine
+
+BEAM = FINE.with_elements(12)
+PLATE = FINE_PLATE.with_elements(8, 5)
+EXTENSION, MASS, SOFT, RATIO = 0.008, 0.012, 0.88, 0.7
+LENGTH, SENSOR, STIFF, ACROSS = (LIBRARY[n] for n in ("length", "sensor_mass", "E", "orthotropy"))
+BOTH = ("length", "sensor_mass")
+FEW = (LENGTH, SENSOR, STIFF)
+
+
+def grid(spec: Spec) -> np.ndarray:
+    if spec.kind == "beam":
+        return POINTS
+    across = np.meshgrid(POINTS, np.array([0.0, 0.08, 0.2]), indexing="ij")
+    return np.stack([a.ravel() for a in across], axis=1)
+
+
+@cache
+def specimen_of(kind: str, title: str, *causes: str) -> Case:
+    """A specimen on a finer mesh, off by its own tolerances, with causes of the sizes above."""
+    spec = BEAM if kind == "beam" else PLATE
+    rng = np.random.default_rng([len(kind), len(causes), 21])
+    points = grid(spec)
+    finer = spec.with_elements(*(2 * n for n in spec.elements))
+    predictor = Predictor(finer, blank(points, top=800.0))
+    sizes = {
+        "length": {"extension": EXTENSION},
+        "sensor_mass": {"mass": MASS},
+        "E": {"factor": SOFT},
+        "orthotropy": {"ratio": RATIO},
+    }
+    built = State(factors={n: float(np.exp(s * rng.standard_normal())) for n, s in DOUBTS.items()})
+    state = combine([built, *(LIBRARY[name].state(predictor, sizes[name]) for name in causes)])
+    found = predictor.predict(state, count=5 if kind == "beam" else 7)
+    damping = found.damping * np.exp(0.2 * rng.standard_normal(len(found.damping)))
+    measured = observed(found.frequency, damping, found.constants, points, rng)
+    return Case(title, spec, measured, tolerances=Tolerances(DOUBTS))
+
+
+def several(*cases: Case, shared: tuple[str, ...] = ()) -> Several:
+    problems = tuple(pose(case)[0] for case in cases)
+    return Several(problems, tuple(case.title for case in cases), frozenset(shared))
+
+
+@cache
+def sharing(*shared: str) -> Several:
+    return several(
+        specimen_of("beam", "strip", "length", "sensor_mass", "E"),
+        specimen_of("plate", "sheet", "length", "sensor_mass"),
+        shared=shared,
+    )
+
+
+@cache
+def together(*shared: str) -> Diagnosis:
+    cases = (
+        specimen_of("beam", "strip", "length", "sensor_mass"),
+        specimen_of("plate", "sheet", "length", "sensor_mass"),
+    )
+    return diagnose_together(cases, shared=shared, library=FEW)
+
+
+def test_shared_parameters_have_one_value_and_others_one_on_each() -> None:
+    problem = sharing("length", "sensor_mass")
+    candidate = Candidate((LENGTH, STIFF, SENSOR))
+    names = [name for name, _ in problem.parameters(candidate)]
+    assert names == ["length.extension", "E.factor (strip)", "E.factor (sheet)", "sensor_mass.mass"]
+    coordinates = np.array([0.6, 0.3, 0.8, 0.5])
+    values = problem.values(candidate, coordinates)
+    assert list(values) == [*names, "sensor_mass.bulk"] or list(values) == names
+    states = problem.place(candidate, coordinates)
+    for state, spec, quantile in zip(states, (BEAM, PLATE), (0.3, 0.8), strict=True):
+        assert state.factors["length"] == pytest.approx(1 + values["length.extension"] / spec.length)
+        own = STIFF.parameters(problem.predictor)[0].value(quantile)
+        assert state.factors["E"] == pytest.approx(own)
+
+
+def test_the_data_of_all_specimens_stand_side_by_side_and_share_no_nuisance() -> None:
+    problem = sharing("length")
+    candidate = Candidate((LENGTH,))
+    whole = problem.at(candidate, np.array([0.55]))
+    extension = problem.values(candidate, np.array([0.55]))["length.extension"]
+    parts = [
+        one.compare(
+            LENGTH.state(one.predictor, {"extension": extension}), doubt=candidate.doubt_on(one.predictor)
+        )
+        for one in problem.specimens
+    ]
+    assert whole.residual == pytest.approx(np.concatenate([part.residual for part in parts]))
+    first = len(parts[0].residual)
+    columns = parts[0].nuisance.shape[1]
+    assert not whole.nuisance[:first, columns:].any()
+    assert not whole.nuisance[first:, :columns].any()
+    assert len(np.unique(whole.mode)) == 5 + 7
+
+
+def test_one_value_for_both_explains_as_well_as_one_for_each_and_is_more_probable() -> None:
+    candidate = Candidate((LENGTH, SENSOR))
+    cases = (
+        specimen_of("beam", "strip", "length", "sensor_mass"),
+        specimen_of("plate", "sheet", "length", "sensor_mass"),
+    )
+    joint = explain(several(*cases, shared=("length", "sensor_mass")), candidate)
+    apart = explain(several(*cases), candidate, draft=True)
+    single = [explain(pose(case)[0], candidate).log_evidence for case in cases]
+    assert joint.log_evidence > sum(single) + 1
+    assert apart.best.marginal.log_likelihood >= joint.best.marginal.log_likelihood - 0.5
+
+
+def test_without_anything_shared_the_evidence_is_that_of_each_alone() -> None:
+    problem = several(specimen_of("beam", "strip"), specimen_of("plate", "sheet"))
+    candidate = Candidate((LENGTH,))
+    whole = explain(problem, candidate)
+    alone = [explain(one, candidate).log_evidence for one in problem.specimens]
+    # how much worse than thought the shapes are is one scale for all specimens together, whose prior counts once
+    once = -np.log(problem.specimens[0].compare(NOMINAL).scale_prior[0])
+    assert whole.log_evidence == pytest.approx(sum(alone), abs=2 * once + 0.1)
+
+
+def test_a_cause_of_one_specimen_alone_is_found_beside_those_of_both() -> None:
+    problem = sharing("length", "sensor_mass")
+    found = explain(problem, Candidate((LENGTH, SENSOR, STIFF)))
+    values = problem.values(found.candidate, found.best.coordinates)
+    assert values["length.extension"] == pytest.approx(EXTENSION, abs=0.002)
+    assert values["sensor_mass.mass"] == pytest.approx(MASS, rel=0.15)
+    assert values["E.factor (strip)"] == pytest.approx(SOFT, abs=0.03)
+    assert values["E.factor (sheet)"] == pytest.approx(1.0, abs=0.03)
+
+
+def test_length_and_sensor_of_two_specimens_are_named() -> None:
+    found = together("length", "sensor_mass")
+    assert found.significant
+    assert set(found.ranking[0].effects) == {"length", "sensor_mass"}
+    assert set(found.gap.modes["study"]) == {"strip", "sheet"}
+    assert found.title == "strip and sheet"
+
+
+def test_titles_alike_and_unknown_shared_effects_are_refused() -> None:
+    one = specimen_of("beam", "strip", "length", "sensor_mass")
+    with pytest.raises(InputError, match="titled alike"):
+        diagnose_together([one, one])
+    other = replace(one, title="another")
+    with pytest.raises(InputError, match="no such effect"):
+        diagnose_together([one, other], shared=("lenght",))
+
+
+@pytest.mark.parametrize("order", [("beam", "plate"), ("plate", "beam")])
+@pytest.mark.parametrize("shared", [(), ("orthotropy",)])
+def test_an_effect_that_cannot_be_on_one_specimen_is_sought_on_the_other(
+    order: tuple[str, ...], shared: tuple[str, ...]
+) -> None:
+    cases = [specimen_of(k, k, *(("orthotropy",) if k == "plate" else ())) for k in order]
+    problem = several(*cases, shared=shared)
+    assert problem.applies(ACROSS) is None
+    found = explain(problem, Candidate((ACROSS,)))
+    values = problem.values(found.candidate, found.best.coordinates)
+    assert list(values) == ["orthotropy.ratio" if shared else "orthotropy.ratio (plate)"]
+    assert next(iter(values.values())) == pytest.approx(RATIO, rel=0.1)
+    states = problem.place(found.candidate, found.best.coordinates)
+    assert [bool(state.stiffness) for state in states] == [k == "plate" for k in order]
+    for i, kind in enumerate(order):
+        part = problem.restrict(found, i)
+        assert part.names == (("orthotropy",) if kind == "plate" else ())
+        assert part.samples.shape[1] == (kind == "plate")
+
+
+def test_the_place_is_told_on_the_specimen_on_which_the_cause_acts() -> None:
+    cases = [specimen_of("beam", "strip"), specimen_of("plate", "sheet", "orthotropy")]
+    found = diagnose_together(cases, library=(ACROSS, LIBRARY["density"]))
+    assert found.ranking[0].effects == ("orthotropy",)
+    assert found.where.channels["stiffness"] > 0.95
+    assert len(found.where.zones) == len(PLATE.regions)
+
+
+def test_no_effect_on_either_is_no_gap() -> None:
+    found = diagnose_together([specimen_of("beam", "strip"), specimen_of("plate", "sheet")], library=FEW)
+    assert not found.significant
+    assert found.verdict == "none"
