@@ -86,7 +86,9 @@ class Candidate:
         theory = self.theory
         if theory is None and "shear" in self.names:
             theory = "timoshenko"
-        if theory is None or predictor.spec.kind != "beam":  # of several specimens, beams alone have another theory
+        if (
+            theory is None or predictor.spec.kind != "beam"
+        ):  # of several specimens, beams alone have another theory
             return predictor
         return predictor.under(theory)
 

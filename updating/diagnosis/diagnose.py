@@ -220,9 +220,7 @@ def _frac(problem: Problem) -> FloatArray:
     return np.asarray(np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300))
 
 
-def _shrink(
-    problem: Posed, found: Search, rng: np.random.Generator, *, significant: bool
-) -> Shrink:
+def _shrink(problem: Posed, found: Search, rng: np.random.Generator, *, significant: bool) -> Shrink:
     named = [row for row in found.weighed if row.names]
     best = named[0].explanation if named else found.nothing
     # what holds the best set and more is no rival of it

@@ -184,9 +184,7 @@ def _weighed(
 ) -> Explanation:
     total = float(logsumexp(log_weight))
     evidence = total - float(np.log(len(samples))) + candidate.log_weight
-    return Explanation(
-        candidate, evidence, best, samples, np.exp(log_weight - total), tuple(peaks), draft
-    )
+    return Explanation(candidate, evidence, best, samples, np.exp(log_weight - total), tuple(peaks), draft)
 
 
 def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
@@ -208,9 +206,7 @@ def _moments(problem: Posed, candidate: Candidate, samples: FloatArray, weights:
     return Peak(best.point, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
 
 
-def _peaks(
-    problem: Posed, candidate: Candidate, places: list[FloatArray], climbs: int
-) -> list[Peak]:
+def _peaks(problem: Posed, candidate: Candidate, places: list[FloatArray], climbs: int) -> list[Peak]:
     if len(places) > climbs:
         looks = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
         nearest = [places[i] for i in np.argsort(looks)[::-1][:TRIED]]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -11,7 +12,8 @@ from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.comparison import SHAPES, Comparison
 from updating.diagnosis.evidence import Explanation
-from updating.diagnosis.fit import climb
+from updating.diagnosis.fit import climb, sensitivities
+from updating.diagnosis.gaussian import marginal, whiten
 from updating.diagnosis.posed import Posed
 
 BELIEVED = 3.0
@@ -19,6 +21,12 @@ BELIEVED = 3.0
 
 ROUNDS = 6
 """Most steps of a refit from the best parameters on all data."""
+
+SHORT = 0.1
+"""Longest step, in prior quantiles, that a refit takes on the sensitivities at the best parameters [-]."""
+
+PRIOR = 4.0
+"""Curvature that keeps parameters the data do not see where they are, per squared prior quantile [-]."""
 
 FOLDS = 5
 """In so many parts the points are left out."""
@@ -79,16 +87,29 @@ def held_out(posed: Posed, explanation: Explanation, parts: Sequence[BoolArray])
     Tolerances alone are kept within what is believed of them; how far an effect's fit stretches them, its p-value
     judges. Where nothing is left to fit, the residuals are nan.
     """
-    best, alone = explanation.best, not explanation.names
+    best = explanation.best
+    columns = np.nan_to_num(sensitivities(posed, explanation.candidate, best))
     errors = np.zeros(len(best.comparison.residual))
     for keep in parts:
         if not keep.any():
             errors[~keep] = np.nan
-            continue
-        point = climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point
-        left = believed(point.comparison, point.marginal.scale, keep) if alone else point.left_over
-        errors[~keep] = left[~keep]
+        elif not explanation.names:
+            errors[~keep] = believed(best.comparison, marginal(best.comparison, keep).scale, keep)[~keep]
+        else:
+            errors[~keep] = _refitted(posed, explanation, columns, keep)[~keep]
     return errors
+
+
+def _refitted(posed: Posed, explanation: Explanation, columns: FloatArray, keep: BoolArray) -> FloatArray:
+    """Return what is left of all data when some of them were fitted: by a linear step where it is short enough."""
+    best = explanation.best
+    normal, load = whiten(best.comparison, columns, best.marginal.scale, keep)
+    step = np.linalg.solve(normal + PRIOR * np.eye(len(load)), load)
+    step = np.clip(best.coordinates + step, 0.0, 1.0) - best.coordinates
+    if np.abs(step).max(initial=0.0) > SHORT:
+        return climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point.left_over
+    moved = replace(best.comparison, residual=best.comparison.residual - columns @ step)
+    return np.asarray(moved.residual - moved.nuisance @ marginal(moved, keep).shift)
 
 
 def believed(comparison: Comparison, scale: float, keep: BoolArray | None = None) -> FloatArray:

@@ -211,7 +211,9 @@ class Problem:
         moved = np.abs(shift[: len(self.names)] * self.sigmas)
         return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
 
-    def compare(self, state: State, shift: FloatArray | None = None, *, doubt: Doubt = NO_DOUBT) -> Comparison:
+    def compare(
+        self, state: State, shift: FloatArray | None = None, *, doubt: Doubt = NO_DOUBT
+    ) -> Comparison:
         """Compare the test with a state of the model.
 
         Parameters

@@ -266,9 +266,7 @@ class Diagnosis:
                 "effects": " + ".join(r.effects) or "(tolerances alone)",
                 "probability": r.probability,
                 "fits (p)": r.p_value,
-                "parameters": ", ".join(
-                    f"{n} = {e}" for n, e in r.parameters.items()
-                ),
+                "parameters": ", ".join(f"{n} = {e}" for n, e in r.parameters.items()),
             }
             for r in self.ranking
         ]

@@ -70,8 +70,7 @@ class Several:
         """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
         ends = np.cumsum([0, *self._counts])
         return max(
-            problem.strain(shift[a:b])
-            for problem, a, b in zip(self.specimens, ends, ends[1:], strict=False)
+            problem.strain(shift[a:b]) for problem, a, b in zip(self.specimens, ends, ends[1:], strict=False)
         )
 
     @cached_property
@@ -227,4 +226,6 @@ class Several:
         part = Candidate(tuple(e for e, _ in kept), candidate.theory, tuple(f for _, f in kept))
         chosen = np.array(columns, dtype=np.int64)
         best = replace(explanation.best, coordinates=explanation.best.coordinates[chosen])
-        return replace(explanation, candidate=part, best=best, samples=explanation.samples[:, chosen], peaks=())
+        return replace(
+            explanation, candidate=part, best=best, samples=explanation.samples[:, chosen], peaks=()
+        )

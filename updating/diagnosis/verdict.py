@@ -91,9 +91,7 @@ def _close(a: Weighed, b: Weighed) -> bool:
     return bool(2 * abs(best[0] - best[1]) < CLOSE)
 
 
-def estimates(
-    problem: Posed, explanation: Explanation, *, most: int = 300
-) -> dict[str, ParameterEstimate]:
+def estimates(problem: Posed, explanation: Explanation, *, most: int = 300) -> dict[str, ParameterEstimate]:
     """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means."""
     candidate = explanation.candidate
     searched = problem.parameters(candidate)
