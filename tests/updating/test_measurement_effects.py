@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hit_cases import ROD, SHEET, Faults, Roving, struck_case
+from struck_cases import ROD, SHEET, Faults, Roving, struck_case
 from updating_cases import blank
 
 from updating import LIBRARY, Case, Diagnosis, Predictor, diagnose
