@@ -15,6 +15,13 @@ from updating.diagnosis.posed import Posed
 STEP = 1e-3
 """Finite-difference step in prior quantiles."""
 
+UNDERSTEPPED = 1.3
+"""A step that gains so many times what the parabola promised was too short: far from the data the likelihood's tails
+are heavier than its curvature says [-]."""
+
+CHEAP = 2
+"""With so few parameters sensitivities are taken anew after every step."""
+
 AT_REST = 0.01
 """A climb is at rest when a step gains less than this [-]."""
 
@@ -101,7 +108,7 @@ def _slopes(
     problem: Posed, candidate: Candidate, point: Point, keep: BoolArray | None
 ) -> tuple[FloatArray, FloatArray]:
     """Return the change of the prediction (n, k) and that of the log-likelihood (k,) per prior quantile."""
-    columns, rises = [], []
+    columns, rises, steps = [], [], []
     for i, u in enumerate(point.coordinates):
         step = STEP if u < 0.5 else -STEP
         moved = point.coordinates.copy()
@@ -109,8 +116,13 @@ def _slopes(
         there = problem.at(candidate, moved, point.about)
         columns.append((point.comparison.residual - there.residual) / step)
         rises.append((marginal(there, keep).log_likelihood - point.marginal.log_likelihood) / step)
+        steps.append(step)
     count = len(point.comparison.residual)
-    return np.stack(columns, axis=1) if columns else np.zeros((count, 0)), np.array(rises)
+    whole = np.stack(columns, axis=1) if columns else np.zeros((count, 0))
+    if not columns:
+        return whole, np.zeros(0)
+    curve = np.diag(_curvature(point, whole, keep)[0])  # a difference is the slope half a step away
+    return whole, np.array(rises) + 0.5 * np.array(steps) * curve
 
 
 def climb(
@@ -139,7 +151,7 @@ def climb(
     point = evaluate(problem, candidate, start, keep=keep)
     if not point.possible:
         return Peak(point, np.eye(len(start)), np.zeros(len(start)))
-    damping, fresh = 1e-3, True
+    damping, stretch, fresh = 1e-3, 1.0, True
     columns, rise = _slopes(problem, candidate, point, keep)
     normal, load = _curvature(point, columns, keep)
     beside = np.nan_to_num(rise - load)  # what the noise's own change with the parameters adds to the slope
@@ -148,18 +160,21 @@ def climb(
         free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
         if not free.any():
             break
-        step = _step(normal, gradient, free, damping)
+        step = _step(normal, gradient, free, damping, stretch)
         there = np.clip(point.coordinates + step, 0.0, 1.0)
         trial = evaluate(problem, candidate, there, keep=keep)
         gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
+        promised = float(step @ gradient - 0.5 * step @ normal @ step)
+        stretch = 2 * stretch if gain > UNDERSTEPPED * promised > 0 else 1.0
         if gain > 0:
+            beside = beside * min(trial.marginal.chi2 / max(point.marginal.chi2, 1e-12), 1.0)
             columns, fresh = _secant(columns, point, trial), False
             point, damping = trial, damping / 5
         elif fresh:
             damping *= 10
         if abs(gain) < AT_REST or damping > 1e6:
             break
-        if gain <= 0 and not fresh:
+        if not fresh and (gain <= 0 or len(start) <= CHEAP):
             columns, rise = _slopes(problem, candidate, point, keep)
             fresh = True
         normal, load = _curvature(point, columns, keep)
@@ -181,12 +196,14 @@ def _secant(columns: FloatArray, before: Point, now: Point) -> FloatArray:
     return np.asarray(columns + np.outer(change - columns @ step, step) / float(step @ step))
 
 
-def _step(normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: float) -> FloatArray:
+def _step(
+    normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: float, stretch: float
+) -> FloatArray:
     step = np.zeros_like(gradient)
     inner = normal[np.ix_(free, free)]
     ridge = np.diag(damping * np.diag(inner) + 1e-6)
     step[free] = np.linalg.solve(inner + ridge, gradient[free])
-    return np.asarray(step * min(1.0, 0.3 / max(np.abs(step).max(), 1e-12)))
+    return np.asarray(step * min(stretch, 0.3 / max(np.abs(step).max(), 1e-12)))
 
 
 def _curvature(point: Point, columns: FloatArray, keep: BoolArray | None) -> tuple[FloatArray, FloatArray]:
