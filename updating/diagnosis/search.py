@@ -22,10 +22,10 @@ from updating.diagnosis.posed import Posed
 from updating.effects import Effect, Variant
 
 REJECTED = 0.003
-"""An explanation that fits worse than this is rejected..."""
+"""A single effect that fits worse than this is rejected..."""
 
 DOUBTED = 0.02
-"""...and where no single effect fits better than this, pairs are weighed beside them."""
+"""...and where none fits better than this, pairs are weighed beside them, which must fit as well themselves."""
 
 PROBABLE = 6.0
 """Explanations whose logarithm of the probability lies further behind the best do not count as explanations [-]."""
@@ -58,6 +58,11 @@ class Weighed:
     def names(self) -> tuple[str, ...]:
         """Names of the effects."""
         return self.explanation.names
+
+    @property
+    def rejected(self) -> bool:
+        """Whether it fits too badly to be an answer; pairs, which have more freedom, must fit better."""
+        return self.p_value < (DOUBTED if len(self.names) > 1 else REJECTED)
 
 
 @dataclass(frozen=True, eq=False)

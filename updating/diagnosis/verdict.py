@@ -8,7 +8,7 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.evidence import Explanation
 from updating.diagnosis.posed import Posed
 from updating.diagnosis.result import ParameterEstimate, Ranked, Verdict
-from updating.diagnosis.search import REJECTED, Search, Weighed
+from updating.diagnosis.search import Search, Weighed
 
 CERTAIN = 0.95
 """Probability that the sets of an answer hold together."""
@@ -19,6 +19,9 @@ SIGNIFICANT = 0.005
 FAR_BETTER = 6.0
 """Logarithm of the Bayes factor at which an effect shows a gap that no single test does."""
 
+RIVAL = 0.02
+"""A rival that fits as well as the first is kept from this share of its probability on [-]."""
+
 FAINT, HEAVY, FEW = 1e-4, 300, 40
 """Parameters of explanations less probable than this are taken from few of their heaviest samples."""
 
@@ -28,7 +31,7 @@ CLOSE = 4.0
 
 def is_significant(found: Search, p_value: float) -> bool:
     """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better."""
-    fitting = [row for row in found.weighed if row.names and row.p_value >= REJECTED]
+    fitting = [row for row in found.weighed if row.names and not row.rejected]
     gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
     gain -= found.nothing.log_evidence
     return bool(p_value < SIGNIFICANT or gain > FAR_BETTER)
@@ -47,10 +50,10 @@ def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[st
     if not significant:
         return "none", ()
     rows = [row for row in found.weighed if row.names]
-    if not rows or rows[0].p_value < REJECTED:
+    if not rows or rows[0].rejected:
         return "unknown", ()
     least = found.nothing.log_evidence
-    better = [row for row in rows if row.p_value >= REJECTED and row.explanation.log_evidence > least]
+    better = [row for row in rows if not row.rejected and row.explanation.log_evidence > least]
     if not better:
         return "unknown", ()
     sets = _credible(better)
@@ -58,14 +61,19 @@ def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[st
 
 
 def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:
-    """Return the fewest rows that hold the certainty asked for."""
+    """Return the fewest rows that hold the certainty asked for, and those that fit as well as the first.
+
+    A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
+    widely they may range, and that is no measurement.
+    """
     total = sum(row.probability for row in rows)
-    sets, held = [], 0.0
+    sets: list[tuple[str, ...]] = []
+    held = 0.0
     for row in rows:
-        sets.append(row.names)
+        alike = _close(rows[0], row) and row.probability > RIVAL * rows[0].probability
+        if held < CERTAIN or alike:
+            sets.append(row.names)
         held += row.probability / max(total, 1e-300)
-        if held >= CERTAIN:
-            break
     return tuple(sets)
 
 
