@@ -237,7 +237,7 @@ def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
     page = diagnosis_report(told, [session], when=NOON)
     found = re.search(r"median FRAC ([0-9.]+) before, ([0-9.]+) after", page)
     assert found is not None
-    assert float(found[1]) < 0.1 and float(found[2]) > 0.95
+    assert float(found[1]) < 0.1 and float(found[2]) > 0.8  # at the medians of the severity
     assert len(page) < 1_000_000
     for drawing in drawings(told, [session]).values():
         assert_legible(drawing.figure)

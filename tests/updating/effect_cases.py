@@ -88,8 +88,14 @@ def _body(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
 
 def _sensor(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
     end = (POINTS[-1],) if structure.fields.dim == 1 else CORNERS[-1]
-    row = structure.fields.at(np.atleast_2d(end))["w"]
-    return {"mass": values["mass"] * (row.T @ row)}
+    rows = structure.fields.at(np.atleast_2d(end))
+    total = values["mass"] * (rows["w"].T @ rows["w"])
+    side = (values["mass"] / 7850.0) ** (1 / 3)
+    for name in ("wx", "wy"):
+        if name in rows:
+            turning = values.get("bulk", 0.0) * values["mass"] * side**2 / 6
+            total = total + turning * (rows[name].T @ rows[name])
+    return {"mass": total}
 
 
 def _edge(structure: FieldStructure, field: str, power: int) -> Callable[[dict[str, Any]], Sparse]:

@@ -12,7 +12,7 @@ from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.candidate import Candidate
 from updating.diagnosis.comparison import SHAPES, Comparison
 from updating.diagnosis.evidence import Explanation
-from updating.diagnosis.fit import climb, sensitivities
+from updating.diagnosis.fit import CHEAP, climb, sensitivities
 from updating.diagnosis.gaussian import marginal, whiten
 from updating.diagnosis.posed import Posed
 
@@ -22,7 +22,7 @@ BELIEVED = 3.0
 ROUNDS = 6
 """Most steps of a refit from the best parameters on all data."""
 
-SHORT = 0.1
+SHORT = 0.02
 """Longest step, in prior quantiles, that a refit takes on the sensitivities at the best parameters [-]."""
 
 PRIOR = 4.0
@@ -101,8 +101,10 @@ def held_out(posed: Posed, explanation: Explanation, parts: Sequence[BoolArray])
 
 
 def _refitted(posed: Posed, explanation: Explanation, columns: FloatArray, keep: BoolArray) -> FloatArray:
-    """Return what is left of all data when some of them were fitted: by a linear step where it is short enough."""
+    """Return what is left of all data when some of them were fitted: of many parameters by a linear step where it is short."""
     best = explanation.best
+    if columns.shape[1] <= CHEAP:
+        return climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point.left_over
     normal, load = whiten(best.comparison, columns, best.marginal.scale, keep)
     step = np.linalg.solve(normal + PRIOR * np.eye(len(load)), load)
     step = np.clip(best.coordinates + step, 0.0, 1.0) - best.coordinates

@@ -26,6 +26,9 @@ from updating.prediction import Predictor
 WATER = 998.0
 """Density of the fluid where neither the study nor an accepted effect says it [kg/m^3]."""
 
+TYPICAL = 4
+"""So many of the model's modes stand for those of a test that has not been made."""
+
 USUAL = 1e-3
 """Viscosity of water, for the depth of the layer at edges, on which hardly anything depends [Pa s]."""
 
@@ -135,7 +138,9 @@ def mass_within(predictor: Predictor, around: Environment, *, thickness: float |
 def _unit_slip(predictor: Predictor) -> FloatArray:
     """Return the slip of both faces in the reduced basis, (r, r) [m^2 in w]."""
     wet = _wetted(predictor, predictor.environment)
-    typical = math.exp(float(np.mean(np.log(predictor.measured.frequency))))
+    known = predictor.measured.frequency
+    known = known if len(known) else predictor.predict(count=TYPICAL).frequency
+    typical = math.exp(float(np.mean(np.log(known))))
     layer = layer_depth(USUAL, fluid_density(predictor), typical)
     reach = edge_reach(min(wet.length, wet.width), wet.thickness, layer)
     return slip_matrix(wet.operator(0.0), wet.shapes, wet.x, wet.y, reach=reach)
