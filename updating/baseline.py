@@ -8,7 +8,10 @@ is left is a matrix in modal coordinates, and every effect acts on top of both, 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from scipy.optimize import nnls
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import EstimationError
@@ -63,19 +66,28 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     finite = np.isfinite(baseline.damping)
     damping: tuple[FloatArray, ...] = ()
     if finite.any():
-        ratios = _unmeasured(prediction.damping, partner[finite], baseline.damping[finite])
-        ratios[partner[finite]] = baseline.damping[finite]
-        omega = 2 * np.pi * prediction.frequency
-        omega[partner] = 2 * np.pi * baseline.frequency
-        damping = (_padded((momenta * (2 * ratios * omega)) @ momenta.T, size),)
+        damping = (_damping(predictor, scaled, momenta[:, partner[finite]], baseline.modes(finite)),)
     return State(factors=scaled.factors, stiffness=stiffness, damping=damping)
 
 
-def _unmeasured(expected: FloatArray, partner: IntArray, measured: FloatArray) -> FloatArray:
-    """Return damping ratios for all modes: the model's, raised as those measured are; their median without a model."""
-    if np.isfinite(expected).all() and (expected > 0).all():
-        return np.asarray(expected * np.median(measured / expected[partner]))
-    return np.full(len(expected), float(np.median(measured)))
+def _damping(predictor: Predictor, scaled: State, momenta: FloatArray, baseline: Measured) -> FloatArray:
+    """Return a viscous matrix on the whole basis that gives the measured modes their damping.
+
+    What was not measured, the motion of a clamp let loose included, is damped in proportion to mass and stiffness, by
+    the coefficients that come nearest to the measured ratios.
+    """
+    reduced = predictor.reduced
+    loose = max(reduced.ranks, key=len)
+    stiffness, mass = reduced.matrices(replace(scaled, released=loose))
+    omega = 2 * np.pi * baseline.frequency
+    shares = np.stack([0.5 / omega, 0.5 * omega], axis=1) / baseline.damping[:, None]
+    alpha, beta = nnls(shares * [1.0, 1 / omega.max()], np.ones(len(omega)))[0] * [1.0, 1 / omega.max()]
+    viscous = alpha * mass + beta * stiffness
+    held = len(momenta)
+    modes = np.linalg.solve(mass[:held, :held], momenta)
+    now = np.sum(modes * (viscous[:held, :held] @ modes), axis=0)
+    viscous[:held, :held] += (momenta * (2 * baseline.damping * omega - now)) @ momenta.T
+    return _padded(viscous, reduced.basis.shape[1])
 
 
 def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]:
