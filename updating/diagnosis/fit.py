@@ -154,13 +154,15 @@ def climb(
     damping, stretch, fresh = 1e-3, 1.0, True
     columns, rise = _slopes(problem, candidate, point, keep)
     normal, load = _curvature(point, columns, keep)
-    beside = np.nan_to_num(rise - load)  # what the noise's own change with the parameters adds to the slope
+    beside = _finite(rise - load)  # what the noise's own change with the parameters adds to the slope
     for _ in range(rounds if len(start) else 0):
         gradient = load + beside
         free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
         if not free.any():
             break
         step = _step(normal, gradient, free, damping, stretch)
+        if not np.isfinite(step).all():
+            break
         there = np.clip(point.coordinates + step, 0.0, 1.0)
         trial = evaluate(problem, candidate, there, keep=keep)
         gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
@@ -179,11 +181,11 @@ def climb(
             fresh = True
         normal, load = _curvature(point, columns, keep)
         if fresh:
-            beside = np.nan_to_num(rise - load)
+            beside = _finite(rise - load)
     if not fresh:
         columns, rise = _slopes(problem, candidate, point, keep)
         normal, load = _curvature(point, columns, keep)
-        beside = np.nan_to_num(rise - load)
+        beside = _finite(rise - load)
     return Peak(point, normal, load + beside)
 
 
@@ -207,4 +209,9 @@ def _step(
 
 
 def _curvature(point: Point, columns: FloatArray, keep: BoolArray | None) -> tuple[FloatArray, FloatArray]:
-    return whiten(point.comparison, np.nan_to_num(columns), point.marginal.scale, keep)
+    return whiten(point.comparison, _finite(columns), point.marginal.scale, keep)
+
+
+def _finite(values: FloatArray) -> FloatArray:
+    """Put nothing in the place of what a prediction beyond all measure leaves."""
+    return np.where(np.isfinite(values), values, 0.0)
