@@ -334,7 +334,10 @@ NODES = {"points": "3/4", "point": "3"}
 EVERYTHING = {
     name: ",".join(
         [f"{label}={NODES[label]}" for label in effect.labels]
-        + [f"{p.name}={p.value(0.3 if effect.channel == 'damping' else 0.6):.9g}" for p in effect.parameters(MODEL)]
+        + [
+            f"{p.name}={p.value(0.3 if effect.channel == 'damping' else 0.6):.9g}"
+            for p in effect.parameters(MODEL)
+        ]
     )
     for name, effect in LIBRARY.items()
 }
@@ -351,7 +354,9 @@ def test_every_effect_can_be_simulated_and_acts_as_in_a_prediction(tmp_path: Pat
     expected = MODEL.predict(state, count=12).frequency
     decay = state.decay / (2 * np.pi * expected)
     found = made["frequency [Hz]"].to_numpy()[: len(expected)]
-    damped = LIBRARY[name].channel == "damping"  # a damped mode's |pole| is its undamped frequency to second order
+    damped = (
+        LIBRARY[name].channel == "damping"
+    )  # a damped mode's |pole| is its undamped frequency to second order
     wanted = (expected * np.sqrt(1 + 0.01 * decay + decay**2))[: len(found)]
     assert found == pytest.approx(wanted, rel=2e-3 if damped else 1e-6)
 

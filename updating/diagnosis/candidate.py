@@ -68,27 +68,17 @@ class Candidate:
         """Names of the effects."""
         return tuple(effect.name for effect in self.effects)
 
-    @property
-    def doubt(self) -> Doubt:
-        """What the effects leave in doubt beside their parameters, whatever the specimen."""
-        return Doubt(
-            max((effect.fidelity for effect in self.effects), default=0.0),
-            max((effect.damping_doubt for effect in self.effects), default=0.0),
-        )
-
     def doubt_on(self, predictor: Predictor) -> Doubt:
         """Return what they leave in doubt on a specimen and its test."""
         fidelity = max((effect.fidelity_on(predictor) for effect in self.effects), default=0.0)
-        return Doubt(fidelity, self.doubt.damping)
+        return Doubt(fidelity, max((effect.damping_doubt for effect in self.effects), default=0.0))
 
     def stage(self, predictor: Predictor) -> Predictor:
         """Return the predictor the effects act on."""
         theory = self.theory
         if theory is None and "shear" in self.names:
             theory = "timoshenko"
-        if (
-            theory is None or predictor.spec.kind != "beam"
-        ):  # of several specimens, beams alone have another theory
+        if theory is None or predictor.spec.kind != "beam":  # of several specimens, beams alone have another
             return predictor
         return predictor.under(theory)
 

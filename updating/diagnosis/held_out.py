@@ -101,7 +101,7 @@ def held_out(posed: Posed, explanation: Explanation, parts: Sequence[BoolArray])
 
 
 def _refitted(posed: Posed, explanation: Explanation, columns: FloatArray, keep: BoolArray) -> FloatArray:
-    """Return what is left of all data when some of them were fitted: of many parameters by a linear step where it is short."""
+    """Return what is left of all data when some of them were fitted: of many parameters by a short linear step."""
     best = explanation.best
     if columns.shape[1] <= CHEAP:
         return climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point.left_over

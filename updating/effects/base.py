@@ -77,7 +77,6 @@ class Variant:
     weight: float = 1.0
 
 
-
 class Effect(ABC):
     """A physical cause of a gap that the nominal model does not hold.
 

@@ -78,7 +78,9 @@ class Component:
         axes = [_hermite(edge, points[:, i]) for i, edge in enumerate(edges)]
         cells = tuple(cell for cell, _ in axes)
         ends = np.stack(np.meshgrid(*[(0, 1)] * dim, indexing="ij"), axis=-1).reshape(-1, dim)
-        columns = np.stack([numbers[tuple(c + e for c, e in zip(cells, end, strict=True))] for end in ends], 1)
+        columns = np.stack(
+            [numbers[tuple(c + e for c, e in zip(cells, end, strict=True))] for end in ends], 1
+        )
         found = {}
         for name, derivative in names.items():
             parts = [shape[d] for (_, shape), d in zip(axes, derivative, strict=True)]
