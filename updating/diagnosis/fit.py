@@ -25,6 +25,9 @@ CHEAP = 2
 AT_REST = 0.01
 """A climb is at rest when a step gains less than this [-]."""
 
+RELINEARISED = 3
+"""How often at most wide tolerances are linearised anew; what comes nearest to its own linearisation stands."""
+
 STRAINED = 0.01
 """Relative change of a tolerance's property that a linearisation bears [-]."""
 
@@ -86,17 +89,38 @@ class Peak:
 def evaluate(
     problem: Posed, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
 ) -> Point:
-    """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide."""
-    comparison = problem.at(candidate, coordinates)
-    result, about = marginal(comparison, keep), None
-    for _ in range(2 if problem.wide else 0):
-        wanted = np.clip(result.shift, -FARTHEST, FARTHEST)
-        if problem.strain(wanted if about is None else wanted - about) < STRAINED:
+    """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide.
+
+    Where the linearisation swings, the one whose most probable tolerances lie nearest to where it was made stands.
+    """
+    point = _linearised(problem, candidate, coordinates, None, keep)
+    if not problem.wide:
+        return point
+    best, left = point, problem.strain(_wanted(point))
+    for _ in range(RELINEARISED):
+        if left < STRAINED or not np.isfinite(left):
             break
-        about = wanted
-        comparison = problem.at(candidate, coordinates, about)
-        result = marginal(comparison, keep)
-    return Point(coordinates, comparison, result, about)
+        about = _wanted(point) if point.about is None else 0.5 * (point.about + _wanted(point))
+        point = _linearised(problem, candidate, coordinates, about, keep)
+        away = problem.strain(_wanted(point) - about)
+        if away < left:
+            best, left = point, away
+    return best
+
+
+def _wanted(point: Point) -> FloatArray:
+    return np.clip(point.marginal.shift, -FARTHEST, FARTHEST)
+
+
+def _linearised(
+    problem: Posed,
+    candidate: Candidate,
+    coordinates: FloatArray,
+    about: FloatArray | None,
+    keep: BoolArray | None,
+) -> Point:
+    comparison = problem.at(candidate, coordinates, about)
+    return Point(coordinates, comparison, marginal(comparison, keep), about)
 
 
 def sensitivities(problem: Posed, candidate: Candidate, point: Point) -> FloatArray:
