@@ -4,7 +4,7 @@ It shares no model code with the candidates: it imports nothing from the room th
 """
 
 from modalkit.blind.run import BlindResult, Outcome, diagnose_in_subprocess, run_blind, run_trial
-from modalkit.blind.score import Score, score
+from modalkit.blind.scoring.score import Score, score
 from modalkit.blind.seal import Seal, open_seal, seal
 from modalkit.blind.trial import Trial, Truth, draw_trial, write_trial
 

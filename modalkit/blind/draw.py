@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from modalkit.blind.beam import Beam
+from modalkit.blind.bodies.beam import Beam
 from modalkit.blind.setup import Setup, Tolerances
 
 _STEEL = (210e9, 7850.0, 0.30)

@@ -12,7 +12,7 @@ from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test
 from acquisition.uff import write_uff
-from modalkit.blind.complex_modes import ComplexModes
+from modalkit.blind.bodies.complex_modes import ComplexModes
 from modalkit.blind.scene import Scene
 from modalkit.blind.setup import Setup
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acquisition.arrays import FloatArray, frozen_array
-from modalkit.blind.beam import Beam
-from modalkit.blind.complex_modes import ComplexModes, complex_modes
-from modalkit.blind.parts import Attached
+from modalkit.blind.bodies.beam import Beam
+from modalkit.blind.bodies.complex_modes import ComplexModes, complex_modes
+from modalkit.blind.bodies.parts import Attached
 from modalkit.blind.setup import Setup
 
 _EXTRA_MODES = 8

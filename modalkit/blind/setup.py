@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modalkit.blind.beam import Beam
+from modalkit.blind.bodies.beam import Beam
 
 
 @dataclass(frozen=True)

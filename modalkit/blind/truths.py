@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from modalkit.blind.parts import Attached, Notch
+from modalkit.blind.bodies.parts import Attached, Notch
 from modalkit.blind.scene import Scene
 from modalkit.blind.setup import Setup
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from acquisition import estimate_frfs, read_uff
-from modalkit.blind.beam import Beam
-from modalkit.blind.complex_modes import complex_modes
-from modalkit.blind.parts import Attached
+from modalkit.blind.bodies.beam import Beam
+from modalkit.blind.bodies.complex_modes import complex_modes
+from modalkit.blind.bodies.parts import Attached
 from modalkit.blind.record import hammer_plan, measure, modal_system, remounted
 from modalkit.blind.scene import nominal_scene
 from modalkit.blind.trial import draw_trial, write_trial

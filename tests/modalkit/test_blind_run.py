@@ -14,7 +14,7 @@ import pytest
 
 from acquisition.errors import EstimationError, StudyError
 from modalkit.blind.run import Outcome, diagnose_in_subprocess, run_blind
-from modalkit.blind.score import score
+from modalkit.blind.scoring.score import score
 from modalkit.blind.seal import open_seal
 
 NONE = {

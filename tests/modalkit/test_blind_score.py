@@ -10,9 +10,9 @@ import pytest
 
 from acquisition.errors import InputError
 from modalkit.blind.answer import read_answer
-from modalkit.blind.rows import holds_truth, is_right, top_is_right
 from modalkit.blind.run import BlindResult, Outcome
-from modalkit.blind.score import score, wilson
+from modalkit.blind.scoring.rows import holds_truth, is_right, top_is_right
+from modalkit.blind.scoring.score import score, wilson
 from modalkit.blind.seal import seal
 from modalkit.blind.trial import Truth
 

@@ -13,10 +13,18 @@ import numpy as np
 import scipy.linalg
 
 from acquisition.arrays import FloatArray
-from modalkit.blind.element import GAUSS, NODES, ORDER, element_nodes, gauss_places, gauss_rows, readers
-from modalkit.blind.mesh import graded_mesh
-from modalkit.blind.parts import Attached, Notch
-from modalkit.blind.water import added_mass
+from modalkit.blind.bodies.element import (
+    GAUSS,
+    NODES,
+    ORDER,
+    element_nodes,
+    gauss_places,
+    gauss_rows,
+    readers,
+)
+from modalkit.blind.bodies.mesh import graded_mesh
+from modalkit.blind.bodies.parts import Attached, Notch
+from modalkit.blind.bodies.water import added_mass
 
 _STIFF = 1e5
 

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 import scipy.stats
 
-from modalkit.blind.rows import place_table, severity_table, trial_table
 from modalkit.blind.run import BlindResult
+from modalkit.blind.scoring.rows import place_table, severity_table, trial_table
 
 SCHEMA = "modalkit.blind/1"
 

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.linalg
 
 from acquisition.arrays import ComplexArray, FloatArray
-from modalkit.blind.beam import Beam
+from modalkit.blind.bodies.beam import Beam
 
 
 @dataclass(frozen=True, eq=False)

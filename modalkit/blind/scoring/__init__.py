@@ -1,0 +1,1 @@
+"""How a blind run is scored: what was hidden beside what was said."""
