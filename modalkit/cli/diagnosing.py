@@ -34,6 +34,9 @@ def diagnose(
     shared: Annotated[
         str, typer.Option(help="effects of one and the same size in several studies, comma-separated")
     ] = "",
+    without: Annotated[
+        str, typer.Option(help="effects to leave out, as if the library did not know them, comma-separated")
+    ] = "",
     json: Annotated[Path | None, typer.Option("--json", help="file for the diagnosis as JSON")] = None,
     report: Annotated[Path | None, typer.Option(help="file for a report as HTML, figures in it")] = None,
     figures: Figures = None,
@@ -42,17 +45,20 @@ def diagnose(
     check_json_place(json)
     _check_report(report, json)
     check_once(studies)
-    names = tuple(name.strip() for name in shared.split(",") if name.strip())
     with working("reading and identifying"):
         sessions = [open_study(read_study(path)) for path in studies]
     with working("weighing the effects"):
-        diagnosis = diagnose_studies(sessions, names)
+        diagnosis = diagnose_studies(sessions, _names(shared), _names(without))
     show_diagnosis(diagnosis, *sessions)
     if json is not None:
         write_json(json, diagnosis_record(diagnosis, warnings_of(sessions)))
         out.print(f"written: {json}", markup=False)
     if report is not None or figures is not None:
         _draw(diagnosis, sessions, report, figures)
+
+
+def _names(listed: str) -> tuple[str, ...]:
+    return tuple(name.strip() for name in listed.split(",") if name.strip())
 
 
 def _check_report(report: Path | None, json: Path | None) -> None:

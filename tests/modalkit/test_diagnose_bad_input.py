@@ -96,6 +96,22 @@ def test_no_mode_with_a_partner_is_one_line_and_exit_code_2(run: Run, tmp_path: 
     assert "Cause" not in out
 
 
+def test_an_effect_left_out_of_the_library_must_be_in_it(run: Run) -> None:
+    code, _, err = run("diagnose", SAMPLES / "beam_dry" / "published.toml", "--without", "E,gremlin")
+    assert code == 2
+    assert "--without gremlin" in err
+
+
+def test_what_is_left_out_of_the_library_is_not_named(run: Run, tmp_path: Path) -> None:
+    out = tmp_path / "d.json"
+    study = SAMPLES / "plate_wet" / "published.toml"
+    code, _, _ = run("diagnose", study, "--without", "fluid_added_mass", "--json", out)
+    cause = json.loads(out.read_text())["cause"]
+    assert code == 0
+    assert cause["verdict"] == "unknown"
+    assert not any("fluid_added_mass" in row["effects"] for row in cause["ranking"])
+
+
 def test_shared_effects_need_somebody_to_share_them_with(run: Run) -> None:
     beam = SAMPLES / "beam_dry" / "published.toml"
     code, _, err = run("diagnose", beam, "--shared", "length")
