@@ -74,7 +74,8 @@ def check_effect(
     if obstacle is not None:
         raise StudyError(f"{where} {name}: {obstacle}")
     takes = {p.name: p for p in effect.parameters(tested)}
-    if set(values) != {*takes, *effect.labels}:
+    needed = {*effect.labels, *(p.name for p in takes.values() if p.default is None)}
+    if not needed <= set(values) <= {*takes, *effect.labels}:
         told = [f"{label} (node numbers)" for label in effect.labels]
         wanted = ", ".join([*told, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"
         raise StudyError(f"{where} {name}: it takes {wanted}, found {', '.join(sorted(values)) or 'none'}")
@@ -83,7 +84,7 @@ def check_effect(
         if missing := [node for node in given if node not in predictor.measured.nodes]:
             there = ", ".join(map(str, predictor.measured.nodes[:12]))
             raise StudyError(f"{where} {name}: the test has no point {missing[0]}; it has {there}")
-    for p in takes.values():
+    for p in (takes[name] for name in takes if name in values):
         if p.log and not values[p.name] > 0:
             raise StudyError(f"{where} {name}: {p.name} = {values[p.name]:g} {p.unit} must be positive")
 

@@ -76,13 +76,13 @@ def _row(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Sparse]
 
 
 def _body(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
-    """A steel cube of side a: m a^2 / 6 about its own axes."""
+    """A body as bulky as some steel cubes of side a: m a^2 / 6 about its own axes each."""
     mass, rows = values["mass"], _row(structure, values)
     side = (mass / 7850.0) ** (1 / 3)
     total = mass * (rows["w"].T @ rows["w"])
     for name in ("wx", "wy"):
         if name in rows:
-            total = total + mass * side**2 / 6 * (rows[name].T @ rows[name])
+            total = total + values.get("bulk", 1.0) * mass * side**2 / 6 * (rows[name].T @ rows[name])
     return {"mass": total}
 
 
@@ -209,8 +209,8 @@ CONTRACT = {
     "length": {"extension"},
     "clamp_rotation": {"stiffness"},
     "clamp_translation": {"stiffness"},
-    "sensor_mass": {"mass"},
-    "lumped_mass": {"mass", "x", "y"},
+    "sensor_mass": {"mass", "bulk"},
+    "lumped_mass": {"mass", "x", "y", "bulk"},
     "local_stiffness": {"x", "y", "extent", "loss"},
     "shear": set(),
     "orthotropy": {"ratio"},

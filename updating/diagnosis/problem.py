@@ -50,6 +50,9 @@ COMPLEX = 2.5
 MOST_TURNED = 30.0
 """No sensor is taken to sit nearer to a node than where a mode moves this much less than elsewhere [-]."""
 
+FOLLOWS = 0.5
+"""How much of a change of frequency (1 sigma of its logarithm) damping may follow otherwise than expected [-]."""
+
 TURNED = 0.03
 """How far damping that is not proportional, and filters, turn a mode's constants (1 sigma) [rad]."""
 
@@ -304,7 +307,9 @@ class Problem:
         relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=0.05)
         expected = np.maximum(now.damping[rows], 1e-7)
         tolerance = self._damping_tolerance(now)[rows]
-        variance = relative**2 + tolerance**2 + doubt**2
+        # ratios go up or down with frequency as the mechanism has it: viscous ones fall, those of stiffness rise
+        moved = FOLLOWS * np.log(now.frequency[rows] / self.nominal.frequency[rows])
+        variance = relative**2 + tolerance**2 + doubt**2 + moved**2
         level = np.stack([tolerance, np.full(len(rows), doubt)], axis=1)[:, : 1 + (doubt > 0)]
         return Block(
             1,

@@ -84,8 +84,10 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
     )  # the second look, on the better theory
     if not there_already and (obstacle := effect.why_not(predictor)) is not None:
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
-    takes = {parameter.name for parameter in effect.parameters(predictor)} | set(effect.labels)
-    if set(values) != takes:
+    parameters = effect.parameters(predictor)
+    takes = {parameter.name for parameter in parameters} | set(effect.labels)
+    needed = takes - {parameter.name for parameter in parameters if parameter.default is not None}
+    if not needed <= set(values) <= takes:
         raise StudyError(
             f"[[model.effect]] {name}: it takes {', '.join(sorted(takes)) or 'no parameters'}, "
             f"found {', '.join(sorted(values)) or 'none'}"

@@ -33,6 +33,8 @@ class Parameter:
         Why this range.
     log : bool
         Whether the prior is uniform in the logarithm.
+    default : float, optional
+        What is taken where an effect is put into a model and this is not told; left out, it has to be told.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Parameter:
     high: float
     why: str
     log: bool = False
+    default: float | None = None
 
     def value(self, coordinate: float) -> float:
         """Take a prior quantile in [0, 1] to the parameter's value [unit]."""

@@ -24,8 +24,11 @@ ROVING = 0.5
 
 AXES = ("x", "y", "z")
 
-BULKS = {0.0: 0.4, 1.0: 0.35, 3.0: 0.25}
-"""Rotary inertias that a sensor may have, as multiples of a steel cube's, and how likely they are [-]."""
+STILL, CUBE = 0.0, 1.0
+"""Rotary inertia of a sensor and of a body where none is told, as a multiple of a steel cube's [-]."""
+
+LARGEST = 6.0
+"""Largest rotary inertia of a body, as a multiple of a steel cube's of its mass [-]."""
 
 
 def cube_inertia(mass: float) -> float:
@@ -71,7 +74,7 @@ class SensorMass(Effect):
         why = (
             "from the lightest accelerometer with its wax to an impedance head as heavy as half the structure"
         )
-        return (Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True),)
+        return (Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True), _bulk(STILL))
 
     def fidelity_on(self, predictor: Predictor) -> float:
         """Return the doubt in the mean over the places where the sensor roves [-]."""
@@ -87,14 +90,9 @@ class SensorMass(Effect):
         """Return the structure with the mass at every sensor, or spread over the places of one that roves."""
         reduced, points = predictor.reduced, sensor_places(predictor)
         mass = values["mass"] * predictor.once("sensors", lambda: reduced.unit_mass(points))
-        if bulk := values.get("bulk", 0.0):
-            turning = predictor.once("sensors turning", lambda: _reduced_inertia(predictor, points))
-            mass = mass + bulk * cube_inertia(values["mass"]) * turning
+        turning = predictor.once("sensors turning", lambda: _reduced_inertia(predictor, points))
+        mass = mass + values.get("bulk", STILL) * cube_inertia(values["mass"]) * turning
         return State(mass=(sensor_share(predictor) * mass,))
-
-    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return sensors of several rotary inertias: a point, a steel cube's, and three times that."""
-        return tuple(Variant({"bulk": bulk}, weight) for bulk, weight in BULKS.items())
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the sensors."""
@@ -122,7 +120,7 @@ class LumpedMass(Effect):
         high = 0.5 * total_mass(predictor.spec)
         why = "from what repeated tests can see to half the structure's own mass"
         places = _outline(predictor)
-        return (Parameter("mass", "kg", 2e-3 * high, high, why, log=True), *places)
+        return (Parameter("mass", "kg", 2e-3 * high, high, why, log=True), *places, _bulk(CUBE))
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Need places: on imported matrices, the points of the test."""
@@ -141,31 +139,35 @@ class LumpedMass(Effect):
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a row of places and the ends, with a middling mass."""
         if predictor.spec.kind == "matrices":
-            return tuple((u, 0.5, 0.5, 0.5) for u in (0.3, 0.6))
+            return tuple((u, 0.5, 0.5, 0.5, 0.2) for u in (0.3, 0.6))
         ends = (
             ((0.02,), (0.98,)) if predictor.spec.kind == "beam" else ((0.98, 0.02), (0.98, 0.98), (0.98, 0.5))
         )
         places = (*starting_places(predictor.spec), *ends)
-        return tuple((0.45, *where) for where in places)
+        return tuple((0.45, *where, 0.2) for where in places)
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the body."""
         point = np.array([[values[name] for name in AXES[: predictor.spec.dim]]])
+        inertia = values.get("bulk", CUBE) * cube_inertia(values["mass"])
         if predictor.spec.kind == "matrices":
             mass = predictor.reduced.unit_mass(point) * values["mass"]
-            turning = cube_inertia(values["mass"]) * _reduced_inertia(predictor, point)
-            return State(mass=(mass + turning,))
+            return State(mass=(mass + inertia * _reduced_inertia(predictor, point),))
         rows = predictor.reduced.rows(point)
         turns = [rows[name] for name in ("wx", "wy") if name in rows]
         turning = sum((row.T @ row for row in turns), np.zeros(()))
-        return State(
-            mass=(values["mass"] * rows["w"].T @ rows["w"] + cube_inertia(values["mass"]) * turning,)
-        )
+        return State(mass=(values["mass"] * rows["w"].T @ rows["w"] + inertia * turning,))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the place; where no shapes tell it from its mirror images, these too."""
         at = (float(values["x"]), float(values.get("y", 0.0)), float(values.get("z", 0.0)))
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def _bulk(default: float) -> Parameter:
+    """Return the rotary inertia about the body's own middle and its height above the surface."""
+    why = "rotary inertia over a steel cube's of its mass: from a flat disc to a tall body of light metal"
+    return Parameter("bulk", "-", 0.0, LARGEST, why, default=default)
 
 
 def _outline(predictor: Predictor) -> tuple[Parameter, ...]:
