@@ -104,6 +104,7 @@ def explain(
     density: int = 16,
     draft: bool = False,
     climbs: int = CLIMBS,
+    bar: float = -np.inf,
 ) -> Explanation:
     """Weigh a candidate.
 
@@ -122,6 +123,8 @@ def explain(
         tell the hopeless from the rest.
     climbs : int
         From how many starting places, those that a short climb finds best, the search goes on to the top.
+    bar : float
+        Log-likelihood that another candidate has reached; what stays far below it is searched less closely.
 
     Returns
     -------
@@ -132,7 +135,7 @@ def explain(
         point = evaluate(problem, candidate, np.zeros(0))
         evidence = point.marginal.log_likelihood + candidate.log_weight
         return Explanation(candidate, evidence, point, np.zeros((1, 0)), np.ones(1))
-    peaks = _peaks(problem, candidate, places, climbs)
+    peaks = _peaks(problem, candidate, places, climbs, bar)
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
     if draft:
@@ -206,14 +209,16 @@ def _moments(problem: Posed, candidate: Candidate, samples: FloatArray, weights:
     return Peak(best.point, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
 
 
-def _peaks(problem: Posed, candidate: Candidate, places: list[FloatArray], climbs: int) -> list[Peak]:
+def _peaks(
+    problem: Posed, candidate: Candidate, places: list[FloatArray], climbs: int, bar: float
+) -> list[Peak]:
     if len(places) > climbs:
         looks = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
         nearest = [places[i] for i in np.argsort(looks)[::-1][:TRIED]]
-        tried = [climb(problem, candidate, place, rounds=FEW) for place in nearest]
+        tried = [climb(problem, candidate, place, rounds=FEW, bar=bar) for place in nearest]
         tried.sort(key=lambda p: -p.point.marginal.log_likelihood)
         places = [peak.point.coordinates for peak in _apart(tried)[:climbs]]
-    found = _apart([climb(problem, candidate, place) for place in places])
+    found = _apart([climb(problem, candidate, place, bar=bar) for place in places])
     top = found[0].point.marginal.log_likelihood
     return [peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < BEHIND]
 

@@ -22,6 +22,12 @@ are heavier than its curvature says [-]."""
 CHEAP = 2
 """With so few parameters sensitivities are taken anew after every step."""
 
+LITTLE = 0.02
+"""Share of what is missing to the best found elsewhere below which a gain ends a climb [-]."""
+
+HOPELESS = 40.0
+"""How far below the best found elsewhere a maximum need not be known any better [-]."""
+
 AT_REST = 0.01
 """A climb is at rest when a step gains less than this [-]."""
 
@@ -156,6 +162,7 @@ def climb(
     *,
     keep: BoolArray | None = None,
     rounds: int = 20,
+    bar: float = -np.inf,
 ) -> Peak:
     """Climb to the nearest maximum of the marginal likelihood within the prior's range.
 
@@ -171,6 +178,8 @@ def climb(
         Data to use; left out, all.
     rounds : int
         Most steps taken; a climb that is at rest ends before.
+    bar : float
+        Log-likelihood that has been reached elsewhere: a climb far below that gains little ends.
     """
     point = evaluate(problem, candidate, start, keep=keep)
     if not point.possible:
@@ -198,7 +207,8 @@ def climb(
             point, damping = trial, damping / 5
         elif fresh:
             damping *= 10
-        if abs(gain) < AT_REST or damping > 1e6:
+        missing = bar - point.marginal.log_likelihood
+        if abs(gain) < max(AT_REST, LITTLE * missing) or damping > 1e6:
             break
         if not fresh and (gain <= 0 or len(start) <= CHEAP):
             columns, rise = _slopes(problem, candidate, point, keep)
@@ -206,7 +216,7 @@ def climb(
         normal, load = _curvature(point, columns, keep)
         if fresh:
             beside = _finite(rise - load)
-    if not fresh:
+    if not fresh and bar - point.marginal.log_likelihood < HOPELESS:
         columns, rise = _slopes(problem, candidate, point, keep)
         normal, load = _curvature(point, columns, keep)
         beside = _finite(rise - load)

@@ -104,7 +104,7 @@ def search(problem: Posed, library: Sequence[Effect]) -> Search:
     effects, obstacles = examine(problem, library)
     nothing = explain(problem, Candidate())
     twin = _falls_short(problem, effects)
-    drafts = [_single(problem, e, form, twin=twin) for e in effects for form in problem.forms(e)]
+    drafts = _singles(problem, effects, nothing, twin=twin)
     found = _finished(problem, [nothing, *drafts])
     if not _explained(found):
         found = _finished(problem, found + _pairs(problem, found[1:]))
@@ -175,12 +175,25 @@ def _falls_short(problem: Posed, effects: list[Effect]) -> bool:
     return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
 
 
-def _single(problem: Posed, effect: Effect, form: Variant, *, twin: bool) -> Explanation:
+def _singles(
+    problem: Posed, effects: list[Effect], nothing: Explanation, *, twin: bool
+) -> list[Explanation]:
+    """Weigh every form of every effect, the simple ones first: what they reach is the bar for the others."""
+    forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
+    forms.sort(key=lambda pair: len(problem.parameters(Candidate((pair[0],), chosen=(pair[1],)))))
+    bar, found = nothing.best.marginal.log_likelihood, []
+    for effect, form in forms:
+        found.append(_single(problem, effect, form, twin=twin, bar=bar))
+        bar = max(bar, found[-1].best.marginal.log_likelihood)
+    return found
+
+
+def _single(problem: Posed, effect: Effect, form: Variant, *, twin: bool, bar: float) -> Explanation:
     """Weigh one form of an effect; where the theory falls short, on either theory and half the evidence of each."""
-    plain = explain(problem, Candidate((effect,), chosen=(form,)), draft=True)
+    plain = explain(problem, Candidate((effect,), chosen=(form,)), draft=True, bar=bar)
     if not twin or effect.name == "shear":
         return plain
-    better = explain(problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), draft=True)
+    better = explain(problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), draft=True, bar=bar)
     total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
     chosen = max(plain, better, key=lambda e: e.log_evidence)
     return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
@@ -206,11 +219,13 @@ def _pairs(problem: Posed, singles: list[Explanation]) -> list[Explanation]:
     for _, first, second in looks:  # of every two effects, the most promising forms
         chosen.setdefault(frozenset(first.names + second.names), (first, second))
     found: list[Explanation] = []
+    bar = max(e.best.marginal.log_likelihood for e in possible)
     for first, second in list(chosen.values())[:PAIRS]:
         middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]
         a, b = first.best.coordinates, second.best.coordinates
         starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
-        found.append(explain(problem, _joined(first, second), starts=starts, draft=True, climbs=1))
+        found.append(explain(problem, _joined(first, second), starts=starts, draft=True, climbs=1, bar=bar))
+        bar = max(bar, found[-1].best.marginal.log_likelihood)
     return found
 
 

@@ -24,8 +24,8 @@ class CalibrationGain(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the gain."""
-        why = "wrong sensitivity, charge range, or hammer tip factor"
-        return (Parameter("gain", "-", 0.4, 2.5, why, log=True),)
+        why = "wrong sensitivity or charge range (a decade), g taken for m/s^2 (9.81), lbf for N (4.45)"
+        return (Parameter("gain", "-", 0.08, 12.5, why, log=True),)
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Need absolute level."""
