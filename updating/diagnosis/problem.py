@@ -398,7 +398,7 @@ class Problem:
         elif test.calibration > UNKNOWN_LEVEL:
             level = level * float(_projection(test.constants / scale, constants * level, axis=None))
         predicted, by = constants * level, by * level[:, :, None]
-        variance = (test.constants_sigma**2 + doubt) / scale**2 + SHAPE_FLOOR**2
+        variance = (test.constants_sigma / scale) ** 2 + doubt * level**2 + SHAPE_FLOOR**2
         louder = np.zeros((predicted.size, 0))
         if fidelity:
             # a change of the modes' levels errs as a whole, what is no mere change of level point by point
@@ -408,7 +408,8 @@ class Problem:
             louder = (fidelity * (share - 1) * before).reshape(-1, 1)
         gain = self._level_columns(predicted)
         sensors = self._sensor_columns(now.along_seen * level)
-        own = [self._position_columns(now.along * level), sensors, louder]
+        along = self._registration_column(now.along * level, now.along_seen * level)
+        own = [self._position_columns(now.along * level), sensors, along, louder]
         modes = np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel()
         if not test.absolute:
             own, gain = [gain, *own], np.zeros((predicted.size, 0))
@@ -439,6 +440,19 @@ class Problem:
             for slope in along
         ]
         return np.stack(columns, axis=1)
+
+    def _registration_column(self, hit: FloatArray, seen: FloatArray) -> FloatArray:
+        """Return a column for where the points as a whole lie along x.
+
+        Where one end is clamped they keep their distance from the other. Else nobody says from which end they were
+        measured, so that half of the doubt in the length is a doubt in where they lie. A baseline has the same.
+        """
+        doubt = 0.5 * self.tolerances.factors.get("length", 0.0) * self.predictor.spec.length
+        one_end = len({edge for edge in self.predictor.spec.clamped if edge[0] == "x"}) == 1
+        if one_end or not doubt or self.before is not None or self.predictor.spec.kind == "matrices":
+            return np.zeros((hit[0].size, 0))
+        bare = (self.measured.hit < 0)[:, None]
+        return np.asarray(doubt * (np.where(bare, 0.0, hit[0]) + seen[0])).reshape(-1, 1)
 
     def _sensor_columns(self, along: FloatArray) -> FloatArray:
         """Return one column per sensor and direction: the effect of having mounted it beside its point."""
