@@ -45,6 +45,9 @@ class MeasurementTable(Strict):
     calibration: float = Field(0.02, gt=0.0)
     repeatability: float = Field(0.0005, ge=0.0)
     position_sigma: float = Field(0.001, ge=0.0)
+    points: list[float] = []
+    sensor: float | None = None
+    hits: int | None = Field(None, ge=1)
     axes: AxesTable = AxesTable()
 
 

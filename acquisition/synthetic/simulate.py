@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy.fft
@@ -25,6 +26,7 @@ def hammer_test(
     *,
     rng: np.random.Generator,
     geometry: Geometry | None = None,
+    at_hit: Callable[[int, int, float], ModalSystem] | None = None,
 ) -> HammerTest:
     """Hit a structure and record force and responses.
 
@@ -43,6 +45,9 @@ def hammer_test(
         Source of all scatter and noise.
     geometry : Geometry, optional
         Nodes of the test.
+    at_hit : callable, optional
+        Row of the point, hit and peak force [N] to the structure at that very hit, where it changes from hit to
+        hit; default ``system`` at the level.
 
     Raises
     ------
@@ -57,7 +62,8 @@ def hammer_test(
     force = np.empty((len(first.points), plan.hits, plan.samples))
     motion = np.empty((len(first.points), plan.hits, len(first.responses), plan.samples))
     for point, hit in np.ndindex(len(first.points), plan.hits):
-        records = _one_hit(at_level, plan, contour, (point, hit), rng)
+        now = at_level if at_hit is None else partial(at_hit, point, hit)
+        records = _one_hit(now, plan, contour, (point, hit), rng)
         force[point, hit], motion[point, hit] = records
     force, motion = _converted(force, motion, plan)
     points = tuple(

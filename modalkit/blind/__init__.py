@@ -3,19 +3,29 @@
 It shares no model code with the candidates: it imports nothing from the room that holds them.
 """
 
-from modalkit.blind.run import BlindResult, Outcome, diagnose_in_subprocess, run_blind, run_trial
+from modalkit.blind.diagnoser import Diagnose, Diagnoser, diagnosers
+from modalkit.blind.outcome import Outcome
+from modalkit.blind.plan import Plan
+from modalkit.blind.run import BlindResult, run_blind, run_trial
 from modalkit.blind.scoring.score import Score, score
 from modalkit.blind.seal import Seal, open_seal, seal
+from modalkit.blind.store import Checked, Store, check_store
 from modalkit.blind.trial import Trial, Truth, draw_trial, write_trial
 
 __all__ = [
     "BlindResult",
+    "Checked",
+    "Diagnose",
+    "Diagnoser",
     "Outcome",
+    "Plan",
     "Score",
     "Seal",
+    "Store",
     "Trial",
     "Truth",
-    "diagnose_in_subprocess",
+    "check_store",
+    "diagnosers",
     "draw_trial",
     "open_seal",
     "run_blind",

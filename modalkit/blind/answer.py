@@ -1,14 +1,15 @@
-"""Read a diagnosis: the few fields of the contract's JSON that the score needs."""
+"""Read a diagnosis: the fields of the contract's JSON that the score needs."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from acquisition.errors import InputError
 
 VERDICTS = ("named", "class", "unknown", "none")
+NAN = float("nan")
 
 
 @dataclass(frozen=True)
@@ -18,12 +19,37 @@ class Estimate:
     Parameters
     ----------
     value, low, high : float
-        Value and 95 % interval.
+        Value and 95 % interval; nan where there is none.
     """
 
     value: float
-    low: float
-    high: float
+    low: float = NAN
+    high: float = NAN
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """One set of effects of the ranking.
+
+    Parameters
+    ----------
+    effects : frozenset of str
+        The set.
+    probability : float
+        Of the set, among all that were compared and no effect at all [-].
+    fit : float
+        Probability that data of this set fit no better than these; nan where it is not told [-].
+    parameters : dict of str to Estimate
+        By ``effect.parameter``.
+    points : dict of str to tuple of int
+        Test points that it names, by ``effect.parameter``.
+    """
+
+    effects: frozenset[str]
+    probability: float
+    fit: float = NAN
+    parameters: dict[str, Estimate] = field(default_factory=dict)
+    points: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,36 +61,73 @@ class Answer:
     verdict : {"named", "class", "unknown", "none"}
         Kind of answer.
     sets : tuple of frozenset of str
-        Sets of effects that it does not rule out.
-    ranking : tuple of (frozenset, probability)
+        Sets of effects that it does not rule out, most probable first.
+    ranking : tuple of Row
         All sets it compared, most probable first.
-    parameters : dict
-        Estimates of the rows that consist of one effect, by ``effect.parameter``.
-    locations : tuple of float
-        Places along the beam that it points to [m].
-    closed : float or None
+    locations : tuple of (x, y)
+        Places that it points to, most probable first [m].
+    p_value : float
+        Probability that chance alone makes such a gap [-].
+    channel : str
+        stiffness, mass, damping, measurement or none.
+    channels : dict of str to float
+        Probability of each [-].
+    held_out : dict of str to float
+        Errors on data held out, ``before_percent`` and so on [%].
+    closed : Estimate or None
         Share of the gap that it says is closed [%].
+    metric : str
+        What the errors are of: frequency, damping, frf or combined.
     """
 
     verdict: str
     sets: tuple[frozenset[str], ...]
-    ranking: tuple[tuple[frozenset[str], float], ...]
-    parameters: dict[str, Estimate]
-    locations: tuple[float, ...]
-    closed: float | None
+    ranking: tuple[Row, ...] = ()
+    locations: tuple[tuple[float, float], ...] = ()
+    p_value: float = NAN
+    channel: str = "none"
+    channels: dict[str, float] = field(default_factory=dict)
+    held_out: dict[str, float] = field(default_factory=dict)
+    closed: Estimate | None = None
+    metric: str = ""
+
+    @property
+    def best(self) -> Row | None:
+        """The most probable row, where the diagnosis names an effect or a class."""
+        return self.ranking[0] if self.verdict in ("named", "class") and self.ranking else None
 
     @property
     def top(self) -> frozenset[str] | None:
         """The most probable set; empty for ``none``; None for ``unknown``."""
         if self.verdict == "none":
             return frozenset()
-        if self.verdict == "unknown" or not self.ranking:
-            return None
-        return self.ranking[0][0]
+        return None if self.best is None else self.best.effects
 
-    def probability(self, names: tuple[str, ...]) -> float:
-        """Return the probability given to single effects of some names together [-]."""
-        return sum(p for effects, p in self.ranking if len(effects) == 1 and next(iter(effects)) in names)
+    def row(self, effects: Collection[str]) -> Row | None:
+        """Return the row of a set of effects."""
+        wanted = frozenset(effects)
+        return next((row for row in self.ranking if row.effects == wanted), None)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the answer as a diagnosis of the contract, parameters in the rows of the answer alone."""
+        return {
+            "p_value": _or_none(self.p_value),
+            "where": {
+                "channel": self.channel,
+                "channels": self.channels,
+                "locations": [[x, y, 0.0] for x, y in self.locations],
+            },
+            "cause": {
+                "verdict": self.verdict,
+                "sets": [sorted(s) for s in self.sets],
+                "ranking": [_row_json(row, told=row.effects in self.sets) for row in self.ranking],
+            },
+            "shrink": {
+                "metric": self.metric,
+                "held_out": {name: _or_none(value) for name, value in self.held_out.items()},
+                "closed_percent": None if self.closed is None else _estimate_json(self.closed),
+            },
+        }
 
 
 def read_answer(document: Mapping[str, Any]) -> Answer:
@@ -94,29 +157,71 @@ def read_answer(document: Mapping[str, Any]) -> Answer:
 
 
 def _read(document: Mapping[str, Any]) -> Answer:
-    cause, where = document["cause"], document["where"]
+    cause, where, shrink = document["cause"], document["where"], document["shrink"]
     if cause["verdict"] not in VERDICTS:
         raise ValueError(f"verdict {cause['verdict']!r} is not one of {', '.join(VERDICTS)}")
-    rows = sorted(cause["ranking"], key=lambda row: -float(row["probability"]))
-    parameters = {
-        name: Estimate(*(_number(p[key]) for key in ("value", "low95", "high95")))
-        for row in reversed(rows)
-        if len(row["effects"]) == 1
-        for name, p in row["parameters"].items()
-        if not isinstance(p["value"], list)
-    }
+    rows = sorted((_row(row) for row in cause["ranking"]), key=lambda row: -row.probability)
     places = list(where.get("locations") or ([where["location"]] if where.get("location") else []))
-    closed = document["shrink"].get("closed_percent")
+    closed = shrink.get("closed_percent")
+    held_out = shrink.get("held_out") or {}
     return Answer(
         verdict=cause["verdict"],
         sets=tuple(frozenset(s) for s in cause["sets"]),
-        ranking=tuple((frozenset(row["effects"]), float(row["probability"])) for row in rows),
-        parameters=parameters,
-        locations=tuple(float(place[0]) for place in places),
-        closed=None if closed is None else _number(closed["value"]),
+        ranking=tuple(rows),
+        locations=tuple((float(p[0]), float(p[1])) for p in places),
+        p_value=_number(document.get("p_value")),
+        channel=str(where.get("channel", "none")),
+        channels={name: _number(p) for name, p in (where.get("channels") or {}).items()},
+        held_out={name: _number(v) for name, v in held_out.items() if name != "points"},
+        closed=None if closed is None else _estimate(closed),
+        metric=str(shrink.get("metric", "")),
     )
+
+
+def _row(row: Mapping[str, Any]) -> Row:
+    told = {n: p for n, p in row["parameters"].items() if not isinstance(p["value"], str)}
+    points = {n: p["value"] for n, p in told.items() if _is_points(p)}
+    return Row(
+        effects=frozenset(row["effects"]),
+        probability=float(row["probability"]),
+        fit=_number(row.get("fit_p_value")),
+        parameters={n: _estimate(p) for n, p in told.items() if n not in points},
+        points={n: _points(value) for n, value in points.items()},
+    )
+
+
+def _is_points(parameter: Mapping[str, Any]) -> bool:
+    return isinstance(parameter["value"], list | tuple) or parameter.get("unit") == "node"
+
+
+def _points(value: float | Sequence[int]) -> tuple[int, ...]:
+    return tuple(int(v) for v in value) if isinstance(value, Sequence) else (int(value),)
+
+
+def _estimate(parameter: Mapping[str, Any]) -> Estimate:
+    return Estimate(*(_number(parameter[key]) for key in ("value", "low95", "high95")))
 
 
 def _number(value: Any) -> float:
     """Read a number; ``null`` says that it could not be determined."""
-    return float("nan") if value is None else float(value)
+    return NAN if value is None else float(value)
+
+
+def _row_json(row: Row, *, told: bool) -> dict[str, Any]:
+    points = {name: {"value": list(value), "unit": "node"} for name, value in row.points.items()}
+    return {
+        "effects": sorted(row.effects),
+        "probability": row.probability,
+        "fit_p_value": _or_none(row.fit),
+        "parameters": {n: _estimate_json(e) for n, e in row.parameters.items()} | points if told else {},
+    }
+
+
+def _estimate_json(estimate: Estimate) -> dict[str, float | None]:
+    values = (estimate.value, estimate.low, estimate.high)
+    return {key: _or_none(v) for key, v in zip(("value", "low95", "high95"), values, strict=True)}
+
+
+def _or_none(value: float) -> float | None:
+    """Turn what is not a finite number into what JSON calls null."""
+    return value if abs(value) < float("inf") else None

@@ -2,54 +2,27 @@
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, closing, nullcontext
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
-from acquisition.errors import EstimationError, ModalkitError, StudyError
-from modalkit.blind.answer import Answer, read_answer
-from modalkit.blind.seal import Seal, open_seal, seal
+from acquisition.errors import ModalkitError, StudyError
+from modalkit.blind.answer import read_answer
+from modalkit.blind.diagnoser import Diagnose, diagnosers
+from modalkit.blind.outcome import Outcome, slim
+from modalkit.blind.plan import Plan
+from modalkit.blind.seal import open_seal, seal
+from modalkit.blind.shrunk import true_shrinkage
+from modalkit.blind.store import Store
 from modalkit.blind.trial import Truth, draw_trial, write_trial
+from modalkit.serving.pool import in_flight
 
-Diagnose = Callable[[Path], Mapping[str, Any]]
-TIMEOUT = 900.0
-_HIDDEN_VARIABLES = ("PYTEST_CURRENT_TEST", "PYTEST_VERSION")
-
-
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """One trial, opened.
-
-    Parameters
-    ----------
-    index : int
-        Number of the trial [-].
-    truth : Truth
-        What was hidden.
-    answer : Answer or None
-        What the diagnosis said; None where it failed.
-    failure : str or None
-        Message of a diagnosis that failed.
-    sealed : Seal
-        Statement and salt; its commitment was announced before the diagnosis began.
-    seconds : float
-        Time the diagnosis took [s].
-    """
-
-    index: int
-    truth: Truth
-    answer: Answer | None
-    failure: str | None
-    sealed: Seal
-    seconds: float
+Announce = Callable[[int, str], None]
+"""Called with a trial's number and its commitment before its diagnosis begins."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,68 +33,19 @@ class BlindResult:
     ----------
     seed : int
         Of the run.
+    plan : Plan
+        What could be drawn.
     outcomes : tuple of Outcome
         One per trial.
     """
 
     seed: int
-    outcomes: tuple[Outcome, ...]
-
-
-def diagnose_in_subprocess(study: Path, *, timeout: float = TIMEOUT) -> dict[str, Any]:
-    """Run ``modalkit diagnose`` on a study in a process of its own.
-
-    Parameters
-    ----------
-    study : Path
-        The study file; the process starts in its folder and is given nothing else.
-    timeout : float
-        Longest time allowed [s].
-
-    Returns
-    -------
-    dict
-        The diagnosis as JSON.
-
-    Raises
-    ------
-    EstimationError
-        If the process fails, does not end, or writes no JSON.
-    """
-    out = study.parent / "diagnosis.json"
-    command = [sys.executable, "-m", "modalkit", "diagnose", study.name, "--json", out.name]
-    environment = {k: v for k, v in os.environ.items() if k not in _HIDDEN_VARIABLES}
-    environment.setdefault("OPENBLAS_NUM_THREADS", "1")
-    try:
-        done = subprocess.run(
-            command,
-            cwd=study.parent,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=timeout,
-            stdin=subprocess.DEVNULL,
-            check=False,
-        )
-    except subprocess.TimeoutExpired as error:
-        raise EstimationError(f"the diagnosis did not end within {timeout:g} s") from error
-    if done.returncode != 0:
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise EstimationError(f"the diagnosis ended with code {done.returncode}: {last}")
-    try:
-        document: dict[str, Any] = json.loads(out.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise EstimationError(f"the diagnosis wrote no readable JSON: {error}") from error
-    return document
+    plan: Plan = field(default_factory=Plan)
+    outcomes: tuple[Outcome, ...] = ()
 
 
 def run_trial(
-    seed: int,
-    index: int,
-    *,
-    diagnose: Diagnose = diagnose_in_subprocess,
-    effects: Sequence[str] | None = None,
-    announce: Callable[[int, str], None] | None = None,
+    seed: int, index: int, *, diagnose: Diagnose, plan: Plan | None = None, announce: Announce | None = None
 ) -> Outcome:
     """Run one trial from the draw to the opened seal.
 
@@ -130,9 +54,9 @@ def run_trial(
     seed, index : int
         Of the run, and of the trial in it.
     diagnose : callable
-        Study file to diagnosis.
-    effects : sequence of str, optional
-        What may be hidden; default everything the rig has.
+        Study file, and effects to leave out of the library, to diagnosis.
+    plan : Plan, optional
+        What may be drawn.
     announce : callable, optional
         Called with the trial's number and commitment before the diagnosis begins.
 
@@ -141,51 +65,65 @@ def run_trial(
     Outcome
         With the failure's message in place of an answer where the diagnosis failed.
     """
-    trial = draw_trial(seed, index, effects=effects)
+    trial = draw_trial(seed, index, plan=plan or Plan())
     sealed = seal(trial.truth.to_json())
     commitment = sealed.commitment
     if announce is not None:
         announce(index, commitment)
-    answer, failure = None, None
+    answer, document, failure, shrinkage = None, None, None, None
     with tempfile.TemporaryDirectory(prefix="test-") as name:
         study = write_trial(trial, Path(name))
         begin = time.perf_counter()
         try:
-            answer = read_answer(diagnose(study))
+            document = slim(diagnose(study, trial.truth.without))
+            answer = read_answer(document)
         except (ModalkitError, OSError, ValueError, ArithmeticError, LookupError, TypeError) as error:
-            failure = f"{type(error).__name__}: {error}"
+            document, failure = None, f"{type(error).__name__}: {error}"
         seconds = time.perf_counter() - begin
-    opened = open_seal(sealed, commitment)
-    truth = Truth(**(opened | {"accepted": tuple(opened["accepted"])}))
-    return Outcome(index, truth, answer, failure, sealed, seconds)
+    truth = Truth.from_json(open_seal(sealed, commitment))
+    if answer is not None:
+        shrinkage = true_shrinkage(trial, answer)
+    return Outcome(index, truth, answer, document, failure, sealed, seconds, shrinkage)
 
 
 def run_blind(
     trials: int,
     seed: int,
     *,
-    diagnose: Diagnose = diagnose_in_subprocess,
+    plan: Plan | None = None,
     workers: int = 1,
-    effects: Sequence[str] | None = None,
-    announce: Callable[[int, str], None] | None = None,
+    scheduler: str | None = None,
+    store: Path | None = None,
+    resume: bool = False,
+    diagnose: Diagnose | None = None,
+    announce: Announce | None = None,
     progress: Callable[[Outcome], None] | None = None,
+    documents: bool = True,
 ) -> BlindResult:
-    """Run blind trials; the result does not depend on the number of workers.
+    """Run blind trials; the result does not depend on workers, cluster, order or interruptions.
 
     Parameters
     ----------
     trials, seed : int
         Number of trials, and seed of the run.
-    diagnose : callable
-        Study file to diagnosis; the default starts a process per trial.
+    plan : Plan, optional
+        What may be drawn.
     workers : int
-        Trials in flight at a time; each is a thread that waits for its own process [-].
-    effects : sequence of str, optional
-        What may be hidden; default everything the rig has.
+        Trials in flight at a time on this machine, each with a diagnosing process of its own [-].
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers run the trials instead.
+    store : Path, optional
+        File for commitments and outcomes as they come.
+    resume : bool
+        Whether to run only what the store does not hold yet.
+    diagnose : callable, optional
+        In place of ``modalkit diagnose``; on a cluster it must be importable there.
     announce : callable, optional
         Called with the trial's number and commitment before its diagnosis begins.
     progress : callable, optional
-        Called with each outcome, in the order in which the trials end.
+        Called with each outcome, those of the store first, then in the order in which the trials end.
+    documents : bool
+        Whether the result holds the diagnoses as JSON, which no score needs; the store holds them always.
 
     Returns
     -------
@@ -196,22 +134,66 @@ def run_blind(
     ------
     StudyError
         If there are no trials or no workers, or the rig does not have an effect.
+    InputError
+        If the store belongs to another run, or the scheduler cannot be reached.
     """
     if trials < 1 or workers < 1:
         raise StudyError(f"{trials} trials with {workers} workers; both must be at least 1")
+    plan = plan or Plan()
     outcomes: dict[int, Outcome] = {}
-    with ThreadPoolExecutor(max_workers=workers) as pool:
-        waiting = [
-            pool.submit(run_trial, seed, i, diagnose=diagnose, effects=effects, announce=announce)
-            for i in range(trials)
-        ]
-        try:
-            for future in as_completed(waiting):
-                outcome = future.result()
-                outcomes[outcome.index] = outcome
-                if progress is not None:
-                    progress(outcome)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return BlindResult(seed, tuple(outcomes[i] for i in range(trials)))
+
+    def came(outcome: Outcome) -> None:
+        outcomes[outcome.index] = outcome if documents else replace(outcome, document=None)
+        if progress is not None:
+            progress(outcome)
+
+    with nullcontext() if store is None else Store(store, seed=seed, plan=plan, resume=resume) as kept:
+        for index, outcome in sorted(kept.found.items() if kept else ()):
+            if index < trials:
+                came(outcome)
+
+        def publish(index: int, commitment: str) -> None:
+            if kept is not None:
+                kept.commit(index, commitment)
+            if announce is not None:
+                announce(index, commitment)
+
+        missing = [index for index in range(trials) if index not in outcomes]
+        with closing(_running(missing, seed, plan, workers, scheduler, diagnose, publish)) as running:
+            for outcome in running:
+                if kept is not None:
+                    kept.keep(outcome)
+                came(outcome)
+    return BlindResult(seed, plan, tuple(outcomes[i] for i in range(trials)))
+
+
+def _running(
+    indices: Sequence[int],
+    seed: int,
+    plan: Plan,
+    workers: int,
+    scheduler: str | None,
+    diagnose: Diagnose | None,
+    publish: Announce,
+) -> Generator[Outcome, None, None]:
+    """Yield outcomes as they come, from this machine or from a cluster."""
+    if not indices:
+        return
+    if scheduler is not None:
+        from modalkit.blind.cluster import cluster_outcomes
+
+        yield from cluster_outcomes(
+            indices, seed=seed, plan=plan, scheduler=scheduler, diagnose=diagnose, publish=publish
+        )
+        return
+    workers = min(workers, len(indices))
+    with ExitStack() as stack:
+        pool = stack.enter_context(ThreadPoolExecutor(max_workers=workers))
+        use = diagnose or stack.enter_context(
+            diagnosers(workers)
+        )  # ended first, so that no thread waits for it
+
+        def run(index: int) -> Outcome:
+            return run_trial(seed, index, diagnose=use, plan=plan, announce=publish)
+
+        yield from in_flight(pool, run, indices, workers)

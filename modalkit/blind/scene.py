@@ -1,18 +1,70 @@
-"""The rig as it really stands: the specimen inside its tolerances, the sensor, the gain, the window."""
+"""The rig as it really stands: the specimen inside its tolerances, the sensor, the chain, the conduct."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
 from acquisition.arrays import FloatArray, frozen_array
 from modalkit.blind.bodies.beam import Beam
+from modalkit.blind.bodies.body import Body
 from modalkit.blind.bodies.complex_modes import ComplexModes, complex_modes
 from modalkit.blind.bodies.parts import Attached
+from modalkit.blind.bodies.plate import Plate
+from modalkit.blind.bodies.plate_parts import PlateAttached
 from modalkit.blind.setup import Setup
 
-_EXTRA_MODES = 8
+EXTRA_MODES = 8
+_SUSPENSION: dict[str, tuple[tuple[tuple[float, ...], ...], float]] = {
+    "beam": (((0.224,), (0.776,)), 15.0),
+    "plate": (((0.2, 0.2), (0.2, 0.8), (0.8, 0.2), (0.8, 0.8)), 40.0),
+}
+"""Where free specimens hang, in shares of their extents, and how many times below the first frequency."""
+
+MARKED = 0.8
+"""Share of a point's error that its mark has once for all; the rest strays from hit to hit [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """What the measurement does to the data.
+
+    Parameters
+    ----------
+    gain : float
+        True level of the FRFs over the stated one [-].
+    window : float
+        True decay rate of the exponential window [1/s].
+    delay : float
+        By how much the responses lag [s].
+    reversed : tuple of int
+        Points that are hit from the other side.
+    exchanged : tuple of (int, int)
+        Points whose labels are exchanged.
+    moved : mapping of int to tuple
+        By how much points lie elsewhere than stated [m].
+    drift : float
+        Relative change of all frequencies from the first hit of the test to the last [-].
+    tilt : float
+        1-sigma of the hammer's angle off the normal, in each hit anew [rad].
+    """
+
+    gain: float = 1.0
+    window: float = 0.0
+    delay: float = 0.0
+    reversed: tuple[int, ...] = ()
+    exchanged: tuple[tuple[int, int], ...] = ()
+    moved: Mapping[int, tuple[float, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    drift: float = 0.0
+    tilt: float = 0.0
+
+
+def _same(body: Body, level: float) -> Body:
+    return body
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,31 +75,80 @@ class Scene:
     ----------
     setup : Setup
         What is stated about it.
-    beam : Beam
-        The true specimen with everything attached.
-    gain : float
-        True level of the FRFs over the stated one [-].
-    window : float
-        True decay rate of the exponential window [1/s].
+    body : Body
+        The true specimen with everything attached, at rest.
+    chain : Chain
+        What the measurement does.
     scatter : (n,) array
         Factor of each mode's damping over the Rayleigh line [-].
+    marks : (n_points + 1, dim) array
+        Errors of the points' marks; the last is the sensor's place [m].
+    at_level : callable
+        Body at rest and peak force of a hit [N] to the body at that level.
     """
 
     setup: Setup
-    beam: Beam
-    gain: float
-    window: float
+    body: Body
+    chain: Chain
     scatter: FloatArray
+    marks: FloatArray
+    at_level: Callable[[Body, float], Body] = _same
 
-    def modes(self) -> ComplexModes:
-        """Return the true complex modes at the test's points."""
-        return complex_modes(
-            self.beam, np.array(self.setup.points), count=len(self.scatter), scatter=self.scatter
+    @property
+    def depends_on_level(self) -> bool:
+        """Whether the body changes with the force."""
+        return self.at_level is not _same
+
+    def modes(self, level: float | None = None) -> ComplexModes:
+        """Return the true complex modes at the test's points, reversed and exchanged as the chain has it.
+
+        Parameters
+        ----------
+        level : float, optional
+            Peak force of the hit; default the median [N].
+        """
+        setup, chain = self.setup, self.chain
+        body = self.at_level(self.body, setup.peak if level is None else level)
+        places = setup.places + self.marks[:-1]
+        for point, away in chain.moved.items():
+            places[point] += away
+        inside = inside_body(body, np.vstack([places, sensor_place(setup, self.marks)]))
+        count = len(self.scatter)
+        modes = complex_modes(body, inside[:-1], inside[-1], count=count, scatter=self.scatter)
+        order, sign = np.arange(len(places)), np.ones(len(places))
+        for a, b in chain.exchanged:
+            order[[a, b]] = order[[b, a]]
+        sign[list(chain.reversed)] = -1.0
+        return replace(
+            modes,
+            points=sign[:, None] * modes.points[order],
+            slopes=sign[:, None] * modes.slopes[:, order],
         )
 
-    def with_beam(self, **changes: object) -> Scene:
-        """Return a scene whose beam differs in some fields."""
-        return replace(self, beam=replace(self.beam, **changes))  # type: ignore[arg-type]
+    def elastic(self, level: float | None = None) -> ComplexModes:
+        """Return the modes without rigid-body ones."""
+        return self.modes(level).take(slice(self.body.rigid_modes, None))
+
+    def with_body(self, **changes: Any) -> Scene:
+        """Return a scene whose body differs in some fields."""
+        return replace(self, body=replace(self.body, **changes))  # type: ignore[type-var]
+
+    def with_chain(self, **changes: Any) -> Scene:
+        """Return a scene whose measurement differs in some fields."""
+        return replace(self, chain=replace(self.chain, **changes))
+
+
+def sensor_place(setup: Setup, marks: FloatArray) -> FloatArray:
+    """Return where the sensor really sits, shape (dim,) [m]."""
+    place: FloatArray = setup.places[setup.sensor] + marks[-1]
+    return place
+
+
+def inside_body(body: Body, places: FloatArray) -> FloatArray:
+    """Return places with those off the body moved to its edge, shape (n, dim) [m]."""
+    if isinstance(body, Plate):
+        return np.clip(places, [body.start, body.side], [body.end, body.side + body.width])
+    return np.clip(places, getattr(body, "start", -np.inf), getattr(body, "end", np.inf))
 
 
 def draw_scene(setup: Setup, rng: np.random.Generator) -> Scene:
@@ -63,44 +164,87 @@ def draw_scene(setup: Setup, rng: np.random.Generator) -> Scene:
     Returns
     -------
     Scene
-        The beam grows or shrinks at its start, so that the points keep their distance from the free end.
+        The body grows or shrinks at its clamped edge, so that points keep their distance from the free end.
     """
     tol = setup.tolerances
-    bare = setup.nominal
 
     def off(sigma: float) -> float:
         return float(1.0 + sigma * rng.standard_normal())
 
-    beam = replace(
-        bare,
-        start=bare.end - bare.length * off(tol.length),
-        width=bare.width * off(tol.width),
-        thickness=bare.thickness * off(tol.thickness),
-        E=bare.E * off(tol.E),
-        density=bare.density * off(tol.density),
-        attached=attachments(setup),
+    factors = {name: off(getattr(tol, name)) for name in ("length", "width", "thickness", "E", "density")}
+    marks = MARKED * setup.position_sigma * rng.standard_normal((len(setup.points) + 1, len(setup.size)))
+    gain = abs(off(setup.calibration)) if setup.calibrated else float(np.exp(0.3 * rng.standard_normal()))
+    scatter = np.exp(tol.damping * rng.standard_normal(setup.modes + EXTRA_MODES))
+    return build_scene(setup, factors, gain=gain, scatter=scatter, marks=marks)
+
+
+def nominal_scene(setup: Setup, *, factors: Mapping[str, float] | None = None) -> Scene:
+    """Return the rig with the specimen exactly as stated, or with some of its properties scaled.
+
+    Parameters
+    ----------
+    setup : Setup
+        What is stated.
+    factors : mapping, optional
+        Factors on E, density, thickness, length and width [-].
+    """
+    marks = np.zeros((len(setup.points) + 1, len(setup.size)))
+    scatter = np.ones(setup.modes + EXTRA_MODES)
+    return build_scene(setup, factors or {}, gain=1.0, scatter=scatter, marks=marks)
+
+
+def build_scene(
+    setup: Setup, factors: Mapping[str, float], *, gain: float, scatter: FloatArray, marks: FloatArray
+) -> Scene:
+    """Return the rig with a specimen whose properties are some factors times the stated ones.
+
+    Parameters
+    ----------
+    setup : Setup
+        What is stated.
+    factors : mapping
+        On E, density, thickness, length and width; those left out are 1 [-].
+    gain : float
+        Level of the FRFs [-].
+    scatter, marks : arrays
+        As in :class:`Scene`.
+    """
+    plain = {name: f * getattr(setup, name) for name, f in factors.items() if name != "length"}
+    body = replace(setup.nominal, **plain)  # type: ignore[type-var]
+    scene = Scene(
+        setup,
+        lengthened(body, (factors.get("length", 1.0) - 1.0) * setup.length),
+        Chain(gain=gain, window=setup.window),
+        frozen_array(scatter),
+        frozen_array(marks),
     )
-    gain = off(setup.calibration)
-    scatter = np.exp(tol.damping * rng.standard_normal(setup.modes + _EXTRA_MODES))
-    return Scene(setup, beam, gain, setup.window, frozen_array(scatter))
+    return scene.with_body(attached=attachments(setup, sensor_place(setup, marks)))
 
 
-def nominal_scene(setup: Setup) -> Scene:
-    """Return the rig with the specimen exactly as stated."""
-    beam = replace(setup.nominal, attached=attachments(setup))
-    return Scene(setup, beam, 1.0, setup.window, frozen_array(np.ones(setup.modes + _EXTRA_MODES)))
+def lengthened(body: Body, extension: float) -> Body:
+    """Return a body longer along x by an extension, which is added at its clamped ends [m]."""
+    assert isinstance(body, (Beam, Plate))
+    ends = [end for end in ("x0", "x1") if end in body.clamped] or ["x0"]
+    start, end = (extension * (name in ends) / len(ends) for name in ("x0", "x1"))
+    return replace(body, start=body.start - start, end=body.end + end)
 
 
-def attachments(setup: Setup) -> tuple[Attached, ...]:
-    """Return what the beam always carries: the known sensor, and soft springs under a free beam."""
-    sensor = Attached(setup.points[setup.sensor], mass=setup.sensor_mass, inertia=setup.sensor_inertia)
-    return (sensor,) if setup.clamped else (sensor, *_suspension(setup))
-
-
-def _suspension(setup: Setup) -> tuple[Attached, ...]:
-    """Hang a free beam by its first nodal points, at a fifteenth of its first frequency, damped by 10 %."""
-    bare = setup.nominal
-    omega = 2 * np.pi * setup.nominal_hz[0] / 15
-    stiffness, damping = 0.5 * bare.mass * omega**2, 0.1 * bare.mass * omega
-    places = (0.224 * setup.length, 0.776 * setup.length)
-    return tuple(Attached(x, stiffness=stiffness, damping=damping) for x in places)
+def attachments(setup: Setup, place: FloatArray) -> tuple[Attached | PlateAttached, ...]:
+    """Return what the body always carries: the known sensor, and soft springs under a free one."""
+    part: Any = Attached if setup.kind == "beam" else PlateAttached
+    sensor = part(*(float(x) for x in place), mass=setup.sensor_mass, inertia=setup.sensor_inertia)
+    if setup.clamped:
+        return (sensor,)
+    places, softness = _SUSPENSION[setup.kind]
+    omega = 2 * np.pi * setup.nominal_hz[0] / softness
+    stiffness = setup.mass * omega**2 / len(places)
+    damping = 0.2 * setup.mass * omega / len(places)
+    ropes = (
+        part(
+            *(s * size for s, size in zip(shares, setup.size, strict=True)),
+            stiffness=stiffness,
+            damping=damping,
+        )
+        for shares in places
+    )
+    return (sensor, *ropes)

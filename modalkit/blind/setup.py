@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from acquisition.arrays import FloatArray
 from modalkit.blind.bodies.beam import Beam
+from modalkit.blind.bodies.body import Body
+from modalkit.blind.bodies.plate import Plate
+
+UNCALIBRATED = 0.3
+"""From this uncertainty of the level on, a test has no absolute level [-]."""
 
 
 @dataclass(frozen=True)
@@ -27,24 +34,26 @@ class Setup:
 
     Parameters
     ----------
+    kind : {"beam", "plate"}
+        Of the model.
     title : str
         Neutral title.
     length, width, thickness : float
         Nominal dimensions [m].
     E, density, poisson : float
         Nominal material [Pa], [kg/m3], [-].
-    clamped : bool
-        Cantilever, or free-free on soft springs.
-    theory : {"timoshenko", "euler-bernoulli"}
+    clamped : tuple of str
+        Clamped edges of x0, x1, y0, y1; none is free on soft springs.
+    theory : {"timoshenko", "euler-bernoulli", "kirchhoff"}
         Of the model.
-    elements : int
-        Of the model [-].
+    elements : tuple of int
+        Of the model, along each axis [-].
     tolerances : Tolerances
         Stated, and true: the specimen is drawn from them.
     alpha, beta : float
         Rayleigh damping the modeller expects [1/s], [s].
-    points : tuple of float
-        Where the hammer hits, from the start of the model [m].
+    points : tuple of (x,) or (x, y)
+        Where the hammer hits, in the model's axes [m].
     sensor : int
         Index of the point under the accelerometer [-].
     drive : bool
@@ -54,13 +63,21 @@ class Setup:
     sensor_mass : float
         Mass of the sensor, known and stated [kg].
     modes : int
-        Number of bending modes that the band was chosen for [-].
+        Number of elastic modes that the band was chosen for [-].
     band : (low, high)
         Of the analysis [Hz].
     hits : int
-        Good hits per point [-].
+        Hits per point, bad ones included [-].
+    peak : float
+        Median peak force [N].
+    level_scatter : float
+        Standard deviation of the logarithm of the peak force [-].
+    bad_hits : float
+        Probability of a hit to be a bad one [-].
     noise : float
         Noise of each channel relative to its peak [-].
+    noise_slope : float
+        Power of frequency with which its spectral density goes [-].
     bits : int
         Of the converter [-].
     calibration, repeatability : float
@@ -75,6 +92,7 @@ class Setup:
         Fluid density that the study states [kg/m3].
     """
 
+    kind: str
     title: str
     length: float
     width: float
@@ -82,13 +100,13 @@ class Setup:
     E: float
     density: float
     poisson: float
-    clamped: bool
+    clamped: tuple[str, ...]
     theory: str
-    elements: int
+    elements: tuple[int, ...]
     tolerances: Tolerances
     alpha: float
     beta: float
-    points: tuple[float, ...]
+    points: tuple[tuple[float, ...], ...]
     sensor: int
     drive: bool
     sensor_sign: int
@@ -96,7 +114,11 @@ class Setup:
     modes: int
     band: tuple[float, float]
     hits: int
+    peak: float
+    level_scatter: float
+    bad_hits: float
     noise: float
+    noise_slope: float
     bits: int
     calibration: float
     repeatability: float
@@ -106,39 +128,100 @@ class Setup:
     environment: float | None
 
     @property
+    def size(self) -> tuple[float, ...]:
+        """Extents of the model along its axes [m]."""
+        return (self.length,) if self.kind == "beam" else (self.length, self.width)
+
+    @property
+    def places(self) -> FloatArray:
+        """Points as an array, shape (n_points, dim) [m]."""
+        return np.array(self.points)
+
+    @property
+    def calibrated(self) -> bool:
+        """Whether the FRFs have an absolute level."""
+        return self.calibration < UNCALIBRATED
+
+    @property
+    def mass(self) -> float:
+        """Mass of the specimen as drawn [kg]."""
+        return self.density * self.length * self.width * self.thickness
+
+    @property
+    def rigidity(self) -> float:
+        """Bending stiffness of the whole width as drawn [N m2]."""
+        plane = 1.0 if self.kind == "beam" else 1.0 - self.poisson**2
+        return self.E * self.width * self.thickness**3 / 12 / plane
+
+    @property
     def sensor_inertia(self) -> float:
         """Rotary inertia of the known sensor about the beam's axis, 4 mm off the surface [kg m2]."""
         return self.sensor_mass * (0.004 + self.thickness / 2) ** 2
 
     @property
-    def nominal(self) -> Beam:
-        """The beam of the drawing, without its sensor."""
-        return Beam(
-            start=0.0,
-            end=self.length,
-            width=self.width,
-            thickness=self.thickness,
-            E=self.E,
-            density=self.density,
-            poisson=self.poisson,
-            clamped=self.clamped,
-            alpha=self.alpha,
-            beta=self.beta,
-        )
+    def nominal(self) -> Body:
+        """The body of the drawing, without its sensor."""
+        return bare_body(self)
+
+    @cached_property
+    def nominal_hz(self) -> tuple[float, ...]:
+        """Elastic frequencies of the drawing, one more than ``modes`` [Hz]."""
+        body = self.nominal
+        omega, _ = body.real_modes(self.modes + 1 + body.rigid_modes)
+        return tuple(float(f) for f in omega[body.rigid_modes :] / (2 * np.pi))
 
     @property
-    def nominal_hz(self) -> tuple[float, ...]:
-        """Bending frequencies of the drawing, one more than ``modes`` [Hz]."""
-        skip = 0 if self.clamped else 2
-        omega, _ = self.nominal.real_modes(self.modes + 1 + skip)
-        return tuple(float(f) for f in omega[skip:] / (2 * np.pi))
+    def decays(self) -> FloatArray:
+        """Decay rates that the modeller expects of the modes the band was chosen for [1/s]."""
+        omega = 2 * np.pi * np.array(self.nominal_hz[: self.modes])
+        rates: FloatArray = 0.5 * (self.alpha + self.beta * omega**2)
+        return rates
 
     @property
     def shear_shift(self) -> float:
         """How much shear and rotary inertia lower the highest nominal mode, relative [-].
 
-        Second-order estimate for a beam with wave number k = (modes -+ 1/2) pi / L: k^2 t^2 / 24 times
-        (1 + E / (kappa G)).
+        Second-order estimate for a beam with wave number k = (modes -+ 1/2) pi / L, and for a plate with that
+        of a plane wave at the mode's frequency: k^2 t^2 / 24 times (1 + E / (kappa G)).
         """
-        wave = (self.modes + (-0.5 if self.clamped else 0.5)) * np.pi / self.length
+        if self.kind == "beam":
+            wave = (self.modes + (-0.5 if self.clamped == ("x0",) else 0.5)) * np.pi / self.length
+        else:
+            line = self.density * self.thickness * self.width / self.rigidity
+            wave = np.sqrt(2 * np.pi * self.nominal_hz[self.modes - 1] * np.sqrt(line))
         return float((wave * self.thickness) ** 2 / 24 * (1 + 2 * (1 + self.poisson) / 0.85))
+
+
+def bare_body(setup: Setup) -> Body:
+    """Return the body of a drawing.
+
+    Parameters
+    ----------
+    setup : Setup
+        Dimensions, material, clamps and expected damping.
+    """
+    if setup.kind == "plate":
+        return Plate(
+            start=0.0,
+            end=setup.length,
+            width=setup.width,
+            thickness=setup.thickness,
+            clamped=setup.clamped,
+            alpha=setup.alpha,
+            beta=setup.beta,
+            E=setup.E,
+            density=setup.density,
+            poisson=setup.poisson,
+        )
+    return Beam(
+        start=0.0,
+        end=setup.length,
+        width=setup.width,
+        thickness=setup.thickness,
+        clamped=setup.clamped,
+        alpha=setup.alpha,
+        beta=setup.beta,
+        E=setup.E,
+        density=setup.density,
+        poisson=setup.poisson,
+    )

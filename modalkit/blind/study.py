@@ -35,12 +35,12 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
     if setup.baseline:
         tables.append(("[baseline]", test | {"files": [baseline_file]}))
     model = {
-        "type": "beam",
+        "type": setup.kind,
         "length": setup.length,
         "width": setup.width,
         "thickness": setup.thickness,
-        "elements": setup.elements,
-        "clamped": ["x0"] if setup.clamped else [],
+        "elements": setup.elements[0] if setup.kind == "beam" else list(setup.elements),
+        "clamped": list(setup.clamped),
         "theory": setup.theory,
     }
     tables += [
@@ -51,7 +51,7 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
     ]
     if setup.sensor_mass:
         known = {
-            "at": [setup.points[setup.sensor]],
+            "at": list(setup.points[setup.sensor]),
             "mass": setup.sensor_mass,
             "inertia": setup.sensor_inertia,
         }

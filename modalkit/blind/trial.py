@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from acquisition.errors import StudyError
-from modalkit.blind.draw import draw_setup
+from modalkit.blind.draw import draw_setup, lacks_shear
+from modalkit.blind.matching import log_ratios
+from modalkit.blind.plan import Plan
 from modalkit.blind.record import record
-from modalkit.blind.scene import Scene, draw_scene
+from modalkit.blind.scene import Scene, draw_scene, nominal_scene
+from modalkit.blind.secrets import Secret, Values
+from modalkit.blind.secrets.choose import (
+    checked,
+    choose_secrets,
+    choose_sort,
+    draw_strength,
+    right_answers,
+)
 from modalkit.blind.setup import Setup
 from modalkit.blind.study import study_text
-from modalkit.blind.truths import MILD, SECRETS, Secret, theory_is_fit
 from modalkit.blind.visibility import visibility
 
-NONE_SHARE = 0.12
-MILD_SHARE = 0.2
-_ATTEMPTS = 2000
+_ATTEMPTS = 5000
+_EVERYTHING = Plan()
 
 
 @dataclass(frozen=True)
@@ -29,33 +37,71 @@ class Truth:
 
     Parameters
     ----------
-    effect : str
-        Name of the effect; ``none`` where there is none.
+    kind : {"beam", "plate", "solid"}
+        Of the specimen.
+    effects : tuple of str
+        Hidden effects; empty for none.
     parameters : dict
-        Its parameters under the contract's names [SI].
-    accepted : tuple of str
-        Names that are right; empty for ``none`` and for effects that the library does not have.
+        Their parameters as ``effect.parameter``, under the contract's names [SI]; lists of nodes for polarity
+        and swapped_points.
+    accepted : tuple of tuple of str
+        Every set of names that is a right answer, each sorted; empty for none, and where the right answer is
+        ``unknown``.
     in_library : bool
-        Whether the diagnosis is expected to know the effect.
-    level : {"none", "mild", "clear"}
-        Drawn severity.
+        Whether the diagnosis is expected to know every hidden effect.
+    without : tuple of str
+        Effects taken out of the library for this trial.
+    severity : float
+        Drawn strength, 1 for a clear effect; 0 for none [-].
+    level : {"none", "mild", "clear", "strong"}
+        The same in words.
     visibility : float
         Standard deviations by which the effect moves the data off what the tolerances allow [-].
-    length : float
-        Length of the model, for errors of place [m].
+    size : tuple of float
+        Extents of the model [m].
+    places : tuple of tuple of float
+        Where the effects sit, in model axes [m].
+    baseline : bool
+        Whether there is a baseline.
+    calibrated : bool
+        Whether the FRFs have an absolute level.
+    gap_percent : float
+        R.m.s. gap between the frequencies of the nominal model and of the specimen [%].
     """
 
-    effect: str
-    parameters: dict[str, float]
-    accepted: tuple[str, ...]
+    kind: str
+    effects: tuple[str, ...]
+    parameters: dict[str, Any]
+    accepted: tuple[tuple[str, ...], ...]
     in_library: bool
+    without: tuple[str, ...]
+    severity: float
     level: str
     visibility: float
-    length: float
+    size: tuple[float, ...]
+    places: tuple[tuple[float, ...], ...]
+    baseline: bool
+    calibrated: bool
+    gap_percent: float
 
     def to_json(self) -> dict[str, Any]:
         """Return the truth as JSON can carry it."""
-        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+        document = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        return {name: _listed(value) for name, value in document.items()}
+
+    @classmethod
+    def from_json(cls, document: Mapping[str, Any]) -> Self:
+        """Return the truth that ``to_json`` gave."""
+        fields = dict(document)
+        for name in ("effects", "without", "size"):
+            fields[name] = tuple(fields[name])
+        for name in ("accepted", "places"):
+            fields[name] = tuple(tuple(entry) for entry in fields[name])
+        return cls(**fields)
+
+
+def _listed(value: Any) -> Any:
+    return [_listed(entry) for entry in value] if isinstance(value, (list, tuple)) else value
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,89 +110,126 @@ class Trial:
 
     Parameters
     ----------
-    index : int
-        Number of the trial [-].
+    seed, index : int
+        Of the run, and of the trial in it.
     truth : Truth
         What is hidden.
     scene, before : Scene
         The rig with the effect, and before it was there.
-    rng : numpy.random.Generator
-        For the tests on it.
     """
 
+    seed: int
     index: int
     truth: Truth
     scene: Scene
     before: Scene
-    rng: np.random.Generator
 
 
-def draw_trial(seed: int, index: int, *, effects: Sequence[str] | None = None) -> Trial:
-    """Draw a trial; the same seed and index always give the same one.
+def draw_trial(seed: int, index: int, *, plan: Plan = _EVERYTHING) -> Trial:
+    """Draw a trial; the same arguments always give the same one.
 
     Parameters
     ----------
     seed, index : int
         Of the run, and of the trial in it.
-    effects : sequence of str, optional
-        Names to draw from instead of all; ``none`` among them keeps its share.
+    plan : Plan, optional
+        What may be drawn.
 
     Returns
     -------
     Trial
-        The effect is drawn first, then specimens and tests until one can have it.
+        Specimen and test are drawn first, then an effect that they can have.
 
     Raises
     ------
     StudyError
-        If a name is not one of the rig's.
+        If the rig does not have a name of the plan, or no specimen can have it.
     """
-    choose, build, measure = np.random.default_rng([seed, index]).spawn(3)
-    secret = _choose(choose, _pool(effects))
-    strength = MILD if secret.graded and choose.random() < MILD_SHARE else 1.0
-    setup = _fitting_setup(build, secret)
-    parameters = secret.draw(build, setup, strength)
-    before = draw_scene(setup, build)
-    scene = secret.act(before, parameters)
-    plain = before.with_beam(shear=False) if secret.name == "shear" else before
-    truth = Truth(
-        effect=secret.name,
-        parameters={f"{secret.name}.{key}": float(value) for key, value in parameters.items()},
-        accepted=secret.accepted,
-        in_library=secret.in_library,
-        level="none" if secret.name == "none" else "mild" if strength < 1.0 else "clear",
-        visibility=visibility(scene, plain),
-        length=setup.length,
-    )
-    return Trial(index, truth, scene, before, measure)
+    choose, build, specimen = np.random.default_rng([seed, index]).spawn(3)
+    sort = choose_sort(choose, checked(plan))
+    setup, secrets = _setup_and_secrets(build, choose, sort, plan)
+    level, severity = draw_strength(choose, plan) if secrets else ("none", 0.0)
+    values = [secret.draw(choose, setup, severity) for secret in secrets]
+    if secrets and not any(secret.graded for secret in secrets):
+        level, severity = "clear", 1.0
+    before = draw_scene(setup, specimen)
+    scene = before
+    for secret, drawn in zip(secrets, values, strict=True):
+        scene = secret.act(scene, drawn)
+    truth = _truth(plan, secrets, values, scene, before, (level, severity))
+    return Trial(seed, index, truth, scene, before)
 
 
-def _pool(effects: Sequence[str] | None) -> tuple[Secret, ...]:
-    if effects is None:
-        return SECRETS
-    known = {secret.name: secret for secret in SECRETS}
-    missing = [name for name in effects if name not in known]
-    if missing or not effects:
-        raise StudyError(f"the rig cannot hide {missing or 'nothing at all'}; it has: {', '.join(known)}")
-    return tuple(known[name] for name in effects)
-
-
-def _choose(rng: np.random.Generator, pool: tuple[Secret, ...]) -> Secret:
-    others = [secret for secret in pool if secret.name != "none"]
-    none = [secret for secret in pool if secret.name == "none"]
-    if none and (not others or rng.random() < NONE_SHARE):
-        return none[0]
-    return others[int(rng.integers(len(others)))]
-
-
-def _fitting_setup(rng: np.random.Generator, secret: Secret) -> Setup:
+def _setup_and_secrets(
+    build: np.random.Generator, choose: np.random.Generator, sort: str, plan: Plan
+) -> tuple[Setup, tuple[Secret, ...]]:
     for _ in range(_ATTEMPTS):
-        setup = draw_setup(rng)
-        if secret.name != "shear" and not theory_is_fit(setup, secret):
+        setup = draw_setup(build, plan=plan)
+        if lacks_shear(setup) and (
+            sort not in ("single", "pair") or "shear" not in (plan.effects or ("shear",))
+        ):
             setup = replace(setup, theory="timoshenko")
-        if secret.applies(setup):
-            return setup
-    raise StudyError(f"no specimen for {secret.name!r} in {_ATTEMPTS} draws; widen the drawn range")
+        secrets = choose_secrets(choose, setup, sort, plan)
+        if secrets is not None:
+            return setup, secrets
+    raise StudyError(
+        f"no specimen in {_ATTEMPTS} draws can have {', '.join(plan.effects)}; name more effects"
+    )
+
+
+def _truth(
+    plan: Plan,
+    secrets: Sequence[Secret],
+    values: Sequence[Values],
+    scene: Scene,
+    before: Scene,
+    strength: tuple[str, float],
+) -> Truth:
+    setup = scene.setup
+    named = list(zip(secrets, values, strict=True))
+    without = tuple(s.name for s in secrets if s.in_library) if plan.leave_out else ()
+    return Truth(
+        kind=setup.kind,
+        effects=tuple(s.name for s in secrets),
+        parameters={
+            f"{s.name}.{key}": float(value) if isinstance(value, np.floating) else value
+            for s, drawn in named
+            for key, value in drawn.items()
+            if not isinstance(value, str)
+        },
+        accepted=right_answers(secrets, values, setup, without),
+        in_library=all(s.in_library for s in secrets),
+        without=without,
+        severity=strength[1],
+        level=strength[0],
+        visibility=visibility(scene, _plain(before, secrets)),
+        size=setup.size,
+        places=tuple(place for s, drawn in named for place in s.places(setup, drawn)),
+        baseline=setup.baseline,
+        calibrated=setup.calibrated,
+        gap_percent=gap_percent(scene),
+    )
+
+
+def _plain(before: Scene, secrets: Sequence[Secret]) -> Scene:
+    """Return the specimen as the model would have it if nothing were hidden."""
+    return before.with_body(shear=False) if any(s.name == "shear" for s in secrets) else before
+
+
+def gap_percent(scene: Scene) -> float:
+    """Return the r.m.s. gap of the nominal model's frequencies over a specimen's [%].
+
+    Parameters
+    ----------
+    scene : Scene
+        With whatever is hidden; the modes are those that the band was chosen for.
+    """
+    setup = scene.setup
+    nominal = nominal_scene(setup)
+    if setup.theory != "timoshenko":
+        nominal = nominal.with_body(shear=False)
+    model = nominal.elastic().take(slice(0, setup.modes))
+    return float(100 * np.sqrt(np.mean(np.expm1(-log_ratios(model, scene.elastic())) ** 2)))
 
 
 def write_trial(trial: Trial, folder: Path) -> Path:
@@ -162,10 +245,10 @@ def write_trial(trial: Trial, folder: Path) -> Path:
     Returns
     -------
     Path
-        The study file. Nothing in the folder tells seed, index or truth.
+        The study file. Nothing in the folder tells seed, index or truth; the same trial gives the same files.
     """
     setup = trial.scene.setup
-    first, second = trial.rng.spawn(2)
+    first, second = np.random.default_rng([trial.seed, trial.index, 1]).spawn(2)
     record(trial.scene, folder / "test.uff", rng=first)
     if setup.baseline:
         record(trial.before, folder / "baseline.uff", rng=second)

@@ -9,7 +9,7 @@ from rich.console import Console
 from threadpoolctl import threadpool_limits
 
 from acquisition.errors import ModalkitError
-from modalkit.cli import blinding, compare, demonstrate, diagnosing, fitting, look, simulating
+from modalkit.cli import batching, blinding, compare, demonstrate, diagnosing, fitting, look, simulating
 
 app = typer.Typer(
     help="From hammer hits to modes, to an updated model, to the cause of the gap between test and model.",
@@ -17,7 +17,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for module in (look, compare, fitting, diagnosing, simulating, blinding, demonstrate):
+for module in (look, compare, fitting, diagnosing, simulating, blinding, batching, demonstrate):
     module.add_commands(app)
 
 _Usage: type[Exception] = typer.BadParameter.__mro__[1]

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import secrets
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
-import pandas as pd
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from acquisition.errors import StudyError
-from modalkit.blind import BlindResult, Score, run_blind, score
-from modalkit.cli.common import out, progress, show_figures, show_table
+from acquisition.errors import InputError
+from modalkit.blind import BlindResult, Plan, check_store, run_blind, score
+from modalkit.cli.common import out, progress, several, show_figures
 from modalkit.cli.options import Figures
-from modalkit.write import write_json
+from modalkit.cli.scores import score_figures, show_score, write_markdown
+from modalkit.write import check_json_place, check_place, write_json
+
+_SEED_BITS = 63
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -22,62 +25,136 @@ def add_commands(app: typer.Typer) -> None:
 
 
 def blind(
-    study: Annotated[Path | None, typer.Argument(help="your own study (not in this version)")] = None,
-    trials: Annotated[int, typer.Option(help="number of trials")] = 60,
-    seed: Annotated[int, typer.Option(help="seed of the run")] = 1,
+    study: Annotated[
+        Path | None, typer.Argument(help="your own study: what can its test tell apart? (docs/planning.md)")
+    ] = None,
+    trials: Annotated[int | None, typer.Option(help="number of trials [default: 60]")] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="seed of the run; left out: drawn, and said at the end")
+    ] = None,
     workers: Annotated[int, typer.Option(help="trials in flight at a time")] = 2,
+    scheduler: Annotated[
+        str | None, typer.Option(help="address of a Dask scheduler whose workers run the trials")
+    ] = None,
+    store: Annotated[Path | None, typer.Option(help="file for commitments and outcomes as they come")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="go on with the store of a run")] = False,
+    kinds: Annotated[str, typer.Option(help="specimens: beam, plate, solid; comma-separated")] = "",
+    effects: Annotated[str, typer.Option(help="what may be hidden, comma-separated [default: all]")] = "",
+    leave_out: Annotated[
+        bool, typer.Option("--leave-out", help="take the true effect out of the library in every trial")
+    ] = False,
+    real: Annotated[
+        bool, typer.Option("--real", help="real structures with their cause withheld, in place of trials")
+    ] = False,
+    data: Annotated[Path | None, typer.Option(help="folder of measured data for --real")] = None,
+    check: Annotated[
+        Path | None, typer.Option(help="check the seals of a stored run, and run nothing")
+    ] = None,
     json: Annotated[Path | None, typer.Option("--json", help="file for the score as JSON")] = None,
+    markdown: Annotated[
+        Path | None, typer.Option(help="file for the score as markdown; marks in it are kept")
+    ] = None,
     figures: Figures = None,
 ) -> None:
     """Hide effects in simulated rigs, diagnose them without telling, and score the answers."""
+    _check_together(study=study, real=real, check=check, data=data, store=store, resume=resume)
+    if check is not None:
+        return _check(check, seed)
+    if real or data is not None:
+        from modalkit.cli.real import show_real
+
+        return show_real(data, json, workers)
     if study is not None:
-        raise StudyError(
-            f"{study}: blind trials of your own rig are not in this version; leave the study out"
+        from modalkit.cli.planning import plan_study
+
+        own_seed = 1 if seed is None else seed
+        return plan_study(
+            study, trials=trials or 0, seed=own_seed, workers=workers, json=json, figures=figures
         )
-    result = _run(trials, seed, workers)
+    check_json_place(json)
+    check_place(markdown)
+    known = Plan()
+    plan = Plan(kinds=_names(kinds) or known.kinds, effects=_names(effects), leave_out=leave_out)
+    result = _run(
+        60 if trials is None else trials, _seed(seed, store, resume), plan, workers, scheduler, store, resume
+    )
     table = score(result)
     show_score(table)
+    out.print(f"seed: {result.seed}", markup=False)
     if json is not None:
         write_json(json, table.to_json())
         out.print(f"written: {json}", markup=False)
-    show_figures(figures, lambda: _figures(table))
+    if markdown is not None:
+        write_markdown(markdown, table)
+        out.print(f"written: {markdown}", markup=False)
+    show_figures(figures, lambda: score_figures(table))
+    return None
 
 
-def _run(trials: int, seed: int, workers: int) -> BlindResult:
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(name.strip() for name in text.split(",") if name.strip())
+
+
+def _check_together(
+    *,
+    study: Path | None,
+    real: bool,
+    check: Path | None,
+    data: Path | None,
+    store: Path | None,
+    resume: bool,
+) -> None:
+    """Refuse what does not go together."""
+    asked = {"STUDY": study is not None, "--real": real or data is not None, "--check": check is not None}
+    several_asked = [name for name, given in asked.items() if given]
+    if len(several_asked) > 1:
+        raise InputError(f"{' and '.join(several_asked)}: each is something else to do; give one")
+    if several_asked and (store is not None or resume):
+        raise InputError(f"--store and --resume are of trials; they do not go with {several_asked[0]}")
+    if resume and store is None:
+        raise InputError("--resume: go on with what? give the --store of the run")
+
+
+def _seed(seed: int | None, store: Path | None, resume: bool) -> int:
+    """Return the seed; one that is drawn is needed to resume, and so is told before the run."""
+    if seed is not None:
+        return seed
+    if store is not None and resume and store.exists():
+        raise InputError(f"{store}: resumed without its seed; give --seed as the run told it when it began")
+    drawn = secrets.randbits(_SEED_BITS)
+    if store is not None:
+        progress.print(f"seed: {drawn} (to go on with {store} after an interruption)", markup=False)
+    return drawn
+
+
+def _run(
+    trials: int,
+    seed: int,
+    plan: Plan,
+    workers: int,
+    scheduler: str | None,
+    store: Path | None,
+    resume: bool,
+) -> BlindResult:
     columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=progress) as bar:
+    with Progress(*columns, console=progress, disable=not progress.is_terminal) as bar:
         task = bar.add_task("trials", total=trials)
-        return run_blind(trials, seed, workers=workers, progress=lambda _: bar.advance(task))
+        return run_blind(
+            trials, seed, plan=plan, workers=workers, scheduler=scheduler, store=store, resume=resume,
+            progress=lambda _: bar.advance(task), documents=False,
+        )  # fmt: skip
 
 
-def show_score(table: Score) -> None:
-    """Print the score of a blind run."""
-    out.print(f"Blind run of {len(table.trials)} trials, seed {table.seed}", style="bold")
-    digits = {"rate": 3, "low95": 3, "high95": 3}
-    show_table(table.rates, "How often, with 95 % intervals", digits=digits)
-    show_table(_answers(table.confusion), "What was hidden, and what was answered")
-    failed = table.trials[table.trials["verdict"] == "failed"]
-    for index, row in failed.iterrows():
-        out.print(f"failed: trial {index} ({row['effect']}): {row.get('failure', '')}", markup=False)
-
-
-def _answers(confusion: pd.DataFrame) -> pd.DataFrame:
-    """Return the confusion matrix as lines: every hidden effect with the answers it got."""
-    rows = [
-        {
-            "hidden": str(hidden),
-            "trials": int(row.sum()),
-            "answers": ", ".join(
-                f"{answer} {int(n)}" for answer, n in row.sort_values(ascending=False).items() if n
-            ),
-        }
-        for hidden, row in confusion.iterrows()
-    ]
-    return pd.DataFrame(rows)
-
-
-def _figures(table: Score) -> dict[str, Any]:
-    from modalkit.figures import blind_figure
-
-    withheld = tuple(table.trials.loc[~table.trials["known"], "effect"].unique())
-    return {"blind": blind_figure(table.confusion, table.rates, withheld=withheld)}
+def _check(store: Path, seed: int | None) -> None:
+    """Check the seals of a stored run, and say what is in it."""
+    found = check_store(store, seed=seed)
+    out.print(
+        f"{store}: {several(len(found.outcomes), 'trial')}, each opened with the commitment published before it; "
+        f"modalkit {found.version}",
+        markup=False,
+    )
+    if found.in_flight:
+        out.print(
+            f"sealed but not opened, for the run ended before: {', '.join(map(str, found.in_flight))}",
+            markup=False,
+        )

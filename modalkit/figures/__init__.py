@@ -1,6 +1,6 @@
 """Figures: pure functions from finished results to matplotlib figures that belong to no window."""
 
-from modalkit.figures.blind import blind_figure
+from modalkit.figures.blind import blind_figures
 from modalkit.figures.diagnosis import diagnosis_figure
 from modalkit.figures.evolution import evolution_figure
 from modalkit.figures.frac import frac_figure
@@ -16,7 +16,7 @@ from modalkit.figures.update import update_figure
 
 __all__ = [
     "auto_mac_figure",
-    "blind_figure",
+    "blind_figures",
     "diagnosis_figure",
     "evolution_figure",
     "frac_figure",

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from blind_outcomes import diagnosis, honest_run, run_of, truth
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.axes import Axes
@@ -17,9 +18,10 @@ from matplotlib.figure import Figure
 
 from acquisition import Dof, FrfSet, Geometry, HammerTest, Hits, HitVerdict, InputError, ModalData
 from identification import ModalModel, identify, mac
+from modalkit.blind import score
 from modalkit.figures import (
     auto_mac_figure,
-    blind_figure,
+    blind_figures,
     diagnosis_figure,
     frf_figure,
     hits_figure,
@@ -29,6 +31,7 @@ from modalkit.figures import (
     stabilisation_figure,
     update_figure,
 )
+from modalkit.figures.blind_confusion import confusion_figure, gathered
 from modalkit.figures.diagnosis.errors import mode_errors
 from modalkit.figures.frf import pick
 from modalkit.figures.style import broken, grouped, shortened, text_width
@@ -593,33 +596,64 @@ def test_update_refuses_arrays_that_do_not_fit() -> None:
         update_figure(np.ones(3), np.ones(2), np.ones(3))
 
 
-def test_blind_counts_true_answers() -> None:
-    names = ["E", "clamp_rotation", "fluid_added_mass", "none", "odd_joint"]
-    counts = pd.DataFrame(0, index=names, columns=["E", "clamp_rotation", "class with it", "unknown", "none"])
-    counts.loc["E", "E"] = 3
-    counts.loc["E", "class with it"] = 2
-    counts.loc["clamp_rotation", "E"] = 1
-    counts.loc["none", "none"] = 4
-    counts.loc["odd_joint", "unknown"] = 5
-    counts.loc["fluid_added_mass", "unknown"] = 1
-    rates = pd.DataFrame(
-        {
-            "count": [3, 0],
-            "total": [5, 0],
-            "rate": [0.6, np.nan],
-            "low95": [0.2, np.nan],
-            "high95": [0.9, np.nan],
-        },
-        index=["right when it commits", "asked of none"],
+@pytest.mark.parametrize(("trials", "leave_out"), [(12, False), (60, False), (60, True), (1000, False)])
+def test_blind_run_is_legible(trials: int, leave_out: bool) -> None:
+    figures = blind_figures(score(honest_run(trials, 5, leave_out=leave_out)))
+    assert {"blind_rates", "blind_confusion", "blind_abstention"} <= figures.keys()
+    for figure in figures.values():
+        assert_legible(figure)
+
+
+def test_blind_confusion_shares_classes_and_gathers_pairs() -> None:
+    result = score(
+        run_of(
+            (truth("E"), diagnosis("named", ("E",))),
+            (truth("E"), diagnosis("class", ("E",), ("density",), others=[("length",)])),
+            (truth("E", "length"), diagnosis("named", ("E", "length"))),
+            (truth("E", "shear"), diagnosis("named", ("density", "shear"))),
+            (truth("taper"), diagnosis("unknown")),
+            (truth(), diagnosis("none")),
+        )
     )
-    figure = blind_figure(counts, rates, withheld=["odd_joint"])
-    text = words(figure)
-    assert "14 of 16 hidden causes answered truly" in text
-    assert "3 of 5" in text and "asked of none" not in text
-    assert_legible(figure)
-    assert_legible(blind_figure(counts))
+    counts = gathered(result.answers)
+    assert counts.rows == ["E", "pairs", "taper", "none"]
+    assert counts.columns == ["E", "density", "the pair", "other pair", "unknown", "none"]
+    assert counts.trials.tolist() == [
+        [1.5, 0.5, 0, 0, 0, 0],
+        [0, 0, 1, 1, 0, 0],
+        [0, 0, 0, 0, 1, 0],
+        [0, 0, 0, 0, 0, 1],
+    ]
+    assert [(i, counts.columns[j]) for i, j in np.argwhere(counts.right)] == [
+        (0, "E"),
+        (1, "the pair"),
+        (2, "unknown"),
+        (3, "none"),
+    ]
+    figure = blind_figures(result)["blind_confusion"]
+    assert "4 of 6 blind trials answered truly" in words(figure)
+
+
+def test_blind_curves_show_what_they_are_given() -> None:
+    result = score(honest_run(300, 8))
+    figures = blind_figures(result)
+    rule = result.abstention.rule
+    assert f"{rule['count']} of {rule['total']} right" in words(figures["blind_abstention"])
+    curve = panels(figures["blind_abstention"])["abstention"].get_lines()[0]
+    np.testing.assert_allclose(curve.get_ydata(), 100 * result.abstention.curve["right"])
+    dots = panels(figures["blind_reliability"])["reliability"].collections[-1].get_offsets()
+    np.testing.assert_allclose(dots, 100 * result.reliability[["stated", "rate"]].to_numpy())
+    covered = result.severity["covered"].astype(bool)
+    assert f"{covered.sum()} of {len(covered)} parameters" in words(figures["blind_severity"])
+
+
+def test_blind_figures_leave_out_what_the_run_has_nothing_for() -> None:
+    figures = blind_figures(score(run_of((truth("taper"), None))))
+    assert set(figures) == {"blind_rates", "blind_confusion"}
+    for figure in figures.values():
+        assert_legible(figure)
     with pytest.raises(InputError, match="no trials"):
-        blind_figure(pd.DataFrame())
+        confusion_figure(pd.DataFrame())
 
 
 # --- style, words, files -----------------------------------------------------------------------------

@@ -42,17 +42,36 @@ PAIRS = 8
 FORM_SHARE = 0.02
 """Forms of an effect with less than this share of the most probable one do not speak for its fit [-]."""
 
+POSSIBLE = 1e-4
+"""Below this probability nobody asks where the parameters lie [-]."""
+
+FAR_FROM_END, HELD_THERE = 0.25, 0.95
+"""A parameter is held at the end of its range where so much of its posterior lies within that share of it [-]."""
+
 PAIR_PRIOR = 0.05
 """Prior weight of a pair against a single effect."""
 
 
 @dataclass(frozen=True, eq=False)
 class Weighed:
-    """An explanation with its share of the probability and how well it fits."""
+    """An explanation with its share of the probability and how well it fits.
+
+    Parameters
+    ----------
+    explanation : Explanation
+        What was weighed.
+    probability : float
+        Its share [-].
+    p_value : float
+        How well it fits [-].
+    extreme : tuple of str
+        Parameters that the data push to an end of their range that is no natural one.
+    """
 
     explanation: Explanation
     probability: float
     p_value: float
+    extreme: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -61,8 +80,10 @@ class Weighed:
 
     @property
     def rejected(self) -> bool:
-        """Whether it fits too badly to be an answer; pairs, which have more freedom, must fit better."""
-        return self.p_value < (DOUBTED if len(self.names) > 1 else REJECTED)
+        """Whether it is no answer: it fits too badly (pairs, which have more freedom, must fit better), or only at a
+        size beyond what is plausible.
+        """
+        return bool(self.extreme) or self.p_value < (DOUBTED if len(self.names) > 1 else REJECTED)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +129,7 @@ def search(problem: Posed, library: Sequence[Effect]) -> Search:
     found = _finished(problem, [nothing, *drafts])
     if not _explained(found):
         found = _finished(problem, found + _pairs(problem, found[1:]))
-    return Search(nothing, _merged(_weigh(found)), obstacles)
+    return Search(nothing, _merged(problem, _weigh(found)), obstacles)
 
 
 def _explained(found: list[Explanation]) -> bool:
@@ -133,7 +154,7 @@ def _finished(problem: Posed, found: list[Explanation]) -> list[Explanation]:
     return finished
 
 
-def _merged(rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
+def _merged(problem: Posed, rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
     """Add up the forms of each set of effects; the most probable form stands for them."""
     forms: dict[frozenset[str], list[Weighed]] = {}
     for row in rows:
@@ -143,10 +164,21 @@ def _merged(rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
         top = max(own, key=lambda row: row.probability)
         total = float(logsumexp([row.explanation.log_evidence for row in own]))
         fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
-        merged.append(
-            Weighed(replace(top.explanation, log_evidence=total), sum(row.probability for row in own), fits)
-        )
+        probability = sum(row.probability for row in own)
+        extreme = _extreme(problem, top.explanation) if probability > POSSIBLE else ()
+        merged.append(Weighed(replace(top.explanation, log_evidence=total), probability, fits, extreme))
     return tuple(sorted(merged, key=lambda row: -row.probability))
+
+
+def _extreme(problem: Posed, explanation: Explanation) -> tuple[str, ...]:
+    """Return the parameters whose best value and most of whose posterior lie at an end that is a judgement."""
+    found = []
+    for i, (name, parameter) in enumerate(problem.parameters(explanation.candidate)):
+        best = float(explanation.best.coordinates[i])
+        away = np.abs(explanation.samples[:, i] - round(best))
+        if parameter.extreme(best) and explanation.weights[away > FAR_FROM_END].sum() < 1 - HELD_THERE:
+            found.append(name)
+    return tuple(found)
 
 
 def _weigh(found: list[Explanation]) -> list[Weighed]:
@@ -175,9 +207,7 @@ def _falls_short(problem: Posed, effects: list[Effect]) -> bool:
     return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
 
 
-def _singles(
-    problem: Posed, effects: list[Effect], nothing: Explanation, *, twin: bool
-) -> list[Explanation]:
+def _singles(problem: Posed, effects: list[Effect], nothing: Explanation, *, twin: bool) -> list[Explanation]:
     """Weigh every form of every effect, the simple ones first: what they reach is the bar for the others."""
     forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
     forms.sort(key=lambda pair: len(problem.parameters(Candidate((pair[0],), chosen=(pair[1],)))))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from acquisition.arrays import FloatArray
@@ -86,8 +88,8 @@ def rank(problem: Posed, found: Search) -> tuple[Ranked, ...]:
             row.names,
             row.probability / total,
             tuple(o.names for o in rows if o is not row and _close(row, o)),
-            told := estimates(problem, row.explanation, most=HEAVY if row.probability > FAINT else FEW),
-            not any(estimate.at_bound for estimate in told.values()),
+            estimates(problem, row.explanation, row.extreme, most=HEAVY if row.probability > FAINT else FEW),
+            not row.extreme,
             row.p_value,
         )
         for row in rows
@@ -99,7 +101,9 @@ def _close(a: Weighed, b: Weighed) -> bool:
     return bool(2 * abs(best[0] - best[1]) < CLOSE)
 
 
-def estimates(problem: Posed, explanation: Explanation, *, most: int = 300) -> dict[str, ParameterEstimate]:
+def estimates(
+    problem: Posed, explanation: Explanation, extreme: Sequence[str] = (), *, most: int = 300
+) -> dict[str, ParameterEstimate]:
     """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means."""
     candidate = explanation.candidate
     searched = problem.parameters(candidate)
@@ -108,10 +112,9 @@ def estimates(problem: Posed, explanation: Explanation, *, most: int = 300) -> d
     samples = [explanation.samples[i] for i in keep]
     drawn = [problem.values(candidate, u) for u in samples]
     result = {}
-    for i, (name, parameter) in enumerate(searched):
+    for name, parameter in searched:
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
-        at_bound = bool(min(explanation.best.coordinates[i], 1 - explanation.best.coordinates[i]) < 1e-3)
-        result[name] = ParameterEstimate(middle, parameter.unit, low, high, at_bound)
+        result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme)
     labels = {f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels}
     for name in labels & drawn[0].keys():
         result[name] = ParameterEstimate(drawn[0][name], "node", None, None, False)

@@ -17,6 +17,13 @@ from updating.prediction import Predictor
 Channel = Literal["stiffness", "mass", "damping", "measurement"]
 
 
+AT_END = 0.01
+"""Prior quantiles this near to an end of the range count as lying there [-]."""
+
+EDGES = ("low", "high")
+"""Both ends, for a place: the edges of the structure."""
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One parameter of an effect and its prior: uniform, or uniform in the logarithm, over a range.
@@ -35,6 +42,8 @@ class Parameter:
         Whether the prior is uniform in the logarithm.
     default : float, optional
         What is taken where an effect is put into a model and this is not told; left out, it has to be told.
+    natural : tuple of {"low", "high"}
+        Ends of the range that are nature's and no judgement: an edge of the structure, nothing, everything.
     """
 
     name: str
@@ -44,6 +53,12 @@ class Parameter:
     why: str
     log: bool = False
     default: float | None = None
+    natural: tuple[str, ...] = ()
+
+    def extreme(self, coordinate: float) -> bool:
+        """Tell whether a prior quantile lies at an end of the range that is a judgement."""
+        at_low, at_high = coordinate < AT_END, coordinate > 1 - AT_END
+        return (at_low and "low" not in self.natural) or (at_high and "high" not in self.natural)
 
     def value(self, coordinate: float) -> float:
         """Take a prior quantile in [0, 1] to the parameter's value [unit]."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.box import SOFT, Place, mirror_images, place, shares, starting_places
 from updating.effects.regions import region_centre, region_parameter, stiff_regions
 from updating.models.softening import softening
@@ -40,16 +40,23 @@ class LocalStiffness(Effect):
         """Return place, extent and loss; of imported matrices the region and its loss."""
         spec = predictor.spec
         lost = Parameter(
-            "loss", "-", 0.0, MOST, "from invisible to nearly severed; uniform in log compliance"
+            "loss",
+            "-",
+            0.0,
+            MOST,
+            "from invisible to nearly severed; uniform in log compliance",
+            natural=EDGES,
         )
         if spec.kind == "matrices":
             return (region_parameter(predictor), lost)
-        middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure")]
+        middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
         if spec.kind == "plate":
-            middle.append(Parameter("y", "m", 0.0, spec.width, "anywhere across the structure"))
+            middle.append(
+                Parameter("y", "m", 0.0, spec.width, "anywhere across the structure", natural=EDGES)
+            )
         low, high = 0.02 * spec.length, 0.15 * spec.length
-        why = "what is longer is a region, not a place"
-        return (*middle, Parameter("extent", "m", low, high, why, log=True), lost)
+        why = "what is longer is a region, not a place; what is shorter makes no other change than this"
+        return (*middle, Parameter("extent", "m", low, high, why, log=True, natural=("low",)), lost)
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Need regions where there are matrices."""

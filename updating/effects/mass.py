@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import Effect, Parameter, Values, Variant, total_mass
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import Place, mirror_images, starting_places
 from updating.models.base import Structure
 from updating.models.fields import Sparse
@@ -167,7 +167,7 @@ class LumpedMass(Effect):
 def _bulk(default: float) -> Parameter:
     """Return the rotary inertia about the body's own middle and its height above the surface."""
     why = "rotary inertia over a steel cube's of its mass: from a flat disc to a tall body of light metal"
-    return Parameter("bulk", "-", 0.0, LARGEST, why, default=default)
+    return Parameter("bulk", "-", 0.0, LARGEST, why, default=default, natural=EDGES)
 
 
 def _outline(predictor: Predictor) -> tuple[Parameter, ...]:
@@ -180,7 +180,9 @@ def _outline(predictor: Predictor) -> tuple[Parameter, ...]:
         low, high = points.min(axis=0), points.max(axis=0)
         sides = [(a, max(b, a + 1e-9)) for a, b in zip(low.tolist(), high.tolist(), strict=True)]
     why = ("anywhere along the structure", "anywhere across the structure", "at any height of the structure")
-    return tuple(Parameter(n, "m", *side, w) for n, side, w in zip(AXES, sides, why, strict=False))
+    return tuple(
+        Parameter(n, "m", *side, w, natural=EDGES) for n, side, w in zip(AXES, sides, why, strict=False)
+    )
 
 
 def _reduced_inertia(predictor: Predictor, points: FloatArray) -> FloatArray:

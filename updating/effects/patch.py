@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.box import Place, covered, mirror_images, place, shares, starting_places
 from updating.effects.obstacles import damping_obstacle
 from updating.effects.regions import region_centre, region_parameter, stiff_regions
@@ -34,19 +34,21 @@ class DampingPatch(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return place, extent, loss factor, and what the layer adds of mass and stiffness."""
         lossy = "from tape, which must damp to be one, to a constrained layer that covers the part well"
+        heavy = "share of the bare structure's mass there: a layer, no body"
+        stiff = "share of the bare structure's stiffness there: a layer, no rib"
         layer = (
             Parameter("loss_factor", "-", 5e-3, 0.5, lossy, log=True),
-            Parameter("mass", "-", 0.0, 0.12, "share of the bare structure's mass there: a layer, no body"),
-            Parameter(
-                "stiffness", "-", 0.0, 0.12, "share of the bare structure's stiffness there: a layer, no rib"
-            ),
+            Parameter("mass", "-", 0.0, 0.12, heavy, natural=("low",)),
+            Parameter("stiffness", "-", 0.0, 0.12, stiff, natural=("low",)),
         )
         spec = predictor.spec
         if spec.kind == "matrices":
             return (region_parameter(predictor), *layer)
-        middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure")]
+        middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
         if spec.kind == "plate":
-            middle.append(Parameter("y", "m", 0.0, spec.width, "anywhere across the structure"))
+            middle.append(
+                Parameter("y", "m", 0.0, spec.width, "anywhere across the structure", natural=EDGES)
+            )
         why = "what is shorter hardly damps, what covers more is all over"
         return (
             *middle,

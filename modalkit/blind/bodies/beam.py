@@ -1,4 +1,4 @@
-"""The rig's specimen: a fine non-uniform Timoshenko beam, clamped at its start or free.
+"""The rig's beam: fine, non-uniform, with shear and rotary inertia, and with what is fixed to it.
 
 It shares no code with the models of the candidates. Shear coefficient: Cowper, J. Appl. Mech. 33 (1966) 335,
 rectangular section, 10 (1 + nu) / (12 + 11 nu).
@@ -13,154 +13,75 @@ import numpy as np
 import scipy.linalg
 
 from acquisition.arrays import FloatArray
-from modalkit.blind.bodies.element import (
-    GAUSS,
-    NODES,
-    ORDER,
-    element_nodes,
-    gauss_places,
-    gauss_rows,
-    readers,
-)
-from modalkit.blind.bodies.mesh import graded_mesh
-from modalkit.blind.bodies.parts import Attached, Notch
-from modalkit.blind.bodies.water import added_mass
+from modalkit.blind.bodies.beam_fields import STIFF, BeamFields
+from modalkit.blind.bodies.body import Loss
+from modalkit.blind.bodies.element import NODES, ORDER, readers
+from modalkit.blind.bodies.water import added_mass, layer_damping
 
-_STIFF = 1e5
+_BASIS = 30
 
 
 @dataclass(frozen=True)
-class Beam:
-    """A beam from ``start`` to ``end`` of rectangular section, moving in the direction of its thickness.
-
-    Parameters
-    ----------
-    start, end : float
-        Positions of its ends in the model's axes [m]; it is clamped at ``start``.
-    width, thickness : float
-        Section [m].
-    E, density : float
-        Young's modulus [Pa] and density [kg/m3].
-    poisson : float
-        Poisson's ratio [-].
-    clamped : bool
-        Whether the start is held; otherwise the beam is free.
-    clamp_rotation : float
-        Rotational stiffness of the clamp [N m/rad].
-    taper : float
-        Relative change of thickness from start to end, about the middle [-].
-    fluid_density : float
-        Density of the fluid all around [kg/m3].
-    shear : bool
-        False leaves out shear and rotary inertia: only for telling what they do.
-    notches, attached : tuples
-        Local losses of stiffness; masses and springs.
-    alpha, beta : float
-        Rayleigh damping of the material [1/s], [s].
-    elements : int
-        Elements before refinement [-].
-    """
-
-    start: float
-    end: float
-    width: float
-    thickness: float
-    E: float
-    density: float
-    poisson: float = 0.3
-    clamped: bool = True
-    clamp_rotation: float = np.inf
-    taper: float = 0.0
-    fluid_density: float = 0.0
-    shear: bool = True
-    notches: tuple[Notch, ...] = ()
-    attached: tuple[Attached, ...] = ()
-    alpha: float = 0.0
-    beta: float = 0.0
-    elements: int = 14
-
-    @property
-    def length(self) -> float:
-        """Free length [m]."""
-        return self.end - self.start
-
-    @property
-    def mass(self) -> float:
-        """Mass of the beam alone [kg]."""
-        return self.density * self.width * self.thickness * self.length
-
-    @property
-    def bending_stiffness(self) -> float:
-        """E I of the undisturbed section [N m2]."""
-        return self.E * self.width * self.thickness**3 / 12
-
-    @cached_property
-    def edges(self) -> FloatArray:
-        """Borders of the elements, shape (n_elements + 1,) [m]."""
-        windows = tuple((n.x - n.extent / 2, n.x + n.extent / 2) for n in self.notches)
-        return graded_mesh(self.start, self.end, elements=self.elements, windows=windows)
-
-    @cached_property
-    def nodes(self) -> FloatArray:
-        """Positions of the nodes, shape (n_nodes,) [m]."""
-        return element_nodes(self.edges)
-
-    @property
-    def _shear_modulus(self) -> float:
-        """Kappa times G [Pa]."""
-        kappa = 10 * (1 + self.poisson) / (12 + 11 * self.poisson)
-        return kappa * self.E / (2 * (1 + self.poisson)) * (1.0 if self.shear else _STIFF)
-
-    def _thickness_at(self, x: FloatArray) -> FloatArray:
-        return self.thickness * (1.0 + self.taper * ((x - self.start) / self.length - 0.5))
+class Beam(BeamFields):
+    """A beam that moves in the direction of its thickness; fields as in ``BeamFields``."""
 
     @cached_property
     def _strain_rows(self) -> FloatArray:
         """F with F^T F the stiffness of the material [sqrt(N/m)]."""
-        x, read = self._gauss
-        t = self._thickness_at(x)
-        bending = self.E * self.width * t**3 / 12
-        for notch in self.notches:
-            bending = bending * notch.factor(x)
-        shear = self._shear_modulus * self.width * t
+        x, read = self.gauss
+        shear = self.shear_modulus * self.width * self.thickness_at(x)
         bend, slide = read["curvature"], read["slope"] - read["theta"]
-        return np.vstack(
-            [
-                gauss_rows(self.edges, bend) * np.sqrt(bending).reshape(-1, 1),
-                gauss_rows(self.edges, slide) * np.sqrt(shear).reshape(-1, 1),
-            ]
-        )
-
-    @cached_property
-    def _gauss(self) -> tuple[FloatArray, dict[str, FloatArray]]:
-        return gauss_places(self.edges), readers(GAUSS, np.diff(self.edges)[:, None])
+        return np.vstack([self.spread(bend, self.bending), self.spread(slide, shear)])
 
     @cached_property
     def _material_mass(self) -> FloatArray:
-        x, read = self._gauss
-        t = self._thickness_at(x)
+        x, read = self.gauss
+        t = self.thickness_at(x)
         line = self.density * self.width * t
-        rotary = line * t**2 / 12 / (1.0 if self.shear else _STIFF)
-        move = gauss_rows(self.edges, read["w"]) * np.sqrt(line).reshape(-1, 1)
-        turn = gauss_rows(self.edges, read["theta"]) * np.sqrt(rotary).reshape(-1, 1)
+        for part in self.stretches:
+            line = line * (1.0 + (part.line - 1.0) * part.inside(x))
+        rotary = line * t**2 / 12 / (1.0 if self.shear else STIFF)
+        move, turn = self.spread(read["w"], line), self.spread(read["theta"], rotary)
         mass: FloatArray = move.T @ move + turn.T @ turn
         return mass
 
     def _whole_mass(self) -> FloatArray:
-        mass = self._material_mass
+        mass = self._material_mass.copy()
         for part in self.attached:
             here, turn = self._row(part.x, "w"), self._row(part.x, "theta")
-            mass = mass + part.mass * np.outer(here, here) + part.inertia * np.outer(turn, turn)
-        return mass + self._fluid_mass() if self.fluid_density else mass
+            mass += part.mass * np.outer(here, here) + part.inertia * np.outer(turn, turn)
+        for k, hanging in enumerate(self.absorbers):
+            mass[2 * len(self.nodes) + k, 2 * len(self.nodes) + k] = hanging.mass
+        if self.fluid_density:
+            stations, matrix = added_mass(self.length, self.width, self.thickness, density=self.fluid_density)
+            rows = self.rows(self.start + stations, "w")
+            mass += rows.T @ matrix @ rows
+        return mass
+
+    def _relative_row(self, k: int) -> FloatArray:
+        """Read by how much a hanging mass moves against the beam."""
+        row = self._row(self.absorbers[k].x, "w")
+        row[2 * len(self.nodes) + k] -= 1.0
+        return row
 
     def _spring_rows(self) -> FloatArray:
         rows = [np.sqrt(p.stiffness) * self._row(p.x, "w") for p in self.attached if p.stiffness]
-        if self.clamped and np.isfinite(self.clamp_rotation):
-            rows.append(np.sqrt(self.clamp_rotation) * self._row(self.start, "theta"))
-        return np.array(rows).reshape(len(rows), 2 * len(self.nodes))
+        rows += [np.sqrt(h.stiffness) * self._relative_row(k) for k, h in enumerate(self.absorbers)]
+        for end in self.clamped:
+            x = self.start if end == "x0" else self.end
+            for stiffness, quantity in ((self.clamp_translation, "w"), (self.clamp_rotation, "theta")):
+                if np.isfinite(stiffness):
+                    rows.append(np.sqrt(stiffness) * self._row(x, quantity))
+        return np.array(rows).reshape(len(rows), self.n_dofs)
+
+    @cached_property
+    def _tension_rows(self) -> FloatArray:
+        """G with G^T G the geometric stiffness of the load's size [sqrt(N/m)]."""
+        x, read = self.gauss
+        return self.spread(read["slope"], np.full_like(x, abs(self.axial)))
 
     def modal_damping(self, shapes: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what damps some modes: the material, and the dashpots.
+        """Return what damps some modes: the material as expected, and what else is viscous.
 
         Parameters
         ----------
@@ -169,42 +90,66 @@ class Beam:
 
         Returns
         -------
-        material, dashpots : (n_modes, n_modes) arrays
+        material, others : (n_modes, n_modes) arrays
             Symmetric damping matrices in the modes [1/s].
         """
         strain = self._strain_rows @ shapes
-        material = self.alpha * shapes.T @ self._material_mass @ shapes + self.beta * strain.T @ strain
-        dashpots = np.zeros_like(material)
-        for part in self.attached:
-            here = self._row(part.x, "w") @ shapes
-            dashpots = dashpots + part.damping * np.outer(here, here)
-        return material, dashpots
+        stiffness = strain.T @ strain
+        material = self.alpha * shapes.T @ self._material_mass @ shapes + self.beta * stiffness
+        others = self.added_alpha * np.eye(shapes.shape[1]) + self.added_beta * stiffness
+        rows = [np.sqrt(p.damping) * self._row(p.x, "w") for p in self.attached if p.damping]
+        rows += [np.sqrt(h.damping) * self._relative_row(k) for k, h in enumerate(self.absorbers)]
+        moved = np.array(rows).reshape(len(rows), self.n_dofs) @ shapes
+        return material, others + moved.T @ moved
 
-    def _fluid_mass(self) -> FloatArray:
-        stations, matrix = added_mass(self.length, self.width, self.thickness, density=self.fluid_density)
-        rows = self.rows(self.start + stations, "w")
-        return rows.T @ matrix @ rows
+    def modal_losses(self, shapes: FloatArray) -> tuple[Loss, ...]:
+        """Return structural damping of the whole and of layers, and a fluid's boundary layer.
 
-    def rows(self, x: FloatArray, quantity: str) -> FloatArray:
+        Parameters
+        ----------
+        shapes : (n_dofs, n_modes) array
+            Mass-normalised real modes [kg^-1/2].
+
+        Returns
+        -------
+        tuple of Loss
+            Those that there are.
+        """
+        losses = []
+        if self.added_loss:
+            strain = self._strain_rows @ shapes
+            losses.append(Loss(self.added_loss * strain.T @ strain, -1.0))
+        x, read = self.gauss
+        for part in self.stretches:
+            if part.loss:
+                strain = self.spread(read["curvature"], self.bending * part.inside(x)) @ shapes
+                losses.append(Loss(part.loss * strain.T @ strain, -1.0))
+        if self.drag:
+            stations, matrix = layer_damping(self.length, self.width, self.thickness, drag=self.drag)
+            moved = self.rows(self.start + stations, "w") @ shapes
+            losses.append(Loss(moved.T @ matrix @ moved, 0.5, inertia=True))
+        return tuple(losses)
+
+    def rows(self, places: FloatArray, quantity: str) -> FloatArray:
         """Return rows that read the deflection ``w``, its ``slope`` or the rotation ``theta`` at places.
 
         Parameters
         ----------
-        x : (n,) array
+        places : (n,) or (n, 1) array
             Positions [m].
         quantity : {"w", "slope", "theta", "curvature"}
             What to read.
 
         Returns
         -------
-        (n, 2 n_nodes) array
+        (n, n_dofs) array
             Rows to multiply with a vector of DOFs.
         """
-        x = np.asarray(x, float)
+        x = np.asarray(places, float).reshape(-1)
         element = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
         size = np.diff(self.edges)[element]
         local = readers((x - self.edges[element]) / size, size)[quantity]
-        out = np.zeros((len(x), 2 * len(self.nodes)))
+        out = np.zeros((len(x), self.n_dofs))
         np.put_along_axis(out, 2 * ORDER * element[:, None] + np.arange(2 * NODES), local, axis=1)
         return out
 
@@ -213,10 +158,16 @@ class Beam:
         return row
 
     @cached_property
-    def _kept(self) -> slice:
-        if not self.clamped:
-            return slice(0, None)
-        return slice(1 if np.isfinite(self.clamp_rotation) else 2, None)
+    def _kept(self) -> FloatArray:
+        """Indices of the DOFs that no rigid clamp holds."""
+        last = 2 * len(self.nodes) - 2
+        held = [
+            dof + turn
+            for dof in [{"x0": 0, "x1": last}[end] for end in self.clamped]
+            for turn, stiffness in enumerate((self.clamp_translation, self.clamp_rotation))
+            if not np.isfinite(stiffness)
+        ]
+        return np.setdiff1d(np.arange(self.n_dofs), held)
 
     def real_modes(self, count: int) -> tuple[FloatArray, FloatArray]:
         """Return the lowest undamped modes.
@@ -230,20 +181,30 @@ class Beam:
         -------
         omega : (count,) array
             Angular frequencies; zero for rigid-body motion [rad/s].
-        shapes : (2 n_nodes, count) array
+        shapes : (n_dofs, count) array
             Mass-normalised shapes in all DOFs [kg^-1/2].
 
         Notes
         -----
         With stiffness F^T F and mass L L^T the frequencies are the singular values of F L^-T, whose rounding
         is that of the highest frequency; the eigenvalues of the products would lose the lowest modes of
-        slender beams (Golub and Van Loan, Matrix Computations, 4th ed., section 8.7).
+        slender beams (Golub and Van Loan, Matrix Computations, 4th ed., section 8.7). Thrust, whose stiffness
+        is negative, is then put in between the lowest of these modes.
         """
         keep = self._kept
-        factor = scipy.linalg.cholesky(self._whole_mass()[keep, keep], lower=True)
-        rows = np.vstack([self._strain_rows, self._spring_rows()])[:, keep]
-        scaled = scipy.linalg.solve_triangular(factor, rows.T, lower=True).T
+        factor = scipy.linalg.cholesky(self._whole_mass()[np.ix_(keep, keep)], lower=True)
+        parts = [self._strain_rows, self._spring_rows()]
+        if self.axial > 0:
+            parts.append(self._tension_rows)
+        scaled = scipy.linalg.solve_triangular(factor, np.vstack(parts)[:, keep].T, lower=True).T
         _, omega, vectors = scipy.linalg.svd(scaled, full_matrices=False)
-        shapes = np.zeros((2 * len(self.nodes), count))
-        shapes[keep] = scipy.linalg.solve_triangular(factor, vectors[::-1][:count].T, lower=True, trans="T")
-        return omega[::-1][:count], shapes
+        wanted = count + _BASIS if self.axial < 0 else count
+        omega, lowest = omega[::-1][:wanted], vectors[::-1][:wanted]
+        shapes = np.zeros((self.n_dofs, len(omega)))
+        shapes[keep] = scipy.linalg.solve_triangular(factor, lowest.T, lower=True, trans="T")
+        return self._thrust(omega, shapes, count) if self.axial < 0 else (omega, shapes)
+
+    def _thrust(self, omega: FloatArray, shapes: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+        slopes = self._tension_rows @ shapes
+        values, vectors = scipy.linalg.eigh(np.diag(omega**2) - slopes.T @ slopes)
+        return np.sqrt(np.maximum(values[:count], 0.0)), shapes @ vectors[:, :count]

@@ -1,4 +1,4 @@
-"""Poles and residues of a damped beam, exactly, from its real modes and its damping matrix."""
+"""Poles and residues of a damped body, exactly, from its real modes and its damping matrix."""
 
 from __future__ import annotations
 
@@ -8,25 +8,30 @@ import numpy as np
 import scipy.linalg
 
 from acquisition.arrays import ComplexArray, FloatArray
-from modalkit.blind.bodies.beam import Beam
+from modalkit.blind.bodies.body import Body
 
 
 @dataclass(frozen=True, eq=False)
 class ComplexModes:
-    """Complex modes of a beam, read at the test's points.
+    """Complex modes of a body, read where it is hit and where it is seen.
 
     Parameters
     ----------
     poles : (n_modes,) complex array
         Upper poles, by frequency [1/s].
-    points, slopes : (n_points, n_modes) complex arrays
-        Shapes at the points, scaled so that the receptance residue is their product [m/sqrt(N s)], and their
-        derivatives along the beam [1/sqrt(N s)].
+    points : (n_points, n_modes) complex array
+        Shapes where the hammer hits, scaled so that the receptance residue is the product of the shapes at
+        both ends [m/sqrt(N s)].
+    slopes : (n_axes, n_points, n_modes) complex array
+        Their derivatives along the in-plane axes [1/sqrt(N s)].
+    sensor : (n_modes,) complex array
+        Shapes at the sensor, as ``points`` [m/sqrt(N s)].
     """
 
     poles: ComplexArray
     points: ComplexArray
     slopes: ComplexArray
+    sensor: ComplexArray
 
     @property
     def frequency(self) -> FloatArray:
@@ -38,26 +43,36 @@ class ComplexModes:
         """Damping ratios [-]."""
         return -self.poles.real / np.abs(self.poles)
 
-    def residues(self, sensor: int) -> ComplexArray:
-        """Return receptance residues between a sensor and each point, (1, n_points, n_modes) [m/(N s)]."""
-        products: ComplexArray = (self.points[sensor] * self.points)[None]
-        return products
+    @property
+    def residues(self) -> ComplexArray:
+        """Receptance residues between the sensor and each point, (n_points, n_modes) [m/(N s)]."""
+        return self.points * self.sensor
 
-    def gradients(self, sensor: int) -> ComplexArray:
-        """Return how residues change when the hammer strays along the beam, as ``residues`` [1/(N s)]."""
-        products: ComplexArray = (self.points[sensor] * self.slopes)[None]
-        return products
+    @property
+    def gradients(self) -> ComplexArray:
+        """How residues change when the hammer strays, (n_axes, n_points, n_modes) [1/(N s)]."""
+        return self.slopes * self.sensor
+
+    def take(self, chosen: slice) -> ComplexModes:
+        """Return some of the modes."""
+        return ComplexModes(
+            self.poles[chosen], self.points[:, chosen], self.slopes[..., chosen], self.sensor[chosen]
+        )
 
 
-def complex_modes(beam: Beam, places: FloatArray, *, count: int, scatter: FloatArray) -> ComplexModes:
-    """Solve the quadratic eigenproblem of the beam in its own real modes.
+def complex_modes(
+    body: Body, places: FloatArray, sensor: FloatArray, *, count: int, scatter: FloatArray
+) -> ComplexModes:
+    """Solve the quadratic eigenproblem of the body in its own real modes.
 
     Parameters
     ----------
-    beam : Beam
+    body : Body
         The specimen.
-    places : (n_points,) array
-        Where the shapes are wanted [m].
+    places : (n_points, dim) array
+        Where it is hit [m].
+    sensor : (dim,) array
+        Where it is seen [m].
     count : int
         Number of real modes taken [-].
     scatter : (count,) array
@@ -66,20 +81,35 @@ def complex_modes(beam: Beam, places: FloatArray, *, count: int, scatter: FloatA
     Returns
     -------
     ComplexModes
-        All underdamped modes: with state matrices A = [[C, I], [I, 0]], B = [[K, 0], [0, -I]] an eigenvector
+        All underdamped modes: with state matrices A = [[C, M], [M, 0]], B = [[K, 0], [0, -M]] an eigenvector
         psi is scaled so that psi^T A psi = 1, and the residue is the product of its entries (Ewins, Modal
-        Testing, 2nd ed., section 2.7).
+        Testing, 2nd ed., section 2.7). Damping by a law of its own is taken at the modes' frequencies.
     """
-    omega, shapes = beam.real_modes(count)
-    material, dashpots = beam.modal_damping(shapes)
-    damping = np.sqrt(np.outer(scatter, scatter)) * material + dashpots
-    eye, zero = np.eye(count), np.zeros((count, count))
-    state = np.block([[zero, eye], [-np.diag(omega**2), -damping]])
+    omega, shapes = body.real_modes(count)
+    material, others = body.modal_damping(shapes)
+    damping, mass = np.sqrt(np.outer(scatter, scatter)) * material + others, np.eye(count)
+    size = np.maximum(omega, 1e-3 * omega.max())
+    for loss in body.modal_losses(shapes):
+        viscous = loss.matrix * np.outer(size, size) ** (loss.power / 2)
+        damping = damping + viscous
+        if loss.inertia:
+            mass = mass + viscous / np.sqrt(np.outer(size, size))
+    poles, modal = _solve(mass, damping, omega)
+    reader = body.rows(places, "w") @ shapes
+    slopes = np.array([body.rows(places, name) @ shapes for name in body.gradients])
+    seen = (body.rows(sensor[None], "w") @ shapes)[0]
+    return ComplexModes(poles, points=reader @ modal, slopes=slopes @ modal, sensor=seen @ modal)
+
+
+def _solve(mass: FloatArray, damping: FloatArray, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return upper poles and scaled vectors of M q'' + C q' + diag(omega^2) q = 0."""
+    count = len(omega)
+    inverse = np.linalg.inv(mass)
+    state = np.block([[np.zeros((count, count)), np.eye(count)], [-inverse * omega**2, -inverse @ damping]])
     poles, vectors = scipy.linalg.eig(state)
     upper = np.flatnonzero(poles.imag > 1e-6 * np.abs(poles))
     upper = upper[np.argsort(poles[upper].imag)]
     poles, modal = poles[upper], vectors[:count, upper]
-    scale = np.einsum("ir,ij,jr->r", modal, damping, modal) + 2 * poles * np.einsum("ir,ir->r", modal, modal)
-    modal = modal / np.sqrt(scale)
-    reader = beam.rows(places, "w") @ shapes, beam.rows(places, "slope") @ shapes
-    return ComplexModes(poles=poles, points=reader[0] @ modal, slopes=reader[1] @ modal)
+    scale = np.einsum("ir,ij,jr->r", modal, damping, modal)
+    scale = scale + 2 * poles * np.einsum("ir,ij,jr->r", modal, mass, modal)
+    return poles, modal / np.sqrt(scale)

@@ -1,4 +1,4 @@
-"""What may be fixed to a beam or cut into it."""
+"""What may be fixed to a beam, cut into it, or stuck on it."""
 
 from __future__ import annotations
 
@@ -31,6 +31,26 @@ class Attached:
 
 
 @dataclass(frozen=True)
+class Absorber:
+    """A mass that hangs on the beam by a spring and a dashpot, free to move by itself.
+
+    Parameters
+    ----------
+    x : float
+        Position [m].
+    mass : float
+        [kg].
+    stiffness, damping : float
+        Between the mass and the beam [N/m], [N s/m].
+    """
+
+    x: float
+    mass: float
+    stiffness: float
+    damping: float
+
+
+@dataclass(frozen=True)
 class Notch:
     """A smooth local loss of bending stiffness, EI (1 - loss cos^2(pi (x - centre) / extent)).
 
@@ -55,3 +75,38 @@ class Notch:
     def compliance(self) -> float:
         """Integral of EI0/EI - 1 over the notch [m]; closed form of the cosine-squared dip."""
         return self.extent * float(1.0 / np.sqrt(1.0 - self.loss) - 1.0)
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A stretch with sharp ends whose section differs: a rectangular notch, a rib, a step, a layer.
+
+    Parameters
+    ----------
+    x, extent : float
+        Centre and whole length [m].
+    bending, line : float
+        Factors on bending stiffness and on mass per length [-].
+    loss : float
+        Loss factor of the stretch, K (1 + i loss) there [-].
+    """
+
+    x: float
+    extent: float
+    bending: float = 1.0
+    line: float = 1.0
+    loss: float = 0.0
+
+    @property
+    def window(self) -> tuple[float, float]:
+        """From where to where it reaches [m]."""
+        return self.x - self.extent / 2, self.x + self.extent / 2
+
+    def inside(self, x: FloatArray) -> FloatArray:
+        """Return 1 where ``x`` is in the stretch and 0 elsewhere [-]."""
+        return np.where(np.abs(x - self.x) < self.extent / 2, 1.0, 0.0)
+
+    @property
+    def compliance(self) -> float:
+        """Integral of EI0/EI - 1 over the stretch [m]."""
+        return self.extent * (1.0 / self.bending - 1.0)

@@ -1,69 +1,136 @@
-"""The score of a blind run: how often it is right, when it commits, what it confuses."""
+"""The score of a blind run: how often it is right, when it commits, what it confuses, and whether it knows."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
-import scipy.stats
 
+from acquisition.errors import InputError
+from modalkit.blind.outcome import Outcome
 from modalkit.blind.run import BlindResult
-from modalkit.blind.scoring.rows import place_table, severity_table, trial_table
+from modalkit.blind.scoring.abstention import Abstention, abstention
+from modalkit.blind.scoring.calibration import (
+    calibration_table,
+    forecast_table,
+    reliability_table,
+    uniformity_table,
+)
+from modalkit.blind.scoring.closing import closing_summary, closing_table
+from modalkit.blind.scoring.confusion import answer_table, confusion_matrix
+from modalkit.blind.scoring.cover import cover_table
+from modalkit.blind.scoring.headline import headline
+from modalkit.blind.scoring.open_set import OpenSet, open_set
+from modalkit.blind.scoring.places import channel_table, place_summary, place_table
+from modalkit.blind.scoring.rates import asked, effect_table, group_table, rates
+from modalkit.blind.scoring.record import nested, numbers, outcome_records, records
+from modalkit.blind.scoring.severity import point_table, severity_summary, severity_table
+from modalkit.blind.scoring.trials import trial_table
 
 SCHEMA = "modalkit.blind/1"
 
 
 @dataclass(frozen=True, eq=False)
 class Score:
-    """Tables of a blind run.
+    """Tables of a blind run; every share with ``count``, ``total`` and a 95 % interval.
 
     Parameters
     ----------
-    seed : int
-        Of the run.
+    result : BlindResult
+        What was scored.
     trials : pandas.DataFrame
         One row per trial.
+    headline : pandas.DataFrame
+        The numbers to read first.
     rates : pandas.DataFrame
-        ``count`` of ``total``, ``rate`` and its 95 % Wilson interval ``low95``, ``high95``, by question.
-    confusion : pandas.DataFrame
-        Hidden effect against what was answered.
+        How often, by question.
+    groups : pandas.DataFrame
+        The same by level, kind of structure, baseline and absolute level.
     effects : pandas.DataFrame
-        By hidden effect: how often right, named, held by a class, unknown, none, failed; mean number of
-        sets in an answer.
-    severity, places : pandas.DataFrame
-        Errors of parameters and of places.
-    seals : pandas.DataFrame
-        Commitment and salt of every trial.
+        By hidden effect.
+    answers : pandas.DataFrame
+        Every answer in shares of a trial, and whether it is true.
+    confusion : pandas.DataFrame
+        Hidden effect against answer, classes counted by their shares [trials].
+    abstention, abstention_outside : Abstention
+        What is answered against how often it is right, without and with effects that cannot be known.
+    forecasts : pandas.DataFrame
+        What each trial forecast.
+    calibration, reliability, uniformity : pandas.DataFrame
+        Scores of the probabilities; stated against true, by bin; and the p-value where nothing is hidden.
+    cover : pandas.DataFrame
+        Coverage and size of the 95 % set.
+    open_set : OpenSet
+        Effects outside the library or left out of it.
+    severity, severity_summary, points : pandas.DataFrame
+        Errors of parameters, one by one and by parameter; lists of points.
+    places, place_summary, channels : pandas.DataFrame
+        Errors of places, one by one and by effect; the channel.
+    closing, closing_summary : pandas.DataFrame
+        Shrinkage said and true, one by one and in the mean.
     """
 
-    seed: int
+    result: BlindResult
     trials: pd.DataFrame
+    headline: pd.DataFrame
     rates: pd.DataFrame
-    confusion: pd.DataFrame
+    groups: pd.DataFrame
     effects: pd.DataFrame
+    answers: pd.DataFrame
+    confusion: pd.DataFrame
+    abstention: Abstention
+    abstention_outside: Abstention
+    forecasts: pd.DataFrame
+    calibration: pd.DataFrame
+    reliability: pd.DataFrame
+    uniformity: pd.DataFrame
+    cover: pd.DataFrame
+    open_set: OpenSet
     severity: pd.DataFrame
+    severity_summary: pd.DataFrame
+    points: pd.DataFrame
     places: pd.DataFrame
-    seals: pd.DataFrame
+    place_summary: pd.DataFrame
+    channels: pd.DataFrame
+    closing: pd.DataFrame
+    closing_summary: pd.DataFrame
+
+    @property
+    def seed(self) -> int:
+        """Seed of the run."""
+        return self.result.seed
 
     def to_json(self) -> dict[str, Any]:
         """Return everything as JSON can carry it; what is not a number becomes null."""
+        tables = (
+            *("headline", "rates", "groups", "effects", "calibration", "reliability", "uniformity", "cover"),
+            *("severity", "severity_summary", "points", "places", "place_summary", "channels"),
+            *("closing", "closing_summary"),
+        )
         return {
             "schema": SCHEMA,
             "seed": self.seed,
-            "rates": _records(self.rates),
-            "confusion": {
-                str(effect): {str(k): int(v) for k, v in row.items() if v}
-                for effect, row in self.confusion.iterrows()
+            "plan": self.result.plan.to_json(),
+            **{name: records(getattr(self, name)) for name in tables},
+            "confusion": nested(self.confusion),
+            "abstention": _curve(self.abstention),
+            "abstention_outside": _curve(self.abstention_outside),
+            "open_set": {
+                "effects": records(self.open_set.effects),
+                "area": numbers(self.open_set.area),
+                "roc": records(self.open_set.roc),
             },
-            "effects": _records(self.effects),
-            "severity": _records(self.severity),
-            "places": _records(self.places),
-            "trials": _records(self.trials.drop(columns="seconds")),
-            "seals": _records(self.seals),
+            "trials": records(
+                self.trials.drop(columns="seconds").join(self.forecasts[["brier", "log", "size"]])
+            ),
+            "outcomes": outcome_records(self.result.outcomes),
         }
+
+
+def _curve(part: Abstention) -> dict[str, Any]:
+    return {"area": numbers(part.area), "rule": numbers(part.rule), "curve": records(part.curve)}
 
 
 def score(result: BlindResult) -> Score:
@@ -72,124 +139,75 @@ def score(result: BlindResult) -> Score:
     Parameters
     ----------
     result : BlindResult
-        Outcome of a run.
+        Outcome of a run; its seed also draws the bootstrap samples of the intervals.
 
     Returns
     -------
     Score
         A diagnosis that failed counts as wrong in every rate over all trials, and as no commitment.
+
+    Raises
+    ------
+    InputError
+        If there are no trials.
     """
-    trials = trial_table(result)
-    severity = severity_table(result)
-    seals = pd.DataFrame(
-        {
-            "commitment": [o.sealed.commitment for o in result.outcomes],
-            "salt": [o.sealed.salt for o in result.outcomes],
-            "statement": [o.sealed.statement for o in result.outcomes],
-        },
-        index=pd.Index([o.index for o in result.outcomes], name="trial"),
-    )
+    outcomes = result.outcomes
+    if not outcomes:
+        raise InputError("the blind run has no trials to score; run at least one")
+    rng = np.random.default_rng(result.seed)
+    trials = trial_table(outcomes)
+    answers, forecasts = answer_table(outcomes), forecast_table(outcomes, trials)
+    severity, places, closing = severity_table(outcomes), place_table(outcomes), closing_table(outcomes)
+    counted = rates(trials)
+    sure = forecasts[asked(trials).loc[forecasts.index]]
     return Score(
-        seed=result.seed,
+        result=result,
         trials=trials,
-        rates=_rates(trials, severity),
-        confusion=pd.crosstab(trials["effect"], trials["answered"]),
-        effects=_by_effect(trials),
+        headline=headline(counted, trials, forecasts, severity, places),
+        rates=counted,
+        groups=group_table(trials),
+        effects=effect_table(trials),
+        answers=answers,
+        confusion=confusion_matrix(answers),
+        abstention=abstention(trials, rng),
+        abstention_outside=abstention(trials, rng, outside=True),
+        forecasts=forecasts,
+        calibration=calibration_table(forecasts, trials, rng),
+        reliability=reliability_table(sure["stated"].to_numpy(float), sure["right"].to_numpy(float)),
+        uniformity=uniformity_table(trials),
+        cover=cover_table(forecasts, trials, rng),
+        open_set=open_set(trials, rng),
         severity=severity,
-        places=place_table(result),
-        seals=seals,
+        severity_summary=severity_summary(severity, rng),
+        points=point_table(outcomes),
+        places=places,
+        place_summary=place_summary(places, rng),
+        channels=channel_table(outcomes, trials),
+        closing=closing,
+        closing_summary=closing_summary(closing, rng),
     )
 
 
-def wilson(count: int, total: int) -> tuple[float, float]:
-    """Return the 95 % Wilson interval of a share.
+def score_again(document: dict[str, Any]) -> Score:
+    """Score a run again from the JSON of its score.
 
     Parameters
     ----------
-    count, total : int
-        Hits, and trials.
+    document : dict
+        As :meth:`Score.to_json` returns it.
 
     Returns
     -------
-    low, high : float
-        Bounds; nan where there are no trials [-].
+    Score
+
+    Raises
+    ------
+    InputError
+        If it is not the score of a blind run.
     """
-    if total == 0:
-        return math.nan, math.nan
-    interval = scipy.stats.binomtest(count, total).proportion_ci(method="wilson")
-    return float(interval.low), float(interval.high)
+    if document.get("schema") != SCHEMA or "outcomes" not in document:
+        raise InputError(f"schema {document.get('schema')!r} is not {SCHEMA}; give what `blind --json` wrote")
+    from modalkit.blind.plan import Plan
 
-
-def _rates(trials: pd.DataFrame, severity: pd.DataFrame) -> pd.DataFrame:
-    none = trials["effect"] == "none"
-    library = trials["known"] & ~none
-    seen = trials["visible"]
-    asked = (library & seen) | none
-    withheld = ~trials["known"] & seen
-    named, kind = trials["verdict"] == "named", trials["verdict"] == "class"
-    true_name = named & trials["holds"]
-    answers = named | kind
-    questions: dict[str, tuple[pd.Series, pd.Series]] = {
-        "most probable answer is the truth": (trials["top"], asked),
-        "answer is true (named, in the class, or none)": (trials["right"], asked),
-        "commits to a name": (named, library & seen),
-        "right when it commits": (true_name, named),
-        "right when it commits, effect of the library": (true_name, named & library & seen),
-        "class holds the truth": (trials["holds"], kind & library & seen),
-        "right when it names or gives a class": (trials["holds"], answers & library & seen),
-        "visible effect called none": (trials["verdict"] == "none", library & seen),
-        "visible effect called unknown": (trials["verdict"] == "unknown", library & seen),
-        "faint effect: true answer or none": (
-            trials["right"] | (trials["verdict"] == "none"),
-            trials["known"] & ~none & ~seen,
-        ),
-        "false alarm on none": (~trials["right"], none),
-        "withheld effect called unknown": (trials["verdict"] == "unknown", withheld),
-        "withheld effect given a wrong name": (named, withheld),
-        "severity inside its 95 % interval": (severity["covered"].astype(bool), severity["covered"].notna()),
-        "diagnosis failed": (trials["verdict"] == "failed", trials["known"].notna()),
-    }
-    rows = {}
-    for question, (hit, among) in questions.items():
-        count, total = int((hit & among).sum()), int(among.sum())
-        low, high = wilson(count, total)
-        rows[question] = (count, total, count / total if total else math.nan, low, high)
-    table = pd.DataFrame.from_dict(
-        rows, orient="index", columns=["count", "total", "rate", "low95", "high95"]
-    )
-    table.index.name = "question"
-    return table
-
-
-def _by_effect(trials: pd.DataFrame) -> pd.DataFrame:
-    answered = trials["verdict"].isin(["named", "class"])
-    marks = pd.DataFrame(
-        {
-            "effect": trials["effect"],
-            "trials": 1,
-            "visible": trials["visible"],
-            "right": trials["right"],
-            "top": trials["top"],
-            "named right": (trials["verdict"] == "named") & trials["holds"],
-            "class with it": (trials["verdict"] == "class") & trials["holds"],
-            "wrong": answered & ~trials["holds"],
-            "unknown": trials["verdict"] == "unknown",
-            "none": trials["verdict"] == "none",
-            "failed": trials["verdict"] == "failed",
-        }
-    )
-    table = marks.groupby("effect").sum().astype(int)
-    size = trials["candidates"].where(answered).groupby(trials["effect"]).mean()
-    return table.assign(**{"mean class size": size})
-
-
-def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
-    named = table.index.name is not None
-    rows = (table.reset_index() if named else table).to_dict(orient="records")
-    return [{str(key): _plain(value) for key, value in row.items()} for row in rows]
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.generic):
-        value = value.item()
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    outcomes = tuple(Outcome.from_json(row) for row in document["outcomes"])
+    return score(BlindResult(document["seed"], Plan.from_json(document["plan"]), outcomes))

@@ -1,0 +1,20 @@
+"""Many studies at once: a folder of studies in, a table of modes, factors and causes out."""
+
+from modalkit.batch.find import Found, find_studies
+from modalkit.batch.part import SCHEMA, part_record
+from modalkit.batch.run import BatchResult, Part, run_batch
+from modalkit.batch.tables import tables
+from modalkit.batch.writing import check_table_place, write_tables
+
+__all__ = [
+    "SCHEMA",
+    "BatchResult",
+    "Found",
+    "Part",
+    "check_table_place",
+    "find_studies",
+    "part_record",
+    "run_batch",
+    "tables",
+    "write_tables",
+]

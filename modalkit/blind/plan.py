@@ -1,0 +1,78 @@
+"""What may be drawn in a run of blind trials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Self
+
+from acquisition.errors import StudyError
+
+KINDS = ("beam", "plate", "solid")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What may be drawn; together with the seed it says everything about a run.
+
+    Parameters
+    ----------
+    kinds : tuple of str
+        Kinds of specimen, of ``beam``, ``plate`` and ``solid``; solids need CalculiX.
+    plates : float
+        Share of plates where there are other kinds too; that of solids likewise [-].
+    effects : tuple of str
+        What may be hidden; empty for everything that the rig has. ``none`` among them keeps its share.
+    none : float
+        Share of trials without any effect [-].
+    pairs : float
+        Share of trials with two effects of the library at once [-].
+    outside : float
+        Share of trials with an effect that the library lacks [-].
+    mild, strong : float
+        Shares of effects fainter and stronger than clear ones [-].
+    leave_out : bool
+        Whether the true effect is taken out of the library in every trial that has one.
+    baseline : float
+        Share of tests with a baseline [-].
+
+    Raises
+    ------
+    StudyError
+        If a share is none, or shares do not leave room for single effects of the library.
+    """
+
+    kinds: tuple[str, ...] = ("beam", "plate")
+    plates: float = 0.15
+    effects: tuple[str, ...] = ()
+    none: float = 0.12
+    pairs: float = 0.10
+    outside: float = 0.15
+    mild: float = 0.2
+    strong: float = 0.15
+    leave_out: bool = False
+    baseline: float = 0.25
+
+    def __post_init__(self) -> None:
+        """Check the shares and the kinds."""
+        object.__setattr__(self, "kinds", tuple(self.kinds))
+        object.__setattr__(self, "effects", tuple(self.effects))
+        unknown = [kind for kind in self.kinds if kind not in KINDS]
+        if unknown or not self.kinds:
+            raise StudyError(f"plan: kinds {unknown or 'empty'}; choose from {', '.join(KINDS)}")
+        shares = ("plates", "none", "pairs", "outside", "mild", "strong", "baseline")
+        wrong = [name for name in shares if not 0.0 <= getattr(self, name) <= 1.0]
+        if wrong:
+            raise StudyError(f"plan: {wrong[0]} = {getattr(self, wrong[0])} is no share; give 0 to 1")
+        for names in (("none", "pairs", "outside"), ("mild", "strong")):
+            if sum(getattr(self, name) for name in names) > 1.0 + 1e-9:
+                raise StudyError(f"plan: the shares {', '.join(names)} add up to more than 1")
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the plan as JSON can carry it."""
+        return asdict(self) | {"kinds": list(self.kinds), "effects": list(self.effects)}
+
+    @classmethod
+    def from_json(cls, document: Mapping[str, Any]) -> Self:
+        """Return the plan that ``to_json`` gave."""
+        return cls(**document)

@@ -1,0 +1,136 @@
+"""How far the gap closes: what the diagnosis says against what comes true on the rig."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from modalkit.blind.outcome import Outcome
+from modalkit.blind.scoring.intervals import bootstrap, share
+from modalkit.blind.scoring.judge import holds, label, sort_of
+
+WITHIN = 10.0
+"""Points of per cent within which a prediction counts as met [%]."""
+
+_COLUMNS = [
+    *("trial", "effect", "sort", "metric", "true_metric", "said", "low95", "high95"),
+    *("true", "beyond", "held_out", "covered", "held"),
+]
+
+
+def closing_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
+    """Return one row per trial in which both are known.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        Opened trials.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Share of the gap that closes [%]: ``said`` with ``low95`` and ``high95``, ``held_out`` (from the errors on
+        data held out), ``true`` on the rig's own modes in the band and ``beyond`` on those above it; ``covered``:
+        the true one lies in the interval; ``held``: the answer holds the hidden effect.
+    """
+    rows = [row for outcome in outcomes if (row := _row(outcome)) is not None]
+    return pd.DataFrame(rows, columns=_COLUMNS)
+
+
+def _row(outcome: Outcome) -> list[Any] | None:
+    answer, true = outcome.answer, outcome.shrinkage
+    if answer is None or true is None:
+        return None
+    share_true = closed(true.before_percent, true.after_percent)
+    share_beyond = closed(true.beyond_before_percent, true.beyond_after_percent)
+    said = answer.closed
+    inside = (
+        None if said is None or np.isnan(said.low + said.high) else bool(said.low <= share_true <= said.high)
+    )
+    out = answer.held_out
+    held_out = closed(
+        out.get("before_percent"), out.get("after_percent"), out.get("noise_floor_percent") or 0.0
+    )
+    start = [outcome.index, label(outcome.truth.effects), sort_of(outcome.truth), answer.metric, true.metric]
+    told = [np.nan] * 3 if said is None else [said.value, said.low, said.high]
+    return [*start, *told, share_true, share_beyond, held_out, inside, holds(answer, outcome.truth)]
+
+
+def closed(before: float | None, after: float | None, floor: float = 0.0) -> float:
+    """Return the share of the closable gap that closes, 1 - (after^2 - floor^2) / (before^2 - floor^2) [%].
+
+    Parameters
+    ----------
+    before, after : float or None
+        R.m.s. errors [%].
+    floor : float
+        Repeatability [%].
+
+    Returns
+    -------
+    float
+        nan where there is nothing to close [%].
+    """
+    if before is None or after is None or not before > 1.5 * floor or not np.isfinite(before + after):
+        return float("nan")
+    return 100.0 * (1.0 - max(after**2 - floor**2, 0.0) / (before**2 - floor**2))
+
+
+def comparable(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the trials in which what is said and what is true speak of the same thing, frequency or damping.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        As :func:`closing_table` returns it.
+    """
+    return table[(table["said"] + table["true"]).notna() & (table["metric"] == table["true_metric"])]
+
+
+def closing_summary(table: pd.DataFrame, rng: np.random.Generator) -> pd.DataFrame:
+    """Return how well the shrinkage is predicted.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        As :func:`closing_table` returns it.
+    rng : numpy.random.Generator
+        For the intervals.
+
+    Returns
+    -------
+    pandas.DataFrame
+        By group of trials: mean \\|said - true\\| [points of %] with its interval, mean ``said`` and ``true``,
+        ``count`` of ``total`` within 10 points, ``covered`` of ``intervals``.
+    """
+    told = comparable(table)
+    held = told["held"].astype(bool)
+    groups = {"all": told, "answer holds the truth": told[held], "answer is false": told[~held]}
+    outside = told["sort"].isin(["outside", "left out"])
+    groups["wrong name for what cannot be known"] = told[outside & ~held]
+    groups |= {f"gap of {metric}": some for metric, some in told.groupby("metric")}
+    return pd.DataFrame(
+        [{"trials": name} | _summary(some, rng) for name, some in groups.items() if len(some)]
+    )
+
+
+def _summary(some: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
+    apart = (some["said"] - some["true"]).abs().to_numpy(float)
+    mean = bootstrap(apart, rng)
+    covered = some["covered"].dropna().astype(bool)
+    inside = share(covered)
+    return (
+        {
+            "mean_difference": mean["value"],
+            "mean_low95": mean["low95"],
+            "mean_high95": mean["high95"],
+            "said": float(some["said"].mean()),
+            "true": float(some["true"].mean()),
+            "beyond": float(some["beyond"].mean()),
+        }
+        | share(apart <= WITHIN)
+        | {f"covered_{key}": value for key, value in inside.items()}
+    )

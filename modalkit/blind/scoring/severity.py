@@ -1,0 +1,137 @@
+"""How strong: parameters said against parameters hidden."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from modalkit.blind.answer import Row
+from modalkit.blind.outcome import Outcome
+from modalkit.blind.scoring.intervals import bootstrap, share
+from modalkit.blind.scoring.judge import accepted, holds, label
+
+NOT_SCORED = ("local_stiffness.extent", "local_stiffness.loss")
+"""What data do not determine one by one; the compliance stands for both."""
+
+PLACES = ("x", "y")
+"""Coordinates are errors of place."""
+
+_COLUMNS = [
+    "trial",
+    "effect",
+    "parameter",
+    "true",
+    "value",
+    "low95",
+    "high95",
+    "error",
+    "covered",
+    "committed",
+]
+
+
+def severity_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
+    """Return one row per parameter of an effect that was rightly named or held by a class.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        Opened trials.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``true``, ``value``, ``low95``, ``high95`` [SI], ``error`` relative to the true value [-], whether the interval
+        ``covered`` it (None where there is none), and whether that set alone was the answer (``committed``). A
+        parameter that is truly 0 has no relative error, and no interval inside its prior can hold it: left out.
+    """
+    rows = [row for o in outcomes for row in _rows(o)]
+    return pd.DataFrame(rows, columns=_COLUMNS)
+
+
+def _rows(outcome: Outcome) -> list[list[Any]]:
+    said = true_row(outcome)
+    if said is None or outcome.answer is None:
+        return []
+    rows = []
+    for name, true in outcome.truth.parameters.items():
+        if name in NOT_SCORED or name.split(".")[-1] in PLACES or name not in said.parameters:
+            continue
+        if not isinstance(true, int | float) or not true:
+            continue
+        e = said.parameters[name]
+        covered = bool(e.low <= true <= e.high) if np.isfinite([e.low, e.high]).all() else None
+        error = e.value / true - 1
+        start = [outcome.index, label(outcome.truth.effects), name]
+        rows.append([*start, true, e.value, e.low, e.high, error, covered, outcome.answer.verdict == "named"])
+    return rows
+
+
+def true_row(outcome: Outcome) -> Row | None:
+    """Return the row of the hidden set itself, where the answer holds it or what is the same; None elsewhere."""
+    answer, truth = outcome.answer, outcome.truth
+    if answer is None or not truth.effects or not holds(answer, truth):
+        return None
+    own = frozenset(truth.effects)
+    return answer.row(own) if own in answer.sets and accepted(own, truth) else None
+
+
+def severity_summary(severity: pd.DataFrame, rng: np.random.Generator) -> pd.DataFrame:
+    """Return errors and coverage by parameter, and of all.
+
+    Parameters
+    ----------
+    severity : pandas.DataFrame
+        As :func:`severity_table` returns it.
+    rng : numpy.random.Generator
+        For the intervals of the medians.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``parameter``; median of \\|error\\| [-] with its bootstrap interval, mean error (``bias``), and ``count`` of
+        ``total`` intervals that cover the truth, with the share's interval.
+    """
+    groups = [("all", severity), *severity.groupby("parameter")]
+    return pd.DataFrame([{"parameter": name} | _summary(some, rng) for name, some in groups if len(some)])
+
+
+def _summary(some: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
+    errors = some["error"].dropna().to_numpy(float)
+    middle = bootstrap(np.abs(errors), rng, statistic=lambda v: np.median(v, axis=1))
+    covered = some["covered"].dropna().astype(bool)
+    return {
+        "errors": len(errors),
+        "median_error": middle["value"],
+        "median_low95": middle["low95"],
+        "median_high95": middle["high95"],
+        "bias": float(errors.mean()) if len(errors) else np.nan,
+    } | share(covered)
+
+
+def point_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
+    """Return one row per list of test points that was hidden, where the answer holds the effect.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        Opened trials.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``true`` and ``said`` points, and whether they are the same.
+    """
+    rows = []
+    for outcome in outcomes:
+        said = true_row(outcome)
+        for name, points in () if said is None else said.points.items():
+            true = outcome.truth.parameters.get(name)
+            if true is None:
+                continue
+            own = tuple(true) if isinstance(true, list | tuple) else (int(true),)
+            rows.append([outcome.index, name, str(own), str(points), sorted(own) == sorted(points)])
+    return pd.DataFrame(rows, columns=["trial", "parameter", "true", "said", "same"])

@@ -1,0 +1,102 @@
+"""One table row per trial: what was hidden beside what was said."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from modalkit.blind.answer import Answer
+from modalkit.blind.outcome import Outcome
+from modalkit.blind.scoring.judge import commits, credit, holds, is_right, label, sort_of, top_is_right
+from modalkit.blind.scoring.posterior import Posterior, posterior
+from modalkit.blind.trial import Truth
+
+VISIBLE = 3.0
+"""Standard deviations from which an effect is expected to be seen [-]."""
+
+_FAILED: dict[str, Any] = {
+    "verdict": "failed",
+    "answered": "failed",
+    "sets": 0,
+    "right": False,
+    "top": False,
+    "holds": False,
+    "commits": False,
+    "credit": 0.0,
+    "confidence": 0.0,
+    "first": False,
+    "probability": np.nan,
+    "p_value": np.nan,
+    "fit": np.nan,
+}
+
+
+def trial_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
+    """Return one row per trial.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        Opened trials.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Truth (``effect``, ``sort``, ``kind``, ``level``, ``severity``, ``visibility``, ``visible``,
+        ``baseline``, ``calibrated``, ``gap_percent``), answer (``verdict``, ``answered``, ``sets``,
+        ``p_value``, ``fit`` of the best row), judgement (``right``, ``top``, ``holds``, ``commits``,
+        ``credit`` of a class counted fairly), and what the probabilities say whatever the verdict:
+        ``confidence`` of the most probable set, whether that is right (``first``), and the ``probability`` of
+        the truth.
+    """
+    rows = [_row(outcome) for outcome in outcomes]
+    return pd.DataFrame(rows).set_index("trial")
+
+
+def _row(outcome: Outcome) -> dict[str, Any]:
+    truth, answer = outcome.truth, outcome.answer
+    hidden = {
+        "trial": outcome.index,
+        "effect": label(truth.effects),
+        "sort": sort_of(truth),
+        "kind": truth.kind,
+        "level": truth.level,
+        "severity": truth.severity,
+        "visibility": truth.visibility,
+        "visible": truth.visibility >= VISIBLE,
+        "baseline": truth.baseline,
+        "calibrated": truth.calibrated,
+        "gap_percent": truth.gap_percent,
+    }
+    said = _FAILED if answer is None else _said(answer, truth)
+    return hidden | said | {"seconds": outcome.seconds, "failure": outcome.failure or ""}
+
+
+def _said(answer: Answer, truth: Truth) -> dict[str, Any]:
+    stated: Posterior = posterior(answer, truth)
+    return {
+        "verdict": answer.verdict,
+        "answered": _label(answer, truth),
+        "sets": len(answer.sets),
+        "right": is_right(answer, truth),
+        "top": top_is_right(answer, truth),
+        "holds": holds(answer, truth),
+        "commits": commits(answer),
+        "credit": credit(answer, truth),
+        "confidence": stated.confidence,
+        "first": stated.first_is_right,
+        "probability": stated.truth,
+        "p_value": answer.p_value,
+        "fit": answer.ranking[0].fit if answer.ranking else np.nan,
+    }
+
+
+def _label(answer: Answer, truth: Truth) -> str:
+    if answer.verdict == "named":
+        return label(answer.sets[0]) if answer.sets else "named nothing"
+    if answer.verdict == "class":
+        return "class with it" if holds(answer, truth) else "class without it"
+    return answer.verdict

@@ -1,0 +1,176 @@
+"""How far an answer truly closes the gap: what it says, put into the rig's own nominal body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.optimize
+
+from acquisition.arrays import FloatArray
+from modalkit.blind.answer import Answer, Row
+from modalkit.blind.bodies.complex_modes import ComplexModes
+from modalkit.blind.matching import match
+from modalkit.blind.scene import Scene, nominal_scene
+from modalkit.blind.secrets import SECRETS
+from modalkit.blind.setup import Setup
+from modalkit.blind.trial import Trial
+
+_TOLERANCES = ("E", "density", "thickness", "length", "width")
+_STEP = 1e-3
+_BOUND = 3.0
+_FREQUENCY_SIGMA = 2e-4
+_HELD_OUT = 3
+_LEAST = 1e-3
+
+
+@dataclass(frozen=True)
+class Shrinkage:
+    """R.m.s. error of the model against the specimen's true modes, before the answer and after.
+
+    Parameters
+    ----------
+    metric : {"frequency", "damping"}
+        Error of what.
+    before_percent, after_percent : float
+        On the modes that the band was chosen for [%].
+    beyond_before_percent, beyond_after_percent : float
+        On the next three modes, above the band [%].
+    """
+
+    metric: str
+    before_percent: float
+    after_percent: float
+    beyond_before_percent: float
+    beyond_after_percent: float
+
+
+def true_shrinkage(trial: Trial, answer: Answer) -> Shrinkage | None:
+    """Return how far the best answer shrinks the gap on the rig.
+
+    Parameters
+    ----------
+    trial : Trial
+        With the true specimen.
+    answer : Answer
+        What the diagnosis says; its most probable row counts.
+
+    Returns
+    -------
+    Shrinkage or None
+        None where the answer names nothing that the rig can do. Tolerances are refitted in their linearisation,
+        each within three standard deviations, to the frequencies measured; with a baseline they are known.
+        Damping is not refitted: its tolerance is each mode's own and would explain all.
+    """
+    row = answer.best
+    if row is None or not row.effects:
+        return None
+    added = put_in(nominal_scene(trial.scene.setup), row)
+    if added is None:
+        return None
+    metric = "damping" if all(SECRETS[n].metric == "damping" for n in row.effects) else "frequency"
+    before, after = _errors(trial, added, metric)
+    count = trial.scene.setup.modes
+
+    def rms(errors: FloatArray) -> float:
+        return float(100 * np.sqrt(np.mean(np.expm1(-errors) ** 2)))
+
+    return Shrinkage(metric, rms(before[:count]), rms(after[:count]), rms(before[count:]), rms(after[count:]))
+
+
+def put_in(scene: Scene, row: Row) -> Scene | None:
+    """Put the effects of an answer into a rig.
+
+    Parameters
+    ----------
+    scene : Scene
+        The rig as the model has it.
+    row : Row
+        Effects and their parameters.
+
+    Returns
+    -------
+    Scene or None
+        None where the rig lacks one of them, or the answer lacks a number it needs.
+    """
+    for name in sorted(row.effects, key=list(SECRETS).index if row.effects <= set(SECRETS) else str):
+        secret = SECRETS.get(name)
+        if secret is None or not secret.in_library:
+            return None
+        values = _values(name, row)
+        try:
+            if not all(np.all(np.isfinite(v)) for v in values.values()):
+                return None
+            scene = secret.act(_with_shear(scene) if name == "shear" else scene, values)
+        except KeyError:
+            return None
+    return scene
+
+
+def _values(name: str, row: Row) -> dict[str, Any]:
+    prefix = f"{name}."
+    found: dict[str, Any] = {
+        key.removeprefix(prefix): said.value for key, said in row.parameters.items() if key.startswith(prefix)
+    }
+    for key, points in row.points.items():
+        if key.startswith(prefix):
+            short = key.removeprefix(prefix)
+            found[short] = points[0] if short == "point" else list(points)
+    return found
+
+
+def _with_shear(scene: Scene) -> Scene:
+    return scene.with_body(shear=True)
+
+
+def _errors(trial: Trial, added: Scene, metric: str) -> tuple[FloatArray, FloatArray]:
+    """Return ln(specimen / model) before and after, measured modes first [-]."""
+    setup = trial.scene.setup
+    count = setup.modes + _HELD_OUT
+    nominal = _as_modelled(nominal_scene(setup))
+    shifted = added if getattr(added.body, "shear", True) else _as_modelled(added)
+    model = nominal.elastic().take(slice(0, count))
+    true, plain, moved = (_quantities(s, model, metric) for s in (trial.scene, nominal, shifted))
+    if setup.baseline:
+        known = _quantities(trial.before, model, metric)
+        if metric == "damping":
+            return np.log(true / known), np.log(true / np.maximum(known + moved - plain, _LEAST * known))
+        return np.log(true / known), np.log(true / known * plain / moved)
+    before, after = np.log(true / plain), np.log(true / moved)
+    if metric == "damping":
+        return before, after
+    return before, _refitted(after, _tolerances(setup, model), setup)
+
+
+def _as_modelled(scene: Scene) -> Scene:
+    """Return the scene in the theory of the study's model."""
+    return scene.with_body(shear=False) if scene.setup.theory != "timoshenko" else scene
+
+
+def _quantities(scene: Scene, like: ComplexModes, metric: str) -> FloatArray:
+    """Return angular frequency or decay of the modes matched to the model's [rad/s], [1/s]."""
+    modes = scene.elastic()
+    poles = modes.poles[match(like, modes)]
+    return np.abs(poles) if metric == "frequency" else scene.chain.window - poles.real
+
+
+def _tolerances(setup: Setup, model: ComplexModes) -> FloatArray:
+    """Return the change of ln f per standard deviation of each doubt, (n_modes, n_doubts)."""
+    columns = []
+    for name in _TOLERANCES:
+        moved = _as_modelled(nominal_scene(setup, factors={name: 1.0 + _STEP})).elastic()
+        shift = np.log(moved.frequency[match(model, moved)] / model.frequency)
+        columns.append(shift / _STEP * getattr(setup.tolerances, name))
+    return np.column_stack(columns)
+
+
+def _refitted(errors: FloatArray, shift: FloatArray, setup: Setup) -> FloatArray:
+    """Return what the tolerances leave, fitted to the measured modes and to their own sigma."""
+    count = setup.modes
+    sigma = np.hypot(_FREQUENCY_SIGMA, setup.repeatability)
+    rows = np.vstack([shift[:count] / sigma, np.eye(shift.shape[1])])
+    wanted = np.concatenate([errors[:count] / sigma, np.zeros(shift.shape[1])])
+    fit = scipy.optimize.lsq_linear(rows, wanted, bounds=(-_BOUND, _BOUND))
+    left: FloatArray = errors - shift @ fit.x
+    return left

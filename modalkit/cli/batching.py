@@ -1,0 +1,99 @@
+"""The command for many studies: batch."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import pandas as pd
+import typer
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from acquisition.errors import EstimationError, InputError
+from modalkit.batch import (
+    BatchResult,
+    check_table_place,
+    find_studies,
+    part_record,
+    run_batch,
+    tables,
+    write_tables,
+)
+from modalkit.cli.common import out, progress, several, show_table
+from modalkit.write import write_json
+
+_SHOWN = ["study", "verdict", "effects", "probability", "gap_before_percent", "gap_after_percent", "f1_hz"]
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(batch)
+    app.command(hidden=True)(part)
+
+
+def batch(
+    folder: Annotated[Path, typer.Argument(help="folder of studies; those in folders of it too")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="table to write: .parquet or .csv")],
+    workers: Annotated[int, typer.Option(help="studies in flight at a time")] = 2,
+    scheduler: Annotated[
+        str | None, typer.Option(help="address of a Dask scheduler whose workers run the studies")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="run only studies that are new, have changed, or failed")
+    ] = False,
+    json_dir: Annotated[
+        Path | None, typer.Option(help="folder for the results of each study as JSON")
+    ] = None,
+) -> None:
+    """Identify, update and diagnose a folder of studies, and write modes, factors and causes as tables."""
+    check_table_place(output)
+    if json_dir is not None and json_dir.exists() and not json_dir.is_dir():
+        raise InputError(f"{json_dir}: is a file; name a folder")
+    with progress.status("looking for studies"):
+        studies = find_studies(folder)
+    columns = (TextColumn("studies"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=progress, disable=not progress.is_terminal) as bar:
+        task = bar.add_task("studies", total=len(studies))
+        result = run_batch(
+            studies,
+            workers=workers,
+            scheduler=scheduler,
+            store=output.with_name(f"{output.name}.jsonl"),
+            resume=resume,
+            progress=lambda _: bar.advance(task),
+        )
+    _show(result)
+    if not result.worked:
+        raise EstimationError(f"{folder}: none of {several(len(studies), 'study file')} worked")
+    for path in write_tables(output, tables(result)):
+        out.print(f"written: {path}", markup=False)
+    if json_dir is not None:
+        _write_parts(json_dir, result)
+        out.print(f"written: {json_dir}", markup=False)
+
+
+def part(
+    study: Annotated[Path, typer.Argument(help="study file")],
+    json: Annotated[Path, typer.Option("--json", help="file for the record")],
+) -> None:
+    """Work out one study of a batch."""
+    write_json(json, part_record(study))
+
+
+def _write_parts(folder: Path, result: BatchResult) -> None:
+    for one in result.worked:
+        path = folder / f"{one.name.removesuffix('.toml')}.json"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_json(path, one.record)
+
+
+def _show(result: BatchResult) -> None:
+    """Print one row per study, and what was skipped, with its message."""
+    frame = tables(result)[""]
+    shown = pd.DataFrame({name: frame[name] for name in _SHOWN})
+    text = ["verdict", "effects"]
+    shown[text] = shown[text].astype("object").where(shown[text].notna(), "-")
+    if len(shown):
+        show_table(shown, f"{len(shown)} of {several(len(result.parts), 'study file')}")
+    for one in result.skipped:
+        out.print(f"skipped: {one.name}: {one.failure}", style="yellow", markup=False)

@@ -1,0 +1,236 @@
+"""The command that plans a test of the user's own rig: what it tells apart, from when on, and what to change."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from modalkit.blind.planning import Advice, Forecast, Outlook, Told, forecast
+from modalkit.blind.planning.apart import CLASS, NONE, SEEN, SURE
+from modalkit.blind.planning.document import said, to_json
+from modalkit.blind.planning.effects import NOT_FORECAST
+from modalkit.blind.planning.trials import Check, check, noise_for, write_case
+from modalkit.cli.common import out, progress, show_figures, show_table, working
+from modalkit.planned import told_by
+from modalkit.study import read_study
+from modalkit.write import write_json
+
+_LINES = 4
+
+
+def plan_study(
+    study: Path,
+    *,
+    trials: int | None = None,
+    seed: int | None = None,
+    workers: int = 1,
+    json: Path | None = None,
+    figures: Path | None = None,
+) -> None:
+    """Forecast what the test of a study tells apart, and check it by blind trials on that very rig.
+
+    Parameters
+    ----------
+    study : Path
+        The study file, with data or without.
+    trials : int
+        Blind trials before and as many after the first advice is followed; 0 for the forecast alone [-].
+    seed, workers : int
+        Of the trials [-].
+    json, figures : Path, optional
+        Where to write.
+    """
+    own = read_study(study)
+    with working("reading the test"):
+        told = told_by(own)
+    with working("solving the rig's own body"):
+        found = forecast(told)
+    show_note(own.name, found)
+    show_tables(found)
+    document = to_json(found)
+    if trials:
+        checked = _checked(found, trials, 1 if seed is None else seed, workers)
+        show_check(checked)
+        document["trials"] = checked.to_json()
+    if json is not None:
+        write_json(json, document)
+        out.print(f"written: {json}", markup=False)
+    show_figures(figures, lambda: _figures(found))
+
+
+def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:
+    """Run trials whose channels are as noisy as makes the constants as uncertain as told."""
+    with working("matching the noise"):
+        noise = _noise(found.told) if found.told.shapes else None
+    columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=progress) as bar:
+        task = bar.add_task("trials", total=(2 if _followed(found) else 1) * trials)
+        return check(found, trials, seed, noise=noise, workers=workers, progress=lambda: bar.advance(task))
+
+
+def _noise(told: Told) -> float:
+    with tempfile.TemporaryDirectory(prefix="test-") as folder:
+        trial = told_by(read_study(write_case(None, told, Path(folder), seed=[0])))
+    return noise_for(float(np.median(told.shape)), float(np.median(trial.shape)), told.setup)
+
+
+def _figures(found: Forecast) -> dict[str, Any]:
+    from modalkit.figures.planning import planning_figure
+
+    return {"planning": planning_figure(found)}
+
+
+def show_note(name: str, found: Forecast) -> None:
+    """Print what a colleague would say in ten lines."""
+    told = found.told
+    out.print(name, style="bold", markup=False)
+    for line in note(found):
+        out.print(line, markup=False)
+    out.print(f"Taken:   {'; '.join(told.said)}", markup=False)
+    left = [*told.left_out, *[f"{key} ({why})" for key, why in NOT_FORECAST.items()]]
+    out.print(f"Not in:  {'; '.join(left)}; pairs of effects", markup=False)
+    out.print()
+
+
+def _followed(found: Forecast) -> bool:
+    return bool(found.advice) and found.advice[0].worth > 0
+
+
+def note(found: Forecast) -> list[str]:
+    """Return the forecast in a few sentences."""
+    now = found.now
+    lines = [_tells(now), *_cannot(now), _from_when(now)]
+    if _followed(found):
+        lines.append(_best(found.advice[0]))
+    else:
+        lines.append("Advice:  no single change that was tried buys anything worth the trouble.")
+    return lines
+
+
+def _tells(now: Outlook) -> str:
+    pairs = list(now.pairs.values())
+    apart = sum(value >= SEEN for value in pairs)
+    return f"Tells:   {apart} of {len(pairs)} pairs of effects apart, each effect as strong as asked about below."
+
+
+def _cannot(now: Outlook) -> list[str]:
+    lines, groups = [], [" = ".join(group) for group in now.classes]
+    if groups:
+        lines.append(
+            f"Cannot:  tell apart (under {CLASS:g} sigma, all doubts counted in) {'; '.join(groups)}."
+        )
+    near = [
+        f"{a} from {b} ({value:.1f} sigma)"
+        for (a, b), value in sorted(now.pairs.items(), key=lambda item: item[1])
+        if value < SEEN and not any(a in group and b in group for group in now.classes)
+    ]
+    if near:
+        lines.append(f"Hardly:  {_some(near)}.")
+    if now.unseen:
+        lines.append(f"Blind:   {', '.join(now.unseen)} would be taken for no effect at all.")
+    return lines
+
+
+def _some(words: list[str]) -> str:
+    """Return the first of a list, and how many more there are."""
+    rest = len(words) - _LINES
+    return ", ".join(words) if rest < 2 else f"{', '.join(words[:_LINES])} and {rest} pairs more"
+
+
+def _separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
+    return [f"shows {a}" if b == NONE else f"{a} from {b}" for a, b in pairs]
+
+
+def _from_when(now: Outlook) -> str:
+    """Return the effects that need to be largest, against what is asked about, to be told."""
+    hard = sorted(now.limits, key=lambda name: -now.limits[name].told / now.limits[name].clear)[:_LINES]
+    words = []
+    for name in hard:
+        limit = now.limits[name]
+        never = f"{name} at no severity ({limit.nearest} does the same)"
+        words.append(said(now, name, limit.told) or never)
+    return f"Late:    told from all others only from here on: {'; '.join(words)}."
+
+
+def _best(best: Advice) -> str:
+    newly = _some(_separated(best.separates))
+    first = f"separates {newly}" if newly else "separates no further pair"
+    return f"Advice:  {best.change.measure}: {first}; severities told become {best.factor:.1f} times smaller."
+
+
+def show_tables(found: Forecast) -> None:
+    """Print thresholds, separations and changes."""
+    show_table(
+        _thresholds(found.now),
+        f"From what severity on: {SEEN:g} sigma beyond what tolerances explain, surely {SURE:g}",
+    )
+    show_table(
+        _separations(found.now), "Sigma between each effect, clear, and the nearest that another can do"
+    )
+    show_table(_changes(found), "What a change buys", digits={"times smaller": 2, "share told": 3})
+
+
+def _thresholds(now: Outlook) -> pd.DataFrame:
+    """Return the limits in words, those after the first without what they begin alike with."""
+    rows = []
+    for name, limit in now.limits.items():
+        sizes = (limit.seen, limit.told, limit.sure, limit.clear)
+        words = [said(now, name, q) or "never" for q in sizes]
+        alike = _alike([w.split() for w in words if w != "never"])
+        rest = [w if w == "never" else " ".join(w.split()[alike:]) for w in words[1:]]
+        keys = ("seen from", "told from", "surely from", "asked about")
+        told = dict(zip(keys, (words[0], *rest), strict=True))
+        rows.append({"effect": name, **told, "nearest": f"{limit.nearest} ({limit.sigma:.1f})"})
+    return pd.DataFrame(rows)
+
+
+def _alike(words: list[list[str]]) -> int:
+    """Return how many words some texts have in common at their beginning."""
+    same = [len(set(each)) == 1 for each in zip(*words, strict=False)]
+    return same.index(False) if False in same else 0
+
+
+def _separations(now: Outlook) -> pd.DataFrame:
+    """Return the matrix with short names as columns, in whole sigma above ten."""
+
+    def cell(value: float) -> str:
+        return (
+            ""
+            if pd.isna(value)
+            else f"{value:.1f}"
+            if value < 10
+            else f"{value:.0f}"
+            if value < 1000
+            else ">999"
+        )
+
+    table = now.matrix.map(cell)
+    table.columns = [NONE, *[str(i + 1) for i in range(len(now.names))]]
+    table.insert(0, "effect", [f"{i + 1} {name}" for i, name in enumerate(now.names)])
+    return table.reset_index(drop=True)
+
+
+def _changes(found: Forecast) -> pd.DataFrame:
+    return pd.DataFrame(
+        [
+            {
+                "change": one.change.measure,
+                "newly separates": _some(_separated(one.separates)) or "-",
+                "times smaller": one.factor,
+                "share told": one.after.told_share,
+            }
+            for one in found.advice
+        ]
+    )
+
+
+def show_check(checked: Check) -> None:
+    """Print what blind trials of the rig answered beside what was forecast."""
+    show_table(checked.table, "Blind trials on this rig: forecast and answer", digits={"sigma": 1})
+    for line in checked.summary:
+        out.print(line, markup=False)

@@ -1,0 +1,71 @@
+"""Real structures with their cause withheld: what is truly known beside what is said."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from acquisition.errors import InputError
+from modalkit.blind.real import CASES, RULES, RealOutcome, counts, real_record, real_table, run_real
+from modalkit.cli.common import out, progress, show_table
+from modalkit.tables.chain import sample_folder
+from modalkit.write import check_json_place, write_json
+
+_GAP = """\
+Gap: r.m.s. error of the frequencies where nothing else is said, before and after, the latter on modes held out; beside
+it the runner-up and the tolerances alone on the same modes, and the floor set by noise. "synthetic" files are no real
+data: they were made from the numbers of the papers (sample_data/README.md).
+"""
+
+
+def show_real(data: Path | None, json: Path | None, workers: int) -> None:
+    """Diagnose real structures whose cause is withheld, and print what is known beside what is said.
+
+    Parameters
+    ----------
+    data : Path or None
+        Folder of measured data; without it the cases that need it are skipped, with the reason.
+    json : Path or None
+        File for the record.
+    workers : int
+        Diagnoses at a time [-].
+
+    Raises
+    ------
+    InputError
+        If the folder of data does not exist, or the record cannot be written.
+    """
+    check_json_place(json)
+    if data is not None and not data.is_dir():
+        raise InputError(f"{data}: no such folder; name the one of the measured data")
+    columns = (TextColumn("real structures"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=progress, transient=True, disable=not progress.is_terminal) as bar:
+        task = bar.add_task("cases", total=len(CASES))
+        outcomes = run_real(
+            CASES, sample_folder(), data, workers=workers, progress=lambda _: bar.advance(task)
+        )
+    print_real(outcomes)
+    if json is not None:
+        write_json(json, real_record(outcomes))
+        out.print(f"written: {json}", markup=False)
+
+
+def print_real(outcomes: Sequence[RealOutcome]) -> None:
+    """Print the outcomes: the library whole, then with the true effects taken out, then the rules."""
+    whole = [o for o in outcomes if not o.case.removed]
+    left_out = [o for o in outcomes if o.case.removed]
+    if whole:
+        show_table(real_table(whole), "Real structures, their cause withheld")
+    if left_out:
+        show_table(real_table(left_out), "The same, the true effects taken out of the library")
+    out.print("How it is judged:", style="bold")
+    out.print(RULES, markup=False)
+    out.print(_GAP, markup=False)
+    missing = sum(o.missing is not None for o in outcomes)
+    line = ", ".join(f"{n} {grade}" for grade, n in counts(outcomes).items())
+    out.print(f"{len(outcomes)} cases: {line}, {missing} skipped or failed", markup=False)
+    for outcome in outcomes:
+        if outcome.missing is not None:
+            out.print(f"skipped: {outcome.case.name}: {outcome.missing}", markup=False)

@@ -1,0 +1,89 @@
+"""Whether the score finds honest probabilities honest, and others not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from blind_outcomes import diagnosis, honest_run, run_of, truth
+from hypothesis import given
+from hypothesis import strategies as st
+
+from modalkit.blind import score
+from modalkit.blind.answer import read_answer
+from modalkit.blind.scoring.calibration import EDGES, bins, calibration_error, reliability_table
+from modalkit.blind.scoring.posterior import posterior
+
+
+def test_brier_and_log_score_by_hand() -> None:
+    said = diagnosis("class", ("E",), ("density",), others=[("length",)], shares=[0.6, 0.3, 0.05])
+    stated = posterior(read_answer(said), truth("density"))
+    assert stated.brier == pytest.approx(0.6**2 + 0.7**2 + 0.05**2 + 0.05**2)
+    assert stated.truth == pytest.approx(0.3)
+    forecasts = score(run_of((truth("density"), said))).forecasts
+    assert forecasts["log"].tolist() == pytest.approx([-np.log(0.3)])
+
+
+def test_smallest_set_that_holds_95_percent() -> None:
+    shares = [0.6, 0.3, 0.06, 0.04]
+    rows = [("E",), ("density",), ("length",), ("shear",)]
+    said = read_answer(diagnosis("class", *rows[:3], others=rows[3:], shares=shares))
+    assert posterior(said, truth("length")).credible() == (3, True)
+    assert posterior(said, truth("shear")).credible() == (3, False)
+    assert posterior(said, truth("shear")).credible(0.99) == (4, True)
+    assert posterior(said, truth("E")).credible(0.5) == (1, True)
+
+
+def test_a_truth_that_was_not_compared_has_no_probability() -> None:
+    result = score(run_of((truth("E"), diagnosis("named", ("density",), shares=[1.0]))))
+    assert result.forecasts["brier"].tolist() == pytest.approx([2.0])
+    assert result.forecasts["log"].tolist() == pytest.approx([-np.log(1e-6)])
+    assert not result.forecasts["covers"].any()
+
+
+@given(st.lists(st.floats(0, 1), min_size=1, max_size=50))
+def test_every_probability_has_one_bin(stated: list[float]) -> None:
+    place = bins(np.array(stated))
+    for value, i in zip(stated, place, strict=True):
+        assert EDGES[i] <= value <= EDGES[i + 1]
+    table = reliability_table(np.array(stated), np.ones(len(stated)))
+    assert table["total"].sum() == len(stated)
+    assert ((table["stated"] >= table["low"] - 1e-12) & (table["stated"] <= table["high"] + 1e-12)).all()
+
+
+def test_expected_calibration_error_by_hand() -> None:
+    points = np.array([[0.85, 1.0], [0.85, 0.0], [0.3, 0.0], [0.3, 0.0]])
+    assert calibration_error(points[None])[0] == pytest.approx(0.5 * 0.35 + 0.5 * 0.3)
+    assert calibration_error(points[None, [0, 0, 0, 0]])[0] == pytest.approx(0.15)
+
+
+def test_honest_probabilities_pass_and_cover() -> None:
+    result = score(honest_run(2000, 21))
+    table = result.calibration.set_index(["trials", "measure"])
+    bias = table.loc[("effects and none, faint ones too", "stated minus right")]
+    visible = table.loc[("visible effects", "stated minus right")]
+    assert visible["low95"] < 0.02 and visible["high95"] > -0.02
+    assert table.loc[("visible effects", "expected calibration error"), "value"] < 0.05
+    cover = result.cover.iloc[0]
+    assert cover["low95"] < 0.985 and cover["rate"] > 0.94
+    assert cover["total"] == sum(cover[name] for name in result.cover.columns if name.startswith("size "))
+    assert bias["total"] > visible["total"]
+
+
+def test_overconfident_probabilities_are_found_out() -> None:
+    wrong = [(truth("E"), diagnosis("named", ("density",), others=[("E",)], shares=[0.98, 0.02]))] * 6
+    right = [(truth("E"), diagnosis("named", ("E",), others=[("density",)], shares=[0.98, 0.02]))] * 6
+    table = score(run_of(*wrong, *right)).calibration.set_index(["trials", "measure"])
+    found = table.loc[("visible effects", "expected calibration error")]
+    assert found["value"] == pytest.approx(0.48)
+    assert found["low95"] > 0.1
+
+
+def test_p_value_where_nothing_is_hidden() -> None:
+    values = (np.arange(40) + 0.5) / 40
+    even = score(run_of(*((truth(), diagnosis("none", p_value=p)) for p in values))).uniformity
+    assert even.set_index("level")["rate"].to_dict() == pytest.approx(
+        {0.005: 0.0, 0.05: 0.05, 0.25: 0.25, 0.5: 0.5, 0.75: 0.75, 0.95: 0.95}
+    )
+    assert even["ks_p"].iloc[0] > 0.99
+    small = score(run_of(*((truth(), diagnosis("none", p_value=p**4)) for p in values))).uniformity
+    assert small["ks_p"].iloc[0] < 1e-3
