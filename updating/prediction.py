@@ -18,7 +18,7 @@ from updating.environment import Environment
 from updating.measured import Measured
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
-from updating.models.damping import Matrices, damping_matrices, modal_losses
+from updating.models.damping import Matrices, damping_matrices, layer_slowing, modal_losses
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.spec import Damping, Spec, Theory
@@ -194,7 +194,10 @@ class Predictor:
         shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
         by = self._by_factors(total, values, vectors, chosen, factors, rows, read.points) if factors else []
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
-        frequency = shift * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
+        slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
+        frequency = (
+            shift * slowing * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
+        )
         level = read.gain[:, None]
         return Prediction(
             frequency,
@@ -342,6 +345,9 @@ class Predictor:
             rates[first:] = 2 * self._ratios(total, len(values) - first) * omega
             rates[first:] += modal_losses(total, values[first:], vectors[:, first:])
             momenta = mass @ vectors
+            slowing = np.ones(len(values))
+            slowing[first:] = layer_slowing(total, values[first:], vectors[:, first:])
+            stiffness = stiffness + (momenta * (values * (slowing**2 - 1))) @ momenta.T
             viscous = viscous + (momenta * rates) @ momenta.T
         return Matrices(stiffness, mass, viscous, structural, self.reduced.structure.rigid_modes)
 

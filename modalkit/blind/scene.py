@@ -139,8 +139,8 @@ class Scene:
 
 
 def sensor_place(setup: Setup, marks: FloatArray) -> FloatArray:
-    """Return where the sensor really sits, shape (dim,) [m]."""
-    place: FloatArray = setup.places[setup.sensor] + marks[-1]
+    """Return where the sensor really sits, on the body as drawn, shape (dim,) [m]."""
+    place: FloatArray = np.clip(setup.places[setup.sensor] + marks[-1], 0.0, np.array(setup.size))
     return place
 
 
@@ -238,7 +238,7 @@ def attachments(setup: Setup, place: FloatArray) -> tuple[Attached | PlateAttach
     places, softness = _SUSPENSION[setup.kind]
     omega = 2 * np.pi * setup.nominal_hz[0] / softness
     stiffness = setup.mass * omega**2 / len(places)
-    damping = 0.2 * setup.mass * omega / len(places)
+    damping = 0.03 * setup.mass * omega / len(places)
     ropes = (
         part(
             *(s * size for s, size in zip(shares, setup.size, strict=True)),

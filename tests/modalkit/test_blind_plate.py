@@ -242,3 +242,11 @@ def test_lines_are_ordered_and_keep_ends_and_windows(centre: float, extent: floa
 def test_lines_of_a_plate_thicker_than_its_layers_allow() -> None:
     lines = plate_lines(0.0, 0.02, elements=2, layer=0.012)
     assert np.diff(lines).min() > 0
+
+
+def test_a_body_hung_beside_the_plate_hangs_on_its_edge() -> None:
+    """Test points keep their places when a specimen comes out smaller than drawn."""
+    plate = Plate(0.0, 0.3, 0.2, 0.002, 210e9, 7850.0)
+    at, off = (PlateAttached(0.3 + d, 0.2 + d, mass=0.02, inertia=2e-7) for d in (0.0, 3e-3))
+    edge, beyond = (replace(plate, attached=(part,)).real_modes(4)[0] for part in (at, off))
+    assert beyond == pytest.approx(edge, rel=1e-9)

@@ -66,7 +66,7 @@ def candidate(*names: str) -> Candidate:
         ("E", {"E": 0.95 * MODULUS.low}),  # beyond the edge
         ("E", {"E": 1.05 * MODULUS.high}),
         ("exponential_window", {"E": 1.0}),  # nearly invisible
-        ("sensor_mass", {"E": 0.97}),
+        ("length", {"E": 0.97}),
         ("calibration_gain", {"gain": 1.6}),
     ],
 )
@@ -82,7 +82,8 @@ def test_evidence_of_one_parameter(names: str, truth: dict[str, float]) -> None:
     ("names", "truth"),
     [
         (("E", "calibration_gain"), {"E": 0.8, "gain": 1.3}),
-        (("E", "sensor_mass"), {"E": 0.75}),
+        (("sensor_mass",), {"E": 0.97}),
+        (("E", "clamp_rotation"), {"E": 0.75}),
         (("E", "density"), {"E": 0.9}),  # a ridge: only the level tells them apart
         (("clamp_rotation", "calibration_gain"), {"gain": 1.04 * GAIN.high}),  # both at an edge
     ],
@@ -211,11 +212,11 @@ def test_a_pair_has_the_parameters_of_both() -> None:
     problem = posed(trial())
     both = candidate("E", "sensor_mass")
     prior = LIBRARY["E"].parameters(problem.predictor)[0]
-    values = both.values(problem.predictor, [0.25, 0.75])
-    assert list(values) == ["E.factor", "sensor_mass.mass"]
+    values = both.values(problem.predictor, [0.25, 0.75, 0.2])
+    assert list(values) == ["E.factor", "sensor_mass.mass", "sensor_mass.bulk"]
     assert values["E.factor"] == pytest.approx(prior.low * (prior.high / prior.low) ** 0.25)
-    state = both.state(problem.predictor, [0.25, 0.75])
+    state = both.state(problem.predictor, [0.25, 0.75, 0.2])
     assert dict(state.factors) == {"E": values["E.factor"]}
     assert len(state.mass) == 1
-    assert both.locations(problem.predictor, [0.25, 0.75]) == ((0.376, 0.0, 0.0),)
+    assert both.locations(problem.predictor, [0.25, 0.75, 0.2]) == ((0.376, 0.0, 0.0),)
     assert Case("x", COARSE, trial()).accepted == ()

@@ -53,6 +53,12 @@ MOST_TURNED = 30.0
 FOLLOWS = 0.5
 """How much of a change of frequency (1 sigma of its logarithm) damping may follow otherwise than expected [-]."""
 
+STEADY, LEAST_STEADY = 0.1, 3e-5
+"""Drift of frequencies within a test: share of the scatter of re-mounting, and at least this [-]."""
+
+AT_THE_END = 0.01
+"""Points this near to an end, relative to the length, sit at it [-]."""
+
 TURNED = 0.03
 """How far damping that is not proportional, and filters, turn a mode's constants (1 sigma) [rad]."""
 
@@ -377,12 +383,17 @@ class Problem:
         return Block(
             4,
             level * np.where(known, test.slope - whole.slope, 0.0),
-            np.where(known, (level * test.slope_sigma) ** 2 + uneven**2, 1.0),
+            np.where(known, (level * test.slope_sigma) ** 2 + uneven**2 + self._steady**2, 1.0),
             np.zeros((n, len(self.names))),
             np.zeros((n, 0)),
             np.zeros((n, 0)),
             np.arange(n),
         )
+
+    @property
+    def _steady(self) -> float:
+        """Change of frequency over the levels of a test that needs no joint: it is not kept at one temperature [-]."""
+        return max(STEADY * self.measured.repeatability, LEAST_STEADY)
 
     def _shapes(self, now: Prediction, signs: FloatArray, fidelity: float) -> Block:
         test, scale = self.measured, self.scale
@@ -433,35 +444,46 @@ class Problem:
     def _position_columns(self, along: FloatArray) -> FloatArray:
         """Return one column per point hit and direction: the effect of having hit beside it."""
         place = np.where(self.measured.hit < 0, self.measured.seen, self.measured.hit)
-        points = np.unique(place)
         columns = [
-            (self.measured.position_sigma * np.where((place == p)[:, None], slope, 0.0)).ravel()
-            for p in points
-            for slope in along
+            (self._place_sigma(p, axis) * np.where((place == p)[:, None], slope, 0.0)).ravel()
+            for p in np.unique(place)
+            for axis, slope in enumerate(along)
         ]
         return np.stack(columns, axis=1)
 
-    def _registration_column(self, hit: FloatArray, seen: FloatArray) -> FloatArray:
-        """Return a column for where the points as a whole lie along x.
+    @cached_property
+    def _loose_length(self) -> float:
+        """Doubt in where points lie along x, 0 where one end is clamped and they keep their distance from the other.
 
-        Where one end is clamped they keep their distance from the other. Else nobody says from which end they were
-        measured, so that half of the doubt in the length is a doubt in where they lie. A baseline has the same.
+        Else nobody says from which end they were measured: half of the doubt in the length. A baseline has the same.
         """
-        doubt = 0.5 * self.tolerances.factors.get("length", 0.0) * self.predictor.spec.length
         one_end = len({edge for edge in self.predictor.spec.clamped if edge[0] == "x"}) == 1
-        if one_end or not doubt or self.before is not None or self.predictor.spec.kind == "matrices":
+        if one_end or self.before is not None or self.predictor.spec.kind == "matrices":
+            return 0.0
+        return 0.5 * self.tolerances.factors.get("length", 0.0) * self.predictor.spec.length
+
+    def _place_sigma(self, point: int, axis: int) -> float:
+        """Return the doubt in a point's place; one at the end of the model was at the end of the specimen [m]."""
+        sigma, length = self.measured.position_sigma, self.predictor.spec.length
+        x = float(self.measured.points[point, 0])
+        at_end = axis == 0 and min(x, length - x) < AT_THE_END * length
+        return float(np.hypot(sigma, 2 * self._loose_length)) if at_end else sigma
+
+    def _registration_column(self, hit: FloatArray, seen: FloatArray) -> FloatArray:
+        """Return a column for where the points as a whole lie along x."""
+        if not self._loose_length:
             return np.zeros((hit[0].size, 0))
         bare = (self.measured.hit < 0)[:, None]
-        return np.asarray(doubt * (np.where(bare, 0.0, hit[0]) + seen[0])).reshape(-1, 1)
+        return np.asarray(self._loose_length * (np.where(bare, 0.0, hit[0]) + seen[0])).reshape(-1, 1)
 
     def _sensor_columns(self, along: FloatArray) -> FloatArray:
         """Return one column per sensor and direction: the effect of having mounted it beside its point."""
         if (self.measured.hit < 0).all():
             return np.zeros((along[0].size, 0))
         columns = [
-            (self.measured.position_sigma * np.where((self.measured.seen == p)[:, None], slope, 0.0)).ravel()
+            (self._place_sigma(p, axis) * np.where((self.measured.seen == p)[:, None], slope, 0.0)).ravel()
             for p in np.unique(self.measured.seen)
-            for slope in along
+            for axis, slope in enumerate(along)
         ]
         return np.stack(columns, axis=1)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import chi2
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.evidence import Explanation
@@ -24,6 +25,12 @@ FAR_BETTER = 6.0
 RIVAL = 0.02
 """A rival that fits as well as the first is kept from this share of its probability on [-]."""
 
+CHANCE = 1e-3
+"""Chance, over all that was tried, that an effect fits noise that much better, below which there is a gap."""
+
+FORMS = 2
+"""Forms tried for each effect, roughly: what a chance is multiplied by [-]."""
+
 FAINT, HEAVY, FEW = 1e-4, 300, 40
 """Parameters of explanations less probable than this are taken from few of their heaviest samples."""
 
@@ -32,11 +39,26 @@ CLOSE = 4.0
 
 
 def is_significant(found: Search, p_value: float) -> bool:
-    """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better."""
+    """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
+
+    A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it.
+    """
     fitting = [row for row in found.weighed if row.names and not row.rejected]
     gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
     gain -= found.nothing.log_evidence
-    return bool(p_value < SIGNIFICANT or gain > FAR_BETTER)
+    return bool(p_value < SIGNIFICANT or gain > FAR_BETTER or _by_chance(found) < CHANCE)
+
+
+def _by_chance(found: Search) -> float:
+    """Return the chance that noise alone makes one of the single effects that fit so much more likely (Wilks 1938)."""
+    singles = [row for row in found.weighed if len(row.names) == 1 and not row.rejected]
+    least = found.nothing.best.marginal.log_likelihood
+    chances = [
+        chi2.sf(2 * (row.explanation.best.marginal.log_likelihood - least), row.explanation.samples.shape[1])
+        for row in singles
+        if row.explanation.samples.shape[1] and row.explanation.best.possible
+    ]
+    return float(min(1.0, FORMS * len(singles) * min(chances, default=1.0)))
 
 
 def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:

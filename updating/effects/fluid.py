@@ -69,7 +69,10 @@ class FluidDamping(Effect):
     name = "fluid_damping"
     channel = "damping"
     summary = "The surrounding fluid is viscous: its boundary layer takes energy out of every mode."
-    footprint = "Damping ratios rise, with the inverse root of frequency; frequencies hardly change."
+    footprint = (
+        "Damping ratios rise, with the inverse root of frequency; "
+        "each frequency falls by as much as its ratio rises."
+    )
     equivalent_to = ("uniform_damping",)
     separated_by = "the same test dry; or in a fluid of the same density and another viscosity"
 

@@ -166,6 +166,25 @@ def modal_losses(state: State, values: FloatArray, vectors: FloatArray) -> Float
     return total
 
 
+def layer_slowing(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return the factors that viscous boundary layers make on frequencies by the fluid that they carry along.
+
+    The drag of Stokes' layer on a plane that oscillates leads the velocity by 45 degrees (Landau and Lifshitz, Fluid
+    Mechanics, section 24): its inertia lowers each frequency by the damping ratio that it adds.
+
+    Parameters
+    ----------
+    state, values, vectors
+        As of :func:`modal_losses`.
+
+    Returns
+    -------
+    (n_modes,) array [-]
+    """
+    omega = np.sqrt(np.maximum(values, 1e-12))
+    return np.asarray(np.maximum(1.0 - modal_losses(state, values, vectors) / (2 * omega), 0.1))
+
+
 def region_matrices(reduced: Reduced, state: State) -> tuple[FloatArray, FloatArray]:
     """Return stiffness and mass of every region under a state's factors, each (n_regions + 1, r, r) [SI].
 

@@ -136,7 +136,7 @@ class Beam(BeamFields):
         Parameters
         ----------
         places : (n,) or (n, 1) array
-            Positions [m].
+            Positions; what lies off the beam is read at its end [m].
         quantity : {"w", "slope", "theta", "curvature"}
             What to read.
 
@@ -145,7 +145,7 @@ class Beam(BeamFields):
         (n, n_dofs) array
             Rows to multiply with a vector of DOFs.
         """
-        x = np.asarray(places, float).reshape(-1)
+        x = np.clip(np.asarray(places, float).reshape(-1), self.edges[0], self.edges[-1])
         element = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.edges) - 2)
         size = np.diff(self.edges)[element]
         local = readers((x - self.edges[element]) / size, size)[quantity]

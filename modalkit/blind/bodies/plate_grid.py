@@ -117,13 +117,14 @@ class Grid:
         Parameters
         ----------
         grid_x, y : (n,) arrays
-            Positions in the grid [m].
+            Positions in the grid; what lies off it is read at its edge [m].
 
         Returns
         -------
         Reading
             At the n points.
         """
+        grid_x, y = np.clip(grid_x, self.x[0], self.x[-1]), np.clip(y, self.y[0], self.y[-1])
         first_x, along, along_slope = _line(self.x, grid_x)
         first_y, across, across_slope = _line(self.y, y)
         own = np.arange(NODES)
