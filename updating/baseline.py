@@ -8,8 +8,6 @@ is left is a matrix in modal coordinates, and every effect acts on top of both, 
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.optimize import nnls
 
@@ -17,6 +15,7 @@ from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import EstimationError
 from updating.matching import match
 from updating.measured import Measured
+from updating.models.damping import WHOLE
 from updating.models.state import State
 from updating.prediction import Predictor
 
@@ -64,30 +63,30 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     left = (momenta[:, partner] * (wanted - there)) @ momenta[:, partner].T
     stiffness = (_padded(left, size),)
     finite = np.isfinite(baseline.damping)
-    damping: tuple[FloatArray, ...] = ()
-    if finite.any():
-        damping = (_damping(predictor, scaled, momenta[:, partner[finite]], baseline.modes(finite)),)
-    return State(factors=scaled.factors, stiffness=stiffness, damping=damping)
+    if not finite.any():
+        return State(factors=scaled.factors, stiffness=stiffness)
+    dampers, damping = _damping(predictor, scaled, momenta[:, partner[finite]], baseline.modes(finite))
+    return State(factors=scaled.factors, stiffness=stiffness, dampers=dampers, damping=(damping,))
 
 
-def _damping(predictor: Predictor, scaled: State, momenta: FloatArray, baseline: Measured) -> FloatArray:
-    """Return a viscous matrix on the whole basis that gives the measured modes their damping.
+def _damping(
+    predictor: Predictor, scaled: State, momenta: FloatArray, baseline: Measured
+) -> tuple[dict[tuple[int, str], float], FloatArray]:
+    """Return coefficients that come nearest to the measured ratios, and the viscous matrix that they lack of them.
 
-    What was not measured, the motion of a clamp let loose included, is damped in proportion to mass and stiffness, by
-    the coefficients that come nearest to the measured ratios.
+    The coefficients damp what was not measured as well, the motion of a clamp let loose included, and go with mass
+    and stiffness where an effect changes these.
     """
     reduced = predictor.reduced
-    loose = max(reduced.ranks, key=len)
-    stiffness, mass = reduced.matrices(replace(scaled, released=loose))
+    stiffness, mass = reduced.matrices(scaled)
     omega = 2 * np.pi * baseline.frequency
     shares = np.stack([0.5 / omega, 0.5 * omega], axis=1) / baseline.damping[:, None]
     alpha, beta = nnls(shares * [1.0, 1 / omega.max()], np.ones(len(omega)))[0] * [1.0, 1 / omega.max()]
-    viscous = alpha * mass + beta * stiffness
-    held = len(momenta)
-    modes = np.linalg.solve(mass[:held, :held], momenta)
-    now = np.sum(modes * (viscous[:held, :held] @ modes), axis=0)
-    viscous[:held, :held] += (momenta * (2 * baseline.damping * omega - now)) @ momenta.T
-    return _padded(viscous, reduced.basis.shape[1])
+    modes = np.linalg.solve(mass, momenta)
+    now = np.sum(modes * ((alpha * mass + beta * stiffness) @ modes), axis=0)
+    lacking = (momenta * (2 * baseline.damping * omega - now)) @ momenta.T
+    dampers = {(WHOLE, "alpha"): float(alpha), (WHOLE, "beta"): float(beta), (WHOLE, "loss_factor"): 0.0}
+    return dampers, _padded(lacking, reduced.basis.shape[1])
 
 
 def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]:

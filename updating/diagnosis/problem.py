@@ -35,6 +35,10 @@ REPEATED_DAMPING = 0.1
 LEAST_NOISE = 1e-6
 """No frequency is known better than this, relative [-]."""
 
+LATE = 0.01
+"""Error of a modal constant, relative to the mode's r.m.s., per radian by which a delay turns it: no rational function
+is a delay [1/rad]."""
+
 UNKNOWN_LEVEL = 0.2
 """A calibration worse than this is found by least squares before anything is linearised."""
 
@@ -245,7 +249,8 @@ class Problem:
             phases, signs = self._phases(self.predictor.base.plus(whole), prediction)
             blocks.append(phases)
         if self.measured.has_shapes:
-            blocks.append(self._shapes(prediction, signs, doubt.fidelity))
+            late = 2 * np.pi * self.measured.frequency * abs(self.predictor.base.plus(whole).delay)
+            blocks.append(self._shapes(prediction, signs, doubt.fidelity, LATE * np.minimum(late, np.pi)))
         if self.measured.slope is not None:
             blocks.append(self._slopes(self.predictor.base.plus(whole), prediction, doubt.fidelity))
         prior = KNOWN_SCATTER if self.measured.repeated else UNKNOWN_SCATTER
@@ -395,7 +400,7 @@ class Problem:
         """Change of frequency over the levels of a test that needs no joint: it is not kept at one temperature [-]."""
         return max(STEADY * self.measured.repeatability, LEAST_STEADY)
 
-    def _shapes(self, now: Prediction, signs: FloatArray, fidelity: float) -> Block:
+    def _shapes(self, now: Prediction, signs: FloatArray, fidelity: float, late: FloatArray) -> Block:
         test, scale = self.measured, self.scale
         constants, by, doubt = now.constants, now.constants_by, np.zeros_like(now.constants)
         if self.before is not None:
@@ -409,7 +414,7 @@ class Problem:
         elif test.calibration > UNKNOWN_LEVEL:
             level = level * float(_projection(test.constants / scale, constants * level, axis=None))
         predicted, by = constants * level, by * level[:, :, None]
-        variance = (test.constants_sigma / scale) ** 2 + doubt * level**2 + SHAPE_FLOOR**2
+        variance = (test.constants_sigma / scale) ** 2 + doubt * level**2 + SHAPE_FLOOR**2 + late**2
         louder = np.zeros((predicted.size, 0))
         if fidelity:
             # a change of the modes' levels errs as a whole, what is no mere change of level point by point

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from updating.effects.base import Effect, Parameter, Values
+from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.models.state import State
 from updating.prediction import Predictor
+
+RARER = 0.3
+"""How often a section is wrong where a calibration may be as well: the two make one and the same change [-]."""
 
 
 class FactorEffect(Effect):
@@ -85,3 +88,7 @@ class SectionScale(FactorEffect):
     factors = ("section",)
     low, high = 0.4, 2.5
     why = "wrong width or number of layers"
+
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return the one form there is, as likely against a wrong calibration as a caliper errs less often."""
+        return (Variant(weight=RARER),)

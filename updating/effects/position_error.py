@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.obstacles import shape_obstacle
 from updating.effects.points import indices, places, points_of
 from updating.effects.shape_look import PROMISING, look_at
@@ -32,7 +32,8 @@ class PositionError(Effect):
         """Return how far it lies from where it was stated."""
         far = FARTHEST * predictor.spec.length
         why = "from what a tape measure gets wrong to the next point of a coarse grid"
-        return tuple(Parameter(name, "m", -far, far, why) for name in ("dx", "dy")[: predictor.spec.dim])
+        axes = ("dx", "dy")[: predictor.spec.dim]
+        return tuple(Parameter(name, "m", -far, far, why, natural=EDGES) for name in axes)
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start on either side of where it was stated."""

@@ -202,7 +202,7 @@ def build_panel(
 def _check_complete(panel: Panel, predictor: Predictor) -> None:
     """See that every effect with a knob has all its parameters."""
     for name, given in panel.effects([k.start for k in panel.knobs]).items():
-        missing = {p.name for p in LIBRARY[name].parameters(predictor)} - set(given)
+        missing = {p.name for p in LIBRARY[name].parameters(predictor) if p.default is None} - set(given)
         if missing:
             raise StudyError(
                 f"update: {name} also needs {', '.join(sorted(missing))}; update them too or give their values in "
@@ -315,11 +315,14 @@ def _effect(name: str, effect: Effect, tail: str, predictor: Predictor, toleranc
     if obstacle is not None:
         raise StudyError(f"update: {effect.name} cannot be updated: {obstacle}")
     parameters = effect.parameters(predictor)
-    chosen = [p for p in parameters if tail in ("", p.name)]
+    told = [
+        p for p in parameters if p.default is None
+    ]  # what has a default is updated only where it is named
+    chosen = [p for p in parameters if p.name == tail] if tail else told
     if not chosen:
         own = ", ".join(p.name for p in parameters) or "none"
         raise StudyError(f"update: {effect.name} has no parameter {tail!r} (it has: {own})")
-    alone = len(parameters) == 1
+    alone = len(told) == 1 and chosen == told
     knobs = []
     for p in chosen:
         low, high = (p.low, p.high) if effect.channel != "mass" or p.name != "mass" else (0.0, p.high)
