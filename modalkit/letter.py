@@ -80,7 +80,7 @@ def _values(diagnosis: Diagnosis) -> str:
     for name, estimate in row.parameters.items():
         effect, _, parameter = name.partition(".")
         shape = estimate.low95 is None and not isinstance(estimate.value, str | tuple)
-        if parameter in IN_THE_PLACE or (shape and "point" not in parameter):
+        if estimate.aside or parameter in IN_THE_PLACE or (shape and "point" not in parameter):
             continue
         bare = parameter.replace("_", " ")
         whose = f"{effect} " if parameter == "factor" and len(row.effects) > 1 else ""

@@ -36,13 +36,17 @@ class Gap:
 
 @dataclass(frozen=True)
 class ParameterEstimate:
-    """A parameter of an effect with its 95 % interval [unit], or what its form fixes: points, which have none."""
+    """A parameter of an effect with its 95 % interval [unit], or what its form fixes: points, which have none.
+
+    One that is ``aside`` matters little by itself and takes a default elsewhere, as the rotary inertia of a mass.
+    """
 
     value: float | str | tuple[int, ...]
     unit: str
     low95: float | None
     high95: float | None
     at_bound: bool
+    aside: bool = False
 
     def __str__(self) -> str:
         if isinstance(self.value, str):

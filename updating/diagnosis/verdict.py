@@ -136,7 +136,8 @@ def estimates(
     result = {}
     for name, parameter in searched:
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
-        result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme)
+        aside = parameter.default is not None
+        result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
     labels = {f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels}
     for name in labels & drawn[0].keys():
         result[name] = ParameterEstimate(drawn[0][name], "node", None, None, False)
