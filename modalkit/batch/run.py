@@ -181,7 +181,7 @@ def run_part(found: Found, run: RunCommand) -> Part:
     run : callable
         As :func:`modalkit.serving.pool.warm_pool` yields it.
     """
-    with tempfile.TemporaryDirectory(prefix="batch-") as folder:
+    with tempfile.TemporaryDirectory(prefix="batch-", ignore_cleanup_errors=True) as folder:
         out = Path(folder) / _OUT
         try:
             run(found.path.parent, ["part", found.path.name, "--json", str(out)])

@@ -71,7 +71,7 @@ def run_trial(
     if announce is not None:
         announce(index, commitment)
     answer, document, failure, shrinkage = None, None, None, None
-    with tempfile.TemporaryDirectory(prefix="test-") as name:
+    with tempfile.TemporaryDirectory(prefix="test-", ignore_cleanup_errors=True) as name:
         study = write_trial(trial, Path(name))
         begin = time.perf_counter()
         try:

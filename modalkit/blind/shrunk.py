@@ -70,6 +70,8 @@ def true_shrinkage(trial: Trial, answer: Answer) -> Shrinkage | None:
     if added is None:
         return None
     metric = "damping" if all(SECRETS[n].metric == "damping" for n in row.effects) else "frequency"
+    if "shear" not in row.effects:
+        added = _as_modelled(added)
     before, after = _errors(trial, added, metric)
     count = trial.scene.setup.modes
 
@@ -102,7 +104,7 @@ def put_in(scene: Scene, row: Row) -> Scene | None:
         try:
             if not all(np.all(np.isfinite(v)) for v in values.values()):
                 return None
-            scene = secret.act(_with_shear(scene) if name == "shear" else scene, values)
+            scene = secret.act(scene, values)
         except KeyError:
             return None
     return scene
@@ -120,18 +122,13 @@ def _values(name: str, row: Row) -> dict[str, Any]:
     return found
 
 
-def _with_shear(scene: Scene) -> Scene:
-    return scene.with_body(shear=True)
-
-
 def _errors(trial: Trial, added: Scene, metric: str) -> tuple[FloatArray, FloatArray]:
     """Return ln(specimen / model) before and after, measured modes first [-]."""
     setup = trial.scene.setup
     count = setup.modes + _HELD_OUT
     nominal = _as_modelled(nominal_scene(setup))
-    shifted = added if getattr(added.body, "shear", True) else _as_modelled(added)
     model = nominal.elastic().take(slice(0, count))
-    true, plain, moved = (_quantities(s, model, metric) for s in (trial.scene, nominal, shifted))
+    true, plain, moved = (_quantities(s, model, metric) for s in (trial.scene, nominal, added))
     if setup.baseline:
         known = _quantities(trial.before, model, metric)
         if metric == "damping":

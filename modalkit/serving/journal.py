@@ -125,13 +125,18 @@ class Journal:
         Raises
         ------
         InputError
-            If the disk is full, or the journal closed.
+            If the disk is full, or the journal closed; no part of the line is left, for others may come behind it.
         """
         line = json.dumps(document, separators=(",", ":"), allow_nan=False).encode() + b"\n"
         try:
             with self._lock:
-                while line:
-                    line = line[os.write(self._file, line) :]
-                os.fsync(self._file)
+                whole = os.fstat(self._file).st_size
+                try:
+                    while line:
+                        line = line[os.write(self._file, line) :]
+                    os.fsync(self._file)
+                except OSError:
+                    os.ftruncate(self._file, whole)
+                    raise
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written ({error.strerror})") from error

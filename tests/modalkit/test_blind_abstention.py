@@ -82,6 +82,14 @@ def test_names_of_the_same_change_add_their_probabilities() -> None:
     assert result.trials[["commits", "holds", "first"]].all(axis=None)
 
 
+def test_a_false_name_takes_no_part_in_the_merit_of_a_true_one() -> None:
+    both = diagnosis("named", ("exponential_window",), others=[("uniform_damping",)], shares=[0.97, 0.02])
+    result = score(run_of((truth("uniform_damping"), both)))  # damping that a window cannot make
+    assert result.trials["confidence"].tolist() == pytest.approx([0.97])
+    assert result.trials["probability"].tolist() == pytest.approx([0.02])
+    assert not result.trials["first"].any() and not result.abstention.curve["right"].any()
+
+
 def test_waiting_longer_pays_where_probabilities_are_honest() -> None:
     curve = score(honest_run(1200, 11)).abstention.curve
     sure = curve[curve["threshold"] >= 0.95].iloc[-1]

@@ -65,6 +65,14 @@ def test_wrong_cause_closes_less_beyond_the_band() -> None:
     assert right.beyond_after_percent < 0.5 * wrong.beyond_after_percent
 
 
+def test_an_answer_without_shear_gets_none() -> None:
+    trial = hide("shear")  # a slender theory for a stocky beam
+    found = true_shrinkage(trial, said("calibration_gain", calibration_gain__gain=1.1))
+    right = true_shrinkage(trial, truly(trial))
+    assert found is not None and right is not None
+    assert right.beyond_after_percent < 0.1 * found.beyond_after_percent
+
+
 def test_damping_is_measured_as_damping() -> None:
     trial = hide("exponential_window", baseline=1.0)
     found = true_shrinkage(trial, truly(trial))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -48,6 +50,24 @@ def store(three: Path, tmp_path: Path) -> Path:
     copy = tmp_path / "run.jsonl"
     copy.write_bytes(three.read_bytes())
     return copy
+
+
+def test_full_disk_leaves_no_part_of_a_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, write = tmp_path / "run.jsonl", os.write
+
+    def full(file: int, content: bytes) -> int:
+        if len(content) < 20:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(file, content[:20])
+
+    with Journal(path) as journal:
+        journal.append({"trial": 0})
+        monkeypatch.setattr(os, "write", full)
+        with pytest.raises(InputError, match="No space left"):
+            journal.append({"trial": 1, "commitment": 30 * "0"})
+        monkeypatch.undo()
+        journal.append({"trial": 2})  # of another thread, when there is room again
+    assert read_journal(path)[0] == [{"trial": 0}, {"trial": 2}]
 
 
 def test_commitments_stand_before_outcomes_and_the_seed_nowhere(store: Path, monkeypatch: Any) -> None:

@@ -29,7 +29,7 @@ CHANCE = 1e-3
 """Chance, over all that was tried, that an effect fits noise that much better, below which there is a gap."""
 
 FORMS = 2
-"""Forms tried for each effect, roughly: what a chance is multiplied by [-]."""
+"""Places tried for each form of an effect, roughly: what a chance is multiplied by, beside the form's share [-]."""
 
 FAINT, HEAVY, FEW = 1e-4, 300, 40
 """Parameters of explanations less probable than this are taken from few of their heaviest samples."""
@@ -51,12 +51,13 @@ def is_significant(found: Search, p_value: float) -> bool:
 
 def _by_chance(found: Search) -> float:
     """Return the chance that noise alone makes one of the single effects that fit so much more likely (Wilks 1938)."""
-    singles = [row for row in found.weighed if len(row.names) == 1 and not row.rejected]
+    singles = [row.explanation for row in found.weighed if len(row.names) == 1 and not row.rejected]
     least = found.nothing.best.marginal.log_likelihood
     chances = [
-        chi2.sf(2 * (row.explanation.best.marginal.log_likelihood - least), row.explanation.samples.shape[1])
-        for row in singles
-        if row.explanation.samples.shape[1] and row.explanation.best.possible
+        chi2.sf(2 * (one.best.marginal.log_likelihood - least), one.samples.shape[1])
+        * np.exp(-one.candidate.log_weight)
+        for one in singles
+        if one.samples.shape[1] and one.best.possible
     ]
     return float(min(1.0, FORMS * len(singles) * min(chances, default=1.0)))
 

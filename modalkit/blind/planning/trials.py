@@ -211,7 +211,7 @@ def _try(case: Case, followed: bool, told: Told, seed: list[int], diagnose: Diag
     """Draw specimen and test, hide the case, and have it diagnosed; the same draws with and without the advice."""
     setup = told.setup
     right = case.accepted(setup)
-    with tempfile.TemporaryDirectory(prefix="test-") as name:
+    with tempfile.TemporaryDirectory(prefix="test-", ignore_cleanup_errors=True) as name:
         study = write_case(case, told, Path(name), seed=seed)
         try:
             answer = read_answer(diagnose(study, ()))

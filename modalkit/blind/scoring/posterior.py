@@ -1,4 +1,4 @@
-"""The probabilities of an answer, with names of the same change taken together and no effect as a set of its own."""
+"""The probabilities of an answer, names of the same change taken together, and no effect as a set of its own."""
 
 from __future__ import annotations
 
@@ -80,21 +80,20 @@ def posterior(answer: Answer, truth: Truth) -> Posterior:
     Returns
     -------
     Posterior
+        Names that may be the same change stay apart where this truth tells them apart, as a window and damping that
+        rises with frequency: a false one takes no part in the true one's merit.
     """
-    shares: dict[frozenset[str], float] = {}
-    right: dict[frozenset[str], bool] = {}
+    shares: dict[tuple[frozenset[str], bool], float] = {}
     for row in answer.ranking:
-        key = merged(row.effects)
+        key = merged(row.effects), accepted(row.effects, truth)
         shares[key] = shares.get(key, 0.0) + row.probability
-        right[key] = right.get(key, False) or accepted(row.effects, truth)
     total = sum(shares.values())
-    nothing = frozenset[str]()
+    nothing = frozenset[str](), not truth.effects
     shares[nothing] = max(0.0, 1.0 - total) if shares else float(answer.verdict == "none")
-    right[nothing] = not truth.effects
-    keys = sorted(shares, key=lambda key: (-shares[key], sorted(key)))
+    keys = sorted(shares, key=lambda key: (-shares[key], sorted(key[0]), key[1]))
     values = np.array([shares[key] for key in keys])
     return Posterior(
         values / max(values.sum(), 1e-300),
-        np.array([right[key] for key in keys], dtype=bool),
+        np.array([right for _, right in keys], dtype=bool),
         answer.verdict == "unknown",
     )
