@@ -198,7 +198,7 @@ class Predictor:
         frequency = (
             shift * slowing * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         )
-        level = read.gain[:, None]
+        level = read.gain[:, None] * slowing**2  # what a layer carries along is modal mass
         return Prediction(
             frequency,
             self._damping(total, values[chosen], vectors[:, chosen]),
@@ -299,8 +299,10 @@ class Predictor:
         viscous, structural = self._damping_matrices(state)
         c = np.sum(vectors * (viscous @ vectors), axis=0)
         d = np.sum(vectors * (structural @ vectors), axis=0) if structural.any() else np.zeros(len(values))
-        added = modal_losses(state, values, vectors) / (2 * omega) + state.decay / omega
-        return np.asarray(c / (2 * omega) + d / (2 * omega**2) + self._ratios(state, len(values)) + added)
+        slow = layer_slowing(state, values, vectors)
+        rate = c + modal_losses(state, values, vectors)
+        added = d / (2 * omega**2) + self._ratios(state, len(values)) + state.decay / (slow * omega)
+        return np.asarray(slow * rate / (2 * omega) + added)
 
     def expects(self, state: State) -> bool:
         """Whether model, regions or the state say what damping to expect."""
@@ -347,7 +349,7 @@ class Predictor:
             momenta = mass @ vectors
             slowing = np.ones(len(values))
             slowing[first:] = layer_slowing(total, values[first:], vectors[:, first:])
-            stiffness = stiffness + (momenta * (values * (slowing**2 - 1))) @ momenta.T
+            mass = mass + (momenta * (slowing**-2 - 1)) @ momenta.T
             viscous = viscous + (momenta * rates) @ momenta.T
         return Matrices(stiffness, mass, viscous, structural, self.reduced.structure.rigid_modes)
 

@@ -44,6 +44,8 @@ def find_studies(folder: Path) -> tuple[Found, ...]:
     InputError
         If there is no such folder, or no study in it.
     """
+    if folder.is_file():
+        raise InputError(f"{folder}: is a file; name the folder of the studies")
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder; name the one of the studies")
     paths = [p for p in sorted(folder.rglob("*.toml")) if _is_open(p.relative_to(folder)) and _is_study(p)]

@@ -100,6 +100,10 @@ def run_batch(
     """
     if workers < 1:
         raise InputError(f"--workers {workers}: at least 1 is needed")
+    if scheduler is not None:
+        from modalkit.serving.cluster import check_scheduler
+
+        check_scheduler(scheduler)
     parts: dict[str, Part] = {}
     with ExitStack() as stack:
         journal = None if store is None else stack.enter_context(_journal(store, resume))

@@ -139,6 +139,10 @@ def run_blind(
     """
     if trials < 1 or workers < 1:
         raise StudyError(f"{trials} trials with {workers} workers; both must be at least 1")
+    if scheduler is not None:
+        from modalkit.serving.cluster import check_scheduler
+
+        check_scheduler(scheduler)
     plan = plan or Plan()
     outcomes: dict[int, Outcome] = {}
 

@@ -81,8 +81,8 @@ def open_seal(sealed: Seal, commitment: str) -> dict[str, Any]:
         raise InputError(f"the seal's salt has {8 * len(salt)} bits, not {8 * SALT_BYTES}; it was changed")
     if not hmac.compare_digest(sealed.commitment, commitment):
         raise InputError(
-            f"the sealed statement gives {sealed.commitment[:16]}..., the published commitment is "
-            f"{commitment[:16]}...; statement or salt were changed after sealing"
+            f"the sealed statement gives {sealed.commitment}, the published commitment is {commitment}; "
+            "statement, salt or commitment were changed after sealing"
         )
     content: dict[str, Any] = json.loads(sealed.statement)
     return content

@@ -200,20 +200,8 @@ def bare_body(setup: Setup) -> Body:
     setup : Setup
         Dimensions, material, clamps and expected damping.
     """
-    if setup.kind == "plate":
-        return Plate(
-            start=0.0,
-            end=setup.length,
-            width=setup.width,
-            thickness=setup.thickness,
-            clamped=setup.clamped,
-            alpha=setup.alpha,
-            beta=setup.beta,
-            E=setup.E,
-            density=setup.density,
-            poisson=setup.poisson,
-        )
-    return Beam(
+    kind: type[Plate] | type[Beam] = Plate if setup.kind == "plate" else Beam
+    return kind(
         start=0.0,
         end=setup.length,
         width=setup.width,

@@ -23,6 +23,7 @@ _BOUND = 3.0
 _FREQUENCY_SIGMA = 2e-4
 _HELD_OUT = 3
 _LEAST = 1e-3
+_STANDS = 0.02  # of the first nominal frequency; what is slower has buckled
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,8 @@ def true_shrinkage(trial: Trial, answer: Answer) -> Shrinkage | None:
     Returns
     -------
     Shrinkage or None
-        None where the answer names nothing that the rig can do. Tolerances are refitted in their linearisation,
+        None where the answer names nothing that the rig can do, or so much of it that modes are missing, as where a
+        load buckles the nominal body. Tolerances are refitted in their linearisation,
         each within three standard deviations, to the frequencies measured; with a baseline they are known.
         Damping is not refitted: its tolerance is each mode's own and would explain all.
     """
@@ -72,7 +74,10 @@ def true_shrinkage(trial: Trial, answer: Answer) -> Shrinkage | None:
     metric = "damping" if all(SECRETS[n].metric == "damping" for n in row.effects) else "frequency"
     if "shear" not in row.effects:
         added = _as_modelled(added)
-    before, after = _errors(trial, added, metric)
+    errors = _errors(trial, added, metric)
+    if errors is None:
+        return None
+    before, after = errors
     count = trial.scene.setup.modes
 
     def rms(errors: FloatArray) -> float:
@@ -104,7 +109,7 @@ def put_in(scene: Scene, row: Row) -> Scene | None:
         try:
             if not all(np.all(np.isfinite(v)) for v in values.values()):
                 return None
-            scene = secret.act(scene, values)
+            scene = secret.act(scene, _as_box(values) if name == "local_stiffness" else values)
         except KeyError:
             return None
     return scene
@@ -122,15 +127,27 @@ def _values(name: str, row: Row) -> dict[str, Any]:
     return found
 
 
-def _errors(trial: Trial, added: Scene, metric: str) -> tuple[FloatArray, FloatArray]:
-    """Return ln(specimen / model) before and after, measured modes first [-]."""
+def _as_box(values: dict[str, Any]) -> dict[str, Any]:
+    """Return a soft place as the library means it, a box, and with the compliance that is told, which counts."""
+    if "compliance" not in values:
+        return values | {"form": "rectangle"}
+    return values | {
+        "form": "rectangle",
+        "loss": values["compliance"] / (values["compliance"] + values["extent"]),
+    }
+
+
+def _errors(trial: Trial, added: Scene, metric: str) -> tuple[FloatArray, FloatArray] | None:
+    """Return ln(specimen / model) before and after, measured modes first [-]; None where modes are missing."""
     setup = trial.scene.setup
     count = setup.modes + _HELD_OUT
     nominal = _as_modelled(nominal_scene(setup))
     model = nominal.elastic().take(slice(0, count))
-    true, plain, moved = (_quantities(s, model, metric) for s in (trial.scene, nominal, added))
+    found = [_quantities(s, model, metric) for s in (trial.scene, nominal, added, trial.before)]
+    if any(len(one) < count for one in found):
+        return None
+    true, plain, moved, known = found
     if setup.baseline:
-        known = _quantities(trial.before, model, metric)
         if metric == "damping":
             return np.log(true / known), np.log(true / np.maximum(known + moved - plain, _LEAST * known))
         return np.log(true / known), np.log(true / known * plain / moved)
@@ -146,7 +163,11 @@ def _as_modelled(scene: Scene) -> Scene:
 
 
 def _quantities(scene: Scene, like: ComplexModes, metric: str) -> FloatArray:
-    """Return angular frequency or decay of the modes matched to the model's [rad/s], [1/s]."""
+    """Return angular frequency or decay of the modes matched to the model's, none if it buckles [rad/s], [1/s]."""
+    body = scene.at_level(scene.body, scene.setup.peak)
+    lowest = body.real_modes(body.rigid_modes + 1)[0][-1] / (2 * np.pi)
+    if not lowest > _STANDS * like.frequency[0]:
+        return np.zeros(0)
     modes = scene.elastic()
     poles = modes.poles[match(like, modes)]
     return np.abs(poles) if metric == "frequency" else scene.chain.window - poles.real

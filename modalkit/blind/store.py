@@ -193,6 +193,14 @@ def _digest(seed: int, salt: str) -> str:
 def _check_header(path: Path, header: Mapping[str, Any]) -> None:
     if header.get("schema") != SCHEMA or not {"version", "plan", "seed"} <= header.keys():
         raise InputError(f"{path}: no store of a blind run ({SCHEMA}); name another file")
+    seed = header["seed"]
+    try:
+        bytes.fromhex(seed["salt"])
+        bytes.fromhex(seed["pbkdf2_sha256"])
+    except (TypeError, KeyError, ValueError) as error:
+        raise InputError(f"{path}, line 1: the hash of the seed cannot be read; it was changed") from error
+    if not isinstance(header["plan"], dict) or not isinstance(header["version"], str):
+        raise InputError(f"{path}, line 1: plan or version cannot be read; it was changed")
 
 
 def _check_seed(path: Path, header: Mapping[str, Any], seed: int) -> None:

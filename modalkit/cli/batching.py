@@ -9,7 +9,7 @@ import pandas as pd
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from acquisition.errors import EstimationError, InputError
+from acquisition.errors import EstimationError
 from modalkit.batch import (
     BatchResult,
     check_table_place,
@@ -19,7 +19,7 @@ from modalkit.batch import (
     tables,
     write_tables,
 )
-from modalkit.cli.common import out, progress, several, show_table
+from modalkit.cli.common import check_folder, out, progress, several, show_table
 from modalkit.write import write_json
 
 _SHOWN = ["study", "verdict", "effects", "probability", "gap_before_percent", "gap_after_percent", "f1_hz"]
@@ -47,8 +47,7 @@ def batch(
 ) -> None:
     """Identify, update and diagnose a folder of studies, and write modes, factors and causes as tables."""
     check_table_place(output)
-    if json_dir is not None and json_dir.exists() and not json_dir.is_dir():
-        raise InputError(f"{json_dir}: is a file; name a folder")
+    check_folder(json_dir)
     with progress.status("looking for studies"):
         studies = find_studies(folder)
     columns = (TextColumn("studies"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
@@ -92,6 +91,11 @@ def _show(result: BatchResult) -> None:
     frame = tables(result)[""]
     shown = pd.DataFrame({name: frame[name] for name in _SHOWN})
     text = ["verdict", "effects"]
+    others = frame["candidates"].where(frame["verdict"] == "class").fillna(1) - 1
+    shown["effects"] = [
+        f"{name} or {several(int(n), 'other')}" if n > 0 else name
+        for name, n in zip(frame["effects"], others, strict=True)
+    ]
     shown[text] = shown[text].astype("object").where(shown[text].notna(), "-")
     if len(shown):
         show_table(shown, f"{len(shown)} of {several(len(result.parts), 'study file')}")

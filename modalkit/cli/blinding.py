@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -11,12 +12,17 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, Plan, check_store, run_blind, score
-from modalkit.cli.common import out, progress, several, show_figures
+from modalkit.cli.common import check_folder, out, progress, several, show_figures
 from modalkit.cli.options import Figures
 from modalkit.cli.scores import score_figures, show_score, write_markdown
 from modalkit.write import check_json_place, check_place, write_json
 
 _SEED_BITS = 63
+_USED = {
+    "STUDY": ("--trials", "--seed", "--json", "--figures"),
+    "--real": ("--json",),
+    "--check": ("--seed",),
+}
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -28,7 +34,9 @@ def blind(
     study: Annotated[
         Path | None, typer.Argument(help="your own study: what can its test tell apart? (docs/planning.md)")
     ] = None,
-    trials: Annotated[int | None, typer.Option(help="number of trials [default: 60]")] = None,
+    trials: Annotated[
+        int | None, typer.Option(help="number of trials; left out: 60, with a STUDY none")
+    ] = None,
     seed: Annotated[
         int | None, typer.Option(help="seed of the run; left out: drawn, and said at the end")
     ] = None,
@@ -38,8 +46,8 @@ def blind(
     ] = None,
     store: Annotated[Path | None, typer.Option(help="file for commitments and outcomes as they come")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with the store of a run")] = False,
-    kinds: Annotated[str, typer.Option(help="specimens: beam, plate, solid; comma-separated")] = "",
-    effects: Annotated[str, typer.Option(help="what may be hidden, comma-separated [default: all]")] = "",
+    kinds: Annotated[str, typer.Option(help="specimens, of beam and plate; left out: both")] = "",
+    effects: Annotated[str, typer.Option(help="what may be hidden, comma-separated; left out: all")] = "",
     leave_out: Annotated[
         bool, typer.Option("--leave-out", help="take the true effect out of the library in every trial")
     ] = False,
@@ -57,7 +65,19 @@ def blind(
     figures: Figures = None,
 ) -> None:
     """Hide effects in simulated rigs, diagnose them without telling, and score the answers."""
-    _check_together(study=study, real=real, check=check, data=data, store=store, resume=resume)
+    given = {
+        "--trials": trials, "--seed": seed, "--scheduler": scheduler, "--store": store, "--resume": resume,
+        "--kinds": kinds, "--effects": effects, "--leave-out": leave_out, "--json": json, "--markdown": markdown,
+        "--figures": figures,
+    }  # fmt: skip
+    asked = {"STUDY": study is not None, "--real": real or data is not None, "--check": check is not None}
+    _check_together(
+        [what for what, is_asked in asked.items() if is_asked],
+        [name for name, value in given.items() if value is not None and value is not False and value != ""],
+    )
+    _check_numbers(trials, seed, workers, least=1 if study is None else 0)
+    check_json_place(json)
+    check_folder(figures)
     if check is not None:
         return _check(check, seed)
     if real or data is not None:
@@ -71,7 +91,6 @@ def blind(
         return plan_study(
             study, trials=trials or 0, seed=own_seed, workers=workers, json=json, figures=figures
         )
-    check_json_place(json)
     check_place(markdown)
     known = Plan()
     plan = Plan(kinds=_names(kinds) or known.kinds, effects=_names(effects), leave_out=leave_out)
@@ -95,24 +114,27 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
-def _check_together(
-    *,
-    study: Path | None,
-    real: bool,
-    check: Path | None,
-    data: Path | None,
-    store: Path | None,
-    resume: bool,
-) -> None:
+def _check_together(asked: Sequence[str], given: Sequence[str]) -> None:
     """Refuse what does not go together."""
-    asked = {"STUDY": study is not None, "--real": real or data is not None, "--check": check is not None}
-    several_asked = [name for name, given in asked.items() if given]
-    if len(several_asked) > 1:
-        raise InputError(f"{' and '.join(several_asked)}: each is something else to do; give one")
-    if several_asked and (store is not None or resume):
-        raise InputError(f"--store and --resume are of trials; they do not go with {several_asked[0]}")
-    if resume and store is None:
+    if len(asked) > 1:
+        raise InputError(f"{' and '.join(asked)}: each is something else to do; give one")
+    for what in asked:
+        idle = [name for name in given if name not in _USED[what]]
+        if idle:
+            do, them = ("does", "it") if len(idle) == 1 else ("do", "them")
+            raise InputError(f"{', '.join(idle)} {do} not go with {what}; leave {them} out")
+    if "--resume" in given and "--store" not in given:
         raise InputError("--resume: go on with what? give the --store of the run")
+
+
+def _check_numbers(trials: int | None, seed: int | None, workers: int, *, least: int) -> None:
+    """Refuse numbers that no run can have."""
+    if trials is not None and trials < least:
+        raise InputError(f"--trials {trials}: at least {least} is needed")
+    if workers < 1:
+        raise InputError(f"--workers {workers}: at least 1 is needed")
+    if seed is not None and seed < 0:
+        raise InputError(f"--seed {seed}: give 0 or a positive number")
 
 
 def _seed(seed: int | None, store: Path | None, resume: bool) -> int:
@@ -123,7 +145,9 @@ def _seed(seed: int | None, store: Path | None, resume: bool) -> int:
         raise InputError(f"{store}: resumed without its seed; give --seed as the run told it when it began")
     drawn = secrets.randbits(_SEED_BITS)
     if store is not None:
-        progress.print(f"seed: {drawn} (to go on with {store} after an interruption)", markup=False)
+        progress.print(
+            f"seed: {drawn} (to go on with {store} after an interruption)", markup=False, soft_wrap=True
+        )
     return drawn
 
 

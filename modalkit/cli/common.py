@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -106,6 +107,23 @@ def show_warnings(warnings: Sequence[str]) -> None:
     """Print warnings, each on a line of its own."""
     for warning in dict.fromkeys(warnings):
         out.print(f"warning: {warning}", style="yellow", markup=False)
+
+
+def check_folder(path: Path | None) -> None:
+    """See that a folder could be made or written to, before work begins whose result would be lost; None is none.
+
+    Raises
+    ------
+    InputError
+        If a file stands there, or where its folder should be, or it cannot be written to.
+    """
+    if path is None:
+        return
+    there = next(p for p in (path, *path.absolute().parents) if p.exists())
+    if not there.is_dir():
+        raise InputError(f"{path}: {'is a file' if there == path else f'{there} is a file'}; name a folder")
+    if not os.access(there, os.W_OK):
+        raise InputError(f"{path}: cannot be written (read-only); name another folder")
 
 
 def show_figures(folder: Path | None, build: Callable[[], dict[str, Any]]) -> None:

@@ -14,7 +14,8 @@ from modalkit.blind.planning import Advice, Forecast, Outlook, Told, forecast
 from modalkit.blind.planning.apart import CLASS, NONE, SEEN, SURE
 from modalkit.blind.planning.document import said, to_json
 from modalkit.blind.planning.effects import NOT_FORECAST
-from modalkit.blind.planning.trials import Check, check, noise_for, write_case
+from modalkit.blind.planning.trials import Check, check
+from modalkit.blind.planning.writing import noise_for, write_case
 from modalkit.cli.common import out, progress, show_figures, show_table, working
 from modalkit.planned import told_by
 from modalkit.study import read_study

@@ -188,21 +188,34 @@ def _plugin(command: Sequence[str]) -> Any:
 
 
 def _client(scheduler: str) -> Any:
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise InputError(
-            "--scheduler needs Dask; install the extra: pip install 'modalkit-ema[cluster]'"
-        ) from error
-    _check_address(scheduler)
+    check_scheduler(scheduler)
+    from distributed import Client
+
     try:
         return Client(scheduler, timeout=_CONNECT, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         raise InputError(_strange(scheduler)) from error
 
 
-def _check_address(scheduler: str) -> None:
-    """See that somebody listens, before Dask tries for long."""
+def check_scheduler(scheduler: str) -> None:
+    """See that Dask is installed and somebody listens, before it tries for long, or a store is begun.
+
+    Parameters
+    ----------
+    scheduler : str
+        Address, ``tcp://host:8786``.
+
+    Raises
+    ------
+    InputError
+        If it is not, or nobody does.
+    """
+    try:
+        import distributed  # noqa: F401
+    except ImportError as error:
+        raise InputError(
+            "--scheduler needs Dask; install the extra: pip install 'modalkit-ema[cluster]'"
+        ) from error
     found = _ADDRESS.fullmatch(scheduler)
     if found is None:
         raise InputError(f"--scheduler {scheduler!r}: not an address; give it as tcp://host:8786")

@@ -16,6 +16,7 @@ from acquisition.errors import InputError
 from modalkit import cli
 from modalkit.batch import BatchResult, Part, find_studies, part_record, tables, write_tables
 from modalkit.batch import run as batch_run
+from modalkit.batch.find import Found
 from modalkit.batch.run import run_batch
 from modalkit.batch.writing import check_table_place
 
@@ -76,6 +77,16 @@ def test_an_empty_folder_is_an_error(tmp_path: Path) -> None:
         find_studies(tmp_path)
     with pytest.raises(InputError, match="no such folder"):
         find_studies(tmp_path / "missing")
+    (tmp_path / "study.txt").touch()
+    with pytest.raises(InputError, match="is a file; name the folder"):
+        find_studies(tmp_path / "study.txt")
+
+
+def test_a_scheduler_that_does_not_answer_leaves_no_store(tmp_path: Path) -> None:
+    store = tmp_path / "table.csv.jsonl"
+    with pytest.raises(InputError, match="not an address"):
+        run_batch((Found("a", tmp_path / "a.toml", ""),), scheduler="head", store=store)
+    assert not store.exists()
 
 
 def test_a_part_is_what_the_single_commands_say(fleet: Path, tmp_path: Path, monkeypatch: Any) -> None:

@@ -65,6 +65,19 @@ def test_wrong_cause_closes_less_beyond_the_band() -> None:
     assert right.beyond_after_percent < 0.5 * wrong.beyond_after_percent
 
 
+@pytest.mark.parametrize("index", range(5))
+def test_soft_place_counts_by_its_compliance(index: int) -> None:
+    trial = hide("local_stiffness", index)  # a smooth dip, a box or a crack
+    numbers = trial.truth.parameters
+    place = {"x": numbers["local_stiffness.x"], "compliance": numbers["local_stiffness.compliance"]}
+    told = place | {"extent": 0.03 * trial.scene.setup.length, "loss": 0.5}
+    found = true_shrinkage(
+        trial, said("local_stiffness", **{f"local_stiffness__{k}": v for k, v in told.items()})
+    )
+    assert found is not None
+    assert found.after_percent < 0.2 * found.before_percent  # though it is up to three times as long
+
+
 def test_an_answer_without_shear_gets_none() -> None:
     trial = hide("shear")  # a slender theory for a stocky beam
     found = true_shrinkage(trial, said("calibration_gain", calibration_gain__gain=1.1))
@@ -111,10 +124,21 @@ def test_pair_needs_both() -> None:
         said("ground_spring", ground_spring__stiffness=3.0),
         said("lumped_mass", lumped_mass__mass=0.1),
         said("E", E__factor=float("nan")),
+        said("E", E__factor=0.0),
     ],
 )
 def test_what_the_rig_cannot_put_in_has_no_shrinkage(answer: Answer) -> None:
     assert true_shrinkage(hide("E"), answer) is None
+
+
+@pytest.mark.parametrize("force", [-1.5, -1e4])
+def test_a_load_that_buckles_the_body_has_no_shrinkage(force: float) -> None:
+    trial = hide("axial_load")
+    setup = trial.scene.setup
+    ends = 4.0 if len(setup.clamped) == 2 else 0.25
+    buckling = ends * setup.rigidity * (np.pi / setup.length) ** 2
+    assert true_shrinkage(trial, said("axial_load", axial_load__force=force * buckling)) is None
+    assert true_shrinkage(trial, said("axial_load", axial_load__force=-0.5 * buckling)) is not None
 
 
 def test_points_and_labels_are_put_in() -> None:

@@ -164,6 +164,18 @@ def test_what_is_no_store_is_refused(tmp_path: Path, content: str, said: str) ->
         check_store(tmp_path / "no" / "run.jsonl")
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("seed", []), ("seed", {"salt": "00"}), ("seed", {"salt": "zz", "pbkdf2_sha256": "00"}), ("plan", [])],
+)
+def test_a_header_that_was_changed_is_an_error_that_says_so(store: Path, key: str, value: object) -> None:
+    lines, _ = read_journal(store)
+    lines[0][key] = value
+    store.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    with pytest.raises(InputError, match=r"run\.jsonl, line 1: .* it was changed"):
+        check_store(store, seed=SEED)
+
+
 def changed(lines: list[dict[str, Any]], kind: str) -> None:
     """Change what was stored of trial 1."""
     outcome = lines[4]["outcome"]
@@ -285,8 +297,16 @@ def test_a_killed_command_goes_on(tmp_path: Path) -> None:
     [
         (["--resume"], "give the --store"),
         (["study.toml", "--real"], "STUDY and --real"),
-        (["study.toml", "--store", "run.jsonl"], "do not go with STUDY"),
+        (["study.toml", "--store", "run.jsonl"], "--store does not go with STUDY"),
+        (["study.toml", "--kinds", "beam", "--leave-out"], "--kinds, --leave-out do not go with STUDY"),
+        (["--real", "--trials", "3"], "--trials does not go with --real"),
+        (["--check", "run.jsonl", "--json", "out.json"], "--json does not go with --check"),
         (["--store", "run.jsonl", "--resume"], "resumed without its seed"),
+        (["--store", "new.jsonl", "--seed", "-1"], "--seed -1: give 0 or a positive number"),
+        (["study.toml", "--trials", "-1"], "--trials -1: at least 0"),
+        (["study.toml", "--workers", "0"], "--workers 0: at least 1"),
+        (["study.toml", "--json", "no/out.json"], "no/out.json: cannot be written"),
+        (["--figures", "run.jsonl/in"], "run.jsonl is a file; name a folder"),
     ],
 )
 def test_options_that_do_not_go_together_are_refused(
@@ -302,6 +322,7 @@ def test_options_that_do_not_go_together_are_refused(
         cli.main()
     assert ended.value.code == 2
     assert said in capsys.readouterr().err
+    assert not (store.parent / "new.jsonl").exists()
 
 
 def test_a_drawn_seed_is_told_before_the_run_where_it_will_be_needed(

@@ -13,7 +13,8 @@ from modalkit.blind.planning import forecast
 from modalkit.blind.planning.apart import SEEN
 from modalkit.blind.planning.cases import Case, choose
 from modalkit.blind.planning.forecast import Forecast
-from modalkit.blind.planning.trials import Tried, check, noise_for, write_case
+from modalkit.blind.planning.trials import Tried, check
+from modalkit.blind.planning.writing import noise_for, write_case
 from modalkit.planned import told_by
 from modalkit.study import read_study
 

@@ -254,7 +254,7 @@ def test_points_stand_off_the_clamps() -> None:
     [
         ("senser_mass:mass=0.01", "did you mean sensor_mass?"),
         ("warp", "`modalkit effects` lists them"),
-        ("sensor_mass", "it takes mass [kg], found none"),
+        ("sensor_mass", "it takes mass [kg], bulk [-], found none"),
         ("sensor_mass:mass=heavy", "is no PARAM=VALUE"),
         ("sensor_mass:mass=-1", "must be positive"),
         ("shear:factor=2", "it takes no parameters, found factor"),

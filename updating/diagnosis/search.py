@@ -127,16 +127,17 @@ def search(problem: Posed, library: Sequence[Effect]) -> Search:
     twin = _falls_short(problem, effects)
     drafts = _singles(problem, effects, nothing, twin=twin)
     found = _finished(problem, [nothing, *drafts])
-    if not _explained(found):
+    if not _explained(problem, found):
         found = _finished(problem, found + _pairs(problem, found[1:]))
     return Search(nothing, _merged(problem, _weigh(found)), obstacles)
 
 
-def _explained(found: list[Explanation]) -> bool:
-    """Tell whether any of the probable explanations fits beyond doubt."""
+def _explained(problem: Posed, found: list[Explanation]) -> bool:
+    """Tell whether any of the probable explanations fits beyond doubt, and at a plausible size."""
     rows = _weigh(found)
     top = max(row.probability for row in rows)
-    return any(row.p_value >= DOUBTED for row in rows if row.probability > top * np.exp(-PROBABLE))
+    near = [row for row in rows if row.probability > top * np.exp(-PROBABLE)]
+    return any(row.p_value >= DOUBTED and not _extreme(problem, row.explanation) for row in near)
 
 
 def _finished(problem: Posed, found: list[Explanation]) -> list[Explanation]:

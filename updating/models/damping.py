@@ -170,7 +170,8 @@ def layer_slowing(state: State, values: FloatArray, vectors: FloatArray) -> Floa
     """Return the factors that viscous boundary layers make on frequencies by the fluid that they carry along.
 
     The drag of Stokes' layer on a plane that oscillates leads the velocity by 45 degrees (Landau and Lifshitz, Fluid
-    Mechanics, section 24): its inertia lowers each frequency by the damping ratio that it adds.
+    Mechanics, section 24): a mode that it damps at the rate c carries the modal mass c / omega along, so that its own
+    becomes the square of the inverse of this factor.
 
     Parameters
     ----------
@@ -182,7 +183,7 @@ def layer_slowing(state: State, values: FloatArray, vectors: FloatArray) -> Floa
     (n_modes,) array [-]
     """
     omega = np.sqrt(np.maximum(values, 1e-12))
-    return np.asarray(np.maximum(1.0 - modal_losses(state, values, vectors) / (2 * omega), 0.1))
+    return np.asarray(1 / np.sqrt(1.0 + modal_losses(state, values, vectors) / omega))
 
 
 def region_matrices(reduced: Reduced, state: State) -> tuple[FloatArray, FloatArray]:
