@@ -22,8 +22,8 @@ are heavier than its curvature says [-]."""
 CHEAP = 2
 """With so few parameters sensitivities are taken anew after every step."""
 
-LITTLE = 0.02
-"""Share of what is missing to the best found elsewhere below which a gain ends a climb [-]."""
+PATIENCE, LITTLE = 6, 0.002
+"""After so many steps a gain below this share of what is missing to the best found elsewhere ends a climb [-]."""
 
 HOPELESS = 40.0
 """How far below the best found elsewhere a maximum need not be known any better [-]."""
@@ -188,7 +188,7 @@ def climb(
     columns, rise = _slopes(problem, candidate, point, keep)
     normal, load = _curvature(point, columns, keep)
     beside = _finite(rise - load)  # what the noise's own change with the parameters adds to the slope
-    for _ in range(rounds if len(start) else 0):
+    for step_number in range(rounds if len(start) else 0):
         gradient = load + beside
         free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
         if not free.any():
@@ -207,8 +207,8 @@ def climb(
             point, damping = trial, damping / 5
         elif fresh:
             damping *= 10
-        missing = bar - point.marginal.log_likelihood
-        if abs(gain) < max(AT_REST, LITTLE * missing) or damping > 1e6:
+        missing = LITTLE * (bar - point.marginal.log_likelihood) if step_number >= PATIENCE else 0.0
+        if abs(gain) < max(AT_REST, missing) or damping > 1e6:
             break
         if not fresh and (gain <= 0 or len(start) <= CHEAP):
             columns, rise = _slopes(problem, candidate, point, keep)
