@@ -6,7 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from modalkit.cli import app
 from modalkit.process import open_study
 from modalkit.study import read_study
 from updating import Diagnosis, diagnose
@@ -88,3 +90,21 @@ def test_a_level_that_a_larger_section_would_explain_is_no_more_than_that() -> N
     assert gain.low95 < 0.74 < gain.high95
     assert scale.value == pytest.approx(1 / 0.74, rel=0.05)
     assert ("calibration_gain",) in rows["section_scale"].equivalents
+
+
+def test_a_body_between_the_starting_places_of_the_search_is_found(tmp_path: Path) -> None:
+    """Far from the truth the likelihood rises slowly, however much is missing to what another effect has reached."""
+    plan = tmp_path / "plan.toml"
+    plan.write_text(
+        'title = "cantilever"\n[test]\nband = [5.0, 900.0]\n[model]\ntype = "beam"\nlength = 0.45\nwidth = 0.025\n'
+        'thickness = 0.006\nclamped = ["x0"]\n[model.material]\nE = 70e9\ndensity = 2700.0\n'
+    )
+    body = "lumped_mass:mass=0.02,x=0.3,bulk=1"
+    words = ["simulate", str(plan), "--effect", body, "--seed", "3", "-o", str(tmp_path / "t.uff")]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    study = tmp_path / "study.toml"
+    study.write_text(plan.read_text().replace("[test]", '[test]\nfiles = ["t.uff"]'))
+    found = answer(study)
+    assert (found.verdict, found.sets) == ("named", (("lumped_mass",),))
+    assert found.where.location is not None
+    assert found.where.location[0] == pytest.approx(0.3, abs=0.005)
