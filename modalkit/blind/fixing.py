@@ -9,6 +9,7 @@ import numpy as np
 
 from modalkit.blind.bodies.parts import Absorber, Attached, Notch, Stretch
 from modalkit.blind.bodies.plate_parts import Patch, PlateAbsorber, PlateAttached, SoftSpot
+from modalkit.blind.bodies.solid import Cut, Solid
 from modalkit.blind.scene import Scene
 
 
@@ -69,8 +70,12 @@ def softened(scene: Scene, values: Mapping[str, Any]) -> Scene:
     scene : Scene
         The rig.
     values : mapping
-        x, on plates y, extent [m], loss [-], and ``form``: cosine where it is left out.
+        x, on plates y, extent [m], loss [-], and ``form``: cosine where it is left out. A solid gets a slot
+        of the depth that leaves as much of the section's stiffness.
     """
+    if isinstance(scene.body, Solid):
+        depth = scene.body.thickness * (1.0 - (1.0 - values["loss"]) ** (1 / 3))
+        return appended(scene, "cuts", Cut(values["x"], values["extent"], depth))
     smooth = values.get("form", "cosine") == "cosine"
     if "y" in values:
         at, side, loss = (values["x"], values["y"]), values["extent"], values["loss"]

@@ -18,7 +18,8 @@ class Plan:
     Parameters
     ----------
     kinds : tuple of str
-        Kinds of specimen, of ``beam``, ``plate`` and ``solid``; solids need CalculiX.
+        Kinds of specimen, of ``beam``, ``plate`` and ``solid``, a cantilever of bricks that the study models as
+        a beam; solids need CalculiX.
     plates : float
         Share of plates where there are other kinds too; that of solids likewise [-].
     effects : tuple of str

@@ -16,6 +16,7 @@ from modalkit.blind.bodies.complex_modes import ComplexModes, complex_modes
 from modalkit.blind.bodies.parts import Attached
 from modalkit.blind.bodies.plate import Plate
 from modalkit.blind.bodies.plate_parts import PlateAttached
+from modalkit.blind.bodies.solid import Solid
 from modalkit.blind.setup import Setup
 
 EXTRA_MODES = 8
@@ -175,11 +176,13 @@ def draw_scene(setup: Setup, rng: np.random.Generator) -> Scene:
     marks = MARKED * setup.position_sigma * rng.standard_normal((len(setup.points) + 1, len(setup.size)))
     gain = abs(off(setup.calibration)) if setup.calibrated else float(np.exp(0.3 * rng.standard_normal()))
     scatter = np.exp(tol.damping * rng.standard_normal(setup.modes + EXTRA_MODES))
-    return build_scene(setup, factors, gain=gain, scatter=scatter, marks=marks)
+    return build_scene(setup, factors, body=setup.made, gain=gain, scatter=scatter, marks=marks)
 
 
 def nominal_scene(setup: Setup, *, factors: Mapping[str, float] | None = None) -> Scene:
     """Return the rig with the specimen exactly as stated, or with some of its properties scaled.
+
+    It is of the kind that the study models: a solid's is a beam.
 
     Parameters
     ----------
@@ -190,11 +193,17 @@ def nominal_scene(setup: Setup, *, factors: Mapping[str, float] | None = None) -
     """
     marks = np.zeros((len(setup.points) + 1, len(setup.size)))
     scatter = np.ones(setup.modes + EXTRA_MODES)
-    return build_scene(setup, factors or {}, gain=1.0, scatter=scatter, marks=marks)
+    return build_scene(setup, factors or {}, body=setup.nominal, gain=1.0, scatter=scatter, marks=marks)
 
 
 def build_scene(
-    setup: Setup, factors: Mapping[str, float], *, gain: float, scatter: FloatArray, marks: FloatArray
+    setup: Setup,
+    factors: Mapping[str, float],
+    *,
+    body: Body,
+    gain: float,
+    scatter: FloatArray,
+    marks: FloatArray,
 ) -> Scene:
     """Return the rig with a specimen whose properties are some factors times the stated ones.
 
@@ -204,13 +213,15 @@ def build_scene(
         What is stated.
     factors : mapping
         On E, density, thickness, length and width; those left out are 1 [-].
+    body : Body
+        The specimen as stated.
     gain : float
         Level of the FRFs [-].
     scatter, marks : arrays
         As in :class:`Scene`.
     """
     plain = {name: f * getattr(setup, name) for name, f in factors.items() if name != "length"}
-    body = replace(setup.nominal, **plain)  # type: ignore[type-var]
+    body = replace(body, **plain)  # type: ignore[type-var]
     scene = Scene(
         setup,
         lengthened(body, (factors.get("length", 1.0) - 1.0) * setup.length),
@@ -223,7 +234,7 @@ def build_scene(
 
 def lengthened(body: Body, extension: float) -> Body:
     """Return a body longer along x by an extension, which is added at its clamped ends [m]."""
-    assert isinstance(body, (Beam, Plate))
+    assert isinstance(body, (Beam, Plate, Solid))
     ends = [end for end in ("x0", "x1") if end in body.clamped] or ["x0"]
     start, end = (extension * (name in ends) / len(ends) for name in ("x0", "x1"))
     return replace(body, start=body.start - start, end=body.end + end)
@@ -231,7 +242,7 @@ def lengthened(body: Body, extension: float) -> Body:
 
 def attachments(setup: Setup, place: FloatArray) -> tuple[Attached | PlateAttached, ...]:
     """Return what the body always carries: the known sensor, and soft springs under a free one."""
-    part: Any = Attached if setup.kind == "beam" else PlateAttached
+    part: Any = PlateAttached if setup.kind == "plate" else Attached
     sensor = part(*(float(x) for x in place), mass=setup.sensor_mass, inertia=setup.sensor_inertia)
     if setup.clamped:
         return (sensor,)

@@ -11,6 +11,7 @@ from acquisition.arrays import FloatArray
 from modalkit.blind.bodies.beam import Beam
 from modalkit.blind.bodies.body import Body
 from modalkit.blind.bodies.plate import Plate
+from modalkit.blind.bodies.solid import Solid
 
 UNCALIBRATED = 0.3
 """From this uncertainty of the level on, a test has no absolute level [-]."""
@@ -34,8 +35,8 @@ class Setup:
 
     Parameters
     ----------
-    kind : {"beam", "plate"}
-        Of the model.
+    kind : {"beam", "plate", "solid"}
+        Of the specimen; a solid is modelled as a beam, and made of bricks.
     title : str
         Neutral title.
     length, width, thickness : float
@@ -130,7 +131,7 @@ class Setup:
     @property
     def size(self) -> tuple[float, ...]:
         """Extents of the model along its axes [m]."""
-        return (self.length,) if self.kind == "beam" else (self.length, self.width)
+        return (self.length, self.width) if self.kind == "plate" else (self.length,)
 
     @property
     def places(self) -> FloatArray:
@@ -150,18 +151,41 @@ class Setup:
     @property
     def rigidity(self) -> float:
         """Bending stiffness of the whole width as drawn [N m2]."""
-        plane = 1.0 if self.kind == "beam" else 1.0 - self.poisson**2
+        plane = 1.0 - self.poisson**2 if self.kind == "plate" else 1.0
         return self.E * self.width * self.thickness**3 / 12 / plane
 
     @property
     def sensor_inertia(self) -> float:
-        """Rotary inertia of the known sensor about the beam's axis, 4 mm off the surface [kg m2]."""
-        return self.sensor_mass * (0.004 + self.thickness / 2) ** 2
+        """Rotary inertia of the known sensor about the beam's axis [kg m2].
+
+        It sits 4 mm off the surface; on a solid, whose masses are points, on the surface itself.
+        """
+        arm = 0.0 if self.kind == "solid" else 0.004
+        return self.sensor_mass * (arm + self.thickness / 2) ** 2
 
     @property
     def nominal(self) -> Body:
         """The body of the drawing, without its sensor."""
         return bare_body(self)
+
+    @property
+    def made(self) -> Body:
+        """The body made to the drawing, without its sensor: that of the drawing, or one of bricks."""
+        if self.kind != "solid":
+            return self.nominal
+        return Solid(
+            "beam",
+            start=0.0,
+            end=self.length,
+            width=self.width,
+            thickness=self.thickness,
+            clamped=self.clamped,
+            alpha=self.alpha,
+            beta=self.beta,
+            E=self.E,
+            density=self.density,
+            poisson=self.poisson,
+        )
 
     @cached_property
     def nominal_hz(self) -> tuple[float, ...]:
@@ -184,7 +208,7 @@ class Setup:
         Second-order estimate for a beam with wave number k = (modes -+ 1/2) pi / L, and for a plate with that
         of a plane wave at the mode's frequency: k^2 t^2 / 24 times (1 + E / (kappa G)).
         """
-        if self.kind == "beam":
+        if self.kind != "plate":
             wave = (self.modes + (-0.5 if self.clamped == ("x0",) else 0.5)) * np.pi / self.length
         else:
             line = self.density * self.thickness * self.width / self.rigidity

@@ -35,11 +35,11 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
     if setup.baseline:
         tables.append(("[baseline]", test | {"files": [baseline_file]}))
     model = {
-        "type": setup.kind,
+        "type": "plate" if setup.kind == "plate" else "beam",
         "length": setup.length,
         "width": setup.width,
         "thickness": setup.thickness,
-        "elements": setup.elements[0] if setup.kind == "beam" else list(setup.elements),
+        "elements": list(setup.elements) if setup.kind == "plate" else setup.elements[0],
         "clamped": list(setup.clamped),
         "theory": setup.theory,
     }

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
+from modalkit.blind.bodies.solid import Solid
 from modalkit.blind.matching import match
 from modalkit.blind.scene import Scene, nominal_scene
 from modalkit.blind.setup import Setup
@@ -16,7 +17,7 @@ _FREQUENCY_SIGMA = 2e-4
 _SHAPE_SIGMA = 0.02
 _DAMPING_SIGMA = 0.05
 _STEP = 1e-3
-_ELEMENTS: dict[str, Any] = {"beam": 6, "plate": (4, 2)}
+_ELEMENTS: dict[str, Any] = {"beam": 6, "plate": (4, 2), "solid": 6}
 _HARDER = 1.5
 _TOLERANCES = ("E", "density", "thickness", "length", "width")
 
@@ -46,7 +47,8 @@ class _Reading:
 
 def _read(scene: Scene, like: _Reading | None = None, shapes: Scene | None = None) -> _Reading:
     setup = scene.setup
-    scene = scene.with_body(elements=_ELEMENTS[setup.kind])
+    if not isinstance(scene.body, Solid):
+        scene = scene.with_body(elements=_ELEMENTS[setup.kind])
     modes = scene.elastic()
     if shapes is not None:
         nominal = shapes.elastic().take(slice(0, setup.modes))

@@ -46,7 +46,9 @@ def blind(
     ] = None,
     store: Annotated[Path | None, typer.Option(help="file for commitments and outcomes as they come")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with the store of a run")] = False,
-    kinds: Annotated[str, typer.Option(help="specimens, of beam and plate; left out: both")] = "",
+    kinds: Annotated[
+        str, typer.Option(help="specimens, of beam, plate and solid (needs CalculiX); left out: beam,plate")
+    ] = "",
     effects: Annotated[str, typer.Option(help="what may be hidden, comma-separated; left out: all")] = "",
     leave_out: Annotated[
         bool, typer.Option("--leave-out", help="take the true effect out of the library in every trial")

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from acquisition.errors import StudyError
+from modalkit.blind.answer import Answer, Estimate, Row
 from modalkit.blind.bodies import solid_deck
 from modalkit.blind.bodies.beam import Beam
 from modalkit.blind.bodies.complex_modes import complex_modes
@@ -15,6 +18,13 @@ from modalkit.blind.bodies.parts import Attached, Stretch
 from modalkit.blind.bodies.plate import Plate
 from modalkit.blind.bodies.plate_parts import PlateAttached
 from modalkit.blind.bodies.solid import Cut, Solid, available
+from modalkit.blind.draw import draw_setup
+from modalkit.blind.plan import Plan
+from modalkit.blind.scene import nominal_scene
+from modalkit.blind.secrets import SECRETS
+from modalkit.blind.shrunk import true_shrinkage
+from modalkit.blind.trial import draw_trial, gap_percent, write_trial
+from modalkit.study import read_study
 
 needs_ccx = pytest.mark.skipif(not available(), reason="no ccx: apt-get install calculix-ccx")
 
@@ -97,6 +107,96 @@ def test_solid_plate_is_the_thick_plate() -> None:
     size = np.abs(theirs.residues).max()
     assert np.abs(np.abs(ours.residues) - np.abs(theirs.residues)).max() < 0.02 * size
     assert ours.slopes.shape == theirs.slopes.shape
+
+
+SOLIDS = Plan(kinds=("solid",))
+
+
+@needs_ccx
+@pytest.mark.parametrize("name", ["none", *(n for n, secret in SECRETS.items() if secret.solid)])
+def test_trial_hides_an_effect_in_bricks(name: str) -> None:
+    trial = draw_trial(7, 0, plan=replace(SOLIDS, effects=(name,), strong=0.0, mild=0.0))
+    truth, body = trial.truth, trial.scene.body
+    assert isinstance(body, Solid) and isinstance(trial.before.body, Solid)
+    assert truth.kind == "solid" and truth.size == (trial.scene.setup.length,)
+    assert truth.effects == (() if name == "none" else (name,))
+    assert truth.visibility == 0.0 if name == "none" else truth.visibility > 1.0
+    assert all(0 <= x <= truth.size[0] for (x,) in truth.places)
+
+
+@needs_ccx
+def test_trials_of_all_sorts_are_drawn() -> None:
+    trials = [
+        draw_trial(3, index, plan=replace(SOLIDS, none=0.3, pairs=0.3, outside=0.2)) for index in range(12)
+    ]
+    assert {len(trial.truth.effects) for trial in trials} == {0, 1, 2}
+    assert not all(trial.truth.in_library for trial in trials)
+    assert all(SECRETS[name].solid for trial in trials for name in trial.truth.effects)
+
+
+@needs_ccx
+def test_others_do_not_fit() -> None:
+    setup = draw_setup(np.random.default_rng(1), plan=SOLIDS)
+    unfit = [name for name, secret in SECRETS.items() if not secret.fits(setup)]
+    assert {"axial_load", "fluid_added_mass", "clamp_rotation", "damping_patch", "shear"} <= set(unfit)
+
+
+@needs_ccx
+def test_nominal_model_is_a_beam_that_clamps_less() -> None:
+    """A solid clamp also keeps the section from narrowing; that is all the gap of bricks made to the drawing."""
+    setup = draw_setup(np.random.default_rng(5), plan=SOLIDS)
+    nominal = nominal_scene(setup)
+    assert isinstance(nominal.body, Beam)
+    made = replace(nominal, body=replace(setup.made, attached=nominal.body.attached))  # type: ignore[type-var]
+    ratio = made.elastic().frequency[: setup.modes] / nominal.elastic().frequency[: setup.modes]
+    assert np.all((ratio > 1.0) & (ratio < 1.01))
+    assert gap_percent(made) == pytest.approx(100 * np.sqrt(np.mean((1 / ratio - 1) ** 2)), rel=1e-6)
+
+
+@needs_ccx
+def test_study_of_a_solid_is_a_beams(tmp_path: Path) -> None:
+    trial = draw_trial(2, 1, plan=replace(SOLIDS, effects=("local_stiffness",)))
+    text = write_trial(trial, tmp_path).read_text()
+    study = read_study(tmp_path / "study.toml")
+    assert study is not None
+    assert 'type = "beam"' in text and 'theory = "timoshenko"' in text and 'clamped = ["x0"]' in text
+    assert "solid" not in text
+
+
+@needs_ccx
+def test_right_answer_closes_the_gap() -> None:
+    trial = draw_trial(7, 0, plan=replace(SOLIDS, effects=("E",), mild=0.0))
+    factor = trial.truth.parameters["E.factor"]
+    row = Row(frozenset({"E"}), 0.97, parameters={"E.factor": Estimate(factor)})
+    shrinkage = true_shrinkage(trial, Answer("named", (row.effects,), (row,)))
+    assert shrinkage is not None
+    assert shrinkage.after_percent < 0.1 * shrinkage.before_percent
+    assert shrinkage.beyond_after_percent < 0.2 * shrinkage.beyond_before_percent
+
+
+@needs_ccx
+def test_solids_are_drawn_as_often_as_plates() -> None:
+    rng = np.random.default_rng(3)
+    kinds = Counter(draw_setup(rng, plan=Plan(kinds=("beam", "plate", "solid"))).kind for _ in range(60))
+    assert min(kinds["plate"], kinds["solid"]) > 2 and kinds["beam"] > 25
+    kinds = Counter(draw_setup(rng, plan=Plan(kinds=("plate", "solid"))).kind for _ in range(15))
+    assert set(kinds) == {"plate", "solid"}
+
+
+def test_solids_are_refused_without_calculix(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(StudyError, match=r"solids need CalculiX.*install calculix-ccx"):
+        draw_setup(np.random.default_rng(0), plan=Plan(kinds=("beam", "solid")))
+
+
+def test_exponents_of_three_digits_are_read() -> None:
+    table = (
+        "\n      1   4.0   2.0   0.3   0.0\n\n displacements (vx,vy,vz) for set READ\n\n"
+        "         1 -1.572996-128  2.000000E-01 -1.000000+100\n\n"
+    )
+    omega, moved = solid_deck.printed(table, np.array([1]))
+    np.testing.assert_array_equal(omega, [2.0])
+    np.testing.assert_array_equal(moved, [[[-1.572996e-128, 0.2, -1e100]]])
 
 
 def test_a_solid_without_calculix_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -25,7 +25,7 @@ from modalkit.blind.bodies.plate_mesh import plate_lines
 from modalkit.blind.bodies.plate_parts import PlateAttached
 from modalkit.blind.bodies.solid_deck import Bricks, Point, deck, run, simpson, trapezoid
 
-_SPARE = 6
+_SPARE = 12
 
 
 @dataclass(frozen=True)

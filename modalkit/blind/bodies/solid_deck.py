@@ -193,7 +193,11 @@ def run(text: str, *, read: IntArray, time_limit: float = TIME_LIMIT) -> tuple[F
 
 
 def printed(text: str, read: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return frequencies [rad/s] and displacements from CalculiX's table of results."""
+    """Return frequencies [rad/s] and displacements from CalculiX's table of results.
+
+    Fortran leaves out the letter of an exponent of three digits.
+    """
+    text = re.sub(r"(?<=\d)([+-]\d{3})(?!\d)", r"E\1", text)
     values = re.findall(
         r"^ +\d+ +(\S+) +(\S+) +\S+ +\S+\s*$", text.split("P A R T I C I P A T I O N", maxsplit=1)[0], re.M
     )

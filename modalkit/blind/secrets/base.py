@@ -78,6 +78,8 @@ class Secret:
         Two effects with the same seat cannot be there at once; empty for none.
     metric : {"frequency", "damping", ""}
         In which of the two the gap that it makes shrinks; empty for neither.
+    solid : bool
+        Whether a body of bricks can have it.
     share : float
         About the share of setups that can have it, so that all effects come up about as often [-].
     """
@@ -92,7 +94,12 @@ class Secret:
     graded: bool = True
     seat: str = ""
     metric: str = "frequency"
+    solid: bool = False
     share: float = 1.0
+
+    def fits(self, setup: Setup) -> bool:
+        """Tell whether the specimen can have it, of what it is made of too."""
+        return self.applies(setup) and (self.solid or setup.kind != "solid")
 
 
 def either_sign(rng: np.random.Generator) -> float:
@@ -169,7 +176,7 @@ def draw_place(rng: np.random.Generator, setup: Setup, low: float = 0.06, high: 
         Shares of the length [-].
     """
     place = {"x": float(rng.uniform(low, high) * setup.length)}
-    return place if setup.kind == "beam" else place | {"y": float(rng.uniform(0.1, 0.9) * setup.width)}
+    return place if setup.kind != "plate" else place | {"y": float(rng.uniform(0.1, 0.9) * setup.width)}
 
 
 def clamped_places(setup: Setup, values: Values) -> tuple[Place, ...]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from modalkit.blind.scene import Scene
@@ -65,39 +67,42 @@ def _point_places(setup: Setup, values: Values) -> tuple[Place, ...]:
     return tuple(setup.points[node - 1] for node in values["points"])
 
 
-CHAIN = (
-    Secret(
-        "calibration_gain",
-        _draw_gain,
-        lambda scene, values: scene.with_chain(gain=scene.chain.gain * values["gain"]),
-        applies=lambda setup: setup.calibrated or setup.baseline,
-        equals=_gain_equals,
-        seat="level",
-        metric="",
-        share=0.9,
-    ),
-    Secret(
-        "time_delay",
-        _draw_delay,
-        lambda scene, values: scene.with_chain(delay=scene.chain.delay + values["delay"]),
-        metric="",
-    ),
-    Secret(
-        "polarity",
-        _draw_reversed,
-        lambda scene, values: scene.with_chain(reversed=tuple(n - 1 for n in values["points"])),
-        places=_point_places,
-        graded=False,
-        metric="",
-    ),
-    Secret(
-        "swapped_points",
-        _draw_exchanged,
-        lambda scene, values: scene.with_chain(exchanged=(tuple(n - 1 for n in values["points"]),)),
-        places=_point_places,
-        graded=False,
-        seat="labels",
-        metric="",
-    ),
-    Secret("position_error", _draw_moved, _act_moved, places=_moved_places, seat="labels", metric=""),
+CHAIN = tuple(
+    replace(secret, solid=True)
+    for secret in (
+        Secret(
+            "calibration_gain",
+            _draw_gain,
+            lambda scene, values: scene.with_chain(gain=scene.chain.gain * values["gain"]),
+            applies=lambda setup: setup.calibrated or setup.baseline,
+            equals=_gain_equals,
+            seat="level",
+            metric="",
+            share=0.9,
+        ),
+        Secret(
+            "time_delay",
+            _draw_delay,
+            lambda scene, values: scene.with_chain(delay=scene.chain.delay + values["delay"]),
+            metric="",
+        ),
+        Secret(
+            "polarity",
+            _draw_reversed,
+            lambda scene, values: scene.with_chain(reversed=tuple(n - 1 for n in values["points"])),
+            places=_point_places,
+            graded=False,
+            metric="",
+        ),
+        Secret(
+            "swapped_points",
+            _draw_exchanged,
+            lambda scene, values: scene.with_chain(exchanged=(tuple(n - 1 for n in values["points"]),)),
+            places=_point_places,
+            graded=False,
+            seat="labels",
+            metric="",
+        ),
+        Secret("position_error", _draw_moved, _act_moved, places=_moved_places, seat="labels", metric=""),
+    )
 )

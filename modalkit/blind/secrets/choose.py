@@ -91,7 +91,7 @@ def choose_secrets(
     pool = [s for s in SECRETS.values() if not plan.effects or s.name in plan.effects]
     if not plan.effects or sort == "pair":
         pool = [s for s in pool if s.in_library == (sort != "outside")]
-    pool = [s for s in pool if s.applies(setup)]
+    pool = [s for s in pool if s.fits(setup)]
     chosen: list[Secret] = []
     forced = [s for s in pool if s.name == "shear" and lacks_shear(setup)]
     for _ in range(2 if sort == "pair" else 1):

@@ -56,16 +56,24 @@ def _mass_equals(setup: Setup, values: Values) -> tuple[str, ...]:
 
 
 def _draw_soft(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    """Draw a smooth, a rectangular or a crack-like loss; what counts is its compliance."""
-    form = ("cosine", "rectangle", "crack")[int(rng.integers(3 if setup.kind == "beam" else 2))]
-    extent = {"cosine": (0.03, 0.1), "rectangle": (0.02, 0.1), "crack": (0.004, 0.01)}[form]
-    wider = 1.0 if setup.kind == "beam" else 2.0
+    """Draw a smooth, a rectangular or a crack-like loss; what counts is its compliance.
+
+    A solid gets a slot. What it costs is more than the section that is left, so no compliance is told.
+    """
+    forms = {"beam": ("cosine", "rectangle", "crack"), "plate": ("cosine", "rectangle"), "solid": ("slot",)}[
+        setup.kind
+    ]
+    form = forms[int(rng.integers(len(forms)))]
+    extent = {"cosine": (0.03, 0.1), "rectangle": (0.02, 0.1), "crack": (0.004, 0.01), "slot": (0.01, 0.03)}[
+        form
+    ]
+    wider = 2.0 if setup.kind == "plate" else 1.0
     place = draw_place(rng, setup, *((0.05, 0.9) if setup.clamped else (0.12, 0.88)))
     length = float(wider * rng.uniform(*extent) * setup.length)
     relative = 1.0 + wider * strength * log_uniform(rng, 0.02, 0.15) * setup.length / length
     loss = 1.0 - 1.0 / relative ** (2 if form == "cosine" else 1)
     values = {**place, "extent": length, "loss": float(min(loss, 0.97)), "form": form}
-    return values | {"compliance": _compliance(values)}
+    return values if form == "slot" else values | {"compliance": _compliance(values)}
 
 
 def _compliance(values: Values) -> float:
@@ -100,8 +108,9 @@ LOCAL = (
         _act_sensor,
         equals=lambda setup, values: ("lumped_mass",),
         places=_sensor_places,
+        solid=True,
     ),
-    Secret("lumped_mass", _draw_mass, _act_mass, equals=_mass_equals, places=at_its_place),
-    Secret("local_stiffness", _draw_soft, softened, places=at_its_place),
+    Secret("lumped_mass", _draw_mass, _act_mass, equals=_mass_equals, places=at_its_place, solid=True),
+    Secret("local_stiffness", _draw_soft, softened, places=at_its_place, solid=True),
     Secret("damping_patch", _draw_patch, covered, places=at_its_place, metric="damping"),
 )

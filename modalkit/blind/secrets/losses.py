@@ -87,6 +87,7 @@ LOSSES = (
         _act_uniform,
         equals=_uniform_equals,
         metric="damping",
+        solid=True,
         seat="decay",
     ),
     Secret(
@@ -95,6 +96,7 @@ LOSSES = (
         lambda scene, values: scene.with_chain(window=scene.chain.window + values["decay"]),
         equals=lambda setup, values: ("uniform_damping",),
         metric="damping",
+        solid=True,
         seat="decay",
     ),
 )

@@ -52,9 +52,9 @@ def _with_level(setup: Setup) -> bool:
 
 
 MATERIAL = (
-    Secret("E", factor(0.07, 0.5, most=0.8), scaled("E")),
-    Secret("density", factor(0.07, 0.5, most=0.8), scaled("density")),
-    Secret("thickness", factor(0.035, 0.25, most=0.4), scaled("thickness")),
+    Secret("E", factor(0.07, 0.5, most=0.8), scaled("E"), solid=True),
+    Secret("density", factor(0.07, 0.5, most=0.8), scaled("density"), solid=True),
+    Secret("thickness", factor(0.035, 0.25, most=0.4), scaled("thickness"), solid=True),
     Secret(
         "section_scale",
         factor(0.1, 0.5, most=0.8),
@@ -63,6 +63,7 @@ MATERIAL = (
         equals=_section_equals,
         seat="level",
         metric="",
+        solid=True,
         share=0.9,
     ),
     Secret(
@@ -71,6 +72,7 @@ MATERIAL = (
         lambda scene, values: lengthened_scene(scene, values["extension"]),
         applies=is_clamped,
         places=clamped_places,
+        solid=True,
         share=0.74,
     ),
     Secret(

@@ -220,7 +220,7 @@ def _at_x(setup: Setup, values: Values) -> tuple[Place, ...]:
 OUTSIDE = tuple(
     replace(secret, in_library=False)
     for secret in (
-        Secret("ground_spring", _draw_ground_spring, _act_ground_spring, places=at_its_place),
+        Secret("ground_spring", _draw_ground_spring, _act_ground_spring, places=at_its_place, solid=True),
         Secret(
             "tip_spring",
             _draw_tip_spring,
@@ -229,7 +229,7 @@ OUTSIDE = tuple(
             places=_at_x,
             share=0.62,
         ),
-        Secret("dashpot", _draw_dashpot, _act_dashpot, places=at_its_place, metric="damping"),
+        Secret("dashpot", _draw_dashpot, _act_dashpot, places=at_its_place, metric="damping", solid=True),
         Secret("taper", _draw_taper, lambda scene, values: scene.with_body(taper=values["taper"])),
         Secret("rib", _draw_rib, _act_rib, places=at_its_place),
         Secret("step", _draw_step, _act_step, applies=is_beam, places=_at_x),
@@ -252,12 +252,15 @@ OUTSIDE = tuple(
             places=lambda setup, values: ((0.0, setup.width / 2),),
             share=0.4,
         ),
-        Secret("drift", _draw_drift, lambda scene, values: scene.with_chain(drift=values["change"])),
+        Secret(
+            "drift", _draw_drift, lambda scene, values: scene.with_chain(drift=values["change"]), solid=True
+        ),
         Secret(
             "oblique_hits",
             _draw_tilt,
             lambda scene, values: scene.with_chain(tilt=values["angle"]),
             metric="",
+            solid=True,
         ),
     )
 )
