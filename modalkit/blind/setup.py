@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -173,19 +174,7 @@ class Setup:
         """The body made to the drawing, without its sensor: that of the drawing, or one of bricks."""
         if self.kind != "solid":
             return self.nominal
-        return Solid(
-            "beam",
-            start=0.0,
-            end=self.length,
-            width=self.width,
-            thickness=self.thickness,
-            clamped=self.clamped,
-            alpha=self.alpha,
-            beta=self.beta,
-            E=self.E,
-            density=self.density,
-            poisson=self.poisson,
-        )
+        return Solid("beam", **_drawn(self))
 
     @cached_property
     def nominal_hz(self) -> tuple[float, ...]:
@@ -225,15 +214,10 @@ def bare_body(setup: Setup) -> Body:
         Dimensions, material, clamps and expected damping.
     """
     kind: type[Plate] | type[Beam] = Plate if setup.kind == "plate" else Beam
-    return kind(
-        start=0.0,
-        end=setup.length,
-        width=setup.width,
-        thickness=setup.thickness,
-        clamped=setup.clamped,
-        alpha=setup.alpha,
-        beta=setup.beta,
-        E=setup.E,
-        density=setup.density,
-        poisson=setup.poisson,
-    )
+    return kind(**_drawn(setup))
+
+
+def _drawn(setup: Setup) -> dict[str, Any]:
+    """Return what every body has of a drawing."""
+    named = ("width", "thickness", "clamped", "alpha", "beta", "E", "density", "poisson")
+    return {"start": 0.0, "end": setup.length, **{name: getattr(setup, name) for name in named}}
