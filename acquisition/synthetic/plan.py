@@ -59,6 +59,12 @@ class HammerPlan:
         [N; m/s^2, m/s or m, by ``form``].
     position_sigma : float
         Scatter of the place of each hit along both in-plane axes [m].
+    drift : float
+        Standard deviation of the frequencies from point to point, as temperature and set-up make it: a factor
+        common to all modes while a point is hit [-].
+    anti_alias : {"smooth", "sharp"}
+        The filter in front of the converter: one that falls smoothly and does not ring, or an elliptic one of
+        eighth order, as converters have, that rings for some tens of samples after a short pulse.
     decay : float
         Decay rate of an exponential window exp(-decay (t - t0)) applied to force and responses, with t0 the
         trigger [1/s]. Windowing both makes the FRFs exact samples of H(i omega + decay).
@@ -97,6 +103,8 @@ class HammerPlan:
     force_range: float | None = None
     response_range: float | None = None
     position_sigma: float = 0.0
+    drift: float = 0.0
+    anti_alias: Literal["smooth", "sharp"] = "smooth"
     decay: float = 0.0
     gain: float = 1.0
     delay: float = 0.0
@@ -115,6 +123,8 @@ class HammerPlan:
         wrong += [name for name in ranges if getattr(self, name) is not None and not getattr(self, name) > 0]
         if wrong:
             raise InputError(f"hammer plan: {wrong[0]} = {getattr(self, wrong[0])} makes no sense")
+        if self.anti_alias not in ("smooth", "sharp"):
+            raise InputError(f'hammer plan: unknown filter {self.anti_alias!r}; use "smooth" or "sharp"')
         if self.form not in FORMS or self.pulse not in ("haversine", "half-sine"):
             raise InputError(f"hammer plan: unknown form {self.form!r} or pulse {self.pulse!r}")
         unknown = set(self.bad.values()) - set(BAD_HITS)

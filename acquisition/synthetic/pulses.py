@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
+import scipy.signal
 
 from acquisition.arrays import ComplexArray, FloatArray
 
@@ -44,3 +45,25 @@ def anti_alias(frequency: FloatArray, rate: float) -> FloatArray:
     low, high = rate / 2.56, rate / 2
     x = np.clip((frequency - low) / (high - low), 0.0, 1.0)
     return np.asarray(1 - x**4 * (35 - 84 * x + 70 * x**2 - 20 * x**3), dtype=np.float64)
+
+
+ORDER, RIPPLE, STOP = 8, 0.1, 80.0  # an eighth-order elliptic filter: order [-], ripple and stop band [dB]
+
+
+def sharp_anti_alias(laplace: ComplexArray, rate: float) -> ComplexArray:
+    """Return the transfer function of an elliptic filter with its edge at rate / 2.56, shape as ``laplace`` [-].
+
+    Being causal it delays force and responses alike and rings after a pulse that is shorter than its own response.
+
+    Parameters
+    ----------
+    laplace : complex array
+        Where in the Laplace plane, not left of the imaginary axis [rad/s].
+    rate : float
+        Sampling rate [Hz].
+    """
+    edge = 2 * np.pi * rate / 2.56
+    zeros, poles, gain = scipy.signal.ellip(ORDER, RIPPLE, STOP, edge, analog=True, output="zpk")
+    unit = laplace[..., None] / edge
+    ratio = np.prod((unit - zeros / edge) / (unit - poles[: len(zeros)] / edge), axis=-1)
+    return np.asarray(gain * ratio, dtype=np.complex128)

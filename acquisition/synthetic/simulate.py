@@ -16,7 +16,7 @@ from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest, Hits
 from acquisition.synthetic.faults import clip, coloured, cut_off, quantise
 from acquisition.synthetic.plan import HammerPlan
-from acquisition.synthetic.pulses import anti_alias, pulse_transform
+from acquisition.synthetic.pulses import anti_alias, pulse_transform, sharp_anti_alias
 from acquisition.synthetic.system import ModalSystem
 
 
@@ -59,10 +59,13 @@ def hammer_test(
     if "wrong place" in plan.bad.values() and len(first.points) < 2:
         raise InputError("hammer plan: a hit in the wrong place needs a system with a second point")
     contour = _Contour.over(plan)
+    drift = 1.0 + plan.drift * rng.standard_normal(len(first.points)) if plan.drift else np.ones(len(first.points))
     force = np.empty((len(first.points), plan.hits, plan.samples))
     motion = np.empty((len(first.points), plan.hits, len(first.responses), plan.samples))
     for point, hit in np.ndindex(len(first.points), plan.hits):
         now = at_level if at_hit is None else partial(at_hit, point, hit)
+        if plan.drift:
+            now = partial(_drifted, now, float(drift[point]))
         records = _one_hit(now, plan, contour, (point, hit), rng)
         force[point, hit], motion[point, hit] = records
     force, motion = _converted(force, motion, plan)
@@ -85,7 +88,7 @@ class _Contour:
     """The line s = shift + i omega and the way back from it to samples."""
 
     laplace: ComplexArray
-    gain: FloatArray
+    gain: FloatArray | ComplexArray
     growth: FloatArray
     length: int
     rate: float
@@ -95,9 +98,11 @@ class _Contour:
         length = scipy.fft.next_fast_len(2 * plan.samples, real=True)
         shift = 30.0 * plan.rate / length
         frequency = np.asarray(np.fft.rfftfreq(length, 1 / plan.rate), dtype=np.float64)
+        laplace = np.asarray(shift + 2j * np.pi * frequency, dtype=np.complex128)
+        smooth = plan.anti_alias == "smooth"
         return cls(
-            laplace=np.asarray(shift + 2j * np.pi * frequency, dtype=np.complex128),
-            gain=anti_alias(frequency, plan.rate),
+            laplace=laplace,
+            gain=anti_alias(frequency, plan.rate) if smooth else sharp_anti_alias(laplace, plan.rate),
             growth=np.exp(shift * np.arange(plan.samples) / plan.rate),
             length=length,
             rate=plan.rate,
@@ -107,6 +112,10 @@ class _Contour:
         """Return the samples whose Laplace transform on the contour is given, along the last axis."""
         wave = scipy.fft.irfft(transform * self.gain * self.rate, self.length, axis=-1)
         return np.asarray(wave[..., : len(self.growth)] * self.growth, dtype=np.float64)
+
+
+def _drifted(at_level: Callable[[float], ModalSystem], factor: float, level: float) -> ModalSystem:
+    return at_level(level).with_frequencies(factor)
 
 
 def _one_hit(

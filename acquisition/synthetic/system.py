@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,6 +63,18 @@ class ModalSystem:
                 raise InputError(f"gradients have shape {self.gradients.shape}, expected {(2, *expected)}")
         if np.any(self.poles.real > 0):
             raise InputError("a pole has a positive real part: the structure would be unstable")
+
+    def with_frequencies(self, factor: FloatArray | float) -> ModalSystem:
+        """Return the system with its poles multiplied by a factor, shapes and modal masses kept.
+
+        Parameters
+        ----------
+        factor : (n_modes,) array or float
+            New frequency over old [-].
+        """
+        wide = np.broadcast_to(np.asarray(factor, dtype=np.float64), self.poles.shape)
+        slopes = None if self.gradients is None else self.gradients / wide
+        return replace(self, poles=self.poles * wide, residues=self.residues / wide, gradients=slopes)
 
     def receptance(self, laplace: ComplexArray, point: int, offset: FloatArray | None = None) -> ComplexArray:
         """Return the receptances at all responses, shape (n_responses, n_lines) [m/N].
