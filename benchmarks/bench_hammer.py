@@ -158,7 +158,8 @@ def drawn(kind: str, rng: np.random.Generator) -> Setup:
     )(rng)
     every, later = np.arange(len(body.shapes)), np.arange(len(body.shapes) // 2, len(body.shapes))
     if kind == "array":
-        return _setup(rng, body, every, rng.choice(later, int(rng.integers(1, 3)), replace=False))
+        setup = _setup(rng, body, every, rng.choice(later, int(rng.integers(1, 3)), replace=False))
+        return replace(setup, plan=replace(setup.plan, drift=0.0))  # one point hit tells nothing of drift
     setup = _setup(
         rng, body, rng.choice(later, {"beam": 1, "plate": 2, "roving": 3}[kind], replace=False), every
     )

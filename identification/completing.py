@@ -10,6 +10,7 @@ from scipy import stats
 from acquisition.errors import EstimationError
 from acquisition.frf import FrfSet
 from identification import background, drifting, fading, leftover
+from identification.common_noise import beyond_common_noise, without_common_noise
 from identification.grams import Weights
 from identification.poly_reference import sorted_frfs
 from identification.pruning import inside, plausible, significant, threshold
@@ -74,13 +75,16 @@ def _best_pole(
 ) -> tuple[complex, float]:
     """Return the pole, in the band or beyond, that explains most, and by how much more than noise."""
     inner = np.zeros(0, complex)
+    residual = left_over(frfs, fit)
+    bare = without_common_noise(frfs, fit, weights)
     if len(search.blocked) < _REJECTIONS:
-        inner = leftover.trial_poles(frfs, left_over(frfs, fit), weights, search.blocked)
+        inner = leftover.trial_poles(frfs, bare, weights, search.blocked)
     outer = background.trial_poles(band) if search.beyond > 0 else np.zeros(0, complex)
     trials = np.concatenate([inner, outer])
     if len(trials) == 0:
         return 0j, 0.0
-    gain = 2.0 * background.gains(frfs, fit.poles, fit.linear.powers, weights, trials)
+    cleaned = replace(frfs, values=frfs.values - residual + bare)
+    gain = 2.0 * background.gains(cleaned, fit.poles, fit.linear.powers, weights, trials)
     gain = gain / fading.inflation(weights.fade, decay_over_record(frfs, trials))[0]
     best = int(gain.argmax())
     return complex(trials[best]), float(gain[best]) - threshold(*frfs.values.shape)
@@ -146,6 +150,7 @@ def pruned(
     for _ in range(_ROUNDS):
         held = fading.inflation(weights.fade, decay_over_record(frfs, fit.poles))[0]
         keep = plausible(fit.poles, band) & significant(fit, n_lines=len(frfs.frequency), inflation=held)
+        keep &= beyond_common_noise(frfs, fit, weights)
         if keep.all():
             break
         if not (keep & inside(fit.poles, band, frfs.df)).any():

@@ -7,6 +7,7 @@ import numpy as np
 from acquisition.arrays import BoolArray, FloatArray
 from acquisition.frf import FrfSet
 from identification import fading
+from identification.common_spread import common_factors
 from identification.disagreement import Disagreement, between_frfs
 from identification.fitting import Fitted
 from identification.hit_scatter import NoiseFactors
@@ -52,6 +53,7 @@ def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactor
     """
     fit, misfit = fitted.fit, misfit_factor(frfs, fitted)
     held, free, pole = fading.inflation(fitted.weights.fade, (frfs.decay - fit.poles.real) / frfs.df)
+    pole = pole * common_factors(frfs, fit, fitted.weights, fitted.variance, fitted.residual)
     shape = fit.linear.residues.shape
     noise = NoiseFactors(pole, np.broadcast_to(free, shape), np.ones(len(pole)), np.broadcast_to(held, shape))
     told = hit_factors(frfs, fit, fitted.weights, modes, noise)

@@ -199,6 +199,34 @@ def scores(
     return gradient, normal
 
 
+def frequency_scores(
+    frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return what each FRF alone says about the relative shifts of all frequencies; parameters as for `refine`.
+
+    A shift d moves a pole from p to p (1 + d), so that its damping ratio stays.
+
+    Returns
+    -------
+    gradient : (n_frf, n_modes) array
+        J^T r of the shifts, the linear unknowns projected out [-].
+    normal : (n_frf, n_modes, n_modes) array
+        J^T J of the same [-].
+    """
+    few, few_weights = thinned(frfs, poles, weights)
+    _, products, solution, follow = _pieces(few, poles, few_weights, powers)
+    n, k = len(poles), solution.shape[1]
+    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
+    between = np.broadcast_to(products.gram[:, :k, k:], (len(solution), k, 2 * n))
+    left = products.cross[:, k:] - np.einsum("jk,jkm->jm", solution, between)
+    along = np.stack([poles.real, poles.imag], axis=1)
+    turned = np.einsum("jnia,na->jni", pole_turns(solution, n), along)
+    gradient = np.einsum("j,jni,jni->jn", few_weights.level, left.reshape(-1, n, 2), turned)
+    own = np.broadcast_to(projected.reshape(-1, n, 2, n, 2), (len(solution), n, 2, n, 2))
+    normal = np.einsum("j,jni,jnimb,jmb->jnm", few_weights.level, turned, own, turned, optimize=True)
+    return gradient, np.asarray(normal)
+
+
 def pole_turns(solution: FloatArray, n_modes: int) -> FloatArray:
     """Return the 2 x 2 blocks that turn (Re, Im) of a pole's step into weights of its two slope columns.
 
