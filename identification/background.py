@@ -37,7 +37,7 @@ def gains(
     columns = basis.build(lines.axis, poles, powers).linear
     extra = basis.build(lines.axis, trials, ()).modes
     k = columns.shape[1]
-    products = grams.form(np.hstack([columns, extra]), lines.values, shared)
+    products = grams.form(np.hstack([columns, extra]), grams.prepared(lines.values, shared))
     g = products.gram
     follow = grams.solve(g[:, :k, :k], g[:, :k, k:])[0]
     left = products.cross[:, k:] - products.cross[:, :k] @ follow

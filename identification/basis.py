@@ -49,25 +49,40 @@ class Basis:
 
     Parameters
     ----------
-    modes : (n_lines, 2 n_modes) complex array
-        Columns of a_1, b_1, a_2, b_2, ... [form's power of s, over s].
-    terms : (n_lines, n_terms) complex array
-        Columns of the residual terms, scaled to about unity [-].
+    columns : (n_lines, 4 n_modes + n_terms) complex array
+        Columns of a_1, b_1, a_2, b_2, ... [form's power of s, over s]; of the residual terms, scaled to about
+        unity [-]; and the derivatives of the first by the real part of their pole.
     term_scale : (n_terms,) array
         What a coefficient is multiplied by to become the coefficient of s^k in the receptance.
-    slopes : (n_lines, 2 n_modes) complex array
-        Derivatives of the columns ``modes`` by the real part of their pole.
     """
 
-    modes: ComplexArray
-    terms: ComplexArray
+    columns: ComplexArray
     term_scale: FloatArray
-    slopes: ComplexArray
+
+    @property
+    def n_linear(self) -> int:
+        """How many columns the model is linear in: 2 n_modes + n_terms."""
+        return int(self.columns.shape[1] + len(self.term_scale)) // 2
 
     @property
     def linear(self) -> ComplexArray:
         """Modes and residual terms side by side, shape (n_lines, 2 n_modes + n_terms)."""
-        return np.hstack([self.modes, self.terms])
+        return self.columns[:, : self.n_linear]
+
+    @property
+    def modes(self) -> ComplexArray:
+        """Columns of the modes, shape (n_lines, 2 n_modes)."""
+        return self.columns[:, : self.n_linear - len(self.term_scale)]
+
+    @property
+    def terms(self) -> ComplexArray:
+        """Columns of the residual terms, shape (n_lines, n_terms)."""
+        return self.columns[:, self.n_linear - len(self.term_scale) : self.n_linear]
+
+    @property
+    def slopes(self) -> ComplexArray:
+        """Derivatives of ``modes`` by the real part of their pole, shape (n_lines, 2 n_modes)."""
+        return self.columns[:, self.n_linear :]
 
 
 def build(axis: Axis, poles: ComplexArray, terms: tuple[int, ...]) -> Basis:
@@ -98,16 +113,14 @@ def build(axis: Axis, poles: ComplexArray, terms: tuple[int, ...]) -> Basis:
     front = (s**power)[:, None]
     upper, upper_slope = _column(axis, front, poles)
     lower, lower_slope = _column(axis, front, poles.conj())
-    modes = np.stack([upper + lower, 1j * (upper - lower)], axis=2)
-    slopes = np.stack([upper_slope + lower_slope, 1j * (upper_slope - lower_slope)], axis=2)
     exponents = np.array(terms, dtype=float) + power
     unit = np.exp(np.mean(np.log(np.abs(s))))
-    return Basis(
-        modes.reshape(len(s), -1),
-        (s[:, None] / unit) ** exponents[None, :],
-        unit**-exponents,
-        slopes.reshape(len(s), -1),
-    )
+    n, k = 2 * len(poles), 2 * len(poles) + len(terms)
+    columns = np.empty((len(s), n + k), complex)
+    columns[:, 0:n:2], columns[:, 1:n:2] = upper + lower, 1j * (upper - lower)
+    columns[:, n:k] = (s[:, None] / unit) ** exponents[None, :]
+    columns[:, k::2], columns[:, k + 1 :: 2] = upper_slope + lower_slope, 1j * (upper_slope - lower_slope)
+    return Basis(columns, unit**-exponents)
 
 
 def _column(axis: Axis, front: ComplexArray, poles: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

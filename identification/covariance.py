@@ -63,16 +63,16 @@ def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactor
     return NoiseFactors(poles, constants, told.shapes, np.maximum(told.held, misfit))
 
 
-def pole_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
+def pole_statistics(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
     """Return the covariance of (ln frequency, damping ratio) of every mode, shape (n_modes, 2, 2) [-].
 
-    First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|; with what FRFs that disagree
-    add.
+    First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|; with what FRFs that disagree,
+    ``apart``, add.
     """
     poles = fitted.fit.poles
     full = pole_covariance(fitted.fit).reshape(len(poles), 2, len(poles), 2)
     own = np.einsum("rarb->rab", full)
-    own = own * factors.poles[:, None, None] + disagreement(frfs, fitted, factors).mean
+    own = own * factors.poles[:, None, None] + apart.mean
     a, b, size = poles.real, poles.imag, np.abs(poles)
     jacobian = np.stack(
         [
@@ -84,22 +84,22 @@ def pole_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Floa
     return np.asarray(np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian))
 
 
-def constant_statistics(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
+def constant_statistics(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
     """Return the standard deviation of each modal constant's real part, shape (n_frf, n_modes) [1/kg].
 
     Where FRFs disagree on a pole, each constant bears the scatter of its own FRF's pole about the common one.
     """
     noise = constant_variance(fitted.fit) * factors.constants
-    return np.asarray(np.sqrt(noise + _shifted(frfs, fitted, factors)))
+    return np.asarray(np.sqrt(noise + _shifted(fitted, apart)))
 
 
-def _shifted(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
+def _shifted(fitted: Fitted, apart: Disagreement) -> FloatArray:
     """Return the variance of each constant by the scatter of its FRF's own pole, (n_frf, n_modes) [1/kg^2]."""
     fit = fitted.fit
     n = len(fit.poles)
     gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(-1, n, n, 2)
     own = np.einsum("jnna->jna", gain)
-    shift = np.einsum("jna,nab,jnb->jn", own, disagreement(frfs, fitted, factors).each, own)
+    shift = np.einsum("jna,nab,jnb->jn", own, apart.each, own)
     return np.asarray((2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0))
 
 
@@ -119,11 +119,11 @@ def shared_errors(fitted: Fitted, factors: NoiseFactors) -> FloatArray:
     return np.asarray(-2.0 * fit.poles.imag[:, None] * moved)
 
 
-def own_errors(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> FloatArray:
+def own_errors(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
     """Return the standard deviation of each constant's real part with the poles known, (n_frf, n_modes) [1/kg]."""
     fit = fitted.fit
     held = (2.0 * fit.poles.imag) ** 2 * fit.linear_inverse[:, 1 : 2 * len(fit.poles) : 2]
-    return np.asarray(np.sqrt(held * factors.held + _shifted(frfs, fitted, factors)))
+    return np.asarray(np.sqrt(held * factors.held + _shifted(fitted, apart)))
 
 
 def disagreement(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Disagreement:

@@ -138,9 +138,7 @@ def _moved(
     real = np.concatenate([columns.linear, columns.slopes], axis=1)
     moved = deviations.astype(np.complex128) * lines
     cross = moved.real @ real.real + moved.imag @ real.imag  # (n_hits, n_rows, k + 2 n)
-    gram = grams.form(
-        real, np.zeros((len(lines), len(real)), np.complex128), grams.Weights(lines[:, 0], lines)
-    ).gram
+    gram = grams.products(np.concatenate([real.real, real.imag]), lines)
     follow = grams.solve(gram[:, :k, :k], gram[:, :k, k:])
     hits = len(cross)
     alone = np.stack([grams.solve(gram[:, :k, :k], cross[h, :, :k, None])[:, :, 0] for h in range(hits)])

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError, InputError
@@ -73,6 +74,18 @@ def identify(
     """
     if method not in ESTIMATORS:
         raise InputError(f"unknown pole estimator {method!r}; use one of {', '.join(ESTIMATORS)}")
+    with threadpool_limits(1, user_api="blas"):  # on small matrices a second thread only costs
+        return _identified(frfs, band, order, method, add, drop)
+
+
+def _identified(
+    frfs: FrfSet,
+    band: tuple[float, float] | None,
+    order: int | None,
+    method: str,
+    add: Sequence[float],
+    drop: Sequence[float],
+) -> ModalModel:
     data, points_rejected = _usable(frfs, band)
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
     sets = ESTIMATORS[method](data, orders=order_list(data, order, method))
@@ -141,15 +154,16 @@ def _assemble(
     poles: ComplexArray = fit.poles[own]
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
     factors = covariance.noise_factors(data, fitted, modes)
-    sigma = covariance.constant_statistics(data, fitted, factors)[:, own]
-    spread = covariance.pole_statistics(data, fitted, factors)[own]
+    apart = covariance.disagreement(data, fitted, factors)
+    sigma = covariance.constant_statistics(fitted, factors, apart)[:, own]
+    spread = covariance.pole_statistics(fitted, factors, apart)[own]
     alone = _alone(data, fitted, own, sigma) * np.sqrt(factors.shapes[own])
     shared = covariance.shared_errors(fitted, factors)[:, own]
-    noise = covariance.own_errors(data, fitted, factors)[:, own]
+    noise = covariance.own_errors(fitted, factors, apart)[:, own]
     if fitted.held is not None:
         noise = np.sqrt(np.maximum(alone**2 - np.sum(shared**2, axis=2), noise**2))
     shapes = mode_shapes(data, constants, alone)
-    scatter = np.sqrt(covariance.disagreement(data, fitted, factors).each[own, 1, 1])
+    scatter = np.sqrt(apart.each[own, 1, 1])
     said = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
     return ModalModel(

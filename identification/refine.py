@@ -113,38 +113,67 @@ def refine(
     Fit
         The refined model.
     """
-    few, few_weights = thinned(frfs, poles, weights)
-    poles, converged = _iterate(few, poles, few_weights, powers, iterations, (tolerance, enough))
-    if tolerance < _POLISHED and len(few.axis.laplace) < len(frfs.frequency):
-        every = Lines.of(frfs)
-        poles, converged = _iterate(every, poles, weights, powers, iterations, (tolerance, enough))
-    return fit_at(frfs, poles, weights, powers, converged)
+    problem = _Problem.of(*thinned(frfs, poles, weights), powers)
+    state, converged = _iterate(problem, poles, iterations, (tolerance, enough))
+    if len(problem.axis.laplace) == len(frfs.frequency):
+        return _fit(state, powers, converged)
+    every = _Problem.of(Lines.of(frfs), weights, powers)
+    if tolerance < _POLISHED:
+        state, converged = _iterate(every, state.poles, iterations, (tolerance, enough))
+        return _fit(state, powers, converged)
+    return _fit(_at(every, state.poles), powers, converged)
+
+
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """What stays the same from step to step: the lines, the data times their weights, the residual terms."""
+
+    axis: basis.Axis
+    data: grams.Data
+    powers: tuple[int, ...]
+
+    @classmethod
+    def of(cls, lines: Lines, weights: grams.Weights, powers: tuple[int, ...]) -> _Problem:
+        return cls(lines.axis, grams.prepared(lines.values, weights), powers)
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """A step at its poles, with the normal equations it comes from.
+
+    ``follow`` is how the linear unknowns follow the slope columns, (n_frf or 1, n_linear, 2 n_modes).
+    """
+
+    poles: ComplexArray
+    step: Step
+    products: grams.Grams
+    follow: FloatArray
+    term_scale: FloatArray
+    level: FloatArray
+
+    @property
+    def cost(self) -> float:
+        return self.step.cost
 
 
 def _iterate(
-    lines: Lines,
-    poles: ComplexArray,
-    weights: grams.Weights,
-    powers: tuple[int, ...],
-    iterations: int,
-    tolerance: tuple[float, float],
-) -> tuple[ComplexArray, bool]:
-    """Return the poles at which the steps come to rest, and whether they do."""
-    state, damping = _evaluate(lines, poles, weights, powers), 1e-3
+    problem: _Problem, poles: ComplexArray, iterations: int, tolerance: tuple[float, float]
+) -> tuple[_State, bool]:
+    """Return where the steps come to rest, and whether they do."""
+    state, damping = _at(problem, poles), 1e-3
     for _ in range(iterations):
-        trial_poles = poles + _solve_step(state, damping)
-        trial_poles = decaying(trial_poles, poles, lines.axis.decay)
-        trial = _evaluate(lines, trial_poles, weights, powers)
+        trial_poles = state.poles + _solve_step(state.step, damping)
+        trial = _at(problem, decaying(trial_poles, state.poles, problem.axis.decay))
         if trial.cost <= state.cost:
             gain, rest = state.cost - trial.cost, max(tolerance[0] * state.cost, tolerance[1])
-            poles, state, damping = trial_poles, trial, max(0.1 * damping, 1e-12)
+            state, damping = trial, max(0.1 * damping, 1e-12)
             if gain < rest:
-                return poles, True
+                return state, True
         else:
             damping *= 10.0
             if damping > 1e8:
-                return poles, True
-    return poles, False
+                return state, True
+    return state, False
 
 
 def _solve_step(state: Step, damping: float) -> ComplexArray:
@@ -162,16 +191,29 @@ def decaying(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexA
     return np.asarray(real + 1j * imag)
 
 
-def _pieces(
-    lines: Lines, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
-) -> tuple[basis.Basis, grams.Grams, FloatArray, FloatArray]:
-    """Return the basis, its products, the linear solution and how the linear unknowns follow the slopes."""
-    columns = basis.build(lines.axis, poles, powers)
-    products = grams.form(np.hstack([columns.linear, columns.slopes]), lines.values, weights)
-    k = columns.linear.shape[1]
-    solution = grams.solve(products.gram[:, :k, :k], products.cross[:, :k, None])[:, :, 0]
-    follow = grams.solve(products.gram[:, :k, :k], products.gram[:, :k, k:])
-    return columns, products, solution, follow
+def _at(problem: _Problem, poles: ComplexArray) -> _State:
+    """Project the linear unknowns out at given poles."""
+    columns = basis.build(problem.axis, poles, problem.powers)
+    products, level = grams.form(columns.columns, problem.data), problem.data.weights.level
+    solution, follow = _projection(products, columns.n_linear)
+    return _State(
+        poles,
+        _step(products, solution, follow, level, len(poles)),
+        products,
+        follow,
+        columns.term_scale,
+        level,
+    )
+
+
+def _projection(products: grams.Grams, k: int) -> tuple[FloatArray, FloatArray]:
+    """Return the linear solution, (n_frf, k), and how it follows the slope columns, (n_frf or 1, k, rest)."""
+    here, across = products.gram[:, :k, :k], products.gram[:, :k, k:]
+    if len(here) < len(products.cross):
+        solution = grams.solve(here, products.cross[:, :k, None])[:, :, 0]
+        return solution, grams.solve(here, across)
+    both = grams.solve(here, np.concatenate([products.cross[:, :k, None], across], axis=2))
+    return both[:, :, 0], both[:, :, 1:]
 
 
 def scores(
@@ -186,7 +228,8 @@ def scores(
     normal : (n_frf, n_modes, 2, 2) array
         J^T J of the same [s^2/rad^2].
     """
-    _, products, solution, follow = _pieces(Lines.of(frfs), poles, weights, powers)
+    state = _at(_Problem.of(Lines.of(frfs), weights, powers), poles)
+    products, solution, follow = state.products, state.step.solution, state.follow
     n, k = len(poles), solution.shape[1]
     between = np.broadcast_to(products.gram[:, :k, k:], (len(solution), k, 2 * n))
     projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
@@ -240,28 +283,18 @@ def pole_turns(solution: FloatArray, n_modes: int) -> FloatArray:
 
 def evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]) -> Step:
     """Project the linear unknowns out at given poles; parameters as for :func:`refine`."""
-    few, few_weights = thinned(frfs, poles, weights)
-    return _evaluate(few, poles, few_weights, powers)
+    return _at(_Problem.of(*thinned(frfs, poles, weights), powers), poles).step
 
 
-def _evaluate(lines: Lines, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]) -> Step:
-    _, products, solution, follow = _pieces(lines, poles, weights, powers)
-    return _step(products, solution, follow, weights, len(poles))
-
-
-def _step(
-    products: grams.Grams, solution: FloatArray, follow: FloatArray, weights: grams.Weights, n: int
-) -> Step:
+def _step(products: grams.Grams, solution: FloatArray, follow: FloatArray, level: FloatArray, n: int) -> Step:
     k = solution.shape[1]
-    cost = float(weights.level @ (products.power - np.einsum("jk,jk->j", products.cross[:, :k], solution)))
+    cost = float(level @ (products.power - np.einsum("jk,jk->j", products.cross[:, :k], solution)))
     between = products.gram[:, :k, k:]
     projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, follow)
     carried = solution @ between[0] if len(between) == 1 else np.einsum("jk,jkm->jm", solution, between)
     turns = pole_turns(solution, n)
-    gradient = np.einsum(
-        "j,jni,jnia->na", weights.level, (products.cross[:, k:] - carried).reshape(-1, n, 2), turns
-    )
-    normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, weights.level)
+    gradient = np.einsum("j,jni,jnia->na", level, (products.cross[:, k:] - carried).reshape(-1, n, 2), turns)
+    normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, level)
     return Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
 
 
@@ -281,24 +314,28 @@ def fit_at(
     frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...], converged: bool
 ) -> Fit:
     """Return the fit at given poles, rising in frequency; parameters as for :func:`refine`."""
-    order = np.argsort(np.abs(poles))
-    poles = poles[order]
-    n = len(poles)
-    columns, products, solution, follow = _pieces(Lines.of(frfs), poles, weights, powers)
-    state = _step(products, solution, follow, weights, n)
+    return _fit(_at(_Problem.of(Lines.of(frfs), weights, powers), poles), powers, converged)
+
+
+def _fit(state: _State, powers: tuple[int, ...], converged: bool) -> Fit:
+    """Return the fit at a state, poles rising in frequency."""
+    n, solution = len(state.poles), state.step.solution
     k = solution.shape[1]
+    order = np.argsort(np.abs(state.poles))
+    both = (2 * order[:, None] + np.arange(2)).ravel()
+    linear = np.concatenate([both, np.arange(2 * n, k)])
+    blocks = state.follow.reshape(len(state.follow), k, n, 2)
     turns = pole_turns(solution, n)
-    blocks = follow.reshape(len(follow), k, n, 2)
     gain = -np.einsum("jkni,jnia->jkna", np.broadcast_to(blocks, (len(solution), k, n, 2)), turns)
-    inverse = _inverse_diagonal(products.gram[:, :k, :k])
-    held = np.broadcast_to(inverse, solution.shape) / (2.0 * weights.level[:, None])
+    inverse = _inverse_diagonal(state.products.gram[:, :k, :k])
+    held = np.broadcast_to(inverse, solution.shape) / (2.0 * state.level[:, None])
     return Fit(
-        poles,
-        unpack(solution, n, columns.term_scale, powers),
+        state.poles[order],
+        unpack(solution[:, linear], n, state.term_scale, powers),
         state.cost,
-        2.0 * state.normal,
-        gain.reshape(len(solution), k, 2 * n),
-        held,
+        2.0 * state.step.normal[np.ix_(both, both)],
+        gain.reshape(len(solution), k, 2 * n)[:, linear[:, None], both],
+        held[:, linear],
         converged,
     )
 

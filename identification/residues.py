@@ -65,7 +65,8 @@ def fit_residues(
         Residues and residual terms.
     """
     columns = basis.build(basis.Axis.of(frfs), poles, powers)
-    products = grams.form(columns.linear, frfs.values, weights or uniform_weights(frfs))
+    data = grams.prepared(frfs.values, weights or uniform_weights(frfs))
+    products = grams.form(columns.linear, data)
     solution = grams.solve(products.gram, products.cross[:, :, None])[:, :, 0]
     return unpack(solution, len(poles), columns.term_scale, powers)
 

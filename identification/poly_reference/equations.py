@@ -73,7 +73,7 @@ class Step:
 
 
 @dataclass(frozen=True, eq=False)
-class _Projected:
+class Projected:
     """Products of the columns left once those are eliminated whose factor is each FRF's own.
 
     The columns left are the modes held to rank one, then the slopes by all poles. Eliminated are the free
@@ -88,21 +88,22 @@ class _Projected:
     term_scale: FloatArray
 
 
-def _project(problem: Problem, poles: ComplexArray, n_held: int) -> _Projected:
+def project(problem: Problem, poles: ComplexArray, n_held: int) -> Projected:
+    """Eliminate at given poles, the first ``n_held`` of rank one, what each FRF has alone."""
     few, weights = thinned(problem.frfs, poles, problem.weights)
     columns = basis.build(few.axis, poles, problem.powers)
     shared, own = columns.modes[:, : 2 * n_held], columns.modes[:, 2 * n_held :]
     both = np.hstack([shared, columns.slopes, own, columns.terms])
-    data = few.values * problem.places.sign[:, None]
-    p, k = grams.form(both, data, weights), 2 * n_held + columns.slopes.shape[1]
+    data = grams.prepared(few.values * problem.places.sign[:, None], weights)
+    p, k = grams.form(both, data), 2 * n_held + columns.slopes.shape[1]
     follow = grams.solve(p.gram[:, k:, k:], p.gram[:, k:, :k])
     alone = grams.solve(p.gram[:, k:, k:], p.cross[:, k:, None])[:, :, 0]
-    each = np.broadcast_to(follow, (len(data), *follow.shape[1:]))
+    each = np.broadcast_to(follow, (len(p.cross), *follow.shape[1:]))
     gram = p.gram[:, :k, :k] - np.matmul(p.gram[:, :k, k:], follow)
     cross = p.cross[:, :k] - np.einsum("jt,jtk->jk", p.cross[:, k:], each)
     power = weights.level @ (p.power - np.einsum("jt,jt->j", p.cross[:, k:], alone))
-    gram = np.broadcast_to(gram, (len(data), k, k))
-    return _Projected(gram, cross, float(power), alone, each, columns.term_scale)
+    gram = np.broadcast_to(gram, (len(p.cross), k, k))
+    return Projected(gram, cross, float(power), alone, each, columns.term_scale)
 
 
 def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step:
@@ -119,29 +120,28 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
     """
     places, level = problem.places, problem.weights.level
     n_held = share.shape[1]
-    m, left = 2 * n_held, _project(problem, poles, n_held)
+    m, left = 2 * n_held, project(problem, poles, n_held)
     own = rotations(share)[places.column]
     right = times_blocks(left.gram[:, :, :m], own)
-    held, long = _shapes(problem, left, own, right)
+    held, long = _shapes(problem, left, own, right[:, :m])
     here = long[places.row]
-    factors = np.einsum("jnab,jnb->jna", own, here.reshape(-1, n_held, 2)).reshape(-1, m)
-    cost = left.power - float(np.einsum("jk,jk,j->", left.cross[:, :m], factors, level))
+    factors, cost = _factors(problem, left, own, here)
     alone = left.alone - np.einsum("jtk,jk->jt", left.each[:, :, :m], factors)
     n_own = 2 * (len(poles) - n_held)
     every = np.hstack([factors, alone[:, :n_own]])
     steps = _local_slopes(every, here, len(poles), n_held)
     across = steps.transpose(0, 2, 1)
-    misfit = left.cross - np.einsum("jkm,jm->jk", left.gram[:, :, :m], factors)
+    lacking = left.cross - np.einsum("jkm,jm->jk", left.gram[:, :, :m], factors)
     normal, gradient, coupling = _gathered(
         problem,
         np.matmul(across, np.matmul(left.gram, steps)) * level[:, None, None],
-        np.einsum("jpk,jk->jp", across, misfit) * level[:, None],
+        np.einsum("jpk,jk->jp", across, lacking) * level[:, None],
         np.matmul(across, right) * level[:, None, None],
     )
     follow = np.matmul(held, coupling.transpose(0, 2, 1))
     normal = normal - np.einsum("ipm,imq->pq", coupling, follow, optimize=True)
     return Step(
-        cost=max(cost, 0.0),
+        cost=cost,
         long=long,
         residues=paired(every),
         terms=alone[:, n_own:] * left.term_scale,
@@ -153,17 +153,35 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
 
 
 def _shapes(
-    problem: Problem, left: _Projected, own: FloatArray, right: FloatArray
+    problem: Problem, left: Projected, own: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the inverse of each row's normal matrix and its best shape components."""
     row, level = problem.places.row, problem.weights.level
     m = right.shape[-1]
     normal = np.zeros((problem.places.shape[0], m, m))
-    np.add.at(normal, row, level[:, None, None] * blocks_times(own, right[:, :m]))
+    np.add.at(normal, row, level[:, None, None] * blocks_times(own, right))
     target = np.zeros((len(normal), m))
     np.add.at(target, row, level[:, None] * blocks_times(own, left.cross[:, :m, None])[:, :, 0])
     held = inverses(normal)
     return held, np.einsum("imk,ik->im", held, target)
+
+
+def _factors(
+    problem: Problem, left: Projected, own: FloatArray, here: FloatArray
+) -> tuple[FloatArray, float]:
+    """Return what each FRF's columns held to rank one are multiplied by, (n_frf, 2 n_held), and the misfit."""
+    n_held = own.shape[1]
+    factors = np.einsum("jnab,jnb->jna", own, here.reshape(-1, n_held, 2)).reshape(-1, 2 * n_held)
+    each = np.einsum("jk,jk->j", left.cross[:, : 2 * n_held], factors)
+    return factors, max(left.power - float(each @ problem.weights.level), 0.0)
+
+
+def misfit(problem: Problem, left: Projected, share: ComplexArray) -> float:
+    """Return the misfit with other participations at the poles of a projection, shapes following [-]."""
+    m = 2 * share.shape[1]
+    own = rotations(share)[problem.places.column]
+    _, long = _shapes(problem, left, own, times_blocks(left.gram[:, :m, :m], own))
+    return _factors(problem, left, own, long[problem.places.row])[1]
 
 
 def _local_slopes(factors: FloatArray, long: FloatArray, n_modes: int, n_held: int) -> FloatArray:

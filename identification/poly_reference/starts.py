@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from identification import grams
-from identification.poly_reference.equations import Problem, evaluate
+from identification.poly_reference.equations import Problem, misfit, project
 from identification.poly_reference.places import Sorted
 
 _CLOSE = 3.0  # poles nearer than this many half-power half-widths share their residues at will
@@ -55,18 +55,22 @@ def untangled(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Com
     share : (n_columns, n_held) complex array
         Participations, 1 at the lead references [-].
     """
-    best, cost = share, np.inf
-    for a, b in combinations(range(share.shape[1]), 2):
-        if abs(poles[a] - poles[b]) > _CLOSE * max(-poles[a].real, -poles[b].real):
-            continue
-        if np.isinf(cost):
-            cost = evaluate(problem, poles, best).cost
+    near = [
+        (a, b)
+        for a, b in combinations(range(share.shape[1]), 2)
+        if abs(poles[a] - poles[b]) <= _CLOSE * max(-poles[a].real, -poles[b].real)
+    ]
+    if not near:
+        return share
+    left = project(problem, poles, share.shape[1])
+    best, cost = share, misfit(problem, left, share)
+    for a, b in near:
         for first, second in _directions(best[:, [a, b]]):
             trial = best.copy()
             for mode, direction in ((a, first), (b, second)):
                 lead = direction[np.flatnonzero(~problem.free[:, mode])[0]]
                 trial[:, mode] = direction / lead if abs(lead) > _SMALL else best[:, mode]
-            found = evaluate(problem, poles, trial).cost
+            found = misfit(problem, left, trial)
             if found < cost:
                 best, cost = trial, found
     return best

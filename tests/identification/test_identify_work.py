@@ -1,0 +1,65 @@
+"""How much work an identification is: counted, not timed."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+from identification_cases import bench, column, lines, structure
+from threadpoolctl import threadpool_info, threadpool_limits
+
+from identification import basis, grams, identify
+
+REFERENCES = (4, 9, 17)
+
+
+@pytest.fixture
+def bases(monkeypatch) -> list[int]:
+    """Collect the number of poles at which columns over all lines were formed."""
+    found: list[int] = []
+    build = basis.build
+
+    def counted(axis, poles, terms):
+        found.append(len(poles))
+        return build(axis, poles, terms)
+
+    monkeypatch.setattr(basis, "build", counted)
+    return found
+
+
+def test_one_thread_whatever_the_caller_has(monkeypatch):
+    """Matrices of some 50 columns: two threads take several times the processor time of one."""
+    threads, module = [], sys.modules["identification.identify"]
+    fit = module.fit_modes
+
+    def seen(*args, **kwargs):
+        threads.extend(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
+        return fit(*args, **kwargs)
+
+    monkeypatch.setattr(module, "fit_modes", seen)
+    truth = structure((120.0, 200.0), (0.006, 0.005), 6, seed=21)
+    frfs = truth.frfs(lines(high=300.0), column(6), noise=0.003, rng=np.random.default_rng(1))
+    with threadpool_limits(2, user_api="blas"):
+        identify(frfs)
+    assert set(threads) == {1}
+
+
+def test_products_of_columns_with_a_row_of_weights_each():
+    rng = np.random.default_rng(3)
+    columns = rng.standard_normal((700, 9)) + 1j * rng.standard_normal((700, 9))
+    weights = rng.uniform(0.1, 2.0, (40, 700))
+    real = np.concatenate([columns.real, columns.imag])
+    found = grams.products(real, weights)
+    exact = np.einsum("la,jl,lb->jab", columns.conj(), weights, columns).real
+    np.testing.assert_allclose(found, exact, rtol=1e-11, atol=1e-11)
+    np.testing.assert_allclose(found[:5], grams.products(real, weights[:5]), rtol=1e-11, atol=1e-11)
+
+
+def test_close_modes_of_several_references_are_told_apart_by_one_set_of_sums(bases):
+    truth = bench(seed=2)
+    pairs = [(i, j) for j in REFERENCES for i in range(1, 26)]
+    frfs = truth.frfs(lines(), pairs, noise=0.01, rng=np.random.default_rng(2))
+    model = identify(frfs, band=(300.0, 600.0))
+    assert len(model) == 5
+    assert len(bases) < 60
