@@ -43,7 +43,9 @@ def common_factors(
     columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers)
     extra = np.zeros((2 * n, 2 * n))
     for rows, b in zip(noise.groups, noise.variance, strict=True):
-        capped = np.minimum(b, 1.0 / np.maximum((np.abs(model[rows]) ** 2 / variance[rows]).max(axis=0), 1e-300))
+        capped = np.minimum(
+            b, 1.0 / np.maximum((np.abs(model[rows]) ** 2 / variance[rows]).max(axis=0), 1e-300)
+        )
         together, alone = _pulls(fit, weights, columns, rows, model[rows])
         half = np.sqrt(capped)[:, None] * together
         extra += (half.conj().T @ half).real - np.diag(capped @ alone)
@@ -62,6 +64,7 @@ def _pulls(
     """
     n, k = len(fit.poles), columns.linear.shape[1]
     both = np.hstack([columns.linear, columns.slopes])
+    real = np.concatenate([both.real, both.imag])
     residues = fit.linear.residues[rows]
     turns = pole_turns(np.stack([residues.real, residues.imag], axis=2).reshape(len(rows), -1), n)
     lines = weights.lines if len(weights.lines) == 1 else weights.lines[rows]
@@ -70,7 +73,7 @@ def _pulls(
     slopes = np.zeros(0)
     for j, h in enumerate(model):
         if j < len(lines):
-            gram = grams.form(both, np.zeros((1, len(both)), np.complex128), grams.Weights(np.ones(1), lines[[j]])).gram
+            gram = grams.products(real, lines[[j]])
             follow = grams.solve(gram[:, :k, :k], gram[:, :k, k:])[0]
             slopes = lines[j][:, None] * (columns.slopes - columns.linear @ follow).conj()
         pull = np.einsum("lni,nia->lna", slopes.reshape(-1, n, 2), turns[j]).reshape(-1, 2 * n)

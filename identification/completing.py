@@ -142,6 +142,15 @@ def halves(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
     return None
 
 
+def without_halves(frfs: FrfSet, fit: Fit) -> Fit:
+    """Make one of poles that are the halves of one mode."""
+    while (pair := halves(frfs, fit)) is not None:
+        rest = np.delete(fit.poles, pair[0])
+        weights, powers = search_weights(frfs, fit), fit.linear.powers
+        fit = refine(frfs, rest, weights, powers=powers, iterations=SHORT, tolerance=COARSE)
+    return fit
+
+
 def pruned(
     frfs: FrfSet, fit: Fit, weights: Weights, band: tuple[float, float], *, iterations: int, tolerance: float
 ) -> Fit:

@@ -99,7 +99,7 @@ def _shifted(fitted: Fitted, apart: Disagreement) -> FloatArray:
     n = len(fit.poles)
     gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(-1, n, n, 2)
     own = np.einsum("jnna->jna", gain)
-    shift = np.einsum("jna,nab,jnb->jn", own, apart.each, own)
+    shift = np.einsum("jna,jnab,jnb->jn", own, apart.each, own)
     return np.asarray((2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0))
 
 
@@ -127,7 +127,18 @@ def own_errors(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> Fl
 
 
 def disagreement(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Disagreement:
-    """Return how far the FRFs disagree on each pole, beyond what the noise factors allow."""
-    fit = fitted.fit
-    gradient, normal = scores(frfs, fit.poles, fitted.weights, fit.linear.powers)
-    return between_frfs(gradient, normal, factors.poles)
+    """Return how far the FRFs disagree on each pole, beyond what the noise factors allow.
+
+    What the drift explains was taken out before; what its estimate leaves in doubt comes on top: of the mean, as there
+    are only so many set-ups, and of each FRF's own shift.
+    """
+    poles = fitted.fit.poles
+    gradient, normal = scores(frfs, poles, fitted.weights, fitted.fit.linear.powers)
+    left = between_frfs(gradient, normal, factors.poles)
+    drift, way = fitted.drift.at(poles), np.stack([poles.real, poles.imag], axis=1)
+    along = way[:, :, None] * way[:, None, :]
+    return Disagreement(
+        left.mean + along * drift.mean_variance[:, None, None],
+        left.each + along * drift.doubt[:, :, None, None],
+        left.scatter + along * drift.variance[:, None, None],
+    )

@@ -20,12 +20,15 @@ class Disagreement:
     ----------
     mean : (n_modes, 2, 2) array
         Variance it gives the common pole, (Re, Im) [rad^2/s^2].
-    each : (n_modes, 2, 2) array
-        Variance of the pole of a single FRF about the common one [rad^2/s^2].
+    each : (n_frf, n_modes, 2, 2) array
+        Variance of the pole of a single FRF about the one it was fitted with [rad^2/s^2].
+    scatter : (n_modes, 2, 2) array
+        Variance of the poles of single FRFs about the common one [rad^2/s^2].
     """
 
     mean: FloatArray
     each: FloatArray
+    scatter: FloatArray
 
 
 def between_frfs(gradient: FloatArray, normal: FloatArray, expected: FloatArray) -> Disagreement:
@@ -49,7 +52,8 @@ def between_frfs(gradient: FloatArray, normal: FloatArray, expected: FloatArray)
     n_frf, n_modes = gradient.shape[:2]
     variance = np.zeros((n_modes, 2))
     if n_frf < 2:
-        return Disagreement(variance[:, :, None] * np.eye(2), variance[:, :, None] * np.eye(2))
+        none = variance[:, :, None] * np.eye(2)
+        return Disagreement(none, none[None], none)
     inverse = np.linalg.pinv(normal, hermitian=True)
     own = np.einsum("jnab,jnb->jna", inverse, gradient)
     chi = 2.0 * np.einsum("jna,jna->n", gradient, own) / expected
@@ -61,7 +65,7 @@ def between_frfs(gradient: FloatArray, normal: FloatArray, expected: FloatArray)
     weight = np.einsum("jnaa->jn", normal)
     share = np.sum(weight**2, axis=0) / np.maximum(weight.sum(axis=0) ** 2, np.finfo(float).tiny)
     each = variance[:, :, None] * np.eye(2)
-    return Disagreement(each * np.minimum(share, 1.0)[:, None, None], each)
+    return Disagreement(each * np.minimum(share, 1.0)[:, None, None], np.tile(each, (n_frf, 1, 1, 1)), each)
 
 
 def scatter_beyond_noise(values: FloatArray, variance: FloatArray) -> FloatArray:

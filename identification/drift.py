@@ -14,14 +14,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frf import FrfSet
 from identification import basis
 from identification.arrangement import arrange
 from identification.disagreement import scatter_beyond_noise
+from identification.grams import Weights
 from identification.refine import Fit, frequency_scores
 from identification.residues import synthesise
-from identification.grams import Weights
 
 _FEW = 3  # groups under which a scatter between them is no estimate
 _LARGEST = 0.02
@@ -35,8 +35,12 @@ class Drift:
 
     Parameters
     ----------
+    poles : (n_modes,) complex array
+        Common poles it was estimated at [rad/s].
     shift : (n_frf, n_modes) array
         Frequency of the mode in that FRF over the common one, less 1 [-].
+    common : (n_frf,) array
+        Part of the shifts that all modes share: what a mode not known yet moves by [-].
     doubt : (n_frf, n_modes) array
         Variance of each shift given the data [-].
     variance : (n_modes,) array
@@ -46,15 +50,34 @@ class Drift:
         deviations are a 95 % interval however few the groups are [-].
     """
 
+    poles: ComplexArray
     shift: FloatArray
+    common: FloatArray
     doubt: FloatArray
     variance: FloatArray
     mean_variance: FloatArray
 
     @classmethod
-    def none(cls, n_frf: int, n_modes: int) -> Drift:
+    def none(cls, n_frf: int, poles: ComplexArray) -> Drift:
         """Return the drift of FRFs that agree."""
-        return cls(np.zeros((n_frf, n_modes)), np.zeros((n_frf, n_modes)), np.zeros(n_modes), np.zeros(n_modes))
+        wide, flat = np.zeros((n_frf, len(poles))), np.zeros(len(poles))
+        return cls(poles, wide, np.zeros(n_frf), wide, flat, flat)
+
+    def at(self, poles: ComplexArray) -> Drift:
+        """Return the drift of other poles: of the nearest known ones, or what all modes share."""
+        if len(self.poles) == 0:
+            return Drift.none(len(self.common), poles)
+        distance = np.abs(poles[:, None] - self.poles[None, :])
+        near = distance.argmin(axis=1)
+        known = distance.min(axis=1) < np.abs(poles.real)
+        return Drift(
+            poles=poles,
+            shift=np.where(known, self.shift[:, near], self.common[:, None]),
+            common=self.common,
+            doubt=np.where(known, self.doubt[:, near], 0.0),
+            variance=np.where(known, self.variance[near], 0.0),
+            mean_variance=np.where(known, self.mean_variance[near], 0.0),
+        )
 
 
 def setups(frfs: FrfSet) -> IntArray:
@@ -72,7 +95,9 @@ def setups(frfs: FrfSet) -> IntArray:
     return label
 
 
-def estimate_drift(frfs: FrfSet, fit: Fit, weights: Weights, *, previous: Drift | None = None) -> Drift:
+def estimate_drift(
+    frfs: FrfSet, fit: Fit, weights: Weights, *, own: BoolArray, previous: Drift | None = None
+) -> Drift:
     """Estimate the shifts from what each FRF says of the frequencies, given those it was carried over by.
 
     Parameters
@@ -83,15 +108,18 @@ def estimate_drift(frfs: FrfSet, fit: Fit, weights: Weights, *, previous: Drift 
         A fit to them.
     weights : Weights
         Reciprocal variances.
+    own : (n_modes,) bool array
+        Which modes may have shifts of their own beside those common to all: poles that share one peak may not,
+        as each would follow what the other leaves.
     previous : Drift, optional
         Shifts taken out already.
     """
     n_frf, n_modes = len(frfs.values), len(fit.poles)
     label = setups(frfs)
     n_groups = int(label.max()) + 1
-    known = Drift.none(n_frf, n_modes) if previous is None else previous
+    known = (Drift.none(n_frf, fit.poles) if previous is None else previous).at(fit.poles)
     if n_groups < _FEW:
-        return Drift.none(n_frf, n_modes)
+        return Drift.none(n_frf, fit.poles)
     gradient, normal = frequency_scores(frfs, fit.poles, weights, fit.linear.powers)
     gradient = gradient + np.einsum("jnm,jm->jn", normal, known.shift)
     pulls, information = np.zeros((n_groups, n_modes)), np.zeros((n_groups, n_modes, n_modes))
@@ -99,15 +127,20 @@ def estimate_drift(frfs: FrfSet, fit: Fit, weights: Weights, *, previous: Drift 
     np.add.at(information, label, 2.0 * normal)
     omega = fit.poles.imag / (2 * np.pi)
     within = (omega >= frfs.frequency[0]) & (omega <= frfs.frequency[-1])
-    own, variance = _own_shifts(pulls, information, within)
-    common, each = _variances(own, variance)
-    prior = common * np.outer(within, within) + np.diag(np.where(within, each, 0.0))
-    given = np.linalg.solve(np.eye(n_modes) + information @ prior, np.broadcast_to(np.eye(n_modes), information.shape))
+    common = _common_variance(pulls @ within, within @ information @ within)
+    each = np.zeros(n_modes)
+    if (own & within).any():
+        each = _own_variances(pulls, information, own & within, common)
+    prior = common * np.outer(within, within) + np.diag(each)
+    given = np.linalg.inv(np.eye(n_modes) + information @ prior)
     posterior = prior @ given
     shift = np.clip(np.einsum("gnm,gm->gn", posterior, pulls), -_LARGEST, _LARGEST)
     total = np.diag(prior)
+    shared = common * np.einsum("gnm,gm->gn", given, pulls) @ within
     return Drift(
+        poles=fit.poles,
         shift=shift[label],
+        common=np.clip(shared, -_LARGEST, _LARGEST)[label],
         doubt=np.einsum("gnn->gn", posterior)[label],
         variance=total,
         mean_variance=total * _of_the_mean(np.einsum("gnn->gn", information)),
@@ -115,7 +148,7 @@ def estimate_drift(frfs: FrfSet, fit: Fit, weights: Weights, *, previous: Drift 
 
 
 def _own_shifts(
-    pulls: FloatArray, information: FloatArray, within: np.ndarray
+    pulls: FloatArray, information: FloatArray, within: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return each group's own shifts and their variances, infinite where it tells nothing, (n_groups, n_modes)."""
     diagonal = np.einsum("gnn->gn", information)
@@ -129,18 +162,25 @@ def _own_shifts(
     return np.where(seen, own, 0.0), np.where(seen & (variance > 0), variance, np.inf)
 
 
-def _variances(own: FloatArray, variance: FloatArray) -> tuple[float, FloatArray]:
-    """Return the variance of the shifts common to all modes, and that of each mode beside it, (n_modes,) [-]."""
-    weight = 1.0 / variance
-    total = weight.sum(axis=1)
-    mean = np.sum(weight * own, axis=1) / np.where(total > 0, total, 1.0)
-    of_mean = np.where(total > 0, 1.0 / np.where(total > 0, total, 1.0), np.inf)
-    common = float(scatter_beyond_noise(mean[:, None], of_mean[:, None])[0])
-    if own.shape[1] == 1 or np.isfinite(of_mean).sum() < _FEW:
-        common = 0.0
-    taken = mean * common / (common + np.where(np.isfinite(of_mean), of_mean, 1.0))
-    each = scatter_beyond_noise(own - taken[:, None], variance)
-    return common, np.where(np.isfinite(variance).sum(axis=0) < _FEW, 0.0, each)
+def _common_variance(pulls: FloatArray, information: FloatArray) -> float:
+    """Return the variance of the shifts common to all modes [-]."""
+    seen = information > 0
+    if seen.sum() < _FEW:
+        return 0.0
+    return float(
+        scatter_beyond_noise((pulls[seen] / information[seen])[:, None], 1.0 / information[seen][:, None])[0]
+    )
+
+
+def _own_variances(pulls: FloatArray, information: FloatArray, own: BoolArray, common: float) -> FloatArray:
+    """Return the variances of the shifts that each mode has beside the common ones, (n_modes,) [-]."""
+    shifts, variance = _own_shifts(pulls, information, own)
+    weight = 1.0 / (variance + common)
+    mean = np.sum(weight * shifts, axis=1) / np.maximum(weight.sum(axis=1), np.finfo(float).tiny)
+    each = scatter_beyond_noise(
+        shifts - (mean if own.sum() > 1 and common > 0 else 0.0 * mean)[:, None], variance
+    )
+    return np.where(np.isfinite(variance).sum(axis=0) < _FEW, 0.0, each)
 
 
 def _of_the_mean(information: FloatArray) -> FloatArray:

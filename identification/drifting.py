@@ -14,6 +14,9 @@ from acquisition.frf import FORMS, FrfSet
 from identification.grams import Weights
 
 _CLOSE = 2.5  # half-power half-widths between poles that may be one mode
+_UNEQUAL = 8.0
+"""Ratio of half-widths beyond which two poles are not parts of one mode [-]: drift spreads a mode over poles of
+about its own width. Half of it would part the narrow and the wide half of a mode that is spread unevenly."""
 _REACH = 6.0  # half-widths about them over which the FRFs are compared
 _STEPS = 10
 _DOUBT = 3.0  # standard deviations of chi-squared by which one pole each may fit worse
@@ -32,6 +35,8 @@ def clusters(poles: ComplexArray, apart: BoolArray | None = None) -> list[IntArr
     """
     width = np.maximum(np.abs(poles.real)[:, None], np.abs(poles.real)[None, :])
     linked = np.abs(poles[:, None] - poles[None, :]) < _CLOSE * width
+    narrow = np.minimum(np.abs(poles.real)[:, None], np.abs(poles.real)[None, :])
+    linked &= width < _UNEQUAL * narrow
     if apart is not None:
         linked &= ~apart
     reached = linked

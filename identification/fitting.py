@@ -11,7 +11,9 @@ from scipy import stats
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frf import FrfSet
 from identification import background, fading, overrule
-from identification.completing import COARSE, SHORT, completed, halves, pruned
+from identification.aligning import aligned, distinct
+from identification.completing import COARSE, SHORT, completed, halves, pruned, without_halves
+from identification.drift import Drift, carried_over, estimate_drift
 from identification.grams import Weights
 from identification.poly_reference import RankOne, hold_to_rank_one, sorted_frfs
 from identification.pruning import inside
@@ -43,6 +45,10 @@ class Fitted:
         Part of each line's power the linear unknowns absorb [-].
     measured : bool
         Whether the variance came with the data; if not it was estimated from the residual.
+    frfs : FrfSet
+        The FRFs carried over to common poles: what was fitted.
+    drift : Drift
+        How the frequencies of each FRF differ from the common ones.
     held : RankOne, optional
         The fit's factors, where its residues were held to rank one.
     rank_excess : float
@@ -56,6 +62,8 @@ class Fitted:
     residual: ComplexArray
     absorbed: FloatArray
     measured: bool
+    frfs: FrfSet
+    drift: Drift
     held: RankOne | None = None
     rank_excess: float = 0.0
 
@@ -100,12 +108,17 @@ def fit_modes(
     weights = search_weights(frfs, fit)
     fit = refine(frfs, fit.poles, weights, powers=ladder[0], iterations=SHORT, tolerance=COARSE)
     fit = pruned(frfs, fit, weights, band, iterations=SHORT, tolerance=COARSE)
-    fit = completed(frfs, fit, band, ladder)
-    fit = _without_broad(frfs, fit, band, ladder)
-    fitted = _weighted(frfs, _without_halves(frfs, fit), band)
-    while halves(frfs, fitted.fit) is not None:
-        fitted = _weighted(frfs, _without_halves(frfs, fitted.fit), band)
-    return _held(frfs, _with_added(frfs, fitted, add, band), band)
+    data, fit, drift = aligned(frfs, fit)
+    fit = completed(data, fit, band, ladder)
+    if drift.variance.any():
+        data, fit, drift = aligned(frfs, without_halves(data, fit), drift)
+    fit = _without_broad(data, fit, band, ladder)
+    fitted = _weighted(frfs, without_halves(data, fit), drift, band)
+    while halves(fitted.frfs, fitted.fit) is not None:
+        fit = without_halves(fitted.frfs, fitted.fit)
+        fitted = _weighted(frfs, fit, fitted.drift, band)
+    data = fitted.frfs
+    return _held(data, _with_added(data, fitted, add, band), band)
 
 
 def _with_added(frfs: FrfSet, fitted: Fitted, hertz: Sequence[float], band: tuple[float, float]) -> Fitted:
@@ -138,15 +151,6 @@ def _held(frfs: FrfSet, fitted: Fitted, band: tuple[float, float]) -> Fitted:
     return replace(result, residual=left_over(frfs, held.fit))
 
 
-def _without_halves(frfs: FrfSet, fit: Fit) -> Fit:
-    """Make one of poles that are the halves of one mode."""
-    while (pair := halves(frfs, fit)) is not None:
-        rest = np.delete(fit.poles, pair[0])
-        weights, powers = search_weights(frfs, fit), fit.linear.powers
-        fit = refine(frfs, rest, weights, powers=powers, iterations=SHORT, tolerance=COARSE)
-    return fit
-
-
 def _without_broad(
     frfs: FrfSet, fit: Fit, band: tuple[float, float], ladder: tuple[tuple[int, ...], ...]
 ) -> Fit:
@@ -173,15 +177,19 @@ def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArr
     return np.asarray(inside(poles, band, df) & (-poles.real / np.pi > _BROAD * (band[1] - band[0])))
 
 
-def _weighted(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fitted:
-    """Weigh by the noise itself and refine until both agree."""
-    weights = search_weights(frfs, fit)
+def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -> Fitted:
+    """Weigh by the noise itself, carry over to common poles and refine until all agree."""
+    data = carried_over(frfs, fit, drift.at(fit.poles))
+    weights = search_weights(data, fit)
     for tolerance in (COARSE, COARSE, _FINE):
-        residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
-        weights, variance, measured = noise_weights(frfs, residual, absorbed)
+        residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
+        weights, variance, measured = noise_weights(data, residual, absorbed)
         powers = fit.linear.powers
         fit = refine(
-            frfs, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance, enough=_AT_REST
+            data, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance, enough=_AT_REST
         )
-        fit = pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=tolerance)
-    return Fitted(fit, weights, variance, left_over(frfs, fit), absorbed_by(frfs, fit, weights), measured)
+        fit = pruned(data, fit, weights, band, iterations=_LONG, tolerance=tolerance)
+        drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
+        data = carried_over(frfs, fit, drift)
+    residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
+    return Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)

@@ -153,8 +153,8 @@ def _assemble(
     sign = signs(data)
     poles: ComplexArray = fit.poles[own]
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
-    factors = covariance.noise_factors(data, fitted, modes)
-    apart = covariance.disagreement(data, fitted, factors)
+    factors = covariance.noise_factors(fitted.frfs, fitted, modes)
+    apart = covariance.disagreement(fitted.frfs, fitted, factors)
     sigma = covariance.constant_statistics(fitted, factors, apart)[:, own]
     spread = covariance.pole_statistics(fitted, factors, apart)[own]
     alone = _alone(data, fitted, own, sigma) * np.sqrt(factors.shapes[own])
@@ -163,7 +163,7 @@ def _assemble(
     if fitted.held is not None:
         noise = np.sqrt(np.maximum(alone**2 - np.sum(shared**2, axis=2), noise**2))
     shapes = mode_shapes(data, constants, alone)
-    scatter = np.sqrt(apart.each[own, 1, 1])
+    scatter = np.sqrt(apart.scatter[own, 1, 1])
     said = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
     return ModalModel(

@@ -228,18 +228,25 @@ def scores(
     normal : (n_frf, n_modes, 2, 2) array
         J^T J of the same [s^2/rad^2].
     """
-    state = _at(_Problem.of(Lines.of(frfs), weights, powers), poles)
-    products, solution, follow = state.products, state.step.solution, state.follow
-    n, k = len(poles), solution.shape[1]
-    between = np.broadcast_to(products.gram[:, :k, k:], (len(solution), k, 2 * n))
-    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
-    own = np.einsum("jninm->jnim", projected.reshape(-1, n, 2, n, 2))
-    left = (products.cross[:, k:] - np.einsum("jk,jkm->jm", solution, between)).reshape(-1, n, 2)
-    turns = pole_turns(solution, n)
+    left, projected, turns = _of_each(_at(_Problem.of(Lines.of(frfs), weights, powers), poles))
+    own = np.broadcast_to(np.einsum("jninm->jnim", projected), (len(left), *projected.shape[1:3], 2))
     gradient = np.einsum("j,jni,jnia->jna", weights.level, left, turns)
-    own = np.broadcast_to(own, (len(solution), n, 2, 2))
     normal = np.einsum("j,jnia,jnim,jnmb->jnab", weights.level, turns, own, turns, optimize=True)
     return gradient, normal
+
+
+def _of_each(state: _State) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what is left of each FRF along the slope columns, their products, and the turns to the poles.
+
+    The linear unknowns are projected out: (n_frf, n, 2), (n_frf or 1, n, 2, n, 2) and (n_frf, n, 2, 2).
+    """
+    products, solution = state.products, state.step.solution
+    n, k = len(state.poles), solution.shape[1]
+    between = products.gram[:, :k, k:]
+    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, state.follow)
+    carried = solution @ between[0] if len(between) == 1 else np.einsum("jk,jkm->jm", solution, between)
+    left = (products.cross[:, k:] - carried).reshape(-1, n, 2)
+    return left, projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
 
 
 def frequency_scores(
@@ -256,18 +263,16 @@ def frequency_scores(
     normal : (n_frf, n_modes, n_modes) array
         J^T J of the same [-].
     """
-    few, few_weights = thinned(frfs, poles, weights)
-    _, products, solution, follow = _pieces(few, poles, few_weights, powers)
-    n, k = len(poles), solution.shape[1]
-    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", products.gram[:, :k, k:], follow)
-    between = np.broadcast_to(products.gram[:, :k, k:], (len(solution), k, 2 * n))
-    left = products.cross[:, k:] - np.einsum("jk,jkm->jm", solution, between)
-    along = np.stack([poles.real, poles.imag], axis=1)
-    turned = np.einsum("jnia,na->jni", pole_turns(solution, n), along)
-    gradient = np.einsum("j,jni,jni->jn", few_weights.level, left.reshape(-1, n, 2), turned)
-    own = np.broadcast_to(projected.reshape(-1, n, 2, n, 2), (len(solution), n, 2, n, 2))
-    normal = np.einsum("j,jni,jnimb,jmb->jnm", few_weights.level, turned, own, turned, optimize=True)
-    return gradient, np.asarray(normal)
+    problem = _Problem.of(*thinned(frfs, poles, weights), powers)
+    left, projected, turns = _of_each(_at(problem, poles))
+    turned = np.einsum("jnia,na->jni", turns, np.stack([poles.real, poles.imag], axis=1))
+    level = problem.data.weights.level
+    gradient = np.einsum("j,jni,jni->jn", level, left, turned)
+    if len(projected) == 1:
+        half = np.einsum("nimb,jmb->jnim", projected[0], turned, optimize=True)
+    else:
+        half = np.einsum("jnimb,jmb->jnim", projected, turned, optimize=True)
+    return gradient, np.einsum("j,jni,jnim->jnm", level, turned, half, optimize=True)
 
 
 def pole_turns(solution: FloatArray, n_modes: int) -> FloatArray:
