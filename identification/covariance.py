@@ -124,8 +124,6 @@ def own_errors(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> Fl
     return np.asarray(np.sqrt(held * factors.held + _shifted(fitted, apart)))
 
 
-def disagreement(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Disagreement:
+def disagreement(fitted: Fitted, factors: NoiseFactors) -> Disagreement:
     """Return how far the FRFs disagree on each pole, beyond what the noise factors allow."""
-    fit = fitted.fit
-    gradient, normal = scores(frfs, fit.poles, fitted.weights, fit.linear.powers)
-    return between_frfs(gradient, normal, factors.poles)
+    return between_frfs(*scores(fitted.fit), factors.poles)

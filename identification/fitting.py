@@ -23,6 +23,7 @@ _LONG = 40
 _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
+_SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,13 +176,17 @@ def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArr
 
 def _weighted(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fitted:
     """Weigh by the noise itself and refine until both agree."""
-    weights = search_weights(frfs, fit)
-    for tolerance in (COARSE, COARSE, _FINE):
-        residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
-        weights, variance, measured = noise_weights(frfs, residual, absorbed)
+    residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, search_weights(frfs, fit))
+    weights, variance, measured = noise_weights(frfs, residual, absorbed)
+    for tolerance in (COARSE, _FINE, _FINE):
         powers = fit.linear.powers
         fit = refine(
             frfs, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance, enough=_AT_REST
         )
         fit = pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=tolerance)
-    return Fitted(fit, weights, variance, left_over(frfs, fit), absorbed_by(frfs, fit, weights), measured)
+        residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
+        fitted = Fitted(fit, weights, variance, residual, absorbed, measured)
+        weights, variance, measured = noise_weights(frfs, residual, absorbed)
+        if tolerance == _FINE and np.abs(np.log(fitted.variance / variance)).max() < _SAME_NOISE:
+            break
+    return fitted
