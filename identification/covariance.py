@@ -126,15 +126,14 @@ def own_errors(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> Fl
     return np.asarray(np.sqrt(held * factors.held + _shifted(fitted, apart)))
 
 
-def disagreement(frfs: FrfSet, fitted: Fitted, factors: NoiseFactors) -> Disagreement:
+def disagreement(fitted: Fitted, factors: NoiseFactors) -> Disagreement:
     """Return how far the FRFs disagree on each pole, beyond what the noise factors allow.
 
     What the drift explains was taken out before; what its estimate leaves in doubt comes on top: of the mean, as there
     are only so many set-ups, and of each FRF's own shift.
     """
     poles = fitted.fit.poles
-    gradient, normal = scores(frfs, poles, fitted.weights, fitted.fit.linear.powers)
-    left = between_frfs(gradient, normal, factors.poles)
+    left = between_frfs(*scores(fitted.fit), factors.poles)
     drift, way = fitted.drift.at(poles), np.stack([poles.real, poles.imag], axis=1)
     along = way[:, :, None] * way[:, None, :]
     return Disagreement(

@@ -25,6 +25,7 @@ _LONG = 40
 _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
+_SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,16 +181,19 @@ def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArr
 def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -> Fitted:
     """Weigh by the noise itself, carry over to common poles and refine until all agree."""
     data = carried_over(frfs, fit, drift.at(fit.poles))
-    weights = search_weights(data, fit)
-    for tolerance in (COARSE, COARSE, _FINE):
-        residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
-        weights, variance, measured = noise_weights(data, residual, absorbed)
+    residual, absorbed = left_over(data, fit), absorbed_by(data, fit, search_weights(data, fit))
+    weights, variance, measured = noise_weights(data, residual, absorbed)
+    for tolerance in (COARSE, _FINE, _FINE):
         powers = fit.linear.powers
         fit = refine(
             data, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance, enough=_AT_REST
         )
         fit = pruned(data, fit, weights, band, iterations=_LONG, tolerance=tolerance)
+        residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
+        fitted = Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
         drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
         data = carried_over(frfs, fit, drift)
-    residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
-    return Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
+        weights, variance, measured = noise_weights(data, left_over(data, fit), absorbed)
+        if tolerance == _FINE and np.abs(np.log(fitted.variance / variance)).max() < _SAME_NOISE:
+            break
+    return replace(fitted, drift=drift)

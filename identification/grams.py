@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,8 +106,13 @@ def form(columns: ComplexArray, data: Data) -> Grams:
     data : Data
         The data, with their weights.
     """
-    real = np.concatenate([columns.real, columns.imag], axis=0)
+    real = stacked(columns)
     return Grams(products(real, data.weights.lines), data.weighted @ real, data.power)
+
+
+def stacked(columns: ComplexArray) -> FloatArray:
+    """Return real over imaginary parts, shape (2 n_lines, n_columns)."""
+    return np.concatenate([columns.real, columns.imag], axis=0)
 
 
 def products(real: FloatArray, lines: FloatArray) -> FloatArray:
@@ -137,22 +143,55 @@ def _products_of_many(real: FloatArray, lines: FloatArray) -> FloatArray:
 
     Those are formed once for all rows of weights, over stretches of lines that stay in cache.
     """
-    n_lines, n = lines.shape[1], real.shape[1]
+    n = real.shape[1]
+    total = np.zeros((len(lines), n * (n + 1) // 2))
+    for part, pairs in _pairs(real):
+        total += lines[:, part] @ pairs.T
+    gram, upper = np.empty((len(lines), n, n)), np.triu_indices(n)
+    gram[:, upper[0], upper[1]] = total
+    gram[:, upper[1], upper[0]] = total
+    return gram
+
+
+def _pairs(real: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
+    """Yield stretches of lines and Re conj(c_a) c_b on them for all columns a <= b, (n_pairs, n_stretch)."""
+    n, n_lines = real.shape[1], len(real) // 2
     both = np.ascontiguousarray(real.T).reshape(n, 2, n_lines)
     start = np.concatenate([[0], np.cumsum(np.arange(n, 0, -1))])
-    total = np.zeros((len(lines), start[-1]))
-    pairs = np.empty((start[-1], _STRETCH))
+    pairs = np.empty((start[-1], min(_STRETCH, n_lines)))
     for first in range(0, n_lines, _STRETCH):
         stretch = both[:, :, first : first + _STRETCH]
         here = pairs[:, : stretch.shape[2]]
         for i in range(n):
             np.multiply(stretch[i, 0], stretch[i:, 0], out=here[start[i] : start[i + 1]])
             here[start[i] : start[i + 1]] += stretch[i, 1] * stretch[i:, 1]
-        total += lines[:, first : first + _STRETCH] @ here.T
-    gram, upper = np.empty((len(lines), n, n)), np.triu_indices(n)
-    gram[:, upper[0], upper[1]] = total
-    gram[:, upper[1], upper[0]] = total
-    return gram
+        yield slice(first, first + here.shape[1]), here
+
+
+def forms(real: FloatArray, half: FloatArray) -> FloatArray:
+    """Return the squared length of each line's columns times a matrix, |c_l B_j|^2, shape (n_rows, n_lines).
+
+    Parameters
+    ----------
+    real : (2 n_lines, n_columns) array
+        The basis C, real parts and then imaginary parts.
+    half : (n_rows, n_columns, m) array
+        The matrices B.
+    """
+    n_lines, n = len(real) // 2, real.shape[1]
+    result = np.empty((len(half), n_lines))
+    if len(half) <= _MANY:
+        for j, matrix in enumerate(half):
+            turned = real @ matrix
+            each = np.einsum("nk,nk->n", turned, turned)
+            result[j] = each[:n_lines] + each[n_lines:]
+        return result
+    upper = np.triu_indices(n)
+    square = np.matmul(half, half.transpose(0, 2, 1))[:, upper[0], upper[1]]
+    square = np.where(upper[0] == upper[1], 1.0, 2.0) * square
+    for part, pairs in _pairs(real):
+        result[:, part] = square @ pairs
+    return result
 
 
 def solve(gram: FloatArray, right: FloatArray) -> FloatArray:

@@ -20,7 +20,7 @@ from acquisition.scatter import variance_of_groups
 from identification import basis, grams
 from identification.poly_reference import sorted_frfs
 from identification.pruning import inverse_information
-from identification.refine import Fit, evaluate, pole_turns
+from identification.refine import Fit, pole_turns
 
 _PRIOR_FREEDOM = 10.0
 _UNSEEN, _LARGEST = 1e-100, 1e8
@@ -101,10 +101,13 @@ def factors(
         return None
     n, places = len(fit.poles), sorted_frfs(frfs)
     point = np.arange(len(frfs.values)) if places is None else places.row
-    columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers)
-    plain = inverse_information(2.0 * evaluate(frfs, fit.poles, weights, fit.linear.powers).normal)
+    columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers).columns
+    real, imaginary = np.ascontiguousarray(columns.real), np.ascontiguousarray(columns.imag)
+    plain = inverse_information(2.0 * fit.equations.step.normal)
     groups = [
-        _moved(frfs, fit, weights, columns, 2.0 * plain, np.asarray(g.rows), np.asarray(g.deviations), point)
+        _moved(
+            fit, weights, (real, imaginary), 2.0 * plain, np.asarray(g.rows), np.asarray(g.deviations), point
+        )
         for g in frfs.scatter.groups
     ]
     steps = [g.steps for g in groups]
@@ -123,28 +126,23 @@ def _of_shapes(groups: list[_Sums]) -> FloatArray:
 
 
 def _moved(
-    frfs: FrfSet,
     fit: Fit,
     weights: grams.Weights,
-    columns: basis.Basis,
+    columns: tuple[FloatArray, FloatArray],
     inverse: FloatArray,
     rows: IntArray,
     deviations: ComplexArray,
     point: IntArray,
 ) -> _Sums:
     """Return what the hits of one group move."""
-    n, k = len(fit.poles), columns.linear.shape[1]
-    lines = weights.lines if len(weights.lines) == 1 else weights.lines[rows]
-    real = np.concatenate([columns.linear, columns.slopes], axis=1)
-    moved = deviations.astype(np.complex128) * lines
-    cross = moved.real @ real.real + moved.imag @ real.imag  # (n_hits, n_rows, k + 2 n)
-    gram = grams.products(np.concatenate([real.real, real.imag]), lines)
-    follow = grams.solve(gram[:, :k, :k], gram[:, :k, k:])
-    hits = len(cross)
-    alone = np.stack([grams.solve(gram[:, :k, :k], cross[h, :, :k, None])[:, :, 0] for h in range(hits)])
-    left = cross[:, :, k:] - np.einsum(
-        "hjk,jkm->hjm", cross[:, :, :k], np.broadcast_to(follow, (len(rows), *follow.shape[1:]))
-    )
+    n, k = len(fit.poles), fit.equations.step.solution.shape[1]
+    each = rows if len(weights.lines) > 1 else np.zeros(1, np.int64)
+    moved = deviations * weights.lines[each]
+    cross = moved.real @ columns[0] + moved.imag @ columns[1]  # (n_hits, n_rows, k + 2 n)
+    gram, follow = fit.equations.products.gram[each, :k, :k], fit.equations.follow[each]
+    by_row, hits = cross.transpose(1, 2, 0), len(cross)
+    alone = grams.solve(gram, by_row[:, :k]).transpose(2, 0, 1)
+    left = (by_row[:, k:] - np.matmul(follow.transpose(0, 2, 1), by_row[:, :k])).transpose(2, 0, 1)
     residues = fit.linear.residues[rows]
     turns = pole_turns(np.stack([residues.real, residues.imag], axis=2).reshape(len(rows), -1), n)
     gradient = np.einsum(

@@ -154,7 +154,7 @@ def _assemble(
     poles: ComplexArray = fit.poles[own]
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
     factors = covariance.noise_factors(fitted.frfs, fitted, modes)
-    apart = covariance.disagreement(fitted.frfs, fitted, factors)
+    apart = covariance.disagreement(fitted, factors)
     sigma = covariance.constant_statistics(fitted, factors, apart)[:, own]
     spread = covariance.pole_statistics(fitted, factors, apart)[own]
     alone = _alone(data, fitted, own, sigma) * np.sqrt(factors.shapes[own])

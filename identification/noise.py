@@ -9,6 +9,7 @@ from scipy import ndimage, stats
 
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frf import FrfSet
+from identification import grams
 from identification.grams import Weights
 
 _CHANCE = 1e-4
@@ -59,17 +60,12 @@ def leverage(columns: ComplexArray, weights: Weights) -> FloatArray:
     """Return which part of each line's power the linear unknowns absorb, shape (n_frf or 1, n_lines) [-]."""
     real = np.concatenate([columns.real, columns.imag])
     real = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
-    result = np.empty(weights.lines.shape)
-    for j, row in enumerate(weights.lines):
-        both = np.concatenate([row, row])
-        gram = (real * both[:, None]).T @ real
-        length = np.sqrt(np.maximum(np.diag(gram), np.finfo(float).tiny))
-        values, vectors = np.linalg.eigh(gram / np.outer(length, length))
-        seen = values > 1e-13 * values[-1]
-        half = real @ (vectors[:, seen] / np.sqrt(values[seen]) / length[:, None])
-        share = both * np.einsum("nk,nk->n", half, half)
-        result[j] = 0.5 * (share[: len(row)] + share[len(row) :])
-    return result
+    gram = grams.products(real, weights.lines)
+    length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(gram / (length[:, :, None] * length[:, None, :]))
+    seen = values > 1e-13 * values[:, -1:]
+    root = np.where(seen, 1.0 / np.sqrt(np.where(seen, values, 1.0)), 0.0)
+    return 0.5 * weights.lines * grams.forms(real, vectors * root[:, None, :] / length[:, :, None])
 
 
 def from_residual(

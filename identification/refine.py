@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,10 @@ from identification.thinning import Lines, thinned
 
 _ITERATIONS = 40
 _CONVERGED = 1e-10
+_CANCELS = (
+    1e-6  # part of the data's power under which sums are too coarse; at twice that two digits more are right
+)
+_REFINEMENTS = 2  # each gains the digits the normal equations have
 _POLISHED = 1e-8  # a tolerance under which all lines have the last word
 
 
@@ -31,6 +36,8 @@ class Fit:
         Weighted sum of squared misfits [-].
     information : (2 n_modes, 2 n_modes) array
         Gauss-Newton information of (Re, Im) of the poles, interleaved, twice J^T J [s^2/rad^2].
+    equations : State
+        Normal equations on all lines at the poles, residues free.
     pole_gain : (n_frf, 2 n_modes + n_terms, 2 n_modes) array
         Change of each FRF's linear unknowns per change of the poles.
     linear_inverse : (n_frf, 2 n_modes + n_terms) array
@@ -46,6 +53,7 @@ class Fit:
     linear: Residues
     cost: float
     information: FloatArray
+    equations: State
     pole_gain: FloatArray
     linear_inverse: FloatArray
     converged: bool
@@ -66,12 +74,15 @@ class Step:
         J^T J of (Re, Im) of the poles, interleaved [s^2/rad^2].
     gradient : (2 n_modes,) array
         J^T r [s/rad].
+    slack : (n_frf, 2 n_modes) array
+        Products of the slope columns with what is left of each FRF.
     """
 
     cost: float
     solution: FloatArray
     normal: FloatArray
     gradient: FloatArray
+    slack: FloatArray
 
 
 def refine(
@@ -116,12 +127,12 @@ def refine(
     problem = _Problem.of(*thinned(frfs, poles, weights), powers)
     state, converged = _iterate(problem, poles, iterations, (tolerance, enough))
     if len(problem.axis.laplace) == len(frfs.frequency):
-        return _fit(state, powers, converged)
+        return _fit(problem, state, converged)
     every = _Problem.of(Lines.of(frfs), weights, powers)
     if tolerance < _POLISHED:
         state, converged = _iterate(every, state.poles, iterations, (tolerance, enough))
-        return _fit(state, powers, converged)
-    return _fit(_at(every, state.poles), powers, converged)
+        return _fit(every, state, converged)
+    return _fit(every, _at(every, state.poles), converged)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,10 +149,23 @@ class _Problem:
 
 
 @dataclass(frozen=True, eq=False)
-class _State:
+class State:
     """A step at its poles, with the normal equations it comes from.
 
-    ``follow`` is how the linear unknowns follow the slope columns, (n_frf or 1, n_linear, 2 n_modes).
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        The poles [rad/s].
+    step : Step
+        Misfit, linear unknowns and the equations of the poles.
+    products : Grams
+        Products of the linear columns and then the slopes.
+    follow : (n_frf or 1, 2 n_modes + n_terms, 2 n_modes) array
+        How the linear unknowns follow the slope columns.
+    term_scale : (n_terms,) array
+        What a coefficient is multiplied by to become that of s^k in the receptance.
+    level : (n_frf,) array
+        Factor of each FRF in the weights [1 / unit of the FRFs squared].
     """
 
     poles: ComplexArray
@@ -153,12 +177,13 @@ class _State:
 
     @property
     def cost(self) -> float:
+        """Weighted sum of squared misfits [-]."""
         return self.step.cost
 
 
 def _iterate(
     problem: _Problem, poles: ComplexArray, iterations: int, tolerance: tuple[float, float]
-) -> tuple[_State, bool]:
+) -> tuple[State, bool]:
     """Return where the steps come to rest, and whether they do."""
     state, damping = _at(problem, poles), 1e-3
     for _ in range(iterations):
@@ -191,19 +216,17 @@ def decaying(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexA
     return np.asarray(real + 1j * imag)
 
 
-def _at(problem: _Problem, poles: ComplexArray) -> _State:
+def _at(problem: _Problem, poles: ComplexArray) -> State:
     """Project the linear unknowns out at given poles."""
     columns = basis.build(problem.axis, poles, problem.powers)
-    products, level = grams.form(columns.columns, problem.data), problem.data.weights.level
-    solution, follow = _projection(products, columns.n_linear)
-    return _State(
-        poles,
-        _step(products, solution, follow, level, len(poles)),
-        products,
-        follow,
-        columns.term_scale,
-        level,
-    )
+    products, k = grams.form(columns.columns, problem.data), columns.n_linear
+    solution, follow = _projection(products, k)
+    level = problem.data.weights.level
+    left = _left(products, solution)
+    if level @ left[0] < _CANCELS * (level @ products.power):
+        solution, *left = _left_by_line(problem.data, grams.stacked(columns.columns), products.gram, solution)
+    step = _step(products.gram, solution, follow, level, left)
+    return State(poles, step, products, follow, columns.term_scale, level)
 
 
 def _projection(products: grams.Grams, k: int) -> tuple[FloatArray, FloatArray]:
@@ -216,10 +239,33 @@ def _projection(products: grams.Grams, k: int) -> tuple[FloatArray, FloatArray]:
     return both[:, :, 0], both[:, :, 1:]
 
 
-def scores(
-    frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
-) -> tuple[FloatArray, FloatArray]:
-    """Return what each FRF alone says about each pole; parameters as for :func:`refine`.
+def _left(products: grams.Grams, solution: FloatArray) -> list[FloatArray]:
+    """Return the power left of each FRF, (n_frf,), and its slack, (n_frf, 2 n_modes), from sums over lines."""
+    k = solution.shape[1]
+    across, power = products.gram[:, :k, k:], np.einsum("jk,jk->j", products.cross[:, :k], solution)
+    shared = len(across) == 1
+    carried = solution @ across[0] if shared else np.matmul(solution[:, None], across)[:, 0]
+    return [products.power - power, products.cross[:, k:] - carried]
+
+
+def _left_by_line(
+    data: grams.Data, real: FloatArray, gram: FloatArray, solution: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return a better solution and the same from what is left line by line.
+
+    Where next to nothing is left, differences of sums hold only their rounding, and the steps would follow it.
+    """
+    k, lines = solution.shape[1], np.concatenate([data.weights.lines, data.weights.lines], axis=1)
+    linear = np.ascontiguousarray(real[:, :k])
+    for _ in range(_REFINEMENTS):
+        rest = data.weighted - lines * (solution @ linear.T)
+        solution = solution + grams.solve(gram[:, :k, :k], (rest @ linear)[:, :, None])[:, :, 0]
+    rest = data.weighted - lines * (solution @ linear.T)
+    return solution, np.einsum("jn,jn->j", rest, rest / lines), rest @ real[:, k:]
+
+
+def scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
+    """Return what each FRF alone says about each pole of a fit.
 
     Returns
     -------
@@ -228,25 +274,24 @@ def scores(
     normal : (n_frf, n_modes, 2, 2) array
         J^T J of the same [s^2/rad^2].
     """
-    left, projected, turns = _of_each(_at(_Problem.of(Lines.of(frfs), weights, powers), poles))
+    left, projected, turns = _of_each(fit.equations)
+    level = fit.equations.level
     own = np.broadcast_to(np.einsum("jninm->jnim", projected), (len(left), *projected.shape[1:3], 2))
-    gradient = np.einsum("j,jni,jnia->jna", weights.level, left, turns)
-    normal = np.einsum("j,jnia,jnim,jnmb->jnab", weights.level, turns, own, turns, optimize=True)
+    gradient = np.einsum("j,jni,jnia->jna", level, left, turns)
+    normal = np.einsum("j,jnia,jnim,jnmb->jnab", level, turns, own, turns, optimize=True)
     return gradient, normal
 
 
-def _of_each(state: _State) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _of_each(state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return what is left of each FRF along the slope columns, their products, and the turns to the poles.
 
     The linear unknowns are projected out: (n_frf, n, 2), (n_frf or 1, n, 2, n, 2) and (n_frf, n, 2, 2).
     """
-    products, solution = state.products, state.step.solution
+    gram, solution = state.products.gram, state.step.solution
     n, k = len(state.poles), solution.shape[1]
-    between = products.gram[:, :k, k:]
-    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, state.follow)
-    carried = solution @ between[0] if len(between) == 1 else np.einsum("jk,jkm->jm", solution, between)
-    left = (products.cross[:, k:] - carried).reshape(-1, n, 2)
-    return left, projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
+    across = gram[:, :k, k:]
+    projected = gram[:, k:, k:] - np.matmul(across.transpose(0, 2, 1), state.follow)
+    return state.step.slack.reshape(-1, n, 2), projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
 
 
 def frequency_scores(
@@ -291,16 +336,16 @@ def evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: 
     return _at(_Problem.of(*thinned(frfs, poles, weights), powers), poles).step
 
 
-def _step(products: grams.Grams, solution: FloatArray, follow: FloatArray, level: FloatArray, n: int) -> Step:
-    k = solution.shape[1]
-    cost = float(level @ (products.power - np.einsum("jk,jk->j", products.cross[:, :k], solution)))
-    between = products.gram[:, :k, k:]
-    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, follow)
-    carried = solution @ between[0] if len(between) == 1 else np.einsum("jk,jkm->jm", solution, between)
+def _step(
+    gram: FloatArray, solution: FloatArray, follow: FloatArray, level: FloatArray, left: Sequence[FloatArray]
+) -> Step:
+    """Return the equations of the poles, given the power that is left of each FRF and its slack."""
+    k, n = solution.shape[1], left[1].shape[1] // 2
+    projected = gram[:, k:, k:] - np.matmul(gram[:, :k, k:].transpose(0, 2, 1), follow)
     turns = pole_turns(solution, n)
-    gradient = np.einsum("j,jni,jnia->na", level, (products.cross[:, k:] - carried).reshape(-1, n, 2), turns)
+    gradient = np.einsum("j,jni,jnia->na", level, left[1].reshape(-1, n, 2), turns)
     normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, level)
-    return Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
+    return Step(max(float(level @ left[0]), 0.0), solution, normal, gradient.reshape(2 * n), left[1])
 
 
 def _contract(projected: FloatArray, turns: FloatArray, level: FloatArray) -> FloatArray:
@@ -319,28 +364,29 @@ def fit_at(
     frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...], converged: bool
 ) -> Fit:
     """Return the fit at given poles, rising in frequency; parameters as for :func:`refine`."""
-    return _fit(_at(_Problem.of(Lines.of(frfs), weights, powers), poles), powers, converged)
+    problem = _Problem.of(Lines.of(frfs), weights, powers)
+    return _fit(problem, _at(problem, poles), converged)
 
 
-def _fit(state: _State, powers: tuple[int, ...], converged: bool) -> Fit:
+def _fit(problem: _Problem, state: State, converged: bool) -> Fit:
     """Return the fit at a state, poles rising in frequency."""
+    order = np.argsort(np.abs(state.poles))
+    if (np.diff(order) < 0).any():
+        state = _at(problem, state.poles[order])
     n, solution = len(state.poles), state.step.solution
     k = solution.shape[1]
-    order = np.argsort(np.abs(state.poles))
-    both = (2 * order[:, None] + np.arange(2)).ravel()
-    linear = np.concatenate([both, np.arange(2 * n, k)])
     blocks = state.follow.reshape(len(state.follow), k, n, 2)
     turns = pole_turns(solution, n)
     gain = -np.einsum("jkni,jnia->jkna", np.broadcast_to(blocks, (len(solution), k, n, 2)), turns)
     inverse = _inverse_diagonal(state.products.gram[:, :k, :k])
-    held = np.broadcast_to(inverse, solution.shape) / (2.0 * state.level[:, None])
     return Fit(
-        state.poles[order],
-        unpack(solution[:, linear], n, state.term_scale, powers),
+        state.poles,
+        unpack(solution, n, state.term_scale, problem.powers),
         state.cost,
-        2.0 * state.step.normal[np.ix_(both, both)],
-        gain.reshape(len(solution), k, 2 * n)[:, linear[:, None], both],
-        held[:, linear],
+        2.0 * state.step.normal,
+        state,
+        gain.reshape(len(solution), k, 2 * n),
+        np.broadcast_to(inverse, solution.shape) / (2.0 * state.level[:, None]),
         converged,
     )
 
