@@ -12,28 +12,9 @@ from identification.disagreement import Disagreement, between_frfs
 from identification.fitting import Fitted
 from identification.hit_scatter import NoiseFactors
 from identification.hit_scatter import factors as hit_factors
+from identification.misfit import misfit_factor
 from identification.pruning import constant_variance, pole_covariance
 from identification.refine import scores
-
-
-def misfit_factor(frfs: FrfSet, fitted: Fitted) -> FloatArray:
-    """Return by how much the misfit about each mode exceeds the noise, shape (n_modes,) [-], 1 or more.
-
-    Residual power over its variance, averaged with the weight each value has in the mode's residue. It
-    counts as excess only beyond three standard deviations of that average; then it is the square of
-    Birge's ratio.
-    """
-    fit = fitted.fit
-    density = 1.0 / np.abs(frfs.laplace[None, :] - fit.poles[:, None]) ** 2
-    share = np.abs(fit.linear.residues.T) ** 2
-    ratio = np.abs(fitted.residual) ** 2 / fitted.variance
-    free = np.broadcast_to(1.0 - fitted.absorbed, ratio.shape)
-    inverse = 1.0 / fitted.variance
-    over = np.einsum("rj,jk,rk->r", share, inverse * ratio, density, optimize=True)
-    under = np.einsum("rj,jk,rk->r", share, inverse * free, density, optimize=True)
-    spread = np.einsum("rj,jk,rk->r", share**2, inverse**2 * free, density**2, optimize=True)
-    excess = over / under
-    return np.asarray(np.where(excess > 1.0 + 3.0 * np.sqrt(spread) / under, excess, 1.0))
 
 
 def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactors:

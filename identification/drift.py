@@ -22,8 +22,15 @@ from identification.disagreement import scatter_beyond_noise
 from identification.grams import Weights
 from identification.refine import Fit, frequency_scores
 from identification.residues import synthesise
+from identification.weighing import left_over
 
-_FEW = 3  # groups under which a scatter between them is no estimate
+_FEW, _FEW_OF_ONE = 3, 6
+"""Groups under which no scatter between them is estimated: of shifts that all modes share, and of those of one mode,
+where one FRF in which the model does not hold would pass for a drift of all. Twice as many leave small tests to
+:func:`identification.disagreement.between_frfs`."""
+_CHANCE, _CHANCE_OF_ONE = 0.05, 1e-3
+"""Chance by which noise alone passes for a drift of all modes, and for one of a mode by itself: there are as many tests
+as modes, and what is missed is no larger than the noise. Twice as much finds hardly more."""
 _LARGEST = 0.02
 """Largest shift believed, relative [-]: a structure that changes more is another structure. Twice as much changes
 nothing where frequencies differ by per mille, as set-ups make them."""
@@ -121,7 +128,9 @@ def estimate_drift(
     if n_groups < _FEW:
         return Drift.none(n_frf, fit.poles)
     gradient, normal = frequency_scores(frfs, fit.poles, weights, fit.linear.powers)
-    gradient = gradient + np.einsum("jnm,jm->jn", normal, known.shift)
+    believed = _believed(frfs, fit, weights)
+    normal = believed[:, :, None] * normal * believed[:, None, :]
+    gradient = believed**2 * gradient + np.einsum("jnm,jm->jn", normal, known.shift)
     pulls, information = np.zeros((n_groups, n_modes)), np.zeros((n_groups, n_modes, n_modes))
     np.add.at(pulls, label, 2.0 * gradient)
     np.add.at(information, label, 2.0 * normal)
@@ -147,6 +156,19 @@ def estimate_drift(
     )
 
 
+def _believed(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
+    """Return by what part of a standard deviation each FRF is believed of each mode, (n_frf, n_modes) [-].
+
+    Where a model does not hold, an FRF may seem to know a frequency far better than it does: what is left about the
+    mode in that FRF counts as its noise. A drift leaves much too, and still shows: over all lines of a peak.
+    """
+    density = 1.0 / np.abs(frfs.laplace[None, :] - fit.poles[:, None]) ** 2
+    left = (weights.full * np.abs(left_over(frfs, fit)) ** 2) @ (
+        density / density.sum(axis=1, keepdims=True)
+    ).T
+    return np.asarray(1.0 / np.sqrt(np.maximum(left, 1.0)))
+
+
 def _own_shifts(
     pulls: FloatArray, information: FloatArray, within: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
@@ -165,7 +187,7 @@ def _own_shifts(
 def _common_variance(pulls: FloatArray, information: FloatArray) -> float:
     """Return the variance of the shifts common to all modes [-]."""
     seen = information > 0
-    if seen.sum() < _FEW:
+    if seen.sum() < _FEW or not _surely(np.sum(pulls[seen] ** 2 / information[seen]), seen.sum(), _CHANCE):
         return 0.0
     return float(
         scatter_beyond_noise((pulls[seen] / information[seen])[:, None], 1.0 / information[seen][:, None])[0]
@@ -180,7 +202,17 @@ def _own_variances(pulls: FloatArray, information: FloatArray, own: BoolArray, c
     each = scatter_beyond_noise(
         shifts - (mean if own.sum() > 1 and common > 0 else 0.0 * mean)[:, None], variance
     )
-    return np.where(np.isfinite(variance).sum(axis=0) < _FEW, 0.0, each)
+    count = np.isfinite(variance).sum(axis=0)
+    mean = np.sum(shifts / variance, axis=0) / np.maximum(
+        np.sum(1.0 / variance, axis=0), np.finfo(float).tiny
+    )
+    sure = _surely(np.sum((shifts - mean) ** 2 / variance, axis=0), count, _CHANCE_OF_ONE)
+    return np.where((count < _FEW_OF_ONE) | ~sure, 0.0, each)
+
+
+def _surely(chi: FloatArray, count: IntArray, chance: float) -> BoolArray:
+    """Tell whether squares over their variances, of ``count`` groups about their mean, are beyond chance."""
+    return np.asarray(chi > stats.chi2.isf(chance, np.maximum(count - 1, 1)))
 
 
 def _of_the_mean(information: FloatArray) -> FloatArray:
