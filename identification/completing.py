@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
+from acquisition.arrays import ComplexArray
 from acquisition.errors import EstimationError
 from acquisition.frf import FrfSet
 from identification import background, drifting, fading, leftover
@@ -74,20 +75,25 @@ def _best_pole(
     frfs: FrfSet, fit: Fit, weights: Weights, band: tuple[float, float], search: _Search
 ) -> tuple[complex, float]:
     """Return the pole, in the band or beyond, that explains most, and by how much more than noise."""
-    inner = np.zeros(0, complex)
-    residual = left_over(frfs, fit)
-    bare = without_common_noise(frfs, fit, weights)
+    residual, bare = left_over(frfs, fit), without_common_noise(frfs, fit, weights)
+    cleaned = replace(frfs, values=frfs.values - residual + bare)
+    outer = background.trial_poles(band) if search.beyond > 0 else np.zeros(0, complex)
+    found = [_best_of(frfs, fit, weights, outer)]
     if len(search.blocked) < _REJECTIONS:
         inner = leftover.trial_poles(frfs, bare, weights, search.blocked)
-    outer = background.trial_poles(band) if search.beyond > 0 else np.zeros(0, complex)
-    trials = np.concatenate([inner, outer])
+        found.append(_best_of(cleaned, fit, weights, inner))
+    pole, gain = max(found, key=lambda f: f[1])
+    return pole, gain - threshold(*frfs.values.shape)
+
+
+def _best_of(frfs: FrfSet, fit: Fit, weights: Weights, trials: ComplexArray) -> tuple[complex, float]:
+    """Return the trial pole that explains most of FRFs, and how much."""
     if len(trials) == 0:
         return 0j, 0.0
-    cleaned = replace(frfs, values=frfs.values - residual + bare)
-    gain = 2.0 * background.gains(cleaned, fit.poles, fit.linear.powers, weights, trials)
+    gain = 2.0 * background.gains(frfs, fit.poles, fit.linear.powers, weights, trials)
     gain = gain / fading.inflation(weights.fade, decay_over_record(frfs, trials))[0]
     best = int(gain.argmax())
-    return complex(trials[best]), float(gain[best]) - threshold(*frfs.values.shape)
+    return complex(trials[best]), float(gain[best])
 
 
 def _acceptable(frfs: FrfSet, fit: Fit, trial: Fit, pole: complex, band: tuple[float, float]) -> bool:

@@ -120,5 +120,5 @@ def disagreement(fitted: Fitted, factors: NoiseFactors) -> Disagreement:
     return Disagreement(
         left.mean + along * drift.mean_variance[:, None, None],
         left.each + along * drift.doubt[:, :, None, None],
-        left.scatter + along * drift.variance[:, None, None],
+        left.scatter,
     )

@@ -23,7 +23,7 @@ class Disagreement:
     each : (n_frf, n_modes, 2, 2) array
         Variance of the pole of a single FRF about the one it was fitted with [rad^2/s^2].
     scatter : (n_modes, 2, 2) array
-        Variance of the poles of single FRFs about the common one [rad^2/s^2].
+        Variance of the poles of single FRFs about the common one, beyond what was carried over [rad^2/s^2].
     """
 
     mean: FloatArray

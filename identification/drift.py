@@ -114,7 +114,7 @@ def estimate_drift(
     fit : Fit
         A fit to them.
     weights : Weights
-        Reciprocal variances.
+        Reciprocal variances it was made with.
     own : (n_modes,) bool array
         Which modes may have shifts of their own beside those common to all: poles that share one peak may not,
         as each would follow what the other leaves.
@@ -127,7 +127,7 @@ def estimate_drift(
     known = (Drift.none(n_frf, fit.poles) if previous is None else previous).at(fit.poles)
     if n_groups < _FEW:
         return Drift.none(n_frf, fit.poles)
-    gradient, normal = frequency_scores(frfs, fit.poles, weights, fit.linear.powers)
+    gradient, normal = frequency_scores(fit)
     believed = _believed(frfs, fit, weights)
     normal = believed[:, :, None] * normal * believed[:, None, :]
     gradient = believed**2 * gradient + np.einsum("jnm,jm->jn", normal, known.shift)
@@ -152,7 +152,7 @@ def estimate_drift(
         common=np.clip(shared, -_LARGEST, _LARGEST)[label],
         doubt=np.einsum("gnn->gn", posterior)[label],
         variance=total,
-        mean_variance=total * _of_the_mean(np.einsum("gnn->gn", information)),
+        mean_variance=total * _of_the_mean(np.einsum("gnn->gn", information), total, common),
     )
 
 
@@ -187,7 +187,8 @@ def _own_shifts(
 def _common_variance(pulls: FloatArray, information: FloatArray) -> float:
     """Return the variance of the shifts common to all modes [-]."""
     seen = information > 0
-    if seen.sum() < _FEW or not _surely(np.sum(pulls[seen] ** 2 / information[seen]), seen.sum(), _CHANCE):
+    count = int(seen.sum())
+    if count < _FEW or not _surely(float(np.sum(pulls[seen] ** 2 / information[seen])), count, _CHANCE).all():
         return 0.0
     return float(
         scatter_beyond_noise((pulls[seen] / information[seen])[:, None], 1.0 / information[seen][:, None])[0]
@@ -210,18 +211,23 @@ def _own_variances(pulls: FloatArray, information: FloatArray, own: BoolArray, c
     return np.where((count < _FEW_OF_ONE) | ~sure, 0.0, each)
 
 
-def _surely(chi: FloatArray, count: IntArray, chance: float) -> BoolArray:
+def _surely(chi: FloatArray | float, count: IntArray | int, chance: float) -> BoolArray:
     """Tell whether squares over their variances, of ``count`` groups about their mean, are beyond chance."""
     return np.asarray(chi > stats.chi2.isf(chance, np.maximum(count - 1, 1)))
 
 
-def _of_the_mean(information: FloatArray) -> FloatArray:
-    """Return the variance of a weighted mean over the groups for unit variance, Student's width in it, (n_modes,)."""
+def _of_the_mean(information: FloatArray, variance: FloatArray, common: float) -> FloatArray:
+    """Return the variance of a weighted mean over the groups for unit variance, Student's width in it, (n_modes,).
+
+    The scatter between groups is known from as many of them as tell their own shift apart from noise; where all modes
+    share it, together.
+    """
     total = information.sum(axis=0)
     share = np.sum((information / np.where(total > 0, total, 1.0)) ** 2, axis=0)
-    share = np.clip(share, 1.0 / len(information), 1.0)
-    freedom = np.maximum(1.0 / share - 1.0, 1.0)
-    return np.asarray(share * (stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)) ** 2)
+    signal = information.sum(axis=1)[:, None] * common if common > 0 else information * variance
+    freedom = np.maximum(np.sum(signal / (1.0 + signal), axis=0) - 1.0, 1.0)
+    wider = (stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)) ** 2
+    return np.asarray(np.clip(share, 1.0 / len(information), 1.0) * wider)
 
 
 def carried_over(frfs: FrfSet, fit: Fit, drift: Drift) -> FrfSet:

@@ -109,7 +109,7 @@ def fit_modes(
     weights = search_weights(frfs, fit)
     fit = refine(frfs, fit.poles, weights, powers=ladder[0], iterations=SHORT, tolerance=COARSE)
     fit = pruned(frfs, fit, weights, band, iterations=SHORT, tolerance=COARSE)
-    data, fit, drift = aligned(frfs, fit)
+    data, fit, drift = aligned(frfs, without_halves(frfs, fit))
     fit = completed(data, fit, band, ladder)
     if drift.variance.any():
         data, fit, drift = aligned(frfs, without_halves(data, fit), drift)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -14,12 +15,14 @@ from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
 from identification import covariance, doubts
 from identification.arrangement import arrange, signs, unsigned
+from identification.disagreement import Disagreement
 from identification.fitting import Fitted, fit_modes
+from identification.hit_scatter import NoiseFactors
 from identification.model import ModalModel
 from identification.overrule import nearest_modes
 from identification.poles import ESTIMATORS
 from identification.poly_reference import sorted_frfs
-from identification.pruning import inside
+from identification.pruning import inside, located
 from identification.residues import Residues
 from identification.scaling import Shapes, mode_shapes
 from identification.selection import candidates
@@ -99,10 +102,16 @@ def _identified(
     fitted = fit_modes(data, start, band=limits, add=add)
     modes = inside(fitted.fit.poles, limits, data.df)
     modes &= ~nearest_modes(fitted.fit.poles, drop, modes, data.df)
+    errors = _Errors.of(fitted, modes)
+    known = located(fitted.fit.poles, errors.of_noise, modes) | nearest_modes(
+        fitted.fit.poles, add, modes, data.df
+    )
+    struck, modes = fitted.fit.poles[modes & ~known], modes & known
     if not modes.any():
         why = "once the modes named are dropped" if drop else "in the band: what was found is a background"
         raise EstimationError(f"{frfs.source}: no mode is left {why}; widen the band")
-    return _assemble(data, fitted, modes, chart, limits, points_rejected)
+    result = _assemble(data, fitted, errors, modes, chart, limits, points_rejected)
+    return replace(result, warnings=result.warnings + _struck(struck)) if len(struck) else result
 
 
 def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tuple[str, ...]]:
@@ -140,9 +149,27 @@ def order_list(frfs: FrfSet, order: int | None, method: str) -> list[int]:
     return sorted({int(n) for n in np.linspace(bottom, top, _LEVELS).round()})
 
 
+@dataclass(frozen=True, eq=False)
+class _Errors:
+    """How far the poles of a fit may err: (n_poles, 2, 2) of (ln frequency, damping ratio), all in all and by noise."""
+
+    factors: NoiseFactors
+    apart: Disagreement
+    poles: FloatArray
+    of_noise: FloatArray
+
+    @classmethod
+    def of(cls, fitted: Fitted, modes: BoolArray) -> _Errors:
+        factors = covariance.noise_factors(fitted.frfs, fitted, modes)
+        apart = covariance.disagreement(fitted, factors)
+        own = covariance.pole_statistics(fitted, factors, replace(apart, mean=np.zeros(apart.mean.shape)))
+        return cls(factors, apart, covariance.pole_statistics(fitted, factors, apart), own)
+
+
 def _assemble(
     data: FrfSet,
     fitted: Fitted,
+    errors: _Errors,
     modes: BoolArray,
     chart: StabilisationChart,
     band: tuple[float, float],
@@ -153,10 +180,8 @@ def _assemble(
     sign = signs(data)
     poles: ComplexArray = fit.poles[own]
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
-    factors = covariance.noise_factors(fitted.frfs, fitted, modes)
-    apart = covariance.disagreement(fitted, factors)
+    factors, apart, spread = errors.factors, errors.apart, errors.poles[own]
     sigma = covariance.constant_statistics(fitted, factors, apart)[:, own]
-    spread = covariance.pole_statistics(fitted, factors, apart)[own]
     alone = _alone(data, fitted, own, sigma) * np.sqrt(factors.shapes[own])
     shared = covariance.shared_errors(fitted, factors)[:, own]
     noise = covariance.own_errors(fitted, factors, apart)[:, own]
@@ -185,6 +210,7 @@ def _assemble(
         chart=chart,
         warnings=shapes.warnings + _warnings(fitted) + said,
         points_rejected=points_rejected,
+        carried=None if fitted.frfs is data else fitted.frfs,
     )
 
 
@@ -219,8 +245,23 @@ def _modal_data(data: FrfSet, poles: ComplexArray, spread: np.ndarray, shapes: S
     )
 
 
+def _struck(poles: ComplexArray) -> tuple[str, ...]:
+    named = ", ".join(f"{abs(p) / (2 * np.pi):.5g} Hz" for p in poles)
+    return (
+        f"what the fit has at {named} was taken for no mode: the data do not tell its frequency or its damping; "
+        "name it with add if it is one",
+    )
+
+
 def _warnings(fitted: Fitted) -> tuple[str, ...]:
     notes = []
+    shifted = float(np.sqrt(fitted.drift.variance.max(initial=0.0)))
+    if shifted > 0.0:
+        notes.append(
+            f"the frequencies differ from set-up to set-up by {100 * shifted:.2g} % (one standard deviation): a sensor "
+            "or hammer that roves and loads the structure, or temperature; the FRFs are carried over to common poles, "
+            "and what that leaves in doubt is in the standard deviations"
+        )
     if not fitted.fit.converged:
         notes.append("the refinement of the poles did not come to rest; standard deviations may be too small")
     left = fitted.excess()

@@ -126,10 +126,11 @@ def _known(entry: UsedHits, rows: dict[tuple[Dof, Dof], int]) -> bool:
 def weights_of(model: ModalModel) -> Weights:
     """Return the reciprocal variances of the noise about an identified model."""
     poles, powers = np.concatenate([model.poles, model.background_poles]), model.background.powers
-    plain = uniform_weights(model.frfs)
-    fit = fit_at(model.frfs, poles, plain, powers, True)
-    residual = left_over(model.frfs, fit)
-    return noise_weights(model.frfs, residual, absorbed_by(model.frfs, fit, plain))[0]
+    frfs = model.frfs if model.carried is None else model.carried
+    plain = uniform_weights(frfs)
+    fit = fit_at(frfs, poles, plain, powers, True)
+    residual = left_over(frfs, fit)
+    return noise_weights(frfs, residual, absorbed_by(frfs, fit, plain))[0]
 
 
 def _of_hit(

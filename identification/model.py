@@ -61,6 +61,8 @@ class ModalModel:
         What the user ought to know.
     points_rejected : tuple of str
         Points whose FRFs were left out, with the reason.
+    carried : FrfSet, optional
+        The data as they were fitted, carried over to common poles, where frequencies differ from FRF to FRF.
     """
 
     modal: ModalData
@@ -81,6 +83,7 @@ class ModalModel:
     chart: StabilisationChart
     warnings: tuple[str, ...] = ()
     points_rejected: tuple[str, ...] = ()
+    carried: FrfSet | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays."""

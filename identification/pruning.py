@@ -84,6 +84,29 @@ def plausible(poles: ComplexArray, band: tuple[float, float]) -> BoolArray:
     return np.asarray(near & (-poles.real < 0.35 * size) & (poles.real < 1e-3 * size))
 
 
+def located(poles: ComplexArray, spread: FloatArray, modes: BoolArray) -> BoolArray:
+    """Tell which modes are somewhere, shape (n_modes,): noise fitted by a pole is not.
+
+    The frequency is known to within the half-power half-width and to half the distance of the next mode, the damping
+    ratio to within half of itself: a mode that is barely significant has a fifth of these.
+
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        Poles of the fit [rad/s].
+    spread : (n_modes, 2, 2) array
+        Covariance of (ln frequency, damping ratio) [-].
+    modes : (n_modes,) bool array
+        Which poles are modes of the band.
+    """
+    sigma = np.abs(poles) * np.sqrt(spread[:, 0, 0])
+    distance = np.abs(poles[:, None] - poles[None, :]) + np.where(modes[None, :], 0.0, np.inf)
+    np.fill_diagonal(distance, np.inf)
+    room = np.minimum(-poles.real, 0.5 * distance.min(axis=1, initial=np.inf))
+    damped = -poles.real / np.abs(poles) > 2.0 * np.sqrt(spread[:, 1, 1])
+    return np.asarray((sigma < room) & damped)
+
+
 def inside(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArray:
     """Tell which poles are modes of the band, shape (n_modes,).
 

@@ -294,10 +294,8 @@ def _of_each(state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     return state.step.slack.reshape(-1, n, 2), projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
 
 
-def frequency_scores(
-    frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: tuple[int, ...]
-) -> tuple[FloatArray, FloatArray]:
-    """Return what each FRF alone says about the relative shifts of all frequencies; parameters as for `refine`.
+def frequency_scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
+    """Return what each FRF alone says about the relative shifts of all frequencies of a fit.
 
     A shift d moves a pole from p to p (1 + d), so that its damping ratio stays.
 
@@ -308,10 +306,9 @@ def frequency_scores(
     normal : (n_frf, n_modes, n_modes) array
         J^T J of the same [-].
     """
-    problem = _Problem.of(*thinned(frfs, poles, weights), powers)
-    left, projected, turns = _of_each(_at(problem, poles))
-    turned = np.einsum("jnia,na->jni", turns, np.stack([poles.real, poles.imag], axis=1))
-    level = problem.data.weights.level
+    left, projected, turns = _of_each(fit.equations)
+    turned = np.einsum("jnia,na->jni", turns, np.stack([fit.poles.real, fit.poles.imag], axis=1))
+    level = fit.equations.level
     gradient = np.einsum("j,jni,jni->jn", level, left, turned)
     if len(projected) == 1:
         half = np.einsum("nimb,jmb->jnim", projected[0], turned, optimize=True)
