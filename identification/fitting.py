@@ -15,7 +15,7 @@ from identification.completing import COARSE, SHORT, completed, halves, pruned
 from identification.grams import Weights
 from identification.poly_reference import RankOne, hold_to_rank_one, sorted_frfs
 from identification.pruning import inside
-from identification.refine import Fit, refine
+from identification.refine import Fit, State, refine
 from identification.residues import uniform_weights
 from identification.weighing import absorbed_by, left_over, noise_weights, search_weights
 
@@ -23,6 +23,7 @@ _LONG = 40
 _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
+_COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighed by noise
 _SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
@@ -178,15 +179,35 @@ def _weighted(frfs: FrfSet, fit: Fit, band: tuple[float, float]) -> Fitted:
     """Weigh by the noise itself and refine until both agree."""
     residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, search_weights(frfs, fit))
     weights, variance, measured = noise_weights(frfs, residual, absorbed)
-    for tolerance in (COARSE, _FINE, _FINE):
-        powers = fit.linear.powers
-        fit = refine(
-            frfs, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance, enough=_AT_REST
-        )
-        fit = pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=tolerance)
+    for _ in range(_COARSE_WEIGHINGS):
+        fit = _refined(frfs, fit, weights, band, COARSE)
+        used = weights, variance, measured
         residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
-        fitted = Fitted(fit, weights, variance, residual, absorbed, measured)
         weights, variance, measured = noise_weights(frfs, residual, absorbed)
-        if tolerance == _FINE and np.abs(np.log(fitted.variance / variance)).max() < _SAME_NOISE:
-            break
-    return fitted
+    known = None
+    if np.abs(np.log(variance / used[1])).max() < _SAME_NOISE:
+        (weights, variance, measured), known = used, fit.equations
+    fit = _refined(frfs, fit, weights, band, _FINE, known)
+    return Fitted(fit, weights, variance, left_over(frfs, fit), absorbed_by(frfs, fit, weights), measured)
+
+
+def _refined(
+    frfs: FrfSet,
+    fit: Fit,
+    weights: Weights,
+    band: tuple[float, float],
+    tolerance: float,
+    known: State | None = None,
+) -> Fit:
+    """Refine by the noise and strike off what it does not bear out."""
+    fit = refine(
+        frfs,
+        fit.poles,
+        weights,
+        powers=fit.linear.powers,
+        iterations=_LONG,
+        tolerance=tolerance,
+        enough=_AT_REST,
+        known=known,
+    )
+    return pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=tolerance)
