@@ -17,7 +17,7 @@ from identification.drift import Drift, carried_over, estimate_drift
 from identification.grams import Weights
 from identification.poly_reference import RankOne, hold_to_rank_one, sorted_frfs
 from identification.pruning import inside
-from identification.refine import Fit, refine
+from identification.refine import Fit, State, refine
 from identification.residues import uniform_weights
 from identification.weighing import absorbed_by, left_over, noise_weights, search_weights
 
@@ -25,6 +25,7 @@ _LONG = 40
 _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
+_COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighed by noise
 _SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
 
 
@@ -183,17 +184,39 @@ def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -
     data = carried_over(frfs, fit, drift.at(fit.poles))
     residual, absorbed = left_over(data, fit), absorbed_by(data, fit, search_weights(data, fit))
     weights, variance, measured = noise_weights(data, residual, absorbed)
-    for tolerance in (COARSE, _FINE, _FINE):
-        powers = fit.linear.powers
-        fit = refine(
-            data, fit.poles, weights, powers=powers, iterations=_LONG, tolerance=tolerance, enough=_AT_REST
-        )
-        fit = pruned(data, fit, weights, band, iterations=_LONG, tolerance=tolerance)
-        residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
-        fitted = Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
+    for _ in range(_COARSE_WEIGHINGS):
+        fit = _refined(data, fit, weights, band, COARSE)
+        used, fitted = (weights, variance, measured), data
         drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
         data = carried_over(frfs, fit, drift)
-        weights, variance, measured = noise_weights(data, left_over(data, fit), absorbed)
-        if tolerance == _FINE and np.abs(np.log(fitted.variance / variance)).max() < _SAME_NOISE:
-            break
-    return replace(fitted, drift=drift)
+        residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
+        weights, variance, measured = noise_weights(data, residual, absorbed)
+    known = None
+    if data is fitted and np.abs(np.log(variance / used[1])).max() < _SAME_NOISE:
+        (weights, variance, measured), known = used, fit.equations
+    fit = _refined(data, fit, weights, band, _FINE, known)
+    drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
+    residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
+    return Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
+
+
+def _refined(
+    frfs: FrfSet,
+    fit: Fit,
+    weights: Weights,
+    band: tuple[float, float],
+    tolerance: float,
+    known: State | None = None,
+) -> Fit:
+    """Refine by the noise and strike off what it does not bear out."""
+    fit = refine(
+        frfs,
+        fit.poles,
+        weights,
+        powers=fit.linear.powers,
+        iterations=_LONG,
+        tolerance=tolerance,
+        enough=_AT_REST,
+        known=known,
+    )
+    return pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=tolerance)

@@ -106,13 +106,8 @@ def form(columns: ComplexArray, data: Data) -> Grams:
     data : Data
         The data, with their weights.
     """
-    real = stacked(columns)
+    real = np.concatenate([columns.real, columns.imag], axis=0)
     return Grams(products(real, data.weights.lines), data.weighted @ real, data.power)
-
-
-def stacked(columns: ComplexArray) -> FloatArray:
-    """Return real over imaginary parts, shape (2 n_lines, n_columns)."""
-    return np.concatenate([columns.real, columns.imag], axis=0)
 
 
 def products(real: FloatArray, lines: FloatArray) -> FloatArray:

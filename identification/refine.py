@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,10 +14,6 @@ from identification.thinning import Lines, thinned
 
 _ITERATIONS = 40
 _CONVERGED = 1e-10
-_CANCELS = (
-    1e-6  # part of the data's power under which sums are too coarse; at twice that two digits more are right
-)
-_REFINEMENTS = 2  # each gains the digits the normal equations have
 _POLISHED = 1e-8  # a tolerance under which all lines have the last word
 
 
@@ -74,15 +69,12 @@ class Step:
         J^T J of (Re, Im) of the poles, interleaved [s^2/rad^2].
     gradient : (2 n_modes,) array
         J^T r [s/rad].
-    slack : (n_frf, 2 n_modes) array
-        Products of the slope columns with what is left of each FRF.
     """
 
     cost: float
     solution: FloatArray
     normal: FloatArray
     gradient: FloatArray
-    slack: FloatArray
 
 
 def refine(
@@ -94,6 +86,7 @@ def refine(
     iterations: int = _ITERATIONS,
     tolerance: float = _CONVERGED,
     enough: float = 0.0,
+    known: State | None = None,
 ) -> Fit:
     """Minimise the weighted misfit over poles, residues and residual terms.
 
@@ -118,6 +111,8 @@ def refine(
         Relative gain of a step at which the iteration rests [-].
     enough : float
         Gain at which it rests as well: small beside 1, with weights that are reciprocal variances [-].
+    known : State, optional
+        The normal equations at ``poles`` with these weights on all lines, where they were formed before.
 
     Returns
     -------
@@ -125,12 +120,14 @@ def refine(
         The refined model.
     """
     problem = _Problem.of(*thinned(frfs, poles, weights), powers)
-    state, converged = _iterate(problem, poles, iterations, (tolerance, enough))
-    if len(problem.axis.laplace) == len(frfs.frequency):
+    whole = len(problem.axis.laplace) == len(frfs.frequency)
+    start = known if known is not None and whole else _at(problem, poles)
+    state, converged = _iterate(problem, start, iterations, (tolerance, enough))
+    if whole:
         return _fit(problem, state, converged)
     every = _Problem.of(Lines.of(frfs), weights, powers)
     if tolerance < _POLISHED:
-        state, converged = _iterate(every, state.poles, iterations, (tolerance, enough))
+        state, converged = _iterate(every, _at(every, state.poles), iterations, (tolerance, enough))
         return _fit(every, state, converged)
     return _fit(every, _at(every, state.poles), converged)
 
@@ -182,10 +179,10 @@ class State:
 
 
 def _iterate(
-    problem: _Problem, poles: ComplexArray, iterations: int, tolerance: tuple[float, float]
+    problem: _Problem, state: State, iterations: int, tolerance: tuple[float, float]
 ) -> tuple[State, bool]:
     """Return where the steps come to rest, and whether they do."""
-    state, damping = _at(problem, poles), 1e-3
+    damping = 1e-3
     for _ in range(iterations):
         trial_poles = state.poles + _solve_step(state.step, damping)
         trial = _at(problem, decaying(trial_poles, state.poles, problem.axis.decay))
@@ -219,14 +216,16 @@ def decaying(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexA
 def _at(problem: _Problem, poles: ComplexArray) -> State:
     """Project the linear unknowns out at given poles."""
     columns = basis.build(problem.axis, poles, problem.powers)
-    products, k = grams.form(columns.columns, problem.data), columns.n_linear
-    solution, follow = _projection(products, k)
-    level = problem.data.weights.level
-    left = _left(products, solution)
-    if level @ left[0] < _CANCELS * (level @ products.power):
-        solution, *left = _left_by_line(problem.data, grams.stacked(columns.columns), products.gram, solution)
-    step = _step(products.gram, solution, follow, level, left)
-    return State(poles, step, products, follow, columns.term_scale, level)
+    products, level = grams.form(columns.columns, problem.data), problem.data.weights.level
+    solution, follow = _projection(products, columns.n_linear)
+    return State(
+        poles,
+        _step(products, solution, follow, level, len(poles)),
+        products,
+        follow,
+        columns.term_scale,
+        level,
+    )
 
 
 def _projection(products: grams.Grams, k: int) -> tuple[FloatArray, FloatArray]:
@@ -237,31 +236,6 @@ def _projection(products: grams.Grams, k: int) -> tuple[FloatArray, FloatArray]:
         return solution, grams.solve(here, across)
     both = grams.solve(here, np.concatenate([products.cross[:, :k, None], across], axis=2))
     return both[:, :, 0], both[:, :, 1:]
-
-
-def _left(products: grams.Grams, solution: FloatArray) -> list[FloatArray]:
-    """Return the power left of each FRF, (n_frf,), and its slack, (n_frf, 2 n_modes), from sums over lines."""
-    k = solution.shape[1]
-    across, power = products.gram[:, :k, k:], np.einsum("jk,jk->j", products.cross[:, :k], solution)
-    shared = len(across) == 1
-    carried = solution @ across[0] if shared else np.matmul(solution[:, None], across)[:, 0]
-    return [products.power - power, products.cross[:, k:] - carried]
-
-
-def _left_by_line(
-    data: grams.Data, real: FloatArray, gram: FloatArray, solution: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return a better solution and the same from what is left line by line.
-
-    Where next to nothing is left, differences of sums hold only their rounding, and the steps would follow it.
-    """
-    k, lines = solution.shape[1], np.concatenate([data.weights.lines, data.weights.lines], axis=1)
-    linear = np.ascontiguousarray(real[:, :k])
-    for _ in range(_REFINEMENTS):
-        rest = data.weighted - lines * (solution @ linear.T)
-        solution = solution + grams.solve(gram[:, :k, :k], (rest @ linear)[:, :, None])[:, :, 0]
-    rest = data.weighted - lines * (solution @ linear.T)
-    return solution, np.einsum("jn,jn->j", rest, rest / lines), rest @ real[:, k:]
 
 
 def scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
@@ -291,7 +265,8 @@ def _of_each(state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     n, k = len(state.poles), solution.shape[1]
     across = gram[:, :k, k:]
     projected = gram[:, k:, k:] - np.matmul(across.transpose(0, 2, 1), state.follow)
-    return state.step.slack.reshape(-1, n, 2), projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
+    left = (state.products.cross[:, k:] - _carried(solution, across)).reshape(-1, n, 2)
+    return left, projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
 
 
 def frequency_scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
@@ -317,6 +292,13 @@ def frequency_scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
     return gradient, np.einsum("j,jni,jnim->jnm", level, turned, half, optimize=True)
 
 
+def _carried(solution: FloatArray, across: FloatArray) -> FloatArray:
+    """Return what the linear unknowns put on the slope columns, shape (n_frf, 2 n_modes)."""
+    if len(across) == 1:
+        return np.asarray(solution @ across[0])
+    return np.asarray(np.einsum("jk,jkm->jm", solution, across))
+
+
 def pole_turns(solution: FloatArray, n_modes: int) -> FloatArray:
     """Return the 2 x 2 blocks that turn (Re, Im) of a pole's step into weights of its two slope columns.
 
@@ -333,16 +315,16 @@ def evaluate(frfs: FrfSet, poles: ComplexArray, weights: grams.Weights, powers: 
     return _at(_Problem.of(*thinned(frfs, poles, weights), powers), poles).step
 
 
-def _step(
-    gram: FloatArray, solution: FloatArray, follow: FloatArray, level: FloatArray, left: Sequence[FloatArray]
-) -> Step:
-    """Return the equations of the poles, given the power that is left of each FRF and its slack."""
-    k, n = solution.shape[1], left[1].shape[1] // 2
-    projected = gram[:, k:, k:] - np.matmul(gram[:, :k, k:].transpose(0, 2, 1), follow)
+def _step(products: grams.Grams, solution: FloatArray, follow: FloatArray, level: FloatArray, n: int) -> Step:
+    k = solution.shape[1]
+    cost = float(level @ (products.power - np.einsum("jk,jk->j", products.cross[:, :k], solution)))
+    between = products.gram[:, :k, k:]
+    projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, follow)
     turns = pole_turns(solution, n)
-    gradient = np.einsum("j,jni,jnia->na", level, left[1].reshape(-1, n, 2), turns)
+    left = (products.cross[:, k:] - _carried(solution, between)).reshape(-1, n, 2)
+    gradient = np.einsum("j,jni,jnia->na", level, left, turns)
     normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, level)
-    return Step(max(float(level @ left[0]), 0.0), solution, normal, gradient.reshape(2 * n), left[1])
+    return Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
 
 
 def _contract(projected: FloatArray, turns: FloatArray, level: FloatArray) -> FloatArray:
@@ -367,23 +349,25 @@ def fit_at(
 
 def _fit(problem: _Problem, state: State, converged: bool) -> Fit:
     """Return the fit at a state, poles rising in frequency."""
-    order = np.argsort(np.abs(state.poles))
-    if (np.diff(order) < 0).any():
-        state = _at(problem, state.poles[order])
     n, solution = len(state.poles), state.step.solution
     k = solution.shape[1]
+    order = np.argsort(np.abs(state.poles))
+    both = (2 * order[:, None] + np.arange(2)).ravel()
+    linear = np.concatenate([both, np.arange(2 * n, k)])
     blocks = state.follow.reshape(len(state.follow), k, n, 2)
     turns = pole_turns(solution, n)
     gain = -np.einsum("jkni,jnia->jkna", np.broadcast_to(blocks, (len(solution), k, n, 2)), turns)
     inverse = _inverse_diagonal(state.products.gram[:, :k, :k])
+    held = np.broadcast_to(inverse, solution.shape) / (2.0 * state.level[:, None])
+    rising = (np.diff(order) > 0).all()
     return Fit(
-        state.poles,
-        unpack(solution, n, state.term_scale, problem.powers),
+        state.poles[order],
+        unpack(solution[:, linear], n, state.term_scale, problem.powers),
         state.cost,
-        2.0 * state.step.normal,
-        state,
-        gain.reshape(len(solution), k, 2 * n),
-        np.broadcast_to(inverse, solution.shape) / (2.0 * state.level[:, None]),
+        2.0 * state.step.normal[np.ix_(both, both)],
+        state if rising else _at(problem, state.poles[order]),
+        gain.reshape(len(solution), k, 2 * n)[:, linear[:, None], both],
+        held[:, linear],
         converged,
     )
 
