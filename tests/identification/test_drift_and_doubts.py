@@ -34,9 +34,9 @@ def test_a_drift_over_the_test_invents_no_mode(drift):
     ]
     model = identify(joined(parts), band=(20.0, 340.0))
     assert len(model) == 3, model.table()
-    np.testing.assert_allclose(model.modal.frequency, HERTZ * (1 - drift / 2), rtol=0.5 * drift)
-    if drift > 0.003:
-        assert any("differs from FRF to FRF" in w for w in model.warnings)
+    np.testing.assert_allclose(model.modal.frequency, HERTZ * (1 - drift / 2), rtol=0.3 * drift)
+    np.testing.assert_allclose(model.modal.damping, DAMPING, rtol=0.05)
+    assert any("differ from set-up to set-up" in w for w in model.warnings)
 
 
 @pytest.mark.parametrize("apart", [1.003, 1.005, 1.01])
