@@ -173,7 +173,7 @@ def described(
         single=header.function_type == 1 and header.item_size == 4,
         density=density,
     )
-    return found, notes
+    return found, [*header.notes, *notes]
 
 
 def _checked(located: Located, found: Measurement, minimum: float, digest: bool) -> bytes:
