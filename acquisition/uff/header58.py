@@ -15,6 +15,7 @@ _PRINTED = re.compile(r"[+-]?(?:\d\.\d*+[eEdD][+-]?\d++|\d++(?:\.\d*+)?)")
 # where the fields of records 6, 7 and 8 to 11 end
 IDENTITY = (5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
 FORM = (10, 20, 30, 43, 56, 69)
+_NAMED = (0, 5, 6, 8, 9)  # of these, type, nodes and directions, which no program leaves blank
 _LONGEST = 200  # characters of a field, as of the last column
 _WHOLE = (0, 1, 2, 3, 5, 6, 8, 9)  # the fields of record 6 that are whole numbers
 AXIS = (10, 15, 20, 25, 46, 200)
@@ -171,8 +172,9 @@ def _odd(lines: list[str]) -> tuple[str, ...]:
         if "\t" in line:
             wrong += [line.strip()[:40]] if len(line.split()) != len(ends) else []
             continue
-        given = [fields[i] for i in whole if fields[i].strip() and not fields[i].rstrip().endswith(".")]
-        wrong += [field for field in given if field != field.rstrip()]
+        given = [fields[i] for i in whole if not fields[i].rstrip().endswith(".")]
+        wrong += [field for field in given if field.strip() and field != field.rstrip()]
+        wrong += [""] if line is lines[5] and any(not fields[i].strip() for i in _NAMED) else []
     reals = [field for field in _fields(lines[6], FORM)[3:] if field.strip()] if "\t" not in lines[6] else []
     wrong += [field for field in reals if _PRINTED.fullmatch(field.strip()) is None]
     ends_at = [len(field) - len(field.rstrip()) for field in reals]

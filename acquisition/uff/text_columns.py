@@ -152,11 +152,12 @@ def check_digits(text: bytes) -> None:
         raise InputError(f"its number {odd!r} is not printed as the others: a character is lost or damaged")
 
 
-def _digits(number: bytes) -> tuple[int, int, bool]:
-    """Return the digits before and behind the point, and whether the exponent has two at least."""
+def _digits(number: bytes) -> tuple[int, int, int]:
+    """Return the digits before and behind the point and of the exponent, 2 for three that are needed."""
     mantissa, exponent = re.split(rb"[eEdD]", number)
     whole, _, decimals = mantissa.partition(b".")
-    return len(whole), len(decimals), len(exponent.lstrip(b"+-")) > 1
+    power = exponent.lstrip(b"+-")
+    return len(whole), len(decimals), 2 if len(power) == 3 and power[:1] != b"0" else len(power)
 
 
 def form_of(line: bytes) -> bytes:

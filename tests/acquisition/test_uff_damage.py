@@ -195,6 +195,8 @@ def test_header_field_that_lost_its_last_digit_is_said(written, reread, old):
     form, data = written
     if form == "ascii" and old in data:
         assert reread(data.replace(old, old[:-1] + b" ", 1)).warnings
+    named = b"NONE               2   3"
+    assert named in data and reread(data.replace(named, named[:-1] + b" ", 1)).warnings
     field = data[data.index(b"1  0.00000e+00") :][:27][14:]
     for wrong in (field[:-1] + b" ", b"  ." + field[3:], field.replace(b".", b"3")):
         spoilt = data.replace(field, wrong, 1)
@@ -407,3 +409,13 @@ def test_shape_sigmas_come_back(tmp_path, rng):
         content.warnings == () and back is not None and len(back) == 2 and back.dofs == dofs and back.scaled
     )
     assert np.allclose(back.shapes, shapes, rtol=1e-5) and np.allclose(back.shape_sigma, sigma, rtol=1e-5)
+
+
+def test_values_too_large_to_be_meant_are_refused(tmp_path, reread, rng):
+    write_uff(tmp_path / "a.uff", frfs=some_frfs(rng))
+    data = (tmp_path / "a.uff").read_bytes()
+    start = bodies(data)[0][0]
+    content = reread(data[: start + 64] + np.array([1e200]).tobytes() + data[start + 72 :])
+    assert content.frfs is None and any(
+        "too large to be meant, the first at point 5" in w for w in content.warnings
+    )
