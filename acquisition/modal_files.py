@@ -28,8 +28,8 @@ def read_modes(path: Path | str) -> ModalData:
     """Read modes from a table (.csv) or from data sets 55 and 2414 of a universal file.
 
     The table has a header row with the columns ``frequency`` [Hz] and ``sigma`` [Hz]; ``damping`` and
-    ``damping_sigma`` [-] are optional, as are shape columns named by degree of freedom, ``3+Z`` (real). Lines
-    that begin with # are comments.
+    ``damping_sigma`` [-] are optional, as are shape columns named by degree of freedom, ``3+Z`` (real), and their
+    standard deviations, ``sigma 3+Z``. Lines that begin with # are comments.
 
     Parameters
     ----------
@@ -43,7 +43,13 @@ def read_modes(path: Path | str) -> ModalData:
     """
     path = Path(path)
     if path.suffix.lower() not in (".csv", ".txt"):
-        modal = read_uff(path).modal
+        content = read_uff(path)
+        modal = content.modal
+        broken = [info for info in content.datasets if not info.ok and info.number in (0, 55, 2414)]
+        if broken:
+            raise InputError(
+                f"{path}: data set at line {broken[0].line}: {broken[0].message}; a mode may be lost, export it again"
+            )
         if modal is None:
             raise InputError(
                 f"{path}: holds no modes; give a table with a column 'frequency' or data sets 55 or 2414"
@@ -62,6 +68,7 @@ def read_modes(path: Path | str) -> ModalData:
     shapes = [_numbers(table[name], name, path) for name in dofs]
     if shapes and not np.isfinite(shapes).all():
         raise InputError(f"{path}: a shape has gaps; fill them or leave the column out")
+    _once(path, frequency, _column(table, "damping", path), shapes)
     signs = np.array([dof.sign for dof in dofs.values()], dtype=np.float64)
     return ModalData(
         frequency=frequency,
@@ -70,7 +77,37 @@ def read_modes(path: Path | str) -> ModalData:
         damping_sigma=_column(table, "damping_sigma", path),
         dofs=tuple(Dof(dof.node, abs(dof.direction)) for dof in dofs.values()),
         shapes=np.array(shapes, dtype=np.complex128) * signs[:, None] if shapes else None,
+        shape_sigma=_shape_sigma(table, list(dofs), path),
     )
+
+
+def _shape_sigma(table: pd.DataFrame, names: list[str], path: Path) -> FloatArray | None:
+    """Return the standard deviations of the shapes; None where there are no such columns."""
+    every = [name for name in map(str, table.columns) if name.lower().startswith("sigma ")]
+    columns = {name.lower().removeprefix("sigma").strip(): name for name in every}
+    given = [columns.get(name.lower()) for name in names]
+    if not any(given):
+        return None
+    missing = [name for name, column in zip(names, given, strict=True) if column is None]
+    if missing:
+        raise InputError(
+            f"{path}: no column 'sigma {missing[0]}' and others of its kind; give one per shape column"
+        )
+    sigma = np.array([_numbers(table[column], str(column), path) for column in given])
+    if not (np.isfinite(sigma).all() and np.all(sigma >= 0)):
+        raise InputError(f"{path}: a standard deviation of a shape is missing or below zero")
+    return sigma
+
+
+def _once(path: Path, frequency: FloatArray, damping: FloatArray | None, shapes: list[FloatArray]) -> None:
+    """Check that no mode stands twice; without damping and shapes two of one frequency may be two."""
+    columns = [frequency, *([] if damping is None else [damping]), *shapes]
+    if len(columns) == 1:
+        return
+    first: dict[tuple[float, ...], int] = {}
+    for number, mode in enumerate(zip(*columns, strict=True), start=1):
+        if np.isfinite(mode).all() and first.setdefault(mode, number) != number:
+            raise InputError(f"{path}: modes {first[mode]} and {number} are the same mode; leave one out")
 
 
 def _table(path: Path) -> pd.DataFrame:

@@ -21,7 +21,7 @@ class DatasetInfo:
     file : str
         Name of the file.
     number : int
-        Data set number.
+        Data set number; 0 for what has none that can be read.
     kind : str
         What it is, in words.
     line : int
@@ -32,6 +32,8 @@ class DatasetInfo:
         Whether it was read.
     message : str
         What is wrong with it or odd about it; empty if nothing.
+    unused : str
+        What it is called in the list of what is not used, in the plural; empty if it is used.
     """
 
     file: str
@@ -41,10 +43,13 @@ class DatasetInfo:
     description: str
     ok: bool = True
     message: str = ""
+    unused: str = ""
 
     @property
     def place(self) -> str:
         """File, data set and line, for messages."""
+        if self.number == 0:
+            return f"{self.file}, line {self.line}"
         return f"{self.file}, data set {self.number} at line {self.line}"
 
 

@@ -85,14 +85,19 @@ def inspect(
         out.print("records hold several hits each; they are split when they are used")
     for verdicts in judged:
         show_hits(verdicts)
-    show_warnings(content.warnings)
     bad = [d for d in content.datasets if not d.ok]
-    if content.datasets and len(bad) == len(content.datasets):
-        raise InputError(f"{bad[0].place}: {bad[0].message}")
+    all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
+    error = f"{bad[0].place}: {bad[0].message}" if all_bad else ""
+    show_warnings([w for w in content.warnings if not error or not w.startswith(error)])
+    if error:
+        raise InputError(error)
 
 
 def _in_short(content: UffContent) -> pd.DataFrame:
-    """Return the table of data sets with those of a kind in one row, unless there is something to say of them."""
+    """Return the table of data sets with those of a kind in one row, unless there is something to say of them.
+
+    What there is to say stands in the warnings.
+    """
     table = content.table()
     plain = table["ok"] & (table["message"] == "")
     rows = [table[~plain]]
@@ -101,7 +106,7 @@ def _in_short(content: UffContent) -> pd.DataFrame:
         if len(group) > 1:
             row["description"] = f"{len(group)} of them, the first: " + row["description"]
         rows.append(row)
-    return pd.concat(rows).sort_values(["file", "line"], kind="stable")
+    return pd.concat(rows).sort_values(["file", "line"], kind="stable").drop(columns="message")
 
 
 def _usable(content: UffContent) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from acquisition import Dof, InputError, read_modes
+from acquisition import Dof, InputError, ModalData, read_modes, write_uff
 
 
 def test_full_table(tmp_path):
@@ -56,3 +56,34 @@ def test_missing_table_and_universal_file_without_modes(tmp_path, shared_data):
 
 def test_universal_file_with_modes(shared_data):
     assert len(read_modes(shared_data("uff/pyuff/uff55_translation.uff"))) == 3
+
+
+def test_standard_deviations_of_shapes(tmp_path):
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency,1+Z,3-Z,sigma 3-Z,sigma 1+Z\n10,1,2,0.2,0.1\n20,3,4,0.4,0.3\n")
+    modal = read_modes(path)
+    assert modal.shape_sigma.tolist() == [[0.1, 0.3], [0.2, 0.4]]
+    path.write_text("frequency,1+Z,3-Z,sigma 3-Z\n10,1,2,0.2\n")
+    with pytest.raises(InputError, match=r"no column 'sigma 1\+Z'"):
+        read_modes(path)
+
+
+def test_one_mode_twice_in_a_table(tmp_path):
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency,damping,1+Z\n10,0.01,1\n20,0.01,2\n10,0.01,1\n")
+    with pytest.raises(InputError, match="modes 1 and 3 are the same"):
+        read_modes(path)
+    path.write_text("frequency,damping,1+Z\n10,0.01,1\n10,0.01,2\n")
+    assert len(read_modes(path)) == 2
+
+
+def test_broken_mode_of_a_universal_file_is_not_left_out_silently(tmp_path, rng):
+    shapes = rng.standard_normal((1, 2)) + 0j
+    nothing = np.full(2, np.nan)
+    write_uff(
+        tmp_path / "a.uff", modal=ModalData(np.array([5.0, 7.0]), nothing, dofs=(Dof(1, 3),), shapes=shapes)
+    )
+    data = (tmp_path / "a.uff").read_bytes()
+    (tmp_path / "b.uff").write_bytes(data[: len(data) - 60])
+    with pytest.raises(InputError, match="a mode may be lost"):
+        read_modes(tmp_path / "b.uff")
