@@ -67,6 +67,8 @@ class Measured:
         Relative change of each frequency per newton of the hits' peak force [1/N].
     level : float, optional
         Mean peak force of the hits [N].
+    below : int
+        How many modes are known to lie below the lowest of these: left out by a band [-].
     """
 
     frequency: FloatArray
@@ -97,6 +99,7 @@ class Measured:
     slope: FloatArray | None = None
     slope_sigma: FloatArray | None = None
     level: float | None = None
+    below: int = 0
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -169,6 +172,7 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
             *placed.warnings,
             *check_among(placed.points, placed.keys, spec),
             *_without_sigma(modes, float(options.get("repeatability", 0.0))),
+            *modes.doubts(),
         ),
         directions=_directions(placed.keys, spec),
         **options,  # type: ignore[arg-type]
