@@ -180,7 +180,13 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
 
 
 def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
-    """Warn where nobody said how well frequencies are known."""
+    """Warn where nobody said how well frequencies are known; refuse such that nothing makes uncertain."""
+    exact = np.flatnonzero(~(np.nan_to_num(modes.frequency_sigma) > 0))
+    if repeatability == 0 and len(exact):
+        raise StudyError(
+            f"mode {exact[0] + 1} at {modes.frequency[exact[0]]:g} Hz has no uncertainty: its sigma is 0 or missing, and "
+            "repeatability is 0; give one of them"
+        )
     missing = int(np.sum(~np.isfinite(modes.frequency_sigma)))
     if not missing:
         return ()
