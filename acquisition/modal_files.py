@@ -52,8 +52,12 @@ def read_modes(path: Path | str) -> ModalData:
             f"{path}: a frequency is missing or not positive; give every mode its frequency in Hz"
         )
     sigma = column(table, "sigma", path)
-    if sigma is not None and np.any(sigma < 0):
-        raise InputError(f"{path}: a sigma is negative; give standard deviations, or leave them empty")
+    if sigma is not None and np.any((sigma < 0) | (sigma >= frequency)):
+        wrong = int(np.flatnonzero((sigma < 0) | (sigma >= frequency))[0])
+        raise InputError(
+            f"{path}: sigma {sigma[wrong]:g} Hz of the mode at {frequency[wrong]:g} Hz is negative or larger than the "
+            "frequency; give its standard deviation in Hz, or leave it empty"
+        )
     dofs = {name: found for name in table.columns if (found := dof(name)) is not None}
     shapes = [numbers(table[name], name, path) for name in dofs]
     if shapes and not np.isfinite(shapes).all():

@@ -32,6 +32,9 @@ MASSES = {"kg/m^3": 1.0, "g/cm^3": 1e3, "t/mm^3": 1e12, "lb/in^3": 27679.9}
 SIZES = (1e-7, 1e4)
 """Sizes of what is struck or modelled as a beam or plate: a micro-cantilever's thickness to a bridge [m]."""
 
+SLENDER = 1e5
+"""Length over thickness above which nothing bends as a beam: a millimetre on a hundred metres [-]."""
+
 
 def check_units(model: ModelTable) -> None:
     """See that the numbers of a beam or a plate are those of a solid body in SI units.
@@ -89,6 +92,11 @@ def _solid(
 def _check_thickness(kind: str, length: float, width: float, thickness: float) -> None:
     """See that a body is thinner than it is long (a plate: and wide)."""
     least = length if kind == "beam" else min(length, width)
+    if length > SLENDER * thickness:
+        raise StudyError(
+            f"[model] length = {length:g} m is {length / thickness:.2g} times thickness = {thickness:g} m: no {kind} "
+            "is that thin; check the units of both"
+        )
     if thickness < least:
         return
     meant = f'; probably thickness = "{thickness:g} mm" is meant' if thickness < 1000 * least else ""

@@ -224,6 +224,27 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))
 
 
+MISTAKEN = {
+    1e3: "the model's lengths are in mm, or its E in MPa",
+    10**4.5: "the model's E is in GPa",
+    1e-3: "the model's thickness alone is in mm, or the test's frequencies are in kHz",
+    10**-1.5: "the model's density is in g/cm3",
+    39.37: "the model's lengths are in inches",
+}
+"""Ratio of frequencies, test to model, that a unit other than SI makes: frequencies go as thickness over length
+squared, and as the root of E over density [-]."""
+
+LIKELY = 2.5
+"""How far from such a ratio, as a factor, test and model may be for it to be named: farther off than most gaps [-]."""
+
+
+def _probable(ratio: float) -> str:
+    """Return which unit was probably meant by a ratio of frequencies, test to model; nothing where none fits."""
+    off = {other: abs(np.log(ratio / other)) for other in MISTAKEN}
+    nearest = min(off, key=lambda other: off[other])
+    return f"; probably {MISTAKEN[nearest]}" if off[nearest] < np.log(LIKELY) else ""
+
+
 def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
     """Say how far test and model are apart where ranks alone pair them.
 
@@ -236,7 +257,7 @@ def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
     if max(ratio, 1 / ratio) > NOTHING_IN_COMMON:
         raise EstimationError(
             f"{measured.title or 'test'}: no modes in common: {times}; check the units of the model (m, Pa, kg/m3) "
-            "and of the test (Hz)"
+            f"and of the test (Hz){_probable(ratio)}"
         )
     far = max(ratio, 1 / ratio) > DISTANT
     return (f"{times}, and only their order pairs them: they may be other modes",) if far else ()

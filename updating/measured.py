@@ -184,8 +184,8 @@ def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
     exact = np.flatnonzero(~(np.nan_to_num(modes.frequency_sigma) > 0))
     if repeatability == 0 and len(exact):
         raise StudyError(
-            f"mode {exact[0] + 1} at {modes.frequency[exact[0]]:g} Hz has no uncertainty: its sigma is 0 or missing, and "
-            "repeatability is 0; give one of them"
+            f"mode {exact[0] + 1} at {modes.frequency[exact[0]]:g} Hz has no uncertainty: its sigma is 0 or missing, "
+            "and repeatability is 0; give one of them"
         )
     missing = int(np.sum(~np.isfinite(modes.frequency_sigma)))
     if not missing:

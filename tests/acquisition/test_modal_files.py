@@ -120,6 +120,7 @@ def test_a_table_brings_its_points(tmp_path):
         ("frequency,damping_pct\n10,0.6\n", "is 'damping_percent' meant"),
         ("frequency,sigma\n10,5 %\n", "no number"),
         ("frequency,sigma\n10,-1\n", "negative"),
+        ("frequency,sigma\n10,1e300\n", "larger than the frequency"),
     ],
 )
 def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from acquisition.errors import InputError, StudyError
+from acquisition.errors import EstimationError, InputError, StudyError
 from modalkit.batch.part import part_record
 from modalkit.process import open_study
 from modalkit.study import read_study
@@ -83,6 +83,15 @@ def test_shapes_of_a_table_are_compared_where_it_brings_its_points(tmp_path: Pat
     assert len(pair_modes(measured, Predictor(spec, measured).predict()).measured.frequency) == 3
     with pytest.raises(InputError, match="rows x, y, z"):
         open_study(read_study(written(tmp_path, shapes_of_a_cantilever(points=False))))
+
+
+def test_a_model_in_millimetres_is_named_by_its_frequencies(tmp_path: Path) -> None:
+    """A beam of 376 x 30.5 x 4.7625 m may be; a test that is a thousand times faster says that it is not."""
+    large = STUDY.replace("0.376", "376").replace("0.0305", "30.5").replace("0.0047625", "4.7625")
+    session = open_study(read_study(written(tmp_path, FIVE, study=large)))
+    spec = session.study.spec()
+    with pytest.raises(EstimationError, match="probably the model's lengths are in mm"):
+        pair_modes(session.case.measured, Predictor(spec, session.case.measured).predict())
 
 
 def test_damping_that_looks_like_percent_is_doubted(tmp_path: Path) -> None:

@@ -157,6 +157,10 @@ def test_a_baseline_has_the_keys_of_a_test(tmp_path: Path) -> None:
         (TEST + BEAM.replace("[model.material]", "theory='kirchhoff'\n[model.material]"), r"theory"),
         (TEST + "axes = { x = [1, 1, 0] }\n" + BEAM, r"not perpendicular"),
         (TEST + BEAM + "[[model.effect]]\nname = 'E'\nfactor = 'big'\n", r"factor"),
+        (
+            TEST + BEAM.replace("[model.material]", "elements=1000000000\n[model.material]"),
+            r"more than 20000",
+        ),
         (TEST + BEAM + MASS.format("[99.0]"), r"x = 99 m is off the beam, which reaches from 0 to 0\.376"),
         (TEST + BEAM + MASS.format("[-5]"), r"x = -5 m is off the beam"),
         (TEST + PLATE + MASS.format("[0.1, 0.9]"), r"y = 0\.9 m is off the plate"),

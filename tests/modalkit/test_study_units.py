@@ -242,6 +242,7 @@ STEEL = {"kind": "beam", "length": 0.376, "width": 0.03, "thickness": 0.005, "E"
         ({"thickness": 5}, 'thickness = "5 mm"'),
         ({"kind": "plate", "thickness": 5}, 'thickness = "5 mm"'),
         ({"thickness": 1e300}, "nothing of that size"),
+        ({"thickness": 2e-7}, "that thin"),
         ({"length": 1e-300, "thickness": 1e-301}, "nothing of that size"),
         ({"E": 1e-300}, "no solid"),
         ({"E": 1e300, "density": 1e300}, "no solid"),

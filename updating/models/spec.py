@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -23,6 +24,9 @@ THEORIES = {
     "matrices": {"imported"},
 }
 """Theories of each kind of model."""
+
+MOST_ELEMENTS = 20_000
+"""More elements than this of a uniform beam or plate say nothing new and cost memory: some 2 GB on a plate [-]."""
 
 DIMENSIONS = {"beam": 1, "plate": 2, "matrices": 3}
 """How many coordinates a place on the model has."""
@@ -182,6 +186,11 @@ class Spec:
             or min(self.elements, default=1) < 1
         ):
             raise StudyError(f"model: elements = {list(self.elements)} does not fit a {self.kind}")
+        if math.prod(self.elements) > MOST_ELEMENTS:
+            raise StudyError(
+                f"model: elements = {list(self.elements)} are more than {MOST_ELEMENTS}; fewer are as exact and "
+                "fit the memory"
+            )
         check_parts(self)
         if not self.regions:
             object.__setattr__(self, "regions", _default_regions(self))
