@@ -27,6 +27,7 @@ from updating.axes import Axes
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
 from updating.models.imported import Imported
+from updating.models.spec_checks import check_places
 from updating.tolerances import Tolerances
 
 __all__ = [
@@ -39,6 +40,9 @@ __all__ = [
     "UpdateTable",
     "read_study",
 ]
+
+NOTHING = 1e-9
+"""Tolerances below this are none: their squares, and one over them, are no use as numbers [-]."""
 
 
 class Study(Strict):
@@ -120,7 +124,7 @@ class Study(Strict):
         assert model.length is not None
         assert model.width is not None
         assert model.thickness is not None
-        return Spec(
+        spec = Spec(
             model.type,
             model.length,
             model.width,
@@ -133,6 +137,8 @@ class Study(Strict):
             tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
             damping,
         )
+        check_places(spec)
+        return spec
 
     @cached_property
     def _imported(self) -> Imported:
@@ -154,7 +160,8 @@ class Study(Strict):
 
     def doubts(self) -> Tolerances:
         """Return the tolerances."""
-        values = self.tolerances.model_dump()
+        told = self.tolerances.model_dump()
+        values = {name: value if value > NOTHING else 0.0 for name, value in told.items()}
         damping = values.pop("damping")
         return Tolerances(values, damping)
 

@@ -25,8 +25,13 @@ Span = tuple[Length, Length]
 LARGEST_LOSS = 5.0
 """Above the loss factor of any material: rubbers reach some 3 where they turn to glass [-]."""
 
+LARGEST_ASTRAY = 100.0
+"""Points known no better than this say nothing of any structure [m]."""
+
 LossFactor = Annotated[float, in_unit(""), Field(ge=0, lt=LARGEST_LOSS)]
-Seconds = Annotated[float, in_unit("s"), Field(ge=0)]
+Fluid = Annotated[float, in_unit("kg/m^3"), Field(gt=0, lt=30e3)]
+Alpha = Annotated[float, in_unit("1/s"), Field(ge=0, lt=1e9)]
+Beta = Annotated[float, in_unit("s"), Field(ge=0, lt=1e3)]
 Area = Annotated[float, in_unit("m^2"), Field(gt=0)]
 SecondMoment = Annotated[float, in_unit("m^4"), Field(gt=0)]
 Inertia = Annotated[float, in_unit("kg m^2"), Field(ge=0)]
@@ -89,7 +94,7 @@ class MeasurementTable(Strict):
     sensor_masses: dict[str, Mass] = {}
     calibration: Annotated[float, in_unit(""), Field(gt=0.0)] = 0.02
     repeatability: Share = 0.0005
-    position_sigma: Annotated[float, in_unit("m"), Field(ge=0.0)] = 0.001
+    position_sigma: Annotated[float, in_unit("m"), Field(ge=0.0, lt=LARGEST_ASTRAY)] = 0.001
     points: list[Length] = []
     sensor: Length | None = None
     hits: int | None = Field(None, ge=1)
@@ -138,8 +143,8 @@ class MaterialTable(Strict):
 class DampingTable(Strict):
     """``[model.damping]``."""
 
-    alpha: Rate | None = None
-    beta: Seconds | None = None
+    alpha: Alpha | None = None
+    beta: Beta | None = None
     loss_factor: LossFactor | None = None
     ratios: Annotated[list[Share], Field(min_length=1)] | None = None
 
@@ -163,8 +168,8 @@ class RegionTable(Strict):
     thickness: Size | None = None
     area: Area | None = None
     inertia: SecondMoment | None = None
-    alpha: Rate | None = None
-    beta: Seconds | None = None
+    alpha: Alpha | None = None
+    beta: Beta | None = None
     loss_factor: LossFactor | None = None
 
     @model_validator(mode="after")
@@ -206,13 +211,13 @@ class TolerancesTable(Strict):
     thickness: Share = 0.005
     length: Share = 0.002
     width: Share = 0.002
-    damping: Doubt = Field(0.3, gt=0)
+    damping: Doubt = Field(0.3, ge=1e-6)
 
 
 class EnvironmentTable(Strict):
     """``[environment]``."""
 
-    fluid_density: Density | None = None
+    fluid_density: Fluid | None = None
     free_surface: Size | None = None
     bottom: Size | None = None
     walls: tuple[Length, Length, Length, Length] | None = None

@@ -10,7 +10,7 @@ from updating.effects.base import Parameter, Values
 NOTHING = frozenset(
     {"mass", "alpha", "beta", "loss_factor", "decay", "viscosity", "fluid_density", "stiffness"}
 )
-"""Parameters with a logarithmic prior that may still be stated as zero: no mass, no damping, no spring."""
+"""Parameters with a logarithmic prior that may still be stated as zero: no mass, no damping, no fluid."""
 
 PLACES = frozenset({"x", "y", "z"})
 """Coordinates: their range is the structure."""
@@ -23,6 +23,9 @@ NOT_NEGATIVE = frozenset({"mass", "stiffness", "bulk", "loss_factor"})
 
 WHOLE_LOSS = 1.0
 """A loss of stiffness that leaves none [-]."""
+
+FAR = 1e6
+"""So many times beyond the prior a value is no mistake of judgement: its powers may be no numbers any more [-]."""
 
 
 def check_values(parameters: Sequence[Parameter], values: Values, where: str) -> None:
@@ -51,6 +54,8 @@ def check_values(parameters: Sequence[Parameter], values: Values, where: str) ->
 def _wrong(parameter: Parameter, value: float) -> str | None:
     """Return what is wrong with a value, or None."""
     name = parameter.name
+    if not abs(value) <= FAR * max(abs(parameter.low), abs(parameter.high)):
+        return f"is over a million times beyond what is ever found, {parameter.low:g} to {parameter.high:g}"
     if name in PLACES:
         slack = ROUNDED * (parameter.high - parameter.low)
         if not parameter.low - slack <= value <= parameter.high + slack:

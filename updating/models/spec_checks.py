@@ -20,22 +20,66 @@ DAMPERS = ("alpha", "beta", "loss_factor")
 ROUNDED = 1e-3
 """How far, relative to the size, a coordinate may miss an edge: digits that a user does not write out [-]."""
 
+LARGEST = 1e6
+"""So many times larger or smaller than the structure's own a property is a slip; its powers leave no digits [-]."""
+
 THOUSAND = 1000.0
 """Millimetres in a metre [-]."""
 
 
 def check_parts(spec: Spec) -> None:
-    """See that the masses and regions of a model can be and lie on it.
+    """See that the masses and regions of a model can be.
 
     Raises
     ------
     StudyError
-        If one has a number that nothing has, the wrong count of coordinates, or a place off the structure.
+        If one has a number that nothing has, or the wrong count of coordinates.
     """
     for mass in spec.masses:
         _check_mass(spec, mass)
     for region in spec.regions:
         _check_region(spec, region)
+
+
+def check_places(spec: Spec) -> None:
+    """See that the masses and regions of a model lie on it, as a study states them, and are of its size.
+
+    Raises
+    ------
+    StudyError
+        If one lies off the structure, or is over a million times larger or smaller than what it replaces.
+    """
+    _check_sizes(spec)
+    for mass in spec.masses:
+        _check_on(spec, f"mass at {list(mass.at)}", {"x": tuple(mass.at[:1]), "y": tuple(mass.at[1:2])})
+    for region in spec.regions:
+        _check_on(spec, f"region {region.name!r}", {"x": region.x, "y": region.y or ()})
+
+
+def _check_sizes(spec: Spec) -> None:
+    """See that masses, and the regions' own properties, are no million times those of the structure."""
+    body = spec.material.density * spec.length * spec.width * spec.thickness
+    area = spec.width * spec.thickness
+    usual = {
+        "E": spec.material.E,
+        "density": spec.material.density,
+        "thickness": spec.thickness,
+        "area": area,
+        "inertia": area * spec.thickness**2 / 12,
+    }
+    stated = [
+        (f"region {r.name!r}", n, getattr(r, n), usual[n], LARGEST) for r in spec.regions for n in POSITIVE
+    ]
+    for mass in spec.masses:
+        whose = f"mass at {list(mass.at)}"
+        stated += [(whose, "mass", mass.mass or None, body, math.inf)]
+        stated += [(whose, "inertia", mass.inertia or None, body * spec.length**2, math.inf)]
+    for whose, name, value, own, shrunk in stated:
+        if value is not None and not own / shrunk <= value <= own * LARGEST:
+            raise StudyError(
+                f"model: {whose}: {name} = {value:g} is {value / own:.2g} times that of the {spec.kind} itself; check "
+                "its unit"
+            )
 
 
 def _check_mass(spec: Spec, mass: PointMass) -> None:
@@ -48,7 +92,6 @@ def _check_mass(spec: Spec, mass: PointMass) -> None:
         raise StudyError(
             f"model: mass at {at} of {mass.mass:g} kg, {mass.inertia:g} kg m2; neither is negative"
         )
-    _check_on(spec, f"mass at {at}", {"x": tuple(at[:1]), "y": tuple(at[1:2])})
 
 
 def _check_region(spec: Spec, region: Region) -> None:
@@ -65,7 +108,6 @@ def _check_region(spec: Spec, region: Region) -> None:
     for axis, ends in sides.items():
         if ends and not ends[0] < ends[1]:
             raise StudyError(f"model: {whose}: {axis} = {list(ends)} ends before it begins; give [low, high]")
-    _check_on(spec, whose, sides)
 
 
 def _check_on(spec: Spec, what: str, sides: Mapping[str, tuple[float, ...]]) -> None:
