@@ -15,6 +15,12 @@ from acquisition.modal_columns import HEADINGS, check_headings, column, dof, num
 from acquisition.modal_data import ModalData
 from acquisition.uff import read_uff
 
+HIGHEST = 1e12
+"""Above the frequency of anything that vibrates as a whole [Hz]."""
+
+LARGEST = 1e50
+"""Components of shapes whose powers are still numbers [-]."""
+
 
 def read_modes(path: Path | str) -> ModalData:
     """Read modes from a table (.csv) or from data sets 55 and 2414 of a universal file.
@@ -47,9 +53,9 @@ def read_modes(path: Path | str) -> ModalData:
     frequency = column(table, "frequency", path)
     if frequency is None:
         raise InputError(f"{path}: no column 'frequency' among {', '.join(table.columns)}; name the columns")
-    if not np.all(frequency > 0):
+    if not np.all((frequency > 0) & (frequency < HIGHEST)):
         raise InputError(
-            f"{path}: a frequency is missing or not positive; give every mode its frequency in Hz"
+            f"{path}: a frequency is missing, not positive or beyond {HIGHEST:g} Hz; give every mode its own in Hz"
         )
     sigma = column(table, "sigma", path)
     if sigma is not None and np.any((sigma < 0) | (sigma >= frequency)):
@@ -62,6 +68,10 @@ def read_modes(path: Path | str) -> ModalData:
     shapes = [numbers(table[name], name, path) for name in dofs]
     if shapes and not np.isfinite(shapes).all():
         raise InputError(f"{path}: a shape has gaps; fill them or leave the column out")
+    if shapes and np.abs(shapes).max() > LARGEST:
+        raise InputError(
+            f"{path}: a shape reaches {np.abs(shapes).max():g}; scale it to numbers below {LARGEST:g}"
+        )
     signs = np.array([d.sign for d in dofs.values()], dtype=np.float64)
     return ModalData(
         frequency=frequency,

@@ -35,6 +35,7 @@ Beta = Annotated[float, in_unit("s"), Field(ge=0, lt=1e3)]
 Area = Annotated[float, in_unit("m^2"), Field(gt=0)]
 SecondMoment = Annotated[float, in_unit("m^4"), Field(gt=0)]
 Inertia = Annotated[float, in_unit("kg m^2"), Field(ge=0)]
+Weight = Annotated[float, Field(ge=0, lt=1e50)]
 Doubt = Annotated[float, in_unit(""), Field(ge=0)]
 
 MATRICES_ONLY = ("units", "stiffness", "mass_matrix", "stiffness_parts", "mass_parts", "nodes")
@@ -236,7 +237,7 @@ class UpdateTable(Strict):
 
     method: Literal["eigenvalue", "frf"] = "eigenvalue"
     parameters: list[str] | None = None
-    weights: Literal["covariance", "relative", "eigenvalue"] | list[Doubt] = "covariance"
+    weights: Literal["covariance", "relative", "eigenvalue"] | list[Weight] = "covariance"
     lines: Annotated[int, Field(ge=1)] | list[Hertz] | None = None
     stages: list[list[str]] | None = None
     data: list[Literal["frequencies", "shapes", "constants"]] = ["frequencies"]

@@ -120,6 +120,8 @@ def test_a_table_brings_its_points(tmp_path):
         ("frequency,damping_pct\n10,0.6\n", "is 'damping_percent' meant"),
         ("frequency,sigma\n10,5 %\n", "no number"),
         ("frequency,sigma\n10,-1\n", "negative"),
+        ("frequency\n1e300\n", "beyond"),
+        ("frequency,1+Z,2+Z\n10,1e300,1\n", "scale it"),
         ("frequency,sigma\n10,1e300\n", "larger than the frequency"),
     ],
 )

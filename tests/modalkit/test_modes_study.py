@@ -9,8 +9,10 @@ import pytest
 
 from acquisition.errors import EstimationError, InputError, StudyError
 from modalkit.batch.part import part_record
+from modalkit.fitting import update_studies
 from modalkit.process import open_study
 from modalkit.study import read_study
+from updating import LIBRARY, diagnose
 from updating.matching import pair_modes
 from updating.prediction import Predictor
 
@@ -104,3 +106,23 @@ def test_how_many_modes_lie_below_the_band_is_known(tmp_path: Path) -> None:
     """Without shapes the order pairs, and must begin above them."""
     assert open_study(read_study(written(tmp_path, FIVE, "band = [400.0, 1000.0]"))).case.measured.below == 2
     assert open_study(read_study(written(tmp_path, FIVE))).case.measured.below == 0
+
+
+@pytest.mark.parametrize(
+    ("keys", "text"),
+    [
+        ("", FIVE.replace("176,0.02", "28,0.01")),
+        ("", "frequency,sigma\n28,0.01\n"),
+    ],
+)
+def test_an_update_ends_whatever_the_table(tmp_path: Path, keys: str, text: str) -> None:
+    """Two modes alike, one of which has no partner; one mode alone."""
+    session = open_study(read_study(written(tmp_path, text, keys)))
+    assert all(np.isfinite(p.value) for p in update_studies([session]).parameters)
+
+
+def test_a_diagnosis_without_tolerances_ends(tmp_path: Path) -> None:
+    none = "".join(f"{name} = 0.0\n" for name in ("E", "density", "thickness", "length", "width"))
+    path = written(tmp_path, FIVE, study=STUDY + "[tolerances]\n" + none)
+    found = diagnose(open_study(read_study(path)).case, library=[LIBRARY["E"], LIBRARY["lumped_mass"]])
+    assert 0 <= found.p_value <= 1

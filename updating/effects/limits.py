@@ -7,9 +7,7 @@ from collections.abc import Sequence
 from acquisition.errors import StudyError
 from updating.effects.base import Parameter, Values
 
-NOTHING = frozenset(
-    {"mass", "alpha", "beta", "loss_factor", "decay", "viscosity", "fluid_density", "stiffness"}
-)
+NOTHING = frozenset({"mass", "alpha", "beta", "loss_factor", "decay", "viscosity", "fluid_density"})
 """Parameters with a logarithmic prior that may still be stated as zero: no mass, no damping, no fluid."""
 
 PLACES = frozenset({"x", "y", "z"})
