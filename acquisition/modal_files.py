@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -11,25 +10,26 @@ import pandas as pd
 from acquisition.arrays import FloatArray
 from acquisition.dof import Dof
 from acquisition.errors import InputError
+from acquisition.geometry import Geometry
+from acquisition.modal_columns import HEADINGS, check_headings, column, dof, numbers, plain
 from acquisition.modal_data import ModalData
 from acquisition.uff import read_uff
 
-_SHAPE = re.compile(r"(\d+)([+-])(R?[XYZ])$", re.IGNORECASE)
-_AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
-_COLUMNS = {
-    "frequency": ("frequency", "frequency_hz", "frequency [hz]", "f"),
-    "sigma": ("sigma", "frequency_sigma", "frequency_sigma_hz", "sigma [hz]"),
-    "damping": ("damping", "damping_ratio", "zeta"),
-    "damping_sigma": ("damping_sigma",),
-}
+HIGHEST = 1e12
+"""Above the frequency of anything that vibrates as a whole [Hz]."""
+
+LARGEST = 1e50
+"""Components of shapes whose powers are still numbers [-]."""
 
 
 def read_modes(path: Path | str) -> ModalData:
     """Read modes from a table (.csv) or from data sets 55 and 2414 of a universal file.
 
     The table has a header row with the columns ``frequency`` [Hz] and ``sigma`` [Hz]; ``damping`` and
-    ``damping_sigma`` [-] are optional, as are shape columns named by degree of freedom, ``3+Z`` (real), and their
-    standard deviations, ``sigma 3+Z``. Lines that begin with # are comments.
+    ``damping_sigma`` [-] are optional, or ``damping_percent`` and ``damping_sigma_percent``, as are shape columns
+    named by degree of freedom, ``3+Z`` (real), and their standard deviations, ``sigma 3+Z``. Rows with ``x``, ``y``
+    or ``z`` in place of a frequency give the coordinates of the shape columns' points [m]. Lines that begin with #
+    are comments.
 
     Parameters
     ----------
@@ -55,29 +55,42 @@ def read_modes(path: Path | str) -> ModalData:
                 f"{path}: holds no modes; give a table with a column 'frequency' or data sets 55 or 2414"
             )
         return modal
-    table = _table(path)
-    frequency = _column(table, "frequency", path)
+    table, coordinates = _split(_table(path), path)
+    check_headings(table, path)
+    frequency = column(table, "frequency", path)
     if frequency is None:
         raise InputError(f"{path}: no column 'frequency' among {', '.join(table.columns)}; name the columns")
-    if not np.all(frequency > 0):
+    if not np.all((frequency > 0) & (frequency < HIGHEST)):
         raise InputError(
-            f"{path}: a frequency is missing or not positive; give every mode its frequency in Hz"
+            f"{path}: a frequency is missing, not positive or beyond {HIGHEST:g} Hz; give every mode its own in Hz"
         )
-    sigma = _column(table, "sigma", path)
-    dofs = {name: dof for name in table.columns if (dof := _dof(name)) is not None}
-    shapes = [_numbers(table[name], name, path) for name in dofs]
+    sigma = column(table, "sigma", path)
+    if sigma is not None and np.any((sigma < 0) | (sigma >= frequency)):
+        wrong = int(np.flatnonzero((sigma < 0) | (sigma >= frequency))[0])
+        raise InputError(
+            f"{path}: sigma {sigma[wrong]:g} Hz of the mode at {frequency[wrong]:g} Hz is negative or larger than the "
+            "frequency; give its standard deviation in Hz, or leave it empty"
+        )
+    dofs = {name: found for name in table.columns if (found := dof(name)) is not None}
+    shapes = [numbers(table[name], name, path) for name in dofs]
     if shapes and not np.isfinite(shapes).all():
         raise InputError(f"{path}: a shape has gaps; fill them or leave the column out")
-    _once(path, frequency, _column(table, "damping", path), shapes)
-    signs = np.array([dof.sign for dof in dofs.values()], dtype=np.float64)
+    if shapes and np.abs(shapes).max() > LARGEST:
+        raise InputError(
+            f"{path}: a shape reaches {np.abs(shapes).max():g}; scale it to numbers below {LARGEST:g}"
+        )
+    damping = _ratios(column(table, "damping", path), path)
+    _once(path, frequency, damping, shapes)
+    signs = np.array([d.sign for d in dofs.values()], dtype=np.float64)
     return ModalData(
         frequency=frequency,
         frequency_sigma=np.full(len(frequency), np.nan) if sigma is None else sigma,
-        damping=_column(table, "damping", path),
-        damping_sigma=_column(table, "damping_sigma", path),
-        dofs=tuple(Dof(dof.node, abs(dof.direction)) for dof in dofs.values()),
+        damping=damping,
+        damping_sigma=column(table, "damping_sigma", path),
+        dofs=tuple(Dof(d.node, abs(d.direction)) for d in dofs.values()),
         shapes=np.array(shapes, dtype=np.complex128) * signs[:, None] if shapes else None,
         shape_sigma=_shape_sigma(table, list(dofs), path),
+        geometry=_geometry(coordinates, dofs, path),
     )
 
 
@@ -88,12 +101,12 @@ def _shape_sigma(table: pd.DataFrame, names: list[str], path: Path) -> FloatArra
     given = [columns.get(name.lower()) for name in names]
     if not any(given):
         return None
-    missing = [name for name, column in zip(names, given, strict=True) if column is None]
+    missing = [name for name, found in zip(names, given, strict=True) if found is None]
     if missing:
         raise InputError(
             f"{path}: no column 'sigma {missing[0]}' and others of its kind; give one per shape column"
         )
-    sigma = np.array([_numbers(table[column], str(column), path) for column in given])
+    sigma = np.array([numbers(table[found], str(found), path) for found in given])
     if not (np.isfinite(sigma).all() and np.all(sigma >= 0)):
         raise InputError(f"{path}: a standard deviation of a shape is missing or below zero")
     return sigma
@@ -110,6 +123,57 @@ def _once(path: Path, frequency: FloatArray, damping: FloatArray | None, shapes:
             raise InputError(f"{path}: modes {first[mode]} and {number} are the same mode; leave one out")
 
 
+def _split(table: pd.DataFrame, path: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Part the modes of a table from the coordinates of its points; these are indexed by x, y, z."""
+    heading = next((n for n in table.columns if plain(n) in HEADINGS["frequency"]), None)
+    if heading is None:
+        return table, table.iloc[:0]
+    axis = table[heading].fillna("").str.strip().str.lower()
+    there = axis.isin(["x", "y", "z"])
+    points = table[there].set_axis(axis[there], axis=0)
+    if points.index.has_duplicates:
+        raise InputError(
+            f"{path}: two rows of {points.index[points.index.duplicated()][0]} coordinates; give one"
+        )
+    if there.all():
+        raise InputError(f"{path}: holds no mode; give one row per mode beside the coordinates")
+    return table[~there], points
+
+
+def _geometry(points: pd.DataFrame, dofs: dict[str, Dof], path: Path) -> Geometry:
+    """Return the nodes of the shape columns, where their coordinates are given; what is left out of y and z is 0."""
+    if points.empty:
+        return Geometry.empty()
+    places: dict[int, tuple[float, ...]] = {}
+    for name, point in dofs.items():
+        told = numbers(points[name], name, path)
+        by_axis = dict(zip(points.index, told.tolist(), strict=True))
+        place = tuple(by_axis.get(axis, 0.0) for axis in ("x", "y", "z"))
+        if not np.isfinite(place).all():
+            raise InputError(f"{path}: column {name!r} lacks a coordinate in the rows x, y, z; give it in m")
+        if places.setdefault(point.node, place) != place:
+            raise InputError(f"{path}: node {point.node} has two places in the rows x, y, z; give it one")
+    return Geometry(tuple(places), np.array(list(places.values()), dtype=np.float64))
+
+
+def _ratios(damping: FloatArray | None, path: Path) -> FloatArray | None:
+    """See that damping ratios are those of something that vibrates."""
+    if damping is None:
+        return None
+    wrong = np.flatnonzero((damping < 0) | (damping >= 1))
+    if len(wrong):
+        worst = float(damping[wrong[0]])
+        advice = (
+            "give it a value, or leave it empty"
+            if worst < 0
+            else "if it is in %, name the column damping_percent"
+        )
+        raise InputError(
+            f"{path}: damping ratio {worst:g} of mode {wrong[0] + 1}: it lies from 0 to 1; {advice}"
+        )
+    return damping
+
+
 def _table(path: Path) -> pd.DataFrame:
     try:
         table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype=str)
@@ -121,26 +185,3 @@ def _table(path: Path) -> pd.DataFrame:
     if table.empty:
         raise InputError(f"{path}: holds no mode; give a header row and one row per mode")
     return table
-
-
-def _column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:
-    for column in table.columns:
-        if str(column).lower() in _COLUMNS[name]:
-            return _numbers(table[column], str(column), path)
-    return None
-
-
-def _numbers(column: pd.Series[str], name: str, path: Path) -> FloatArray:
-    numbers = pd.to_numeric(column, errors="coerce")
-    wrong = column[numbers.isna() & column.notna() & ~column.str.strip().str.lower().isin(["nan", ""])]
-    if len(wrong):
-        raise InputError(f"{path}: {wrong.iloc[0]!r} in column {name!r} is no number (use decimal points)")
-    return np.asarray(numbers, dtype=np.float64)
-
-
-def _dof(name: str) -> Dof | None:
-    found = _SHAPE.match(str(name))
-    if found is None:
-        return None
-    direction = _AXES.index(found[3].upper()) + 1
-    return Dof(int(found[1]), -direction if found[2] == "-" else direction)

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from acquisition.errors import StudyError
 from modalkit.accepting import accepted_values
 from modalkit.matrices import matrices_of, matrices_spec
+from modalkit.probable_units import check_units
 from modalkit.study_errors import explain, known_keys
 from modalkit.study_tables import (
     MATRICES_ONLY,
@@ -26,6 +27,7 @@ from updating.axes import Axes
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
 from updating.models.imported import Imported
+from updating.models.spec_checks import check_places
 from updating.tolerances import Tolerances
 
 __all__ = [
@@ -38,6 +40,9 @@ __all__ = [
     "UpdateTable",
     "read_study",
 ]
+
+NOTHING = 1e-9
+"""Tolerances below this are none: their squares, and one over them, are no use as numbers [-]."""
 
 
 class Study(Strict):
@@ -114,11 +119,12 @@ class Study(Strict):
         for key in ("length", "width", "thickness", "material"):
             if getattr(model, key) is None:
                 raise StudyError(f"[model] of type {model.type} needs {key}")
+        check_units(model)
         assert model.material is not None
         assert model.length is not None
         assert model.width is not None
         assert model.thickness is not None
-        return Spec(
+        spec = Spec(
             model.type,
             model.length,
             model.width,
@@ -131,6 +137,8 @@ class Study(Strict):
             tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
             damping,
         )
+        check_places(spec)
+        return spec
 
     @cached_property
     def _imported(self) -> Imported:
@@ -152,7 +160,8 @@ class Study(Strict):
 
     def doubts(self) -> Tolerances:
         """Return the tolerances."""
-        values = self.tolerances.model_dump()
+        told = self.tolerances.model_dump()
+        values = {name: value if value > NOTHING else 0.0 for name, value in told.items()}
         damping = values.pop("damping")
         return Tolerances(values, damping)
 
@@ -164,9 +173,10 @@ class Study(Strict):
         StudyError
             If one is unknown, or a value is neither a number nor, where points are meant, node numbers.
         """
-        entries = [] if self.model is None else self.model.effect
+        if self.model is None:
+            return ()
         try:
-            return tuple(accepted_values(entry) for entry in entries)
+            return tuple(accepted_values(entry, self.model.type) for entry in self.model.effect)
         except StudyError as error:
             raise StudyError(f"{self.path}: {error}") from error
 

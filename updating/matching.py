@@ -207,10 +207,12 @@ def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
 
 def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     """Pair by rank; let modes be skipped only where the ratios of frequencies are wild without."""
-    count = min(len(measured.frequency), len(prediction.frequency))
-    ratio = np.log(measured.frequency[:count] / prediction.frequency[:count])
+    above = prediction.frequency[measured.below :]
+    count = min(len(measured.frequency), len(above))
+    ratio = np.log(measured.frequency[:count] / above[:count])
     if count == len(measured.frequency) and np.std(ratio) < WILD:
-        return Paired(measured, np.arange(count), _distance(measured, float(np.exp(np.median(ratio)))))
+        order = measured.below + np.arange(count)
+        return Paired(measured, order, _distance(measured, float(np.exp(np.median(ratio)))))
     pairs = pair(measured.frequency, prediction.frequency, None)
     rows = np.array([p.test for p in pairs if p.model is not None and p.test is not None], dtype=int)
     order = np.array([p.model for p in pairs if p.model is not None and p.test is not None], dtype=int)
@@ -220,6 +222,27 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     keep[rows] = True
     lost = [f"mode at {f:.2f} Hz has no partner in the model" for f in measured.frequency[~keep]]
     return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))
+
+
+MISTAKEN = {
+    1e3: "the model's lengths are in mm, or its E in MPa",
+    10**4.5: "the model's E is in GPa",
+    1e-3: "the model's thickness alone is in mm, or the test's frequencies are in kHz",
+    10**-1.5: "the model's density is in g/cm3",
+    39.37: "the model's lengths are in inches",
+}
+"""Ratio of frequencies, test to model, that a unit other than SI makes: frequencies go as thickness over length
+squared, and as the root of E over density [-]."""
+
+LIKELY = 2.5
+"""How far from such a ratio, as a factor, test and model may be for it to be named: farther off than most gaps [-]."""
+
+
+def _probable(ratio: float) -> str:
+    """Return which unit was probably meant by a ratio of frequencies, test to model; nothing where none fits."""
+    off = {other: abs(np.log(ratio / other)) for other in MISTAKEN}
+    nearest = min(off, key=lambda other: off[other])
+    return f"; probably {MISTAKEN[nearest]}" if off[nearest] < np.log(LIKELY) else ""
 
 
 def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
@@ -234,7 +257,7 @@ def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
     if max(ratio, 1 / ratio) > NOTHING_IN_COMMON:
         raise EstimationError(
             f"{measured.title or 'test'}: no modes in common: {times}; check the units of the model (m, Pa, kg/m3) "
-            "and of the test (Hz)"
+            f"and of the test (Hz){_probable(ratio)}"
         )
     far = max(ratio, 1 / ratio) > DISTANT
     return (f"{times}, and only their order pairs them: they may be other modes",) if far else ()

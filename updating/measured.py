@@ -67,6 +67,8 @@ class Measured:
         Relative change of each frequency per newton of the hits' peak force [1/N].
     level : float, optional
         Mean peak force of the hits [N].
+    below : int
+        How many modes are known to lie below the lowest of these: left out by a band [-].
     """
 
     frequency: FloatArray
@@ -97,6 +99,7 @@ class Measured:
     slope: FloatArray | None = None
     slope_sigma: FloatArray | None = None
     level: float | None = None
+    below: int = 0
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -169,6 +172,7 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
             *placed.warnings,
             *check_among(placed.points, placed.keys, spec),
             *_without_sigma(modes, float(options.get("repeatability", 0.0))),
+            *modes.doubts(),
         ),
         directions=_directions(placed.keys, spec),
         **options,  # type: ignore[arg-type]
@@ -176,7 +180,13 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
 
 
 def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
-    """Warn where nobody said how well frequencies are known."""
+    """Warn where nobody said how well frequencies are known; refuse such that nothing makes uncertain."""
+    exact = np.flatnonzero(~(np.nan_to_num(modes.frequency_sigma) > 0))
+    if repeatability == 0 and len(exact):
+        raise StudyError(
+            f"mode {exact[0] + 1} at {modes.frequency[exact[0]]:g} Hz has no uncertainty: its sigma is 0 or missing, "
+            "and repeatability is 0; give one of them"
+        )
     missing = int(np.sum(~np.isfinite(modes.frequency_sigma)))
     if not missing:
         return ()
