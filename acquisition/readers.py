@@ -88,11 +88,12 @@ def _nothing(files: Sequence[Path], content: UffContent) -> str:
     return why if bad else f"{', '.join(map(str, files[:3]))}: {why}"
 
 
-def written_as_uff(path: Path) -> bool:
+def written_as_uff(path: Path | str) -> bool:
     """Tell whether a file is a universal file: by its ending, or because it starts as one does.
 
     A file that cannot be opened counts as one, so that it is refused with its name.
     """
+    path = Path(path)
     if path.suffix.lower() in UFF:
         return True
     if path.suffix.lower() in installed_readers():

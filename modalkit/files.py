@@ -21,21 +21,25 @@ Progress = Callable[[float], None]
 
 
 def read_files(
-    paths: Sequence[Path], *, layout: Path | None = None, progress: Progress | None = None
+    paths: Path | str | Sequence[Path | str],
+    *,
+    layout: Path | str | None = None,
+    progress: Progress | None = None,
 ) -> UffContent:
     """Read files of any known kind into one record of what they hold.
 
     Parameters
     ----------
-    paths : sequence of paths
+    paths : path or sequence of paths
         The files.
     layout : path, optional
         Layout of column text.
     progress : function, optional
         Called with the part of UFF files that is read, from 0 to 1.
     """
-    uff = [p for p in paths if written_as_uff(p)]
-    others = [p for p in paths if p not in uff]
+    files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
+    uff = [p for p in files if written_as_uff(p)]
+    others = [p for p in files if p not in uff]
     content = read_uff(uff, progress=progress) if uff or not others else UffContent()
     if not others:
         return content

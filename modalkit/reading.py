@@ -25,6 +25,7 @@ from acquisition import (
     split_hits,
     state_window,
 )
+from acquisition.display import Displayed
 from identification import ModalModel, identify
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
@@ -37,7 +38,7 @@ SAME_DECAY = 1e-3  # relative difference of decays that are the same
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class Judged(Displayed):
     """A test with what is thought of its hits.
 
     Parameters
@@ -51,9 +52,15 @@ class Judged:
     test: HammerTest
     verdicts: tuple[HitVerdict, ...]
 
+    def _headline(self) -> str:
+        return f"{self.test._headline()}; {sum(not v.used for v in self.verdicts)} left out"
+
+    def _frame(self) -> pd.DataFrame:
+        return self.test.table()
+
 
 @dataclass(frozen=True, eq=False)
-class Processed:
+class Processed(Displayed):
     """A test, turned into FRFs.
 
     Parameters
@@ -114,6 +121,13 @@ class Processed:
         if force is None or not low < force.band20 < lines[-1] or max(named, default=0.0) >= force.band20:
             return None
         return low, force.band20
+
+    def _headline(self) -> str:
+        hits = f"; {len(self.hits)} hits, {sum(not v.used for v in self.hits)} left out" if self.hits else ""
+        return f"{self.frfs._headline()}{hits}"
+
+    def _frame(self) -> pd.DataFrame:
+        return self.frfs.table()
 
 
 def read(

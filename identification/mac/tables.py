@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import ComplexArray
+from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frf import FrfSet
@@ -19,7 +20,7 @@ from identification.mac.shapes import auto_mac, mac
 
 
 @dataclass(frozen=True, eq=False)
-class CommonDofs:
+class CommonDofs(Displayed):
     """Shapes of two sets of modes at the degrees of freedom both have.
 
     Parameters
