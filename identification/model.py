@@ -129,12 +129,9 @@ class ModalModel(Displayed):
 
     def table(self) -> pd.DataFrame:
         """Return one row per mode: frequency [Hz], damping ratio [%], their standard deviations, MPC [-]."""
-        from identification.mac import mpc
+        from identification.mac import modes_table
 
-        table = self.modal.table()
-        if self.modal.shapes is not None:
-            table["MPC"] = mpc(self.modal.shapes)
-        return table
+        return modes_table(self.modal)
 
     def _headline(self) -> str:
         return f"{self.modal._headline()}; band {self.band[0]:g} to {self.band[1]:g} Hz"

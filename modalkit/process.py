@@ -13,7 +13,7 @@ from acquisition.display import Displayed
 from identification import ModalModel, frf_health, level_dependence
 from modalkit.files import Progress
 from modalkit.handling import Handling
-from modalkit.reading import Processed, read
+from modalkit.reading import Processed, read_frfs
 from modalkit.study import MeasurementTable, Study, read_study
 from updating import Case, Measured, measured_from_identified, measured_from_modes
 
@@ -162,7 +162,7 @@ def _identified(
         sensor_masses=tuple(table.sensor_masses.items()),
     )
     files = [study.file(f) for f in table.files]
-    processed = read(files, handling=handling, progress=progress)
+    processed = read_frfs(files, handling=handling, progress=progress)
     return processed, processed.identify(
         band=band or table.band, order=order, add=[*table.add, *add], drop=[*table.drop, *drop]
     )

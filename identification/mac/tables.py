@@ -16,7 +16,7 @@ from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
 from identification.mac.coordinates import comac, ecomac
 from identification.mac.frfs import frac
-from identification.mac.shapes import auto_mac, mac
+from identification.mac.shapes import auto_mac, mac, mpc
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +72,20 @@ def _rows(modes: ModalData, place: dict[Dof, tuple[int, int]], wanted: tuple[Dof
 def mode_names(modes: ModalData) -> list[str]:
     """Name modes by number and frequency: ``3: 187.02 Hz``."""
     return [f"{i}: {f:.5g} Hz" for i, f in enumerate(modes.frequency, start=1)]
+
+
+def modes_table(modes: ModalData) -> pd.DataFrame:
+    """Return one row per mode: frequency [Hz], damping ratio [%], their standard deviations, MPC [-].
+
+    Parameters
+    ----------
+    modes : ModalData
+        Modes, identified or read; those without shapes have no MPC.
+    """
+    table = modes.table()
+    if modes.shapes is not None:
+        table["MPC"] = mpc(modes.shapes)
+    return table
 
 
 def mac_table(first: ModalData, second: ModalData | None = None) -> pd.DataFrame:
