@@ -13,9 +13,12 @@ from acquisition import (
     Geometry,
     HammerTest,
     InputError,
+    Layout,
     ModalData,
     UffContent,
     installed_readers,
+    read_layout,
+    read_mat,
     read_modes,
     read_test,
     read_uff,
@@ -53,13 +56,14 @@ def read_files(
     """
     files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
     uff = [p for p in files if written_as_uff(p)]
-    modes = [p for p in files if p not in uff and _of_modes(p, layout is not None)]
+    plan = None if layout is None else read_layout(layout)
+    modes = [p for p in files if p not in uff and _of_modes(p, plan)]
     others = [p for p in files if p not in uff and p not in modes]
     content = read_uff(uff, progress=progress) if uff or not files else UffContent()
-    content = _with_modes(content, modes)
+    content = _with_modes(content, modes, plan)
     if not others:
         return content
-    found = read_test(others, layout=layout)
+    found = read_test(others, layout=plan)
     geometry = next(
         (g for g in (content.geometry, *(f.geometry for f in found)) if g.nodes), content.geometry
     )
@@ -73,12 +77,14 @@ def read_files(
     )
 
 
-def _of_modes(path: Path, laid_out: bool) -> bool:
+def _of_modes(path: Path, layout: Layout | None) -> bool:
     ending = path.suffix.lower()
-    return ending in MODES[laid_out] and ending not in installed_readers()
+    if layout is not None and layout.mat is not None and not layout.mat.frfs and ending == ".mat":
+        return True
+    return ending in MODES[layout is not None] and ending not in installed_readers()
 
 
-def _with_modes(content: UffContent, paths: Sequence[Path]) -> UffContent:
+def _with_modes(content: UffContent, paths: Sequence[Path], layout: Layout | None) -> UffContent:
     """Add the modes of a table or a JSON file.
 
     Raises
@@ -90,13 +96,13 @@ def _with_modes(content: UffContent, paths: Sequence[Path]) -> UffContent:
         return content
     if len(paths) > 1 or content.modal is not None:
         raise InputError(f"{paths[-1]}: several files of modes are no one test; give one, or compare them")
-    modal = _modes(paths[0])
+    modal = _modes(paths[0], layout)
     return replace(
         content, modal=modal, geometry=content.geometry if content.geometry.nodes else modal.geometry
     )
 
 
-def _modes(path: Path) -> ModalData:
+def _modes(path: Path, layout: Layout | None) -> ModalData:
     """Read a file of modes that nobody named as one.
 
     Raises
@@ -104,6 +110,10 @@ def _modes(path: Path) -> ModalData:
     InputError
         If it cannot be read, or is a table of FRFs: frequencies as even as lines are are no modes.
     """
+    if layout is not None and path.suffix.lower() == ".mat":
+        found = read_mat(path, layout)
+        assert isinstance(found, ModalData)
+        return found
     try:
         modal = read_modes(path)
         steps = np.diff(modal.frequency)
