@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -231,3 +232,17 @@ def test_cmif_has_a_peak_for_each_of_two_modes_at_one_frequency() -> None:
 def test_what_has_no_figures_is_said() -> None:
     with pytest.raises(InputError, match="no figures of a int"):
         mk.draw(3)
+
+
+def test_the_page_on_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    root = Path(__file__).resolve().parents[2]
+    parts = re.findall(
+        r"<!-- executed -->\n```python\n(.*?)```", (root / "docs" / "python.md").read_text(), re.DOTALL
+    )
+    assert len(parts) == 2
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sample_data").symlink_to(root / "sample_data")
+    names: dict[str, object] = {}
+    exec("".join(parts), names)
+    assert (tmp_path / "figures" / "auto_mac.png").exists() and (tmp_path / "modes.csv").exists()
+    assert set(names["figures"]) == {"frf", "stabilisation", "auto_mac", "shapes"}  # type: ignore[call-overload]
