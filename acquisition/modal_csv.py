@@ -17,7 +17,8 @@ def modes_csv(modal: ModalData) -> str:
 
     The columns are ``frequency`` [Hz], ``sigma`` [Hz], ``damping`` [-] and ``damping_sigma`` [-]; of every degree of
     freedom the shape's real part (``3+Z``), imaginary part (``3+Z imag``) and standard deviation (``3+Z sigma``),
-    as far as there are any; and ``scaled``, 1 where the shapes are mass-normalised.
+    as far as there are any; and ``scaled``, 1 where the shapes are mass-normalised. Rows ``x``, ``y``, ``z`` bring the
+    coordinates of the shapes' points [m], where all are known.
 
     Parameters
     ----------
@@ -29,6 +30,11 @@ def modes_csv(modal: ModalData) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)
     writer.writerows([_written(values[mode]) for values in columns.values()] for mode in range(len(modal)))
+    nodes = [dof.node for dof in modal.dofs]
+    if modal.shapes is not None and all(node in modal.geometry for node in nodes):
+        for name, places in zip("xyz", modal.geometry.at(nodes).T, strict=True):
+            place = dict(zip(map(str, modal.dofs), places, strict=True))
+            writer.writerow([name, *(_written(place.get(c, np.nan)) for c in list(columns)[1:])])
     return text.getvalue()
 
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
 
-from acquisition.arrays import ComplexArray, FloatArray, frozen_array
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, frozen_array
 from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
+
+DOUBTFUL_DAMPING = 0.2
+"""From this ratio on damping is doubted: hardly a structure has it, and 0.2 per cent is usual [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +81,28 @@ class ModalData(Displayed):
     def __len__(self) -> int:
         """Return the number of modes."""
         return len(self.frequency)
+
+    def modes(self, keep: BoolArray) -> ModalData:
+        """Return some of the modes, those where ``keep`` (n_modes,) is true."""
+        along = ("frequency", "frequency_sigma", "damping", "damping_sigma")
+        columns = {name: getattr(self, name)[keep] for name in along}
+        shapes = {
+            name: getattr(self, name)[:, keep]
+            for name in ("shapes", "shape_sigma")
+            if getattr(self, name) is not None
+        }
+        return replace(self, **columns, **shapes)
+
+    def doubts(self) -> tuple[str, ...]:
+        """Return what in the numbers themselves looks like a mistake."""
+        assert self.damping is not None
+        most = float(np.nan_to_num(self.damping).max(initial=0.0))
+        if most < DOUBTFUL_DAMPING:
+            return ()
+        return (
+            f"damping ratios of up to {most:.3g}, which is {100 * most:.3g} %: if they are in per cent, "
+            "name the column damping_percent, or divide them by 100",
+        )
 
     def table(self) -> pd.DataFrame:
         """Return one row per mode: frequency [Hz], damping ratio [%], and their standard deviations."""

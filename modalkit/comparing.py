@@ -9,13 +9,14 @@ from typing import Any, TypeAlias
 import numpy as np
 import pandas as pd
 
-from acquisition import InputError, ModalData, read_modes
+from acquisition import InputError, ModalData
 from acquisition.arrays import AnyArray
 from identification import Correlation, ModalModel, mac_table
 from identification import correlate as correlate_modes
 from identification import mac as mac_of_shapes
 from modalkit.existing import Modes
 from modalkit.process import Session, process
+from modalkit.process import modes_of as modes_in_band
 from modalkit.reading import Processed, read
 from modalkit.study import Study, read_study
 
@@ -46,8 +47,8 @@ def modes_of(source: ModesOf) -> ModalData:
     if isinstance(source, Session):
         return modes_of(source.study if source.identified is None else source.identified)
     if isinstance(source, Study):
-        named = source.test.modes
-        return process(source)[1].modal if named is None else read_modes(source.file(named))
+        named = source.test.modes is not None
+        return modes_in_band(source, source.test, "test")[0] if named else process(source)[1].modal
     if isinstance(source, ModalData):
         return source
     if isinstance(source, ModalModel | Modes):

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from acquisition import InputError, ModalData
-from acquisition.arrays import BoolArray
 from acquisition.display import Displayed
 from identification import modes_table
 
@@ -62,7 +61,7 @@ class Modes(Displayed):
         inside = (self.modal.frequency >= band[0]) & (self.modal.frequency <= band[1])
         if not inside.any():
             raise InputError(f"{self.source}: no mode between {band[0]:g} and {band[1]:g} Hz; widen the band")
-        return replace(self, modal=_chosen(self.modal, inside))
+        return replace(self, modal=self.modal.modes(inside))
 
     def _headline(self) -> str:
         return f"{self.modal._headline()}; from {self.source}"
@@ -74,13 +73,4 @@ def existing(
     """Return the modes that files hold, None where they hold none."""
     if modal is None or not len(modal):
         return None
-    return Modes(modal, ", ".join(str(p) for p in paths), title, warnings)
-
-
-def _chosen(modal: ModalData, modes: BoolArray) -> ModalData:
-    """Return some of the modes."""
-    names = ("frequency", "frequency_sigma", "damping", "damping_sigma", "shapes", "shape_sigma")
-    chosen: dict[str, Any] = {
-        name: value[..., modes] for name in names if (value := getattr(modal, name)) is not None
-    }
-    return replace(modal, **chosen)
+    return Modes(modal, ", ".join(str(p) for p in paths), title, (*warnings, *modal.doubts()))

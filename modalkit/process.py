@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from acquisition import StudyError, Windows, read_modes
+import numpy as np
+
+from acquisition import ModalData, StudyError, Windows, read_modes
 from acquisition.display import Displayed
 from identification import ModalModel, frf_health, level_dependence
 from modalkit.files import Progress
@@ -179,15 +181,44 @@ def _measure(
     }
     axes, spec = study.axes(table), study.spec()
     if table.modes is not None:
-        modes = read_modes(study.file(table.modes))
+        modes, below, beyond = modes_of(study, table, name)
         with _naming(study):
-            return measured_from_modes(modes, axes, spec, **options), None, None
+            measured = measured_from_modes(modes, axes, spec, **options)
+        return replace(measured, warnings=(*measured.warnings, *beyond), below=below), None, None
     if not table.files:
         raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
     processed, identified = _identified(study, table)
     with _naming(study):
         measured = measured_from_identified(identified, axes, spec, **options)
     return _with_levels(measured, processed, identified), processed, identified
+
+
+def modes_of(study: Study, table: MeasurementTable, name: str) -> tuple[ModalData, int, tuple[str, ...]]:
+    """Return the modes of a measurement's table that lie in its band, how many lie below it, and what to say of it.
+
+    Raises
+    ------
+    StudyError
+        If it names none, or none lies in the band.
+    """
+    assert table.modes is not None
+    path = study.file(table.modes)
+    modes = read_modes(path)
+    if table.band is None:
+        return modes, 0, ()
+    low, high = table.band
+    inside = (modes.frequency >= low) & (modes.frequency <= high)
+    if not inside.any():
+        raise StudyError(
+            f"{study.path}: [{name}] band = [{low:g}, {high:g}] Hz holds none of the {len(modes)} modes of {path}; "
+            f"they reach from {modes.frequency.min():g} to {modes.frequency.max():g} Hz"
+        )
+    if inside.all():
+        return modes, 0, ()
+    left = (
+        f"{int(np.sum(~inside))} of {len(modes)} modes of {table.modes} lie outside the band and are left out"
+    )
+    return modes.modes(inside), int(np.sum(modes.frequency < low)), (left,)
 
 
 def _health(processed: Processed | None, identified: ModalModel | None) -> tuple[str, ...]:

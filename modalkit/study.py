@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from acquisition.errors import StudyError
 from modalkit.accepting import accepted_values
 from modalkit.matrices import matrices_of, matrices_spec
+from modalkit.probable_units import check_units
 from modalkit.study_errors import explain, known_keys
 from modalkit.study_tables import (
     MATRICES_ONLY,
@@ -114,6 +115,7 @@ class Study(Strict):
         for key in ("length", "width", "thickness", "material"):
             if getattr(model, key) is None:
                 raise StudyError(f"[model] of type {model.type} needs {key}")
+        check_units(model)
         assert model.material is not None
         assert model.length is not None
         assert model.width is not None
@@ -164,9 +166,10 @@ class Study(Strict):
         StudyError
             If one is unknown, or a value is neither a number nor, where points are meant, node numbers.
         """
-        entries = [] if self.model is None else self.model.effect
+        if self.model is None:
+            return ()
         try:
-            return tuple(accepted_values(entry) for entry in entries)
+            return tuple(accepted_values(entry, self.model.type) for entry in self.model.effect)
         except StudyError as error:
             raise StudyError(f"{self.path}: {error}") from error
 

@@ -207,10 +207,12 @@ def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
 
 def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     """Pair by rank; let modes be skipped only where the ratios of frequencies are wild without."""
-    count = min(len(measured.frequency), len(prediction.frequency))
-    ratio = np.log(measured.frequency[:count] / prediction.frequency[:count])
+    above = prediction.frequency[measured.below :]
+    count = min(len(measured.frequency), len(above))
+    ratio = np.log(measured.frequency[:count] / above[:count])
     if count == len(measured.frequency) and np.std(ratio) < WILD:
-        return Paired(measured, np.arange(count), _distance(measured, float(np.exp(np.median(ratio)))))
+        order = measured.below + np.arange(count)
+        return Paired(measured, order, _distance(measured, float(np.exp(np.median(ratio)))))
     pairs = pair(measured.frequency, prediction.frequency, None)
     rows = np.array([p.test for p in pairs if p.model is not None and p.test is not None], dtype=int)
     order = np.array([p.model for p in pairs if p.model is not None and p.test is not None], dtype=int)

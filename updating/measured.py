@@ -72,6 +72,8 @@ class Measured(Displayed):
         Relative change of each frequency per newton of the hits' peak force [1/N].
     level : float, optional
         Mean peak force of the hits [N].
+    below : int
+        How many modes are known to lie below the lowest of these: left out by a band [-].
     """
 
     frequency: FloatArray
@@ -102,6 +104,7 @@ class Measured(Displayed):
     slope: FloatArray | None = None
     slope_sigma: FloatArray | None = None
     level: float | None = None
+    below: int = 0
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -192,6 +195,7 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
             *placed.warnings,
             *check_among(placed.points, placed.keys, spec),
             *_without_sigma(modes, float(options.get("repeatability", 0.0))),
+            *modes.doubts(),
         ),
         directions=_directions(placed.keys, spec),
         **options,  # type: ignore[arg-type]

@@ -24,6 +24,7 @@ from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State
+from updating.models.whole import Whole
 from updating.reading import Reading, reading
 
 
@@ -125,6 +126,13 @@ class Predictor(Displayed):
             points = np.zeros((1, self.spec.dim))
         modes = 30 if self.spec.kind == "beam" else 40
         return reduce_structure(build_structure(self.spec), points, directions, modes=modes)
+
+    @cached_property
+    def whole(self) -> Predictor:
+        """The same specimen on all degrees of freedom, for states of its full matrices."""
+        other = replace(self)
+        other.__dict__["reduced"] = Whole(self.reduced)
+        return other
 
     def once(self, name: str, build: Callable[[], FloatArray]) -> FloatArray:
         """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""

@@ -90,7 +90,8 @@ class FileRule:
     direction : str
         Direction in these files; "" for that of the column.
     column : str or int
-        Heading or number of the column; "" for the force.
+        Heading or number of the column; "" for the force. Of FRFs either column of the two, whose response it
+        places.
     """
 
     match: str
@@ -202,6 +203,8 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
         raise InputError(f"{source}: no [[column]]; add one for the force and one for each response")
     for n, column in enumerate(columns):
         _check_column(column, f"{source}: [[column]] {n + 1}")
+    for n, rule in enumerate(files):
+        _check_rule(rule, columns, f"{source}: [[file]] {n + 1}")
     if layout.rate is not None and layout.rate <= 0:
         raise InputError(f"{source}: rate = {layout.rate:g}; give the sampling rate in Hz")
     return layout
@@ -229,6 +232,20 @@ def _check_column(column: Column, where: str) -> None:
             raise InputError(f"{where}: {key} = {value!r}{_meant(value, allowed)}; use {', '.join(allowed)}")
     try:
         _ = column.dof, column.reference
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
+def _check_rule(rule: FileRule, columns: tuple[Column, ...], where: str) -> None:
+    """See that a rule speaks of a column there is, and of a direction."""
+    known = [c.index if c.name is None else c.name for c in columns]
+    if rule.column != "" and rule.column not in known:
+        raise InputError(
+            f"{where}: no [[column]] is {rule.column!r}; they are {', '.join(map(repr, known))}, or leave it out for "
+            "the force"
+        )
+    try:
+        dof_of(rule.node, rule.direction or "+z")
     except InputError as error:
         raise InputError(f"{where}: {error}") from error
 

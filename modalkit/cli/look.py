@@ -10,6 +10,7 @@ import pandas as pd
 import typer
 
 from acquisition import (
+    Dof,
     InputError,
     StudyError,
     UffContent,
@@ -56,6 +57,9 @@ from modalkit.process import process
 from modalkit.reading import Processed, numbered, read, read_frfs
 from modalkit.saving import check_modes_place
 from modalkit.study import read_study
+
+NAMED = 12
+"""So many degrees of freedom are named in one line."""
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -110,15 +114,26 @@ def _usable(content: UffContent) -> list[str]:
     parts = [several(len(content.geometry.nodes), "node")] if content.geometry.nodes else []
     for test in content.tests:
         count = sum(p.count for p in test.points)
-        where = several(len({p.reference for p in test.points}), "point")
-        parts.append(f"{several(count, 'hit')} at {where}, {test.samples} samples at {test.rate:g} Hz")
+        hit, seen = [p.reference for p in test.points], [d for p in test.points for d in p.responses]
+        parts.append(
+            f"{several(count, 'hit')} at {_places(hit)}, seen at {_places(seen)}, {test.samples} samples at "
+            f"{test.rate:g} Hz"
+        )
     if content.frfs is not None:
         f = content.frfs
         span = f"{f.frequency[0]:g} to {f.frequency[-1]:g} Hz in steps of {f.df:g} Hz"
-        parts.append(f"{several(len(f.responses), 'FRF')} ({f.form}), {span}")
+        where = f"hit at {_places(f.references)}, seen at {_places(f.responses)}"
+        parts.append(f"{several(len(f.responses), 'FRF')} ({f.form}), {where}, {span}")
     if content.modal is not None:
         parts.append(several(len(content.modal), "mode"))
     return parts
+
+
+def _places(dofs: Sequence[Dof]) -> str:
+    """Return how many points there are, and which, the first of many."""
+    names = list(dict.fromkeys(str(dof) for dof in dofs))
+    shown = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
+    return f"{several(len(names), 'point')} ({shown})"
 
 
 def frf(

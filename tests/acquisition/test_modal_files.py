@@ -56,3 +56,74 @@ def test_missing_table_and_universal_file_without_modes(tmp_path, shared_data):
 
 def test_universal_file_with_modes(shared_data):
     assert len(read_modes(shared_data("uff/pyuff/uff55_translation.uff"))) == 3
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell"),
+    [
+        ("damping", "0.006"),
+        ("Damping [-]", "0.006"),
+        ("damping_percent", "0.6"),
+        ("damping [%]", "0.6"),
+        ("Damping (%)", "0.6"),
+        ("zeta[%]", "0.6"),
+        ("damping", "0.6 %"),
+        ("damping [%]", "0.6%"),
+    ],
+)
+def test_damping_in_percent_is_understood_where_it_is_stated(tmp_path, heading, cell):
+    path = tmp_path / "modes.csv"
+    path.write_text(f"frequency,{heading},damping_sigma [%]\n10,{cell},0.01\n20,,\n")
+    modal = read_modes(path)
+    assert modal.damping[0] == pytest.approx(0.006, rel=1e-12) and np.isnan(modal.damping[1])
+    assert modal.damping_sigma[0] == pytest.approx(1e-4, rel=1e-12)
+    assert not modal.doubts()
+
+
+def test_our_own_table_is_read_back(tmp_path):
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency,sigma,damping,damping_sigma\n10.5,0.01,0.002,0.0001\n20,0.02,0.004,0.0002\n")
+    modal = read_modes(path)
+    modal.table().to_csv(tmp_path / "again.csv")
+    again = read_modes(tmp_path / "again.csv")
+    for name in ("frequency", "frequency_sigma", "damping", "damping_sigma"):
+        np.testing.assert_allclose(getattr(again, name), getattr(modal, name), rtol=1e-12)
+
+
+def test_ratios_that_nothing_has_are_doubted(tmp_path):
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency,damping\n10,0.6\n20,0.1\n")
+    (doubt,) = read_modes(path).doubts()
+    assert "60 %" in doubt and "damping_percent" in doubt
+
+
+def test_a_table_brings_its_points(tmp_path):
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency,1+Z,3-Z,3+X\nx,0.1,0.3,0.3\nZ,0,0.01,0.01\n10,1,0.5,0\n20,2,-1,1\n")
+    modal = read_modes(path)
+    assert len(modal) == 2 and modal.geometry.nodes == (1, 3)
+    assert modal.geometry.coordinates.tolist() == [[0.1, 0, 0], [0.3, 0, 0.01]]
+    assert modal.shapes.real.tolist() == [[1, 2], [-0.5, 1], [0, 1]]
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("frequency,1+Z\nx,0.1\nx,0.2\n10,1\n", "two rows of x"),
+        ("frequency,1+Z\nx,\n10,1\n", "lacks a coordinate"),
+        ("frequency,1+Z,1+X\nx,0.1,0.2\n10,1,1\n", "node 1 has two places"),
+        ("frequency,1+Z\nx,0.1\n", "holds no mode"),
+        ("frequency,damping\n10,6\n", "damping_percent"),
+        ("frequency,damping\n10,-0.01\n", "from 0 to 1"),
+        ("frequency,damping,damping_percent\n10,0.01,1\n", "both give the damping"),
+        ("frequency,dampin\n10,0.01\n", "is 'damping' meant"),
+        ("frequency,damping_pct\n10,0.6\n", "is 'damping_percent' meant"),
+        ("frequency,sigma\n10,5 %\n", "no number"),
+        ("frequency,sigma\n10,-1\n", "negative"),
+    ],
+)
+def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):
+    path = tmp_path / "modes.csv"
+    path.write_text(text)
+    with pytest.raises(InputError, match=word):
+        read_modes(path)

@@ -66,8 +66,9 @@ def test_what_is_written_is_read_back_to_the_last_bit(tmp_path: Path, ending: st
     assert again.frequency.tolist() == [1 / 3, 5.0] and again.shapes is None
 
 
-def test_json_keeps_the_places_of_the_nodes(tmp_path: Path) -> None:
-    back = read_modes(written(tmp_path, ".json")).geometry
+@pytest.mark.parametrize("ending", [".csv", ".json"])
+def test_the_places_of_the_nodes_are_kept(tmp_path: Path, ending: str) -> None:
+    back = read_modes(written(tmp_path, ending)).geometry
     assert back.nodes == PLACES.nodes and np.array_equal(back.coordinates, PLACES.coordinates)
 
 
@@ -111,6 +112,8 @@ def test_a_study_reads_the_table_that_identify_writes(tmp_path: Path, run: Run) 
     study = tmp_path / "study.toml"
     study.write_text('[test]\nmodes = "modes.csv"\n')
     assert np.array_equal(mk.modes_of(str(study)).frequency, found.frequency)
+    study.write_text('[test]\nmodes = "modes.csv"\nband = [100.0, 500.0]\n')
+    assert np.array_equal(mk.modes_of(str(study)).frequency, found.frequency[1:])
 
 
 def test_the_ending_says_what_is_written(tmp_path: Path, run: Run) -> None:

@@ -57,6 +57,15 @@ def test_shapes_find_their_partner_in_any_order_and_level(
     assert match(test, MODEL, np.arange(5)).tolist() == order
 
 
+def test_modes_that_a_band_left_out_count_in_the_rank() -> None:
+    """Modes 12 to 14 of a series as dense as a plate's: their ratios to 11 to 13 are as even as to their own."""
+    hertz = 100.0 + 5.0 * np.arange(20)
+    model = replace(MODEL.select(np.zeros(20, dtype=int)), frequency=hertz)
+    test = replace(seen_as(MODEL.select(np.arange(3)), shapes=False), frequency=1.01 * hertz[11:14])
+    assert pair_modes(test, model).order.tolist() != [11, 12, 13]
+    assert pair_modes(replace(test, below=11), model).order.tolist() == [11, 12, 13]
+
+
 def test_without_shapes_the_rank_decides() -> None:
     test = seen_as(MODEL, shapes=False)
     assert match(test, MODEL, np.array([0, 1, 2, 4, 5, 3])).tolist() == [0, 1, 2, 4, 5, 3]

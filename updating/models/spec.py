@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from acquisition.display import Displayed, counted
 from acquisition.errors import StudyError
+from updating.models.spec_checks import check_parts
 
 if TYPE_CHECKING:
     from updating.models.imported.matrices import Imported
@@ -150,7 +151,8 @@ class Spec(Displayed):
     Raises
     ------
     StudyError
-        If a dimension is not positive, or an edge or a theory does not exist for this kind.
+        If a dimension is not positive, an edge or a theory does not exist for this kind, or a mass or region cannot be
+        or lies off the structure.
     """
 
     kind: Kind
@@ -168,8 +170,8 @@ class Spec(Displayed):
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "thickness"):
-            if not getattr(self, name) > 0:
-                raise StudyError(f"model: {name} must be positive, found {getattr(self, name)}")
+            if not 0 < getattr(self, name) < float("inf"):
+                raise StudyError(f"model: {name} must be positive and finite, found {getattr(self, name)}")
         edges = EDGES[self.kind]
         if unknown := set(self.clamped) - edges:
             raise StudyError(f"model: a {self.kind} has no edge {sorted(unknown)}; use {sorted(edges)}")
@@ -181,11 +183,7 @@ class Spec(Displayed):
             or min(self.elements, default=1) < 1
         ):
             raise StudyError(f"model: elements = {list(self.elements)} does not fit a {self.kind}")
-        if short := [list(m.at) for m in self.masses if len(m.at) < self.dim]:
-            raise StudyError(
-                f"model: mass at {short[0]} needs {self.dim} coordinates on "
-                + ("imported matrices" if self.kind == "matrices" else f"a {self.kind}")
-            )
+        check_parts(self)
         if not self.regions:
             object.__setattr__(self, "regions", _default_regions(self))
 

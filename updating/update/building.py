@@ -69,7 +69,6 @@ def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False)
         panel,
         (*case.measured.warnings, *paired.warnings),
         np.ones(len(number)),
-        {name: values for name, values in accepted.items() if name not in updated},
     )
 
 
