@@ -8,6 +8,7 @@ from acquisition.estimators import estimate_frfs, random_error
 from acquisition.frf import FORMS, FrfSet
 from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest, Hits
+from acquisition.mat.read import read_mat
 from acquisition.modal_data import ModalData
 from acquisition.modal_files import read_modes
 from acquisition.quality import judge_hits
@@ -73,6 +74,7 @@ __all__ = [
     "read_frf_columns",
     "read_functions",
     "read_layout",
+    "read_mat",
     "read_modes",
     "read_test",
     "read_uff",

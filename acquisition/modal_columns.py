@@ -13,7 +13,7 @@ from acquisition.arrays import FloatArray
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 
-_SHAPE = re.compile(r"(\d+)([+-])(R?[XYZ])$", re.IGNORECASE)
+_SHAPE = re.compile(r"(\d+)([+-])(R?[XYZ])(?: (imag|sigma))?$", re.IGNORECASE)
 _AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 PERCENT = 0.01
 
@@ -28,6 +28,7 @@ HEADINGS: dict[str, dict[str, float]] = {
         **dict.fromkeys(("damping_sigma", "damping_sigma [-]"), 1.0),
         **dict.fromkeys(("damping_sigma_percent", "damping_sigma [%]", "sigma [%]"), PERCENT),
     },
+    "scaled": {"scaled": 1.0},
 }
 """Headings of each column, and what their numbers are multiplied by."""
 
@@ -45,7 +46,7 @@ def check_headings(table: pd.DataFrame, path: Path) -> None:
     """
     known = [heading for headings in HEADINGS.values() for heading in headings]
     for name in table.columns:
-        if plain(name) not in known and dof(name) is None:
+        if plain(name) not in known and part_of(name) is None:
             begins = str(name).strip().lower().startswith(("damping", "zeta"))
             close = difflib.get_close_matches(plain(name), known, n=1, cutoff=0.0 if begins else _RESEMBLES)
             if close:
@@ -96,7 +97,29 @@ def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -
 def dof(name: str) -> Dof | None:
     """Return the degree of freedom that heads a shape column, as ``3+Z``, or None."""
     found = _SHAPE.match(str(name))
-    if found is None:
+    if found is None or found[4]:
         return None
     direction = _AXES.index(found[3].upper()) + 1
     return Dof(int(found[1]), -direction if found[2] == "-" else direction)
+
+
+def part_of(name: str) -> str | None:
+    """Return which part of a shape a column holds: "", "imag" or "sigma"; None if it is no shape's."""
+    found = _SHAPE.match(str(name))
+    return None if found is None else (found[4] or "").lower()
+
+
+def components(table: pd.DataFrame, dofs: list[str], part: str, path: Path) -> FloatArray | None:
+    """Return one part of all shapes, shape (n_dofs, n_modes); None if no degree of freedom has it.
+
+    Raises
+    ------
+    InputError
+        If some have it and others have not, or it belongs to none.
+    """
+    names = [name for name in table.columns if part_of(name) == part]
+    wanted = [f"{dof} {part}".strip() for dof in dofs]
+    if names and sorted(names) != sorted(wanted):
+        odd = sorted(set(names).symmetric_difference(wanted))[0]
+        raise InputError(f"{path}: column {odd!r} stands without its like; give every shape column its own")
+    return np.array([numbers(table[name], name, path) for name in wanted]) if names else None

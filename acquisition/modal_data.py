@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, frozen_array
+from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
@@ -17,7 +18,7 @@ DOUBTFUL_DAMPING = 0.2
 
 
 @dataclass(frozen=True, eq=False)
-class ModalData:
+class ModalData(Displayed):
     """Frequencies, damping ratios and shapes with their standard deviations.
 
     Parameters
@@ -114,3 +115,12 @@ class ModalData:
             "sigma [%]": 100 * self.damping_sigma,
         }
         return pd.DataFrame(columns, index=pd.RangeIndex(1, len(self) + 1, name="mode"))
+
+    def _headline(self) -> str:
+        if not len(self):
+            return "no modes"
+        span = f"{counted(len(self), 'mode')}, {self.frequency.min():g} to {self.frequency.max():g} Hz"
+        if self.shapes is None:
+            return f"{span}, no shapes"
+        scaled = "mass-normalised" if self.scaled else "not mass-normalised"
+        return f"{span}, shapes at {counted(len(self.dofs), 'degree')} of freedom, {scaled}"

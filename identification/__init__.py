@@ -1,5 +1,6 @@
 """From FRFs to modes with uncertainties."""
 
+from identification.cmif import cmif
 from identification.health import frf_health, mode_coherence
 from identification.identify import identify
 from identification.levels import LevelDependence, level_dependence, why_no_level_dependence
@@ -15,6 +16,7 @@ from identification.mac import (
     mac,
     mac_table,
     macx,
+    modes_table,
     mpc,
     msf,
     subspace_mac,
@@ -41,6 +43,7 @@ __all__ = [
     "Subspace",
     "auto_mac",
     "beside",
+    "cmif",
     "comac",
     "common_dofs",
     "coordinate_table",
@@ -62,6 +65,7 @@ __all__ = [
     "modal_constants",
     "mode_coherence",
     "mode_shapes",
+    "modes_table",
     "mpc",
     "msf",
     "pair",

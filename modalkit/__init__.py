@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 _ROOMS = ("acquisition", "identification", "updating")
 
@@ -42,16 +44,23 @@ from acquisition import (  # noqa: E402
     split_hits,
     write_uff,
 )
-from identification import ModalModel, identify  # noqa: E402
+from identification import ModalModel, cmif, identify  # noqa: E402
+from modalkit.comparing import compare, mac, modes_of  # noqa: E402
 from modalkit.diagnosing import diagnose_studies  # noqa: E402
+from modalkit.existing import Modes  # noqa: E402
 from modalkit.fitting import update_studies  # noqa: E402
 from modalkit.handling import Handling  # noqa: E402
 from modalkit.process import Session, open_study  # noqa: E402
 from modalkit.reading import Processed, read  # noqa: E402
+from modalkit.saving import write_modes  # noqa: E402
 from modalkit.simulate import simulate_test  # noqa: E402
 from modalkit.study import Study, read_study  # noqa: E402
 from updating import Case, Diagnosis, diagnose, register  # noqa: E402
 from updating.correlation import correlate  # noqa: E402
+
+if TYPE_CHECKING:
+    from modalkit import figures
+    from modalkit.figures import draw
 
 __version__ = "0.1.0"
 
@@ -66,19 +75,26 @@ __all__ = [
     "ModalData",
     "ModalModel",
     "ModalkitError",
+    "Modes",
     "Processed",
     "Session",
     "Study",
     "StudyError",
     "bootstrap_frfs",
+    "cmif",
+    "compare",
     "correlate",
     "decide",
     "diagnose",
     "diagnose_studies",
+    "draw",
     "estimate_frfs",
+    "figures",
     "hits_table",
     "identify",
     "judge_hits",
+    "mac",
+    "modes_of",
     "open_study",
     "read",
     "read_study",
@@ -89,5 +105,14 @@ __all__ = [
     "simulate_test",
     "split_hits",
     "update_studies",
+    "write_modes",
     "write_uff",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Load the figures, and matplotlib with them, when they are first asked for."""
+    if name not in {"draw", "figures"}:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = importlib.import_module("modalkit.figures")
+    return module if name == "figures" else module.draw

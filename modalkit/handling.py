@@ -29,7 +29,7 @@ class Handling:
     use, leave : tuples of (str, int)
         Hits to use or to leave out against the proposal: the point as printed, ``"12+Z"``, and the number of
         the hit at it, from 1.
-    layout : Path, optional
+    layout : path, optional
         Rate, units and points of column text.
     sensor_masses : tuple of (str, float)
         Accelerometers whose mass is taken out of the FRFs: where, as printed, and its mass [kg].
@@ -46,11 +46,12 @@ class Handling:
     estimator: Estimator = "H1"
     use: tuple[HitName, ...] = ()
     leave: tuple[HitName, ...] = ()
-    layout: Path | None = None
+    layout: Path | str | None = None
     sensor_masses: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         """Check the entries."""
+        object.__setattr__(self, "layout", None if self.layout is None else Path(self.layout))
         if self.decay < 0 or self.window < 0:
             raise InputError(f"windows of {self.decay} and {self.window} 1/s: decay rates are not negative")
         if self.estimator not in ESTIMATORS:

@@ -5,20 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from acquisition import ModalData, StudyError, Windows, read_modes
+from acquisition.display import Displayed
 from identification import ModalModel, frf_health, level_dependence
 from modalkit.files import Progress
 from modalkit.handling import Handling
-from modalkit.reading import Processed, read
-from modalkit.study import MeasurementTable, Study
+from modalkit.reading import Processed, read_frfs
+from modalkit.study import MeasurementTable, Study, read_study
 from updating import Case, Measured, measured_from_identified, measured_from_modes
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
-class Session:
+class Session(Displayed):
     """A study with everything that was worked out on the way to a case.
 
     Parameters
@@ -39,14 +45,20 @@ class Session:
     identified: ModalModel | None
     warnings: tuple[str, ...]
 
+    def _headline(self) -> str:
+        return self.case._headline()
 
-def open_study(study: Study, *, with_baseline: bool = True) -> Session:
+    def _frame(self) -> pd.DataFrame:
+        return self.case.measured._frame()
+
+
+def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Session:
     """Work out the case of a study: process and identify its test and its baseline.
 
     Parameters
     ----------
-    study : Study
-        The study.
+    study : Study or path
+        The study, or its file.
     with_baseline : bool
         Whether the baseline is worked out too; only a diagnosis needs it.
 
@@ -55,6 +67,7 @@ def open_study(study: Study, *, with_baseline: bool = True) -> Session:
     StudyError
         If the study names no data.
     """
+    study = study if isinstance(study, Study) else read_study(study)
     test, processed, identified = _measure(study, study.test, "test")
     baseline, *before = (
         _measure(study, study.baseline, "baseline")
@@ -74,6 +87,28 @@ def open_study(study: Study, *, with_baseline: bool = True) -> Session:
     own += _health(processed, identified)
     own += [f"baseline: {w}" for part in before if part is not None for w in part.warnings]
     return Session(study, case, processed, identified, tuple(dict.fromkeys(own)))
+
+
+def sessions_of(
+    studies: Sequence[Session | Study | Path | str], *, with_baseline: bool = True
+) -> list[Session]:
+    """Return studies worked out; those that are already stay as they are.
+
+    Parameters
+    ----------
+    studies : sequence of Session, Study or path
+        The studies, or their files.
+    with_baseline : bool
+        Whether the baselines are worked out too.
+
+    Raises
+    ------
+    StudyError
+        If there is no study.
+    """
+    if not studies:
+        raise StudyError("no study is given; name one or more study files")
+    return [s if isinstance(s, Session) else open_study(s, with_baseline=with_baseline) for s in studies]
 
 
 def process(
@@ -129,7 +164,7 @@ def _identified(
         sensor_masses=tuple(table.sensor_masses.items()),
     )
     files = [study.file(f) for f in table.files]
-    processed = read(files, handling=handling, progress=progress)
+    processed = read_frfs(files, handling=handling, progress=progress)
     return processed, processed.identify(
         band=band or table.band, order=order, add=[*table.add, *add], drop=[*table.drop, *drop]
     )

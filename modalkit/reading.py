@@ -25,7 +25,9 @@ from acquisition import (
     split_hits,
     state_window,
 )
+from acquisition.display import Displayed
 from identification import ModalModel, identify
+from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
 from modalkit.joining import together
@@ -37,7 +39,7 @@ SAME_DECAY = 1e-3  # relative difference of decays that are the same
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class Judged(Displayed):
     """A test with what is thought of its hits.
 
     Parameters
@@ -51,9 +53,15 @@ class Judged:
     test: HammerTest
     verdicts: tuple[HitVerdict, ...]
 
+    def _headline(self) -> str:
+        return f"{self.test._headline()}; {sum(not v.used for v in self.verdicts)} left out"
+
+    def _frame(self) -> pd.DataFrame:
+        return self.test.table()
+
 
 @dataclass(frozen=True, eq=False)
-class Processed:
+class Processed(Displayed):
     """A test, turned into FRFs.
 
     Parameters
@@ -115,6 +123,13 @@ class Processed:
             return None
         return low, force.band20
 
+    def _headline(self) -> str:
+        hits = f"; {len(self.hits)} hits, {sum(not v.used for v in self.hits)} left out" if self.hits else ""
+        return f"{self.frfs._headline()}{hits}"
+
+    def _frame(self) -> pd.DataFrame:
+        return self.frfs.table()
+
 
 def read(
     path: Path | str | Sequence[Path | str],
@@ -123,13 +138,14 @@ def read(
     layout: Path | str | None = None,
     handling: Handling = AS_READ,
     progress: Progress | None = None,
-) -> Processed:
-    """Read files as one test and turn hits into FRFs.
+) -> Processed | Modes:
+    """Read files as one test: hits are turned into FRFs; modes that exist already are taken as they are.
 
     Parameters
     ----------
     path : path or sequence of paths
-        The files: UFF, column text with a layout, or what an installed reader knows.
+        The files: UFF, column text or .mat with a layout, a table or a JSON file of modes, or what an installed
+        reader knows.
     decay : float
         Decay rate of an exponential window applied before the files were written, where they do not say it
         themselves; short for ``Handling(decay=...)`` [1/s].
@@ -142,13 +158,52 @@ def read(
 
     Returns
     -------
-    Processed
+    Processed or Modes
+        Modes where the files hold these and neither hits nor FRFs. Both have `identify`, and that a table.
 
     Raises
     ------
     InputError
-        If the files hold neither raw hits nor FRFs, or what is said of their treatment does not fit them.
+        If the files hold nothing of that, or what is said of their treatment does not fit them.
     """
+    handling = _said(handling, decay, layout)
+    paths = [Path(p) for p in ([path] if isinstance(path, str | Path) else path)]
+    content = read_files(paths, layout=handling.layout, progress=progress)
+    modes = existing(content.modal, paths, content.title, content.warnings)
+    if modes is None or content.tests or content.frfs is not None:
+        return _processed(content, paths, handling)
+    if replace(handling, layout=None) != AS_READ:
+        raise InputError(
+            f"{modes.source}: holds modes; decay, windows, hits, estimator and sensor masses are for hits and FRFs"
+        )
+    return modes
+
+
+def read_frfs(
+    path: Path | str | Sequence[Path | str], *, handling: Handling = AS_READ, progress: Progress | None = None
+) -> Processed:
+    """Read files as `read` does, hits and FRFs only.
+
+    Parameters
+    ----------
+    path, handling, progress
+        As of `read`.
+
+    Raises
+    ------
+    InputError
+        If the files hold neither.
+    """
+    found = read(path, handling=handling, progress=progress)
+    if isinstance(found, Modes):
+        raise InputError(
+            f'{found.source}: holds modes, but neither raw hits nor FRFs; a study names them by modes = "..."'
+        )
+    return found
+
+
+def _said(handling: Handling, decay: float, layout: Path | str | None) -> Handling:
+    """Return the handling with what was said beside it."""
     handling = replace(handling, decay=decay) if decay else handling
     handling = handling if layout is None else replace(handling, layout=Path(layout))
     if handling.window_on is not None and not handling.decay:
@@ -156,8 +211,10 @@ def read(
             f"a window on {handling.window_on} is told of without its decay; add --decay, or exponential_window in a "
             "study"
         )
-    paths = [Path(p) for p in ([path] if isinstance(path, str | Path) else path)]
-    content = read_files(paths, layout=handling.layout, progress=progress)
+    return handling
+
+
+def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -> Processed:
     warnings = list(content.warnings)
     judged = _judged(content.tests, handling, warnings)
     if judged:

@@ -185,12 +185,12 @@ class Study(Strict):
         return Environment(**self.environment.model_dump())
 
 
-def read_study(path: Path) -> Study:
+def read_study(path: Path | str) -> Study:
     """Read a study file.
 
     Parameters
     ----------
-    path : Path
+    path : path
         The TOML file.
 
     Returns
@@ -202,6 +202,7 @@ def read_study(path: Path) -> Study:
     StudyError
         If the file cannot be read, is no TOML, or has a key or value that does not belong there.
     """
+    path = Path(path)
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:

@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from acquisition import ModalData
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.display import Displayed, counted
 from acquisition.errors import StudyError
 from identification import ModalModel
 from updating.axes import Axes
 from updating.models import Spec
 from updating.placing import Key, check_among, place
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class Measured(Displayed):
     """Modes of one test as a model can predict them.
 
     The *constants* are the modal constants phi_response * phi_reference of each FRF: with absolute level for
@@ -123,6 +128,24 @@ class Measured:
         columns = {n: getattr(self, n)[:, keep] for n in across if getattr(self, n) is not None}
         rows = {n: getattr(self, n)[keep] for n in along if getattr(self, n) is not None}
         return replace(self, **rows, **columns)
+
+    def _headline(self) -> str:
+        at = f"{counted(len(self.constants), 'channel')} at {counted(len(self.nodes), 'point')}"
+        span = f"{self.frequency.min():g} to {self.frequency.max():g} Hz" if len(self.frequency) else ""
+        return (
+            f"{counted(len(self.frequency), 'mode')} {span}, {at}, {'with' if self.absolute else 'no'} level"
+        )
+
+    def _frame(self) -> pd.DataFrame:
+        import pandas as pd
+
+        columns = {
+            "frequency [Hz]": self.frequency,
+            "sigma [Hz]": self.frequency_sigma,
+            "damping [%]": 100 * self.damping,
+            "sigma [%]": 100 * self.damping_sigma,
+        }
+        return pd.DataFrame(columns, index=pd.RangeIndex(1, len(self.frequency) + 1, name="mode"))
 
 
 def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: float | str) -> Measured:

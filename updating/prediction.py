@@ -14,6 +14,7 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.display import Displayed
 from updating.environment import Environment
 from updating.measured import Measured
 from updating.models.build import build_structure
@@ -28,7 +29,7 @@ from updating.reading import Reading, reading
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class Prediction(Displayed):
     """Modes of a model at the points of a test.
 
     Parameters
@@ -73,7 +74,7 @@ class Prediction:
 
 
 @dataclass(frozen=True, eq=False)
-class Predictor:
+class Predictor(Displayed):
     """A specimen's model, looked at from the points of a test.
 
     Parameters

@@ -15,6 +15,7 @@ from acquisition.columns.units import QUANTITIES
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
+from acquisition.mat.layout import MatLayout, mat_layout
 
 DIRECTIONS = {"x": 1, "y": 2, "z": 3, "rx": 4, "ry": 5, "rz": 6}
 PARTS = ("real", "imag", "magnitude", "phase")
@@ -127,6 +128,8 @@ class Layout:
         Where the nodes are.
     source : str
         Where the layout came from, for messages.
+    mat : MatLayout, optional
+        Which variable of a MATLAB file is what.
     """
 
     columns: tuple[Column, ...]
@@ -141,6 +144,7 @@ class Layout:
     decay: float = 0.0
     nodes: Geometry = field(default_factory=Geometry.empty)
     source: str = "layout"
+    mat: MatLayout | None = None
 
 
 def dof_of(node: int, direction: str) -> Dof:
@@ -183,7 +187,7 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
     InputError
         If a key is unknown or has a value of the wrong kind.
     """
-    top = {k: v for k, v in table.items() if k not in ("column", "file", "nodes")}
+    top = {k: v for k, v in table.items() if k not in ("column", "file", "nodes", "mat")}
     columns = tuple(
         _built(Column, entry, f"{source}: [[column]] {n + 1}")
         for n, entry in enumerate(table.get("column", ()))
@@ -192,9 +196,10 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
         _built(FileRule, entry, f"{source}: [[file]] {n + 1}")
         for n, entry in enumerate(table.get("file", ()))
     )
-    parts = {"columns": columns, "files": files, "nodes": _nodes(table.get("nodes", {}), source)}
+    mat = mat_layout(table["mat"], source) if "mat" in table else None
+    parts = {"columns": columns, "files": files, "nodes": _nodes(table.get("nodes", {}), source), "mat": mat}
     layout: Layout = _built(Layout, {**top, **parts, "source": source}, source)
-    if not columns:
+    if not columns and mat is None:
         raise InputError(f"{source}: no [[column]]; add one for the force and one for each response")
     for n, column in enumerate(columns):
         _check_column(column, f"{source}: [[column]] {n + 1}")
@@ -261,7 +266,7 @@ def _built(kind: type, entry: Mapping[str, Any], where: str) -> Any:
     known = {f.name: str(f.type) for f in fields(kind)}
     for key, value in entry.items():
         if key not in known:
-            names = tuple(k for k in known if k not in ("source", "columns", "files"))
+            names = tuple(k for k in known if k not in ("source", "columns", "files", "mat"))
             raise InputError(f"{where}: unknown key {key!r}{_meant(key, names)}; keys are {', '.join(names)}")
         allowed = _KINDS.get(known[key])
         if allowed and (not isinstance(value, allowed) or isinstance(value, bool)):

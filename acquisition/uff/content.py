@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import pandas as pd
 
+from acquisition.display import Displayed
 from acquisition.frf import FrfSet
 from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest
@@ -54,7 +55,7 @@ class DatasetInfo:
 
 
 @dataclass(frozen=True, eq=False)
-class UffContent:
+class UffContent(Displayed):
     """Everything that one test's universal files hold, in SI units.
 
     Parameters
@@ -89,3 +90,8 @@ class UffContent:
             [[d.file, d.line, d.number, d.kind, d.description, d.ok, d.message] for d in self.datasets],
             columns=["file", "line", "data set", "kind", "description", "ok", "message"],
         )
+
+    def _headline(self) -> str:
+        held = [f"{len(self.geometry.nodes)} nodes"] if self.geometry.nodes else []
+        held += [part._headline() for part in (*self.tests, self.frfs, self.modal) if part is not None]
+        return f"{self.title or 'no title'}: {'; '.join(held) or 'nothing that can be used'}"

@@ -30,12 +30,12 @@ class Found:
     digest: str
 
 
-def find_studies(folder: Path) -> tuple[Found, ...]:
+def find_studies(folder: Path | str) -> tuple[Found, ...]:
     """Return the studies of a folder and the folders in it, in the order of their paths.
 
     Parameters
     ----------
-    folder : Path
+    folder : path
         Where to look. A TOML file with a ``[test]`` is a study, and so is one that cannot be read, for it may be
         one that is broken; hidden folders are passed over.
 
@@ -44,6 +44,7 @@ def find_studies(folder: Path) -> tuple[Found, ...]:
     InputError
         If there is no such folder, or no study in it.
     """
+    folder = Path(folder)
     if folder.is_file():
         raise InputError(f"{folder}: is a file; name the folder of the studies")
     if not folder.is_dir():

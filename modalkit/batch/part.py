@@ -21,12 +21,12 @@ from updating import Measured
 SCHEMA = "modalkit.part/1"
 
 
-def part_record(path: Path) -> dict[str, Any]:
+def part_record(path: Path | str) -> dict[str, Any]:
     """Identify a study, update it where it has an ``[update]``, and diagnose it where it has a ``[model]``.
 
     Parameters
     ----------
-    path : Path
+    path : path
         The study file.
 
     Returns

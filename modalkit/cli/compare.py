@@ -8,7 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
-from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
+from acquisition.errors import InputError
+from identification import Correlation as Comparison
+from modalkit import comparing
+from modalkit.cli.common import is_study, out, several, show_figures, show_table, show_warnings, working
 from modalkit.cli.options import Figures
 from modalkit.json_correlation import correlation_record
 from modalkit.process import Session, open_study
@@ -37,12 +40,23 @@ def add_commands(app: typer.Typer) -> None:
 
 
 def correlate(
-    study: Annotated[Path, typer.Argument(help="study file")],
+    study: Annotated[Path, typer.Argument(help="study file; with OTHER also a file of modes, FRFs or hits")],
+    other: Annotated[
+        Path | None,
+        typer.Argument(help="another test to compare with: a study, or a file of modes, FRFs or hits"),
+    ] = None,
     json: Json = None,
     figures: Figures = None,
 ) -> None:
-    """Pair the modes of test and model and say how far they agree, FRFs included."""
+    """Pair the modes of test and model, or of two tests, and say how far they agree, FRFs included."""
     check_json_place(json)
+    if other is not None:
+        _correlate_tests(study, other, json, figures)
+        return
+    if not is_study(study):
+        raise InputError(
+            f"{study}: is no study; name a study file, or a second test to compare this one with"
+        )
     with working("reading and identifying"):
         session = open_study(read_study(study), with_baseline=False)
     identified = session.identified
@@ -65,6 +79,32 @@ def correlate(
         write_json(json, correlation_record(result, session.warnings))
         out.print(f"written: {json}", markup=False)
     show_figures(figures, lambda: _correlation_figures(session, result))
+
+
+def _correlate_tests(first: Path, second: Path, json: Path | None, figures: Path | None) -> None:
+    """Lay two tests side by side."""
+    with working("reading and identifying"):
+        found = comparing.compare(first, second)
+    names = {"test": "first", "test [Hz]": "first [Hz]", "model": "second", "model [Hz]": "second [Hz]"}
+    table = found.table().rename(columns=names | {"error [%]": "difference [%]"})
+    digits = {"first": 0, "second": 0, "first [Hz]": 3, "second [Hz]": 3, "difference [%]": 3, "MAC": 3}
+    show_table(table, f"{first} beside {second}: {several(len(found.pairs), 'pair')}", digits=digits)
+    if len(found.dofs) > 1:
+        mac = comparing.mac(found.test, found.model)
+        numbered = mac.set_axis([str(n) for n in range(1, mac.shape[1] + 1)], axis=1).rename_axis("mode")
+        title = "MAC, first down and second across"
+        show_table(numbered, title, digits=dict.fromkeys(map(str, numbered.columns), 2))
+    show_warnings(found.notes)
+    if json is not None:
+        write_json(json, comparing.comparison_record(found))
+        out.print(f"written: {json}", markup=False)
+    show_figures(figures, lambda: _drawn(found))
+
+
+def _drawn(found: Comparison) -> dict[str, Any]:
+    from modalkit.figures import draw
+
+    return draw(found)
 
 
 def tables(

@@ -96,7 +96,11 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     gap = diagnosis.gap
     modes = gap.modes if len(sessions) > 1 else gap.modes.drop(columns="study", errors="ignore")
     show_table(modes, f"Gap: {gap.rms_percent:.3g} % r.m.s. over {len(gap.modes)} modes", digits=digits)
-    show_table(diagnosis.table().head(10), "Explanations, most probable first", digits={"probability": 4})
+    show_table(
+        diagnosis.table().head(10).reset_index(),
+        "Explanations, most probable first",
+        digits={"probability": 4},
+    )
     if diagnosis.next_test:
         rows = [
             {"measure next": t.measure, "separates": _separates(t), "sigma": t.expected_sigma}

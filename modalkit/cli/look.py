@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import pandas as pd
 import typer
@@ -44,18 +44,18 @@ from modalkit.cli.options import (
     handling,
 )
 from modalkit.cli.showing import (
-    frf_figures,
-    mode_figures,
     save_modes,
     show_hits,
     show_modes,
     show_rejected,
     show_second_opinion,
 )
+from modalkit.existing import Modes
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
 from modalkit.process import process
-from modalkit.reading import Processed, numbered, read
+from modalkit.reading import Processed, numbered, read, read_frfs
+from modalkit.saving import check_modes_place
 from modalkit.study import read_study
 
 NAMED = 12
@@ -89,6 +89,8 @@ def inspect(
         out.print("records hold several hits each; they are split when they are used")
     for verdicts in judged:
         show_hits(verdicts)
+    if content.modal is not None and len(content.modal):
+        show_modes(Modes(content.modal, ", ".join(map(str, files))))
     bad = [d for d in content.datasets if not d.ok]
     all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
     error = f"{bad[0].place}: {bad[0].message}" if all_bad else ""
@@ -164,7 +166,7 @@ def frf(
         sensors=sensor_mass,
     )
     with reading("averaging the hits") as progress:
-        processed = read(files, handling=said, progress=progress)
+        processed = read_frfs(files, handling=said, progress=progress)
     show_hits(processed.hits)
     show_table(processed.frfs.table(), "FRFs")
     show_rejected(processed.hits)
@@ -174,7 +176,7 @@ def frf(
     write_uff(output, frfs=processed.frfs, geometry=processed.frfs.geometry, title=processed.content.title)
     out.print(f"written: {output}", markup=False)
     show_warnings(processed.warnings)
-    show_figures(figures, lambda: frf_figures(processed))
+    show_figures(figures, lambda: _drawn(processed))
 
 
 def identify(
@@ -192,11 +194,14 @@ def identify(
     layout: Layout = None,
     sensor_mass: SensorMass = None,
     json: Annotated[Path | None, typer.Option("--json", help="file for the modes as JSON")] = None,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="UFF file for the modes")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="file for the modes: .uff, .csv or .json")
+    ] = None,
     check: Annotated[bool, typer.Option("--check", help="also show the poles of sdypy-EMA")] = False,
     figures: Figures = None,
 ) -> None:
-    """Identify frequencies, damping and mode shapes, with their uncertainties."""
+    """Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already."""
+    check_modes_place(output)
     said = handling(
         decay=decay,
         window_on=window_on,
@@ -209,15 +214,18 @@ def identify(
     )
     with reading("identifying") as progress:
         processed, model = _identified(files, said, band, order, (add or (), drop or ()), progress)
-    show_hits(processed.hits)
-    show_modes(model)
-    show_rejected(processed.hits, model.points_rejected)
-    if check:
-        show_second_opinion(processed, model)
-    warnings = [*processed.warnings, *model.warnings]
+    if isinstance(model, Modes) or processed is None:
+        show_modes(model)
+    else:
+        show_hits(processed.hits)
+        show_modes(model)
+        show_rejected(processed.hits, model.points_rejected)
+        if check:
+            show_second_opinion(processed, model)
+    warnings = [*(() if processed is None else processed.warnings), *model.warnings]
     show_warnings(warnings)
     save_modes(processed, model, warnings, json, output)
-    show_figures(figures, lambda: mode_figures(processed, model))
+    show_figures(figures, lambda: _drawn(*(() if processed is None else (processed,)), model))
 
 
 def _identified(
@@ -227,12 +235,24 @@ def _identified(
     order: int | None,
     named: tuple[Sequence[float], Sequence[float]],
     progress: Progress,
-) -> tuple[Processed, ModalModel]:
-    """Return FRFs and modes of files, or of a study's test."""
+) -> tuple[Processed | None, ModalModel | Modes]:
+    """Return FRFs and modes of files, or of a study's test; modes that exist already have no FRFs."""
     add, drop = named
     if len(files) == 1 and is_study(files[0]):
         if said != Handling():
             raise StudyError(f"{files[0]}: a study says in [test] how its files are treated; write it there")
         return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)
-    processed = read(files, handling=said, progress=progress)
-    return processed, processed.identify(band=band, order=order, add=add, drop=drop)
+    found = read(files, handling=said, progress=progress)
+    if not isinstance(found, Modes):
+        return found, found.identify(band=band, order=order, add=add, drop=drop)
+    if order is not None or add or drop:
+        raise InputError(
+            f"{found.source}: holds modes; --order, --add and --drop are for FRFs that are identified"
+        )
+    return None, found.identify(band=band)
+
+
+def _drawn(*results: Processed | ModalModel | Modes) -> dict[str, Any]:
+    from modalkit.figures import draw
+
+    return {name: figure for result in results for name, figure in draw(result).items()}

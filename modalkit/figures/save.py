@@ -15,7 +15,7 @@ RESOLUTION = 150
 """Dots per inch of the files: 1800 px at full width."""
 
 
-def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
+def save_figures(figures: Mapping[str, Figure], folder: Path | str) -> list[Path]:
     """Write figures as PNG files.
 
     Every figure is drawn before the first file is written, and every file is put in place in one step.
@@ -24,7 +24,7 @@ def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     ----------
     figures : mapping of str to Figure
         Figures by file name, without its ending.
-    folder : Path
+    folder : path
         Where to; made if it is not there.
 
     Returns
@@ -40,6 +40,7 @@ def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     for name in figures:
         if not name or Path(name).name != name:
             raise InputError(f"figure name {name!r} is not a plain file name; leave out folders")
+    folder = Path(folder)
     drawn = {folder / f"{name}.png": _png(figure) for name, figure in figures.items()}
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
+from acquisition.display import Displayed, counted
 from acquisition.errors import StudyError
 from updating.models.spec_checks import check_parts
 
@@ -125,7 +126,7 @@ class Damping:
 
 
 @dataclass(frozen=True)
-class Spec:
+class Spec(Displayed):
     """A beam or a rectangular plate: x from 0 to length, y from 0 to width, hit along z; or imported matrices.
 
     Parameters
@@ -207,6 +208,11 @@ class Spec:
     def with_elements(self, *elements: int) -> Spec:
         """Return the same specimen with another mesh."""
         return replace(self, elements=elements)
+
+    def _headline(self) -> str:
+        held = f"clamped at {', '.join(self.clamped)}" if self.clamped else "free"
+        size = " x ".join(f"{n:g}" for n in (self.length, self.width, self.thickness))
+        return f"{self.kind} of {size} m, {held}, {self.theory}, {counted(len(self.regions), 'region')}"
 
 
 def _default_regions(spec: Spec) -> tuple[Region, ...]:
