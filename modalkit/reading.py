@@ -210,7 +210,7 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
     for test in tests:
         one = test
         if looks_long(one):
-            one, said = split_hits(one)
+            one, said = split_hits(replace(one, decay=one.decay or handling.decay))
             warnings += said
         if handling.decay and one.decay:
             _check_decay(one.source, one.decay, handling.decay)

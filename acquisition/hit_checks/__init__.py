@@ -4,6 +4,7 @@ from acquisition.hit_checks.dropout import dead_from, dropouts, left_at_end
 from acquisition.hit_checks.outliers import agreement, odd_responses, unexplained
 from acquisition.hit_checks.overload import at_common_limit, clipped, flat_pulse, flat_waves
 from acquisition.hit_checks.pulse import force_bands, noise_level, pulse_ends, pulse_width, upright
+from acquisition.hit_checks.ringing import pushes
 from acquisition.hit_checks.second import second_hits
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "odd_responses",
     "pulse_ends",
     "pulse_width",
+    "pushes",
     "second_hits",
     "unexplained",
     "upright",
