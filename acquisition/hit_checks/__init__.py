@@ -1,5 +1,6 @@
 """What the records of a hit show: its pulse, a second hit, overload, a channel gone dead, an outlier."""
 
+from acquisition.hit_checks.broken import why_broken
 from acquisition.hit_checks.dropout import dead_from, dropouts, left_at_end
 from acquisition.hit_checks.outliers import agreement, odd_responses, unexplained
 from acquisition.hit_checks.overload import at_common_limit, clipped, flat_pulse, flat_waves
@@ -25,4 +26,5 @@ __all__ = [
     "second_hits",
     "unexplained",
     "upright",
+    "why_broken",
 ]
