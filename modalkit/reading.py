@@ -27,8 +27,10 @@ from acquisition import (
 )
 from identification import ModalModel, identify
 from modalkit.files import Progress, read_files
+from modalkit.frf_checks import identical, without_constant
 from modalkit.handling import Handling
 from modalkit.joining import together
+from modalkit.mixed import with_read
 from modalkit.remarks import on_hits, on_window
 from modalkit.sensors import without_sensors
 
@@ -164,12 +166,14 @@ def read(
         warnings += on_hits([(j.test, j.verdicts) for j in judged])
         frfs = _estimated(judged, handling)
         if content.frfs is not None:
-            warnings.append("the files hold raw hits and FRFs; the FRFs were made afresh from the hits")
+            frfs = with_read(frfs, content.frfs, content.tests, warnings, decay=handling.decay)
     elif content.frfs is not None:
         frfs = _as_read(content.frfs, handling, warnings)
     else:
         names = ", ".join(str(p) for p in paths)
         raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
+    frfs = without_constant(frfs, warnings)
+    warnings += identical(frfs)
     frfs = without_sensors(frfs, handling.sensor_masses, warnings)
     return Processed(content, frfs, judged, handling, tuple(dict.fromkeys(warnings)))
 
