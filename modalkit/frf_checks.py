@@ -70,8 +70,8 @@ def without_constant(frfs: FrfSet, warnings: list[str]) -> FrfSet:
         return frfs
     if flat.all():
         raise InputError(
-            f"{frfs.source}: every FRF is the same at all frequencies ({abs(inner[0, 0]):.3g} {frfs.unit}), so there is "
-            "nothing to identify; check that the responses are not the force channel again"
+            f"{frfs.source}: every FRF is the same at all frequencies ({abs(inner[0, 0]):.3g} {frfs.unit}), so nothing "
+            "is to be identified; check that the responses are not the force channel again"
         )
     names = listed(frfs, np.flatnonzero(flat).tolist())
     warnings.append(f"FRF {names} is the same at all frequencies and was left out; check its channel")

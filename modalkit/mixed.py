@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from acquisition import Dof, FrfSet, HammerTest, InputError
 from modalkit.frf_checks import listed
 from modalkit.joining import MAX_UNCOMMON, together

@@ -29,6 +29,7 @@ from identification import ModalModel, identify
 from modalkit.files import Progress, read_files
 from modalkit.frf_checks import identical, without_constant
 from modalkit.handling import Handling
+from modalkit.informed import informed_band
 from modalkit.joining import together
 from modalkit.mixed import with_read
 from modalkit.remarks import on_hits, on_window
@@ -97,9 +98,12 @@ class Processed:
     ) -> ModalModel:
         """Identify the modes of a band; see :func:`identification.identify`.
 
-        Left out, the band of FRFs made of hits ends where the force is 20 dB down.
+        Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
+        the part in which the FRFs carry information, and what was done is among the warnings.
         """
         reach = self._reach([*add, *drop]) if band is None else None
+        if reach is None and band is not None:
+            return self._informed(band, order, add, drop)
         if reach is None:
             return identify(self.frfs, band=band, order=order, add=add, drop=drop)
         model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
@@ -108,6 +112,16 @@ class Processed:
             "further"
         )
         return replace(model, warnings=(*model.warnings, said))
+
+    def _informed(
+        self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
+    ) -> ModalModel:
+        """Identify the modes of the part of a band in which the FRFs carry information."""
+        within, said = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
+        if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
+            within = band
+        model = identify(self.frfs, band=within, order=order, add=add, drop=drop)
+        return model if said is None else replace(model, warnings=(*model.warnings, said))
 
     def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
         """Return the band that the force reaches, if it ends before the lines do and no mode is named beyond."""
