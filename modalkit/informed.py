@@ -68,7 +68,7 @@ def informed_band(
     )
     return (low, high), (
         f"modes are sought from {low:.4g} to {high:.4g} Hz only, not from {band[0]:.4g} to {band[1]:.4g} Hz as asked: "
-        f"{why} in the rest; hit with a harder tip, or sample faster, to go further"
+        f"{why} in the rest; hit with a harder tip, sample faster, or name a mode there with add, to go further"
     )
 
 

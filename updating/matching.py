@@ -81,7 +81,8 @@ SAME = 0.95
 """...unless the shapes are the same."""
 
 LOWEST_MAC = 0.4
-"""Below this MAC a measured mode has no partner."""
+"""Below this MAC a measured mode has no partner, however near; the least MAC rises from here to `SAME` with the
+distance of its frequency ratio from the others' up to `ASTRAY`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +134,8 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     order = match(measured, prediction, np.arange(len(measured.frequency)), trusted)
     mac = mac_of_constants(measured, prediction, trusted)[np.arange(len(order)), order]
     ratio = np.log(measured.frequency / prediction.frequency[order])
-    near = np.abs(ratio - np.median(ratio)) < ASTRAY
-    keep = (mac >= LOWEST_MAC) & (near | (mac >= SAME))
+    distance = np.minimum(np.abs(ratio - np.median(ratio)) / ASTRAY, 1.0)
+    keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * distance
     if not keep.any():
         raise EstimationError(
             f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
@@ -154,7 +155,8 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
 
 
 SPOILT = 0.8
-"""Mean MAC of the pairs under which points are looked for that spoil it..."""
+"""Median MAC of the pairs under which points are looked for that spoil it: a bad point spoils all modes, while a mode
+that is none, or one that the model lacks, spoils its own MAC alone..."""
 
 MENDED = 0.05
 """...and by how much leaving one out must raise it [-]."""
@@ -165,7 +167,7 @@ def _trusted(measured: Measured, prediction: Prediction) -> BoolArray | None:
 
     def agreement(rows: BoolArray) -> float:
         order = match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
-        return float(np.mean(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order]))
+        return float(np.median(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order]))
 
     rows = np.ones(len(measured.seen), dtype=bool)
     reached = agreement(rows)
