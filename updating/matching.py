@@ -155,34 +155,39 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
 
 
 SPOILT = 0.8
-"""Median MAC of the pairs under which points are looked for that spoil it: a bad point spoils all modes, while a mode
-that is none, or one that the model lacks, spoils its own MAC alone..."""
+"""Mean MAC of the pairs under which points are looked for that spoil it..."""
 
 MENDED = 0.05
 """...and by how much leaving one out must raise it [-]."""
+
+SPOILS = 2
+"""Fewest modes whose MAC rises by as much where points are bad: a bad point spoils most shapes, while a mode that is
+none, or one that the model lacks, spoils its own MAC alone. Doubled, a bad point in a test of few modes goes unseen."""
 
 
 def _trusted(measured: Measured, prediction: Prediction) -> BoolArray | None:
     """Return the rows left when the few points that spoil the shapes of all modes are out, None where none does."""
 
-    def agreement(rows: BoolArray) -> float:
+    def macs(rows: BoolArray) -> FloatArray:
         order = match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
-        return float(np.median(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order]))
+        return np.asarray(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order])
 
     rows = np.ones(len(measured.seen), dtype=bool)
-    reached = agreement(rows)
+    all_points = macs(rows)
+    reached = float(all_points.mean())
     if reached >= SPOILT:
         return None
     moved = measured.hit if len(np.unique(measured.hit)) >= len(np.unique(measured.seen)) else measured.seen
     points = np.unique(moved)
     for _ in range(len(points) * 2 // 5):
         trials = [rows & (moved != point) for point in points]
-        found = [agreement(t) if len(np.unique(moved[t])) >= 3 else 0.0 for t in trials]
+        found = [float(macs(t).mean()) if len(np.unique(moved[t])) >= 3 else 0.0 for t in trials]
         best = int(np.argmax(found))
         if found[best] < reached + MENDED:
             break
         rows, reached = trials[best], found[best]
-    return None if rows.all() or reached < SPOILT else rows
+    mended = int((macs(rows) - all_points > MENDED).sum())
+    return None if rows.all() or reached < SPOILT or mended < SPOILS else rows
 
 
 def _moved(measured: Measured, rows: BoolArray) -> list[str]:
