@@ -29,8 +29,11 @@ from acquisition.display import Displayed
 from identification import ModalModel, identify
 from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
+from modalkit.frf_checks import identical, without_constant
 from modalkit.handling import Handling
+from modalkit.informed import informed_band
 from modalkit.joining import together
+from modalkit.mixed import with_read
 from modalkit.remarks import on_hits, on_window
 from modalkit.sensors import without_sensors
 
@@ -103,9 +106,12 @@ class Processed(Displayed):
     ) -> ModalModel:
         """Identify the modes of a band; see :func:`identification.identify`.
 
-        Left out, the band of FRFs made of hits ends where the force is 20 dB down.
+        Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
+        the part in which the FRFs carry information, and what was done is among the warnings.
         """
         reach = self._reach([*add, *drop]) if band is None else None
+        if reach is None and band is not None:
+            return self._informed(band, order, add, drop)
         if reach is None:
             return identify(self.frfs, band=band, order=order, add=add, drop=drop)
         model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
@@ -114,6 +120,16 @@ class Processed(Displayed):
             "further"
         )
         return replace(model, warnings=(*model.warnings, said))
+
+    def _informed(
+        self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
+    ) -> ModalModel:
+        """Identify the modes of the part of a band in which the FRFs carry information."""
+        within, said = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
+        if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
+            within, said = band, None
+        model = identify(self.frfs, band=within, order=order, add=add, drop=drop)
+        return model if said is None else replace(model, warnings=(*model.warnings, said))
 
     def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
         """Return the band that the force reaches, if it ends before the lines do and no mode is named beyond."""
@@ -221,12 +237,14 @@ def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -
         warnings += on_hits([(j.test, j.verdicts) for j in judged])
         frfs = _estimated(judged, handling)
         if content.frfs is not None:
-            warnings.append("the files hold raw hits and FRFs; the FRFs were made afresh from the hits")
+            frfs = with_read(frfs, content.frfs, content.tests, warnings, decay=handling.decay)
     elif content.frfs is not None:
         frfs = _as_read(content.frfs, handling, warnings)
     else:
         names = ", ".join(str(p) for p in paths)
         raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
+    frfs = without_constant(frfs, warnings)
+    warnings += identical(frfs)
     frfs = without_sensors(frfs, handling.sensor_masses, warnings)
     return Processed(content, frfs, judged, handling, tuple(dict.fromkeys(warnings)))
 
@@ -267,7 +285,7 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
     for test in tests:
         one = test
         if looks_long(one):
-            one, said = split_hits(one)
+            one, said = split_hits(replace(one, decay=one.decay or handling.decay))
             warnings += said
         if handling.decay and one.decay:
             _check_decay(one.source, one.decay, handling.decay)

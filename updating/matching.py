@@ -81,7 +81,8 @@ SAME = 0.95
 """...unless the shapes are the same."""
 
 LOWEST_MAC = 0.4
-"""Below this MAC a measured mode has no partner."""
+"""Below this MAC a measured mode has no partner, however near; the least MAC rises from here to `SAME` with the
+distance of its frequency ratio from the others' up to `ASTRAY`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +134,8 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     order = match(measured, prediction, np.arange(len(measured.frequency)), trusted)
     mac = mac_of_constants(measured, prediction, trusted)[np.arange(len(order)), order]
     ratio = np.log(measured.frequency / prediction.frequency[order])
-    near = np.abs(ratio - np.median(ratio)) < ASTRAY
-    keep = (mac >= LOWEST_MAC) & (near | (mac >= SAME))
+    distance = np.minimum(np.abs(ratio - np.median(ratio)) / ASTRAY, 1.0)
+    keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * distance
     if not keep.any():
         raise EstimationError(
             f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
@@ -159,28 +160,34 @@ SPOILT = 0.8
 MENDED = 0.05
 """...and by how much leaving one out must raise it [-]."""
 
+SPOILS = 2
+"""Fewest modes whose MAC rises by as much where points are bad: a bad point spoils most shapes, while a mode that is
+none, or one that the model lacks, spoils its own MAC alone. Doubled, a bad point in a test of few modes goes unseen."""
+
 
 def _trusted(measured: Measured, prediction: Prediction) -> BoolArray | None:
     """Return the rows left when the few points that spoil the shapes of all modes are out, None where none does."""
 
-    def agreement(rows: BoolArray) -> float:
+    def macs(rows: BoolArray) -> FloatArray:
         order = match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
-        return float(np.mean(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order]))
+        return np.asarray(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order])
 
     rows = np.ones(len(measured.seen), dtype=bool)
-    reached = agreement(rows)
+    all_points = macs(rows)
+    reached = float(all_points.mean())
     if reached >= SPOILT:
         return None
     moved = measured.hit if len(np.unique(measured.hit)) >= len(np.unique(measured.seen)) else measured.seen
     points = np.unique(moved)
     for _ in range(len(points) * 2 // 5):
         trials = [rows & (moved != point) for point in points]
-        found = [agreement(t) if len(np.unique(moved[t])) >= 3 else 0.0 for t in trials]
+        found = [float(macs(t).mean()) if len(np.unique(moved[t])) >= 3 else 0.0 for t in trials]
         best = int(np.argmax(found))
         if found[best] < reached + MENDED:
             break
         rows, reached = trials[best], found[best]
-    return None if rows.all() or reached < SPOILT else rows
+    mended = int((macs(rows) - all_points > MENDED).sum())
+    return None if rows.all() or reached < SPOILT or mended < SPOILS else rows
 
 
 def _moved(measured: Measured, rows: BoolArray) -> list[str]:
