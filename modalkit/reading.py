@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from acquisition import (
     Dof,
@@ -25,12 +24,16 @@ from acquisition import (
     split_hits,
     state_window,
 )
-from identification import ModalModel, identify
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
 from modalkit.joining import together
 from modalkit.remarks import on_hits, on_window
 from modalkit.sensors import without_sensors
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
 
 AS_READ = Handling()
 SAME_DECAY = 1e-3  # relative difference of decays that are the same
@@ -97,6 +100,8 @@ class Processed:
 
         Left out, the band of FRFs made of hits ends where the force is 20 dB down.
         """
+        from identification import identify
+
         reach = self._reach([*add, *drop]) if band is None else None
         if reach is None:
             return identify(self.frfs, band=band, order=order, add=add, drop=drop)

@@ -8,14 +8,16 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from acquisition.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _PIPE_WIDTH = 160  # characters a table may take where no terminal says how wide it is
 
@@ -84,7 +86,7 @@ def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] |
     if named:
         table.add_column(str(frame.index.name), justify="right")
     for column in frame.columns:
-        numeric = pd.api.types.is_numeric_dtype(frame[column])
+        numeric = frame[column].dtype.kind in "biufc"
         table.add_column(str(column), justify="right" if numeric else "left")
     for index, row in zip(frame.index, frame.itertuples(index=False), strict=True):
         cells = [
@@ -132,6 +134,15 @@ def show_figures(folder: Path | None, build: Callable[[], dict[str, Any]]) -> No
         return
     from modalkit.figures import save_figures
 
-    with working("drawing"):
+    with drawing():
         for path in save_figures(build(), folder):
             out.print(f"figure: {path}", markup=False)
+
+
+@contextmanager
+def drawing() -> Iterator[None]:
+    """Say that figures are drawn, as on every machine: a ``matplotlibrc`` in the current folder is not followed."""
+    from matplotlib import style
+
+    with working("drawing"), style.context("default", after_reset=True):
+        yield

@@ -10,7 +10,7 @@ import pandas as pd
 import typer
 
 from acquisition.errors import InputError
-from modalkit.cli.common import check_once, out, show_figures, show_table, show_warnings, working
+from modalkit.cli.common import check_once, drawing, out, show_figures, show_table, show_warnings, working
 from modalkit.cli.options import Figures
 from modalkit.diagnosing import diagnose_studies, warnings_of
 from modalkit.letter import letter, separated
@@ -76,14 +76,13 @@ def _draw(diagnosis: Diagnosis, sessions: list[Session], report: Path | None, fi
     """Write the report and the figures, drawn once."""
     from modalkit.report import diagnosis_report, drawings, write_report
 
-    with working("drawing"):
+    with drawing():
         drawn = drawings(diagnosis, sessions)
-    if report is not None:
-        with working("writing the report"):
+        if report is not None:
             page = diagnosis_report(diagnosis, sessions, when=datetime.now().astimezone(), drawn=drawn)
             write_report(report, page)
-        out.print(f"report: {report}", markup=False)
-    show_figures(figures, lambda: {name: drawing.figure for name, drawing in drawn.items()})
+            out.print(f"report: {report}", markup=False)
+    show_figures(figures, lambda: {name: one.figure for name, one in drawn.items()})
 
 
 def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import pandas as pd
 import typer
 
 from acquisition import (
@@ -18,7 +17,6 @@ from acquisition import (
     reciprocity,
     write_uff,
 )
-from identification import ModalModel
 from modalkit.cli.common import (
     is_study,
     out,
@@ -53,9 +51,12 @@ from modalkit.cli.showing import (
 )
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
-from modalkit.process import process
 from modalkit.reading import Processed, numbered, read
-from modalkit.study import read_study
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -93,6 +94,8 @@ def inspect(
 
 def _in_short(content: UffContent) -> pd.DataFrame:
     """Return the table of data sets with those of a kind in one row, unless there is something to say of them."""
+    from pandas import concat
+
     table = content.table()
     plain = table["ok"] & (table["message"] == "")
     rows = [table[~plain]]
@@ -101,7 +104,7 @@ def _in_short(content: UffContent) -> pd.DataFrame:
         if len(group) > 1:
             row["description"] = f"{len(group)} of them, the first: " + row["description"]
         rows.append(row)
-    return pd.concat(rows).sort_values(["file", "line"], kind="stable")
+    return concat(rows).sort_values(["file", "line"], kind="stable")
 
 
 def _usable(content: UffContent) -> list[str]:
@@ -211,6 +214,9 @@ def _identified(
     """Return FRFs and modes of files, or of a study's test."""
     add, drop = named
     if len(files) == 1 and is_study(files[0]):
+        from modalkit.process import process
+        from modalkit.study import read_study
+
         if said != Handling():
             raise StudyError(f"{files[0]}: a study says in [test] how its files are treated; write it there")
         return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)

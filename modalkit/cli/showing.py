@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from acquisition import HitVerdict, force_range, hits_table, write_uff
-from identification import ModalModel
 from modalkit.cli.common import out, several, show_table, show_warnings, working
-from modalkit.reading import Processed
-from modalkit.records import modes_record, without_hits
 from modalkit.write import write_json
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
+    from modalkit.reading import Processed
 
 
 def save_modes(
     processed: Processed, model: ModalModel, warnings: Sequence[str], json: Path | None, uff: Path | None
 ) -> None:
     """Write the modes as JSON and as UFF, where files are given, and say so."""
+    from modalkit.records import modes_record
+
     if json is not None:
         write_json(json, modes_record(model, processed.hits, warnings))
         out.print(f"written: {json}", markup=False)
@@ -30,6 +33,8 @@ def save_modes(
 
 def show_rejected(hits: Sequence[HitVerdict], more: Sequence[str] = ()) -> None:
     """Print the points that were left out, with the reason."""
+    from modalkit.records import without_hits
+
     for text in [*without_hits(hits), *more]:
         out.print(f"left out: {text}", markup=False)
 
