@@ -19,6 +19,7 @@ from acquisition.errors import InputError
 if TYPE_CHECKING:
     import pandas as pd
 
+_LONGEST_NAME = 1000  # characters of a path; a longer text of a study is none
 _PIPE_WIDTH = 160  # characters a table may take where no terminal says how wide it is
 
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else _PIPE_WIDTH)
@@ -57,6 +58,40 @@ def reading(then: str = "reading") -> Iterator[Callable[[float], None]]:
                 bar.update(task, completed=part)
 
         yield told
+
+
+def read_by(files: Sequence[Path], *more: Path | None) -> Iterator[Path]:
+    """Yield every file that a command reads: those given, and of a study all that it names.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        Data files and studies.
+    *more : Path or None
+        Further ones.
+
+    Raises
+    ------
+    StudyError
+        If a study cannot be read.
+    """
+    yield from (path for path in (*files, *more) if path is not None)
+    for path in filter(is_study, files):
+        from modalkit.study import read_study
+
+        study = read_study(path)
+        yield from study.inputs()
+        yield from (study.file(name) for name in _texts(study.model_dump(mode="json")))
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """Yield the short texts in the tables of a study, some of which are names of files."""
+    if isinstance(value, str) and len(value) < _LONGEST_NAME and "\0" not in value:
+        yield value
+    elif isinstance(value, dict):
+        yield from (text for one in value.values() for text in _texts(one))
+    elif isinstance(value, list):
+        yield from (text for one in value for text in _texts(one))
 
 
 def check_once(studies: Sequence[Path]) -> None:

@@ -18,8 +18,10 @@ from acquisition import (
     write_uff,
 )
 from modalkit.cli.common import (
+    check_folder,
     is_study,
     out,
+    read_by,
     reading,
     several,
     show_figures,
@@ -51,6 +53,7 @@ from modalkit.cli.showing import (
 )
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
+from modalkit.outputs import check_outputs, json_of, uff_of
 from modalkit.reading import Processed, numbered, read
 
 if TYPE_CHECKING:
@@ -136,6 +139,8 @@ def frf(
     figures: Figures = None,
 ) -> None:
     """Turn hits into FRFs with coherence, and write them as UFF."""
+    check_outputs((output, uff_of("frfs")), reads=read_by(files, layout))
+    check_folder(figures)
     said = handling(
         decay=decay,
         window_on=window_on,
@@ -180,6 +185,10 @@ def identify(
     figures: Figures = None,
 ) -> None:
     """Identify frequencies, damping and mode shapes, with their uncertainties."""
+    check_outputs(
+        (json, json_of("modalkit.modes/1")), (output, uff_of("modes")), reads=read_by(files, layout)
+    )
+    check_folder(figures)
     said = handling(
         decay=decay,
         window_on=window_on,

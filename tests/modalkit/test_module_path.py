@@ -33,7 +33,7 @@ NAMES = (set(sys.stdlib_module_names) | set(packages_distributions())) - OURS
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """Return a folder with a study, and a file for every module that there is."""
-    for name in sorted(n for n in NAMES if n.isidentifier()) + ["sitecustomize", "usercustomize"]:
+    for name in [*sorted(n for n in NAMES if n.isidentifier()), "sitecustomize", "usercustomize"]:
         (tmp_path / f"{name}.py").write_text(DECOY, encoding="utf-8")
     shutil.copy(ROOT / "sample_data/beam_wet/beam_wet.uff", tmp_path / "test.uff")
     (tmp_path / "modes.csv").write_text("frequency,sigma\n10.5,0.01\n65.1,0.02\n", encoding="utf-8")
@@ -57,7 +57,9 @@ def test_commands_run_nothing_of_the_current_folder(folder: Path) -> None:
     assert (folder / "effects.json").exists()
 
 
-def test_started_as_a_module_only_what_the_interpreter_needs_to_start_it_can_be_mistaken(folder: Path) -> None:
+def test_started_as_a_module_only_what_the_interpreter_needs_to_start_it_can_be_mistaken(
+    folder: Path,
+) -> None:
     body = "import runpy, sys; print(*sys.modules)"
     before = subprocess.run([sys.executable, "-I", "-c", body], capture_output=True, text=True, check=True)
     for name in before.stdout.split():
