@@ -14,6 +14,8 @@ from modalkit.accepting import SOME, nodes
 from updating import LIBRARY, Predictor
 from updating.models.state import State
 
+_LARGEST = 1e15  # of any parameter, in SI units: the stiffest clamps are a thousandth of it; twice it changes nothing
+
 EffectValues = tuple[str, Mapping[str, Any]]
 
 
@@ -85,6 +87,10 @@ def check_effect(
             there = ", ".join(map(str, predictor.measured.nodes[:12]))
             raise StudyError(f"{where} {name}: the test has no point {missing[0]}; it has {there}")
     for p in (takes[name] for name in takes if name in values):
+        if not abs(values[p.name]) <= _LARGEST:
+            raise StudyError(
+                f"{where} {name}: {p.name} = {values[p.name]:g} {p.unit} is beyond any structure"
+            )
         if p.log and not values[p.name] > 0:
             raise StudyError(f"{where} {name}: {p.name} = {values[p.name]:g} {p.unit} must be positive")
 

@@ -51,11 +51,14 @@ def main() -> None:
         _fail(_message(error))
     except (typer.Abort, KeyboardInterrupt):
         _fail("interrupted; nothing was written")
+    except MemoryError as error:
+        if debug:
+            raise
+        _fail(f"there is not enough memory ({error}); give fewer or shorter records, or a narrower band")
     except (
         ArithmeticError,
         AttributeError,
         LookupError,
-        MemoryError,
         OSError,
         TypeError,
         ValueError,

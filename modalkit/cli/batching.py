@@ -19,7 +19,7 @@ from modalkit.batch import (
     tables,
     write_tables,
 )
-from modalkit.cli.common import check_folder, out, progress, read_by, several, show_table
+from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, several, show_table
 from modalkit.outputs import check_outputs, json_of, store_of
 from modalkit.write import write_json
 
@@ -48,6 +48,7 @@ def batch(
     ] = None,
 ) -> None:
     """Identify, update and diagnose a folder of studies, and write modes, factors and causes as tables."""
+    check_workers(workers)
     store = output.with_name(f"{output.name}.jsonl")
     places = [*table_places(output), (store, store_of("modalkit.batchrun/1"))]
     check_outputs(*places)

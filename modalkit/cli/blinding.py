@@ -12,13 +12,14 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, Plan, check_store, run_blind, score
-from modalkit.cli.common import check_folder, out, progress, read_by, several, show_figures
+from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, several, show_figures
 from modalkit.cli.options import Figures
 from modalkit.cli.scores import MARKDOWN, score_figures, show_score, write_markdown
 from modalkit.outputs import check_outputs, json_of, store_of
 from modalkit.write import write_json
 
 _SEED_BITS = 63
+_MOST_TRIALS = 10_000_000  # their numbers alone take 80 MB
 _USED = {
     "STUDY": ("--trials", "--seed", "--json", "--figures"),
     "--real": ("--json",),
@@ -139,8 +140,9 @@ def _check_numbers(trials: int | None, seed: int | None, workers: int, *, least:
     """Refuse numbers that no run can have."""
     if trials is not None and trials < least:
         raise InputError(f"--trials {trials}: at least {least} is needed")
-    if workers < 1:
-        raise InputError(f"--workers {workers}: at least 1 is needed")
+    if trials is not None and trials > _MOST_TRIALS:
+        raise InputError(f"--trials {trials}: at most {_MOST_TRIALS} go into one run")
+    check_workers(workers)
     if seed is not None and seed < 0:
         raise InputError(f"--seed {seed}: give 0 or a positive number")
 

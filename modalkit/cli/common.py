@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _LONGEST_NAME = 1000  # characters of a path; a longer text of a study is none
+_MOST_WORKERS = 1000
 _PIPE_WIDTH = 160  # characters a table may take where no terminal says how wide it is
 
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else _PIPE_WIDTH)
@@ -107,6 +108,20 @@ def check_once(studies: Sequence[Path]) -> None:
         if path.resolve() in seen:
             raise InputError(f"{path}: given twice; the same test is no further information")
         seen.add(path.resolve())
+
+
+def check_workers(workers: int) -> None:
+    """Refuse a number of processes that no machine should have to bear.
+
+    Raises
+    ------
+    InputError
+        If there are none, or more than 1000.
+    """
+    if workers < 1:
+        raise InputError(f"--workers {workers}: at least 1 is needed")
+    if workers > _MOST_WORKERS:
+        raise InputError(f"--workers {workers}: at most {_MOST_WORKERS}, each is a process of 200 MB")
 
 
 def several(count: int, noun: str) -> str:

@@ -45,9 +45,9 @@ def update(
     studies: Annotated[list[Path], typer.Argument(help="study file(s)")],
     shared: Annotated[str, typer.Option(help="parameters that several studies share, comma-separated")] = "",
     bootstrap: Annotated[
-        int, typer.Option(help="draw the hits anew so often, for intervals; 0 for none")
+        int, typer.Option(min=0, max=100_000, help="draw the hits anew so often, for intervals; 0 for none")
     ] = 0,
-    seed: Annotated[int, typer.Option(help="of the draws")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="of the draws")] = 0,
     json: Annotated[Path | None, typer.Option("--json", help="file for the result as JSON")] = None,
     figures: Figures = None,
 ) -> None:

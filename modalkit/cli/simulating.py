@@ -31,13 +31,16 @@ def simulate(
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="seed of all scatter and noise")] = 0,
     frfs: Annotated[bool, typer.Option("--frfs", help="write averaged FRFs instead of raw hits")] = False,
-    hits: Annotated[int | None, typer.Option(min=1, help="hits at each point")] = None,
-    samples: Annotated[int | None, typer.Option(min=64, help="samples per record")] = None,
-    rate: Annotated[float | None, typer.Option(min=1e-3, help="sampling rate [Hz]")] = None,
+    hits: Annotated[int | None, typer.Option(min=1, max=1000, help="hits at each point")] = None,
+    samples: Annotated[int | None, typer.Option(min=64, max=4_194_304, help="samples per record")] = None,
+    rate: Annotated[float | None, typer.Option(min=1.0, max=1e8, help="sampling rate [Hz]")] = None,
     noise: Annotated[
-        float | None, typer.Option(min=0.0, help="noise of the responses, r.m.s. of their largest magnitude")
+        float | None,
+        typer.Option(min=0.0, max=100.0, help="noise of the responses, r.m.s. of their largest magnitude"),
     ] = None,
-    points: Annotated[int | None, typer.Option(help="how many points, where the study has none")] = None,
+    points: Annotated[
+        int | None, typer.Option(min=2, max=10_000, help="how many points, where the study has none")
+    ] = None,
     remount: Annotated[
         bool,
         typer.Option(
