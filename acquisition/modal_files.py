@@ -10,6 +10,7 @@ import pandas as pd
 
 from acquisition.arrays import FloatArray
 from acquisition.dof import Dof
+from acquisition.encoding import not_utf8
 from acquisition.errors import InputError
 from acquisition.modal_data import ModalData
 from acquisition.uff import read_uff
@@ -22,6 +23,7 @@ _COLUMNS = {
     "damping": ("damping", "damping_ratio", "zeta"),
     "damping_sigma": ("damping_sigma",),
 }
+_SEPARATORS = {";": "semicolons", "\t": "tabulators"}
 
 
 def read_modes(path: Path | str) -> ModalData:
@@ -52,7 +54,7 @@ def read_modes(path: Path | str) -> ModalData:
     table = _table(path)
     frequency = _column(table, "frequency", path)
     if frequency is None:
-        raise InputError(f"{path}: no column 'frequency' among {', '.join(table.columns)}; name the columns")
+        raise InputError(_no_frequency(path, [str(name) for name in table.columns]))
     if not np.all(frequency > 0):
         raise InputError(
             f"{path}: a frequency is missing or not positive; give every mode its frequency in Hz"
@@ -78,12 +80,33 @@ def _table(path: Path) -> pd.DataFrame:
         table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype=str)
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
+    except UnicodeDecodeError as error:
+        said = (
+            not_utf8(path, path.read_bytes())
+            or f"{path}: binary data, no table of modes; give a .csv of text"
+        )
+        raise InputError(said) from error
     except (ValueError, pd.errors.ParserError) as error:
         raise InputError(f"{path}: is no table of comma-separated columns ({error})") from None
     table.columns = [str(name).strip() for name in table.columns]
     if table.empty:
         raise InputError(f"{path}: holds no mode; give a header row and one row per mode")
     return table
+
+
+def _no_frequency(path: Path, names: list[str]) -> str:
+    """Return what is wrong with a header without frequencies, and what to type."""
+    for mark, word in _SEPARATORS.items():
+        if len(names) == 1 and mark in names[0]:
+            header = ",".join(part.strip() for part in names[0].split(mark))
+            return (
+                f"{path}: its columns are separated by {word}, a table of modes has commas, and points in its "
+                f"numbers: write the header as {header}, and the rows likewise"
+            )
+    return (
+        f"{path}: no column 'frequency' among {', '.join(names)}; begin the table with a header such as "
+        "frequency,sigma,damping"
+    )
 
 
 def _column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:

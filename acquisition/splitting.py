@@ -99,15 +99,21 @@ def split_hits(
         If nothing reaches the trigger, no hit can be cut out whole, or the records were already windowed.
     """
     if test.decay:
-        raise InputError(f"{test.source}: records with an exponential window cannot be split; split first")
+        raise InputError(
+            f"{test.source}: the records look as if each held several hits, and an exponential window of "
+            f"{test.decay:g} 1/s is stated, which has damped all hits but the first; export the hits without that "
+            "window, one a record, or take the window out of --decay, exponential_window or the ID lines if there "
+            "was none"
+        )
     level = propose_trigger(test) if trigger is None else float(trigger)
     found, width = _find(test, level)
     length = _length(test, found) if duration is None else round(duration * test.rate)
     lead = max(round(0.02 * length), int(np.ceil(5 * width))) if pre is None else round(pre * test.rate)
     if not 0 <= lead < length <= test.samples:
         raise InputError(
-            f"{test.source}: {lead / test.rate:g} s before the trigger of records of {length / test.rate:g} s, "
-            f"cut out of {test.duration:g} s; give a shorter duration or pre"
+            f"{test.source}: the records of {test.duration:g} s look as if each held several hits, but records of "
+            f"{length / test.rate:g} s, {lead / test.rate:g} s of them before the trigger, cannot be cut out of them; "
+            "export one hit a record, or call split_hits with a duration and a pre that fit"
         )
     kept: dict[int, list[tuple[int, int]]] = {}
     messages = []
@@ -117,7 +123,10 @@ def split_hits(
         kept.setdefault(f.point, []).extend((f.record, start - lead) for start in fits)
     points = tuple(_cut(test.points[k], rows, length) for k, rows in kept.items() if rows)
     if not points:
-        raise InputError(f"{test.source}: no hit has {length / test.rate:g} s alone; give a shorter duration")
+        raise InputError(
+            f"{test.source}: no hit has the {length / test.rate:g} s of its record alone; leave more time between "
+            "hits, export one hit a record, or call split_hits with a shorter duration"
+        )
     count = sum(p.count for p in points)
     said = (
         f"{test.source}: long records were split into {count} hits of {length / test.rate:.4g} s "

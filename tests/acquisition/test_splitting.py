@@ -109,7 +109,7 @@ def test_what_cannot_be_split_says_why(rng):
         split_hits(test, trigger=1e4)
     with pytest.raises(InputError, match="shorter duration"):
         split_hits(test, duration=5.0)
-    with pytest.raises(InputError, match="shorter duration or pre"):
+    with pytest.raises(InputError, match="export one hit a record"):
         split_hits(test, duration=50.0)
-    with pytest.raises(InputError, match="split first"):
+    with pytest.raises(InputError, match="take the window out of --decay"):
         split_hits(replace(test, decay=3.0))
