@@ -47,9 +47,9 @@ def _columns(modal: ModalData) -> Iterator[tuple[str, FloatArray]]:
     ):
         if values is not None and not np.isnan(values).all():
             yield name, values
+    yield "scaled", np.full(len(modal), float(modal.scaled))
     if modal.shapes is None:
         return
-    yield "scaled", np.full(len(modal), float(modal.scaled))
     whole = bool(np.any(modal.shapes.imag))
     for row, dof in enumerate(modal.dofs):
         yield str(dof), modal.shapes[row].real

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.dof import Dof
+from acquisition.encoding import not_utf8
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
 from acquisition.modal_checks import check_frequencies, checked
@@ -18,6 +19,7 @@ from acquisition.uff import read_uff
 
 TABLES = (".csv", ".txt")
 """Endings of tables of modes."""
+_SEPARATORS = {";": "semicolons", "\t": "tabulators"}
 
 
 def read_modes(path: Path | str) -> ModalData:
@@ -48,7 +50,10 @@ def read_modes(path: Path | str) -> ModalData:
     check_headings(table, path)
     frequency = column(table, "frequency", path)
     if frequency is None:
-        raise InputError(f"{path}: no column 'frequency' among {', '.join(table.columns)}; name the columns")
+        raise InputError(
+            f"{path}: no column 'frequency' among {', '.join(table.columns)}; begin the table with a header such as "
+            "frequency,sigma,damping"
+        )
     check_frequencies(frequency, path)
     sigma = column(table, "sigma", path)
     dofs = {name: found for name in table.columns if (found := dof(name)) is not None}
@@ -123,9 +128,27 @@ def _table(path: Path) -> pd.DataFrame:
         table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype=str)
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
+    except UnicodeDecodeError as error:
+        said = (
+            not_utf8(path, path.read_bytes())
+            or f"{path}: binary data, no table of modes; give a .csv of text"
+        )
+        raise InputError(said) from error
     except (ValueError, pd.errors.ParserError) as error:
         raise InputError(f"{path}: is no table of comma-separated columns ({error})") from None
     table.columns = [str(name).strip() for name in table.columns]
+    _check_separators(path, list(table.columns))
     if table.empty:
         raise InputError(f"{path}: holds no mode; give a header row and one row per mode")
     return table
+
+
+def _check_separators(path: Path, names: list[str]) -> None:
+    """See that the columns are separated by commas, or say what to type."""
+    for mark, word in _SEPARATORS.items():
+        if len(names) == 1 and mark in names[0]:
+            header = ",".join(part.strip() for part in names[0].split(mark))
+            raise InputError(
+                f"{path}: its columns are separated by {word}, a table of modes has commas, and points in its "
+                f"numbers: write the header as {header}, and the rows likewise"
+            )

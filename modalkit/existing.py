@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from acquisition import InputError, ModalData
 from acquisition.display import Displayed
-from identification import modes_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,6 +40,8 @@ class Modes(Displayed):
 
     def table(self) -> pd.DataFrame:
         """Return one row per mode: frequency [Hz], damping ratio [%], their standard deviations, MPC [-]."""
+        from identification import modes_table
+
         return modes_table(self.modal)
 
     def identify(self, *, band: tuple[float, float] | None = None) -> Modes:

@@ -8,6 +8,9 @@ from typing import Literal
 
 from acquisition import ESTIMATORS, Estimator, InputError
 
+FASTEST = 1e6
+"""Fastest decay of a window [1/s]: it is over within one sample of any hammer test."""
+
 HitName = tuple[str, int]
 
 
@@ -52,8 +55,11 @@ class Handling:
     def __post_init__(self) -> None:
         """Check the entries."""
         object.__setattr__(self, "layout", None if self.layout is None else Path(self.layout))
-        if self.decay < 0 or self.window < 0:
-            raise InputError(f"windows of {self.decay} and {self.window} 1/s: decay rates are not negative")
+        if not (0 <= self.decay <= FASTEST and 0 <= self.window <= FASTEST):
+            raise InputError(
+                f"windows of {self.decay:g} and {self.window:g} 1/s: decay rates are not negative, nor beyond "
+                f"{FASTEST:g} 1/s"
+            )
         if self.estimator not in ESTIMATORS:
             raise InputError(f"unknown estimator {self.estimator!r}; use {', '.join(ESTIMATORS)}")
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from acquisition import (
     Dof,
@@ -26,7 +25,6 @@ from acquisition import (
     state_window,
 )
 from acquisition.display import Displayed
-from identification import ModalModel, identify
 from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
 from modalkit.frf_checks import identical, without_constant
@@ -36,6 +34,11 @@ from modalkit.joining import together
 from modalkit.mixed import with_read
 from modalkit.remarks import on_hits, on_window
 from modalkit.sensors import without_sensors
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
 
 AS_READ = Handling()
 SAME_DECAY = 1e-3  # relative difference of decays that are the same
@@ -109,6 +112,8 @@ class Processed(Displayed):
         Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
         the part in which the FRFs carry information, and what was done is among the warnings.
         """
+        from identification import identify
+
         reach = self._reach([*add, *drop]) if band is None else None
         if reach is None and band is not None:
             return self._informed(band, order, add, drop)
@@ -125,6 +130,8 @@ class Processed(Displayed):
         self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
         """Identify the modes of the part of a band in which the FRFs carry information."""
+        from identification import identify
+
         within, said = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
         if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
             within, said = band, None

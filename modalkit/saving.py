@@ -4,33 +4,54 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from acquisition import HitVerdict, InputError, write_uff
 from acquisition.modal_csv import modes_csv
 from acquisition.readers import UFF
-from identification import ModalModel
 from modalkit.existing import Modes
-from modalkit.records import modes_record
-from modalkit.write import check_place, write_json, write_text
+from modalkit.outputs import Kind, check_output, json_of, uff_of
+from modalkit.write import write_json, write_text
+
+if TYPE_CHECKING:
+    from identification import ModalModel
 
 ENDINGS = (*sorted(UFF), ".csv", ".json")
 """What modes can be written as."""
 
+_LONGEST_HEADER = 1_000_000
+"""Bytes of a header row; that of 10 000 degrees of freedom takes a quarter of it."""
 
-def check_modes_place(path: Path | str | None) -> None:
-    """See that modes could be written there, before work begins whose result would be lost; None is no file.
+
+_NOT_BY_HAND = b"scaled"
+"""A column that every table of modes written here has, and one written by hand seldom."""
+
+
+def modes_kind(path: Path | None) -> Kind:
+    """Return the kind of file that modes are written as, by its ending; None is no file and of any kind.
 
     Raises
     ------
     InputError
-        If the ending is none of `ENDINGS`, or the folder cannot be written.
+        If the ending is none of `ENDINGS`.
     """
     if path is None:
-        return
-    path = Path(path)
-    if path.suffix.lower() not in ENDINGS:
-        raise InputError(f"{path}: modes are written by their ending: {', '.join(ENDINGS)}")
-    check_place(path)
+        return uff_of("modes")
+    ending = path.suffix.lower()
+    if ending not in ENDINGS:
+        raise InputError(
+            f"{path}: modes are written by their ending, {', '.join(ENDINGS)}; name another file, as "
+            f"{path.stem}_modes.uff"
+        )
+    if ending == ".csv":
+        return Kind("a table of modes written by modalkit", "modes", ending, _is_our_table)
+    return json_of("modalkit.modes/1") if ending == ".json" else uff_of("modes")
+
+
+def _is_our_table(path: Path) -> bool:
+    with path.open("rb") as file:
+        names = file.readline(_LONGEST_HEADER).rstrip().split(b",")
+    return names[0] == b"frequency" and _NOT_BY_HAND in names
 
 
 def write_modes(
@@ -59,15 +80,21 @@ def write_modes(
     Raises
     ------
     InputError
-        If the ending is none of these, or the file cannot be written.
+        If the ending is none of these, something else than such a file stands there, or it cannot be written.
     """
-    check_modes_place(path)
     path = Path(path)
+    check_output(path, modes_kind(path))
+    if path.suffix.lower() in UFF and modes.modal.shapes is None:
+        raise InputError(
+            f"{path}: a data set of modes needs their shapes, which these have not; write them as .csv or .json"
+        )
     said = modes.warnings if warnings is None else warnings
     ending = path.suffix.lower()
     if ending == ".csv":
         write_text(path, modes_csv(modes.modal))
     elif ending == ".json":
+        from modalkit.records import modes_record
+
         write_json(path, modes_record(modes, hits, said))
     else:
         write_uff(path, modal=modes.modal, geometry=modes.modal.geometry, title=title)

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from acquisition.encoding import not_utf8
 from acquisition.errors import StudyError
 from modalkit.accepting import accepted_values
 from modalkit.matrices import matrices_of, matrices_spec
@@ -210,9 +211,8 @@ def read_study(path: Path | str) -> Study:
             f"{path}: cannot be read ({error.strerror}); give the path of a study file"
         ) from error
     except UnicodeDecodeError as error:
-        raise StudyError(
-            f"{path}: not a valid TOML file but binary data; give a study file that names it"
-        ) from error
+        binary = f"{path}: not a valid TOML file but binary data; give a study file that names it"
+        raise StudyError(not_utf8(path, path.read_bytes()) or binary) from error
     except tomllib.TOMLDecodeError as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
     if "path" in content:

@@ -13,6 +13,7 @@ import numpy as np
 
 from acquisition.columns.units import QUANTITIES
 from acquisition.dof import Dof
+from acquisition.encoding import not_utf8
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
 from acquisition.mat.layout import MatLayout, mat_layout
@@ -174,7 +175,10 @@ def read_layout(path: Path | str) -> Layout:
         table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); give the layout file") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        said = not_utf8(Path(path), Path(path).read_bytes())
+        raise InputError(said or f"{path}: not a TOML file but binary data") from error
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: not a TOML file: {error}") from error
     return layout_from(table, source=str(path))
 

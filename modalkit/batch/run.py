@@ -15,7 +15,7 @@ from acquisition.display import Displayed
 from acquisition.errors import EstimationError, InputError
 from modalkit import __version__
 from modalkit.batch.find import Found
-from modalkit.serving.journal import Journal, read_journal
+from modalkit.serving.journal import Journal, is_store, read_journal
 from modalkit.serving.pool import RunCommand, in_flight, warm_pool
 
 SCHEMA = "modalkit.batchrun/1"
@@ -133,8 +133,10 @@ def run_batch(
 
 def _journal(store: Path, resume: bool) -> Journal:
     """Open a store; one of a run that came to its end is begun anew, unless it is to be gone on with."""
-    if not resume and store.is_file() and read_journal(store)[0][-1:] == [_FINISHED]:
-        store.unlink()
+    if not resume and store.is_file():
+        documents, _ = read_journal(store)
+        if is_store(documents) and documents[-1] == _FINISHED:
+            store.unlink()
     return Journal(store, resume=resume)
 
 

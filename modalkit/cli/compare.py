@@ -11,12 +11,23 @@ import typer
 from acquisition.errors import InputError
 from identification import Correlation as Comparison
 from modalkit import comparing
-from modalkit.cli.common import is_study, out, several, show_figures, show_table, show_warnings, working
+from modalkit.cli.common import (
+    check_folder,
+    is_study,
+    out,
+    read_by,
+    several,
+    show_figures,
+    show_table,
+    show_warnings,
+    working,
+)
 from modalkit.cli.options import Figures
 from modalkit.json_correlation import correlation_record
+from modalkit.outputs import Kind, check_outputs, json_of, text_of
 from modalkit.process import Session, open_study
 from modalkit.study import read_study
-from modalkit.write import check_json_place, check_place, write_json, write_text
+from modalkit.write import write_json, write_text
 from updating.correlation import Correlation
 from updating.correlation import correlate as compare
 from updating.prediction import Predictor
@@ -49,7 +60,9 @@ def correlate(
     figures: Figures = None,
 ) -> None:
     """Pair the modes of test and model, or of two tests, and say how far they agree, FRFs included."""
-    check_json_place(json)
+    schema = "modalkit.correlation/1" if other is None else "modalkit.comparison/1"
+    check_outputs((json, json_of(schema)), reads=read_by([s for s in (study, other) if s]))
+    check_folder(figures)
     if other is not None:
         _correlate_tests(study, other, json, figures)
         return
@@ -121,7 +134,8 @@ def tables(
     """Make the papers' tables through the whole chain, our value beside the published one."""
     from modalkit.tables import fluid_work, render, work
 
-    check_place(output)
+    check_outputs((output, _tables_as(form)))
+    check_folder(figures)
     with working("making the tables"):
         made = fluid_work(paper) if fluid else work(paper)
         text = render(made.tables(), form.value)
@@ -131,6 +145,13 @@ def tables(
         write_text(output, text + "\n")
         out.print(f"written: {output}", markup=False)
     show_figures(figures, made.figures)
+
+
+def _tables_as(form: TableFormat) -> Kind:
+    """Return the kind of file that the papers' tables are written to."""
+    endings = {TableFormat.md: ".md", TableFormat.csv: ".csv", TableFormat.latex: ".tex"}
+    begins = ("## Paper ", "paper,table,", "\\begin{table}\n\\caption{Paper ")
+    return text_of("tables of the papers", "tables", endings[form], *begins)
 
 
 def _correlation_figures(session: Session, result: Correlation) -> dict[str, Any]:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-import pandas as pd
 import typer
 
 from acquisition import (
@@ -19,10 +18,11 @@ from acquisition import (
     reciprocity,
     write_uff,
 )
-from identification import ModalModel
 from modalkit.cli.common import (
+    check_folder,
     is_study,
     out,
+    read_by,
     reading,
     several,
     show_figures,
@@ -53,10 +53,14 @@ from modalkit.cli.showing import (
 from modalkit.existing import Modes
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
-from modalkit.process import process
+from modalkit.outputs import check_outputs, json_of, uff_of
 from modalkit.reading import Processed, numbered, read, read_frfs
-from modalkit.saving import check_modes_place
-from modalkit.study import read_study
+from modalkit.saving import modes_kind
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
 
 NAMED = 12
 """So many degrees of freedom are named in one line."""
@@ -104,6 +108,8 @@ def _in_short(content: UffContent) -> pd.DataFrame:
 
     What there is to say stands in the warnings.
     """
+    from pandas import concat
+
     table = content.table()
     plain = table["ok"] & (table["message"] == "")
     rows = [table[~plain]]
@@ -112,7 +118,7 @@ def _in_short(content: UffContent) -> pd.DataFrame:
         if len(group) > 1:
             row["description"] = f"{len(group)} of them, the first: " + row["description"]
         rows.append(row)
-    return pd.concat(rows).sort_values(["file", "line"], kind="stable").drop(columns="message")
+    return concat(rows).sort_values(["file", "line"], kind="stable").drop(columns="message")
 
 
 def _usable(content: UffContent) -> list[str]:
@@ -155,6 +161,8 @@ def frf(
     figures: Figures = None,
 ) -> None:
     """Turn hits into FRFs with coherence, and write them as UFF."""
+    check_outputs((output, uff_of("frfs")), reads=read_by(files, layout))
+    check_folder(figures)
     said = handling(
         decay=decay,
         window_on=window_on,
@@ -201,7 +209,10 @@ def identify(
     figures: Figures = None,
 ) -> None:
     """Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already."""
-    check_modes_place(output)
+    check_outputs(
+        (json, json_of("modalkit.modes/1")), (output, modes_kind(output)), reads=read_by(files, layout)
+    )
+    check_folder(figures)
     said = handling(
         decay=decay,
         window_on=window_on,
@@ -239,6 +250,9 @@ def _identified(
     """Return FRFs and modes of files, or of a study's test; modes that exist already have no FRFs."""
     add, drop = named
     if len(files) == 1 and is_study(files[0]):
+        from modalkit.process import process
+        from modalkit.study import read_study
+
         if said != Handling():
             raise StudyError(f"{files[0]}: a study says in [test] how its files are treated; write it there")
         return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)

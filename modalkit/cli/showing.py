@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from acquisition import HitVerdict, force_range, hits_table
-from identification import ModalModel
 from modalkit.cli.common import out, several, show_table, show_warnings, working
 from modalkit.existing import Modes
-from modalkit.reading import Processed
-from modalkit.records import modes_record, without_hits
-from modalkit.saving import write_modes
 from modalkit.write import write_json
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
+    from modalkit.reading import Processed
 
 
 def save_modes(
@@ -25,6 +26,9 @@ def save_modes(
     output: Path | None,
 ) -> None:
     """Write the modes as JSON, and as what the ending of the output names, where files are given, and say so."""
+    from modalkit.records import modes_record
+    from modalkit.saving import write_modes
+
     hits = () if processed is None else processed.hits
     title = "" if processed is None else processed.content.title
     if json is not None:
@@ -37,6 +41,8 @@ def save_modes(
 
 def show_rejected(hits: Sequence[HitVerdict], more: Sequence[str] = ()) -> None:
     """Print the points that were left out, with the reason."""
+    from modalkit.records import without_hits
+
     for text in [*without_hits(hits), *more]:
         out.print(f"left out: {text}", markup=False)
 
