@@ -1,34 +1,40 @@
 """Acquisition: files of every kind, raw hits and the FRFs made of them, in SI units."""
 
-from acquisition.bootstrap import bootstrap_frfs
-from acquisition.columns import Layout, layout_from, read_columns, read_frf_columns, read_layout
-from acquisition.dof import Dof
-from acquisition.errors import EstimationError, InputError, ModalkitError, StudyError
-from acquisition.estimators import estimate_frfs, random_error
-from acquisition.frf import FORMS, FrfSet
-from acquisition.geometry import Geometry
-from acquisition.hammer import HammerTest, Hits
-from acquisition.modal_data import ModalData
-from acquisition.modal_files import read_modes
-from acquisition.quality import judge_hits
-from acquisition.readers import installed_readers, read_test, written_as_uff
-from acquisition.reciprocity import reciprocity
-from acquisition.scatter import HitGroup, HitScatter, variance_of_groups
-from acquisition.sensor_mass import remove_sensor_mass
-from acquisition.spectra import ESTIMATORS, Estimator
-from acquisition.splitting import looks_long, propose_trigger, split_hits
-from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
-from acquisition.uff import DatasetInfo, UffContent, read_functions, read_uff, write_uff
-from acquisition.verdicts import (
-    ForceRange,
-    HitVerdict,
-    decide,
-    force_range,
-    hits_table,
-    rejected_points,
-    verdicts_of,
-)
-from acquisition.windows import Windows, apply_windows, force_noise_decay, state_window, unstated_window
+from typing import TYPE_CHECKING
+
+from acquisition.lazy import load_on_demand
+
+if TYPE_CHECKING:
+    from acquisition.bootstrap import bootstrap_frfs
+    from acquisition.columns import Layout, layout_from, read_columns, read_frf_columns, read_layout
+    from acquisition.dof import Dof
+    from acquisition.errors import EstimationError, InputError, ModalkitError, StudyError
+    from acquisition.estimators import estimate_frfs, random_error
+    from acquisition.frf import FORMS, FrfSet
+    from acquisition.geometry import Geometry
+    from acquisition.hammer import HammerTest, Hits
+    from acquisition.mat.read import read_mat
+    from acquisition.modal_data import ModalData
+    from acquisition.modal_files import read_modes
+    from acquisition.quality import judge_hits
+    from acquisition.readers import installed_readers, read_test, written_as_uff
+    from acquisition.reciprocity import reciprocity
+    from acquisition.scatter import HitGroup, HitScatter, variance_of_groups
+    from acquisition.sensor_mass import remove_sensor_mass
+    from acquisition.spectra import ESTIMATORS, Estimator
+    from acquisition.splitting import looks_long, propose_trigger, split_hits
+    from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
+    from acquisition.uff import DatasetInfo, UffContent, read_functions, read_uff, write_uff
+    from acquisition.verdicts import (
+        ForceRange,
+        HitVerdict,
+        decide,
+        force_range,
+        hits_table,
+        rejected_points,
+        verdicts_of,
+    )
+    from acquisition.windows import Windows, apply_windows, force_noise_decay, state_window, unstated_window
 
 __all__ = [
     "ESTIMATORS",
@@ -73,6 +79,7 @@ __all__ = [
     "read_frf_columns",
     "read_functions",
     "read_layout",
+    "read_mat",
     "read_modes",
     "read_test",
     "read_uff",
@@ -87,3 +94,31 @@ __all__ = [
     "write_uff",
     "written_as_uff",
 ]
+
+load_on_demand(
+    __name__,
+    {
+        ".bootstrap": "bootstrap_frfs",
+        ".columns": "Layout layout_from read_columns read_frf_columns read_layout",
+        ".dof": "Dof",
+        ".errors": "EstimationError InputError ModalkitError StudyError",
+        ".estimators": "estimate_frfs random_error",
+        ".frf": "FORMS FrfSet",
+        ".geometry": "Geometry",
+        ".hammer": "HammerTest Hits",
+        ".mat.read": "read_mat",
+        ".modal_data": "ModalData",
+        ".modal_files": "read_modes",
+        ".quality": "judge_hits",
+        ".readers": "installed_readers read_test written_as_uff",
+        ".reciprocity": "reciprocity",
+        ".scatter": "HitGroup HitScatter variance_of_groups",
+        ".sensor_mass": "remove_sensor_mass",
+        ".spectra": "ESTIMATORS Estimator",
+        ".splitting": "looks_long propose_trigger split_hits",
+        ".synthetic": "HammerPlan ModalSystem hammer_test modal_system",
+        ".uff": "DatasetInfo UffContent read_functions read_uff write_uff",
+        ".verdicts": "ForceRange HitVerdict decide force_range hits_table rejected_points verdicts_of",
+        ".windows": "Windows apply_windows force_noise_decay state_window unstated_window",
+    },
+)

@@ -190,6 +190,17 @@ def kept_hits(test: HammerTest, verdicts: Sequence[HitVerdict] | None = None) ->
             kept.append((point, mask))
     if not kept:
         raise EstimationError(
-            f"{test.source}: no usable hit is left at any point; accept some by hand or repeat the test"
+            f"{test.source}: no usable hit is left at any point{_most(verdicts or ())}; accept some by hand or repeat "
+            "the test"
         )
     return kept
+
+
+def _most(verdicts: Sequence[HitVerdict]) -> str:
+    """Say what speaks against most hits."""
+    kinds = [verdict.reasons[0].split(":")[0] for verdict in verdicts if not verdict.used and verdict.reasons]
+    if not kinds:
+        return ""
+    often = max(dict.fromkeys(kinds), key=kinds.count)
+    one = next(v.reasons[0] for v in verdicts if not v.used and v.reasons and v.reasons[0].startswith(often))
+    return f" ({kinds.count(often)} of {len(verdicts)} refused for: {one})"

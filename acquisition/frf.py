@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray, frozen_array
+from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
@@ -39,7 +40,7 @@ class Record:
 
 
 @dataclass(frozen=True, eq=False)
-class FrfSet:
+class FrfSet(Displayed):
     """A set of FRFs on one frequency axis, each between a response and a reference.
 
     Parameters
@@ -264,3 +265,8 @@ class FrfSet:
         if self.coherence is not None:
             table["mean coherence"] = self.coherence.mean(axis=1)
         return table
+
+    def _headline(self) -> str:
+        span = f"{self.frequency[0]:g} to {self.frequency[-1]:g} Hz in steps of {self.df:g} Hz"
+        window = f", window of {self.decay:g} 1/s" if self.decay else ""
+        return f"{counted(len(self.responses), 'FRF')} ({self.form}), {span}{window}; from {self.source}"

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray, frozen_array
+from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 @dataclass(frozen=True, eq=False)
-class Geometry:
+class Geometry(Displayed):
     """Nodes of the test, their coordinates, and the lines that join them in drawings.
 
     Parameters
@@ -85,7 +90,8 @@ class Geometry:
         missing = sorted({n for n in wanted if n not in row})
         if missing:
             raise InputError(
-                f"no coordinates for node(s) {missing}; add them to data set 15 or 2411 of the test file"
+                f"no coordinates for node(s) {missing}; add them to data set 15 or 2411 of the test file, or to a "
+                "table of modes as rows x, y, z in place of a frequency"
             )
         return np.array(self.coordinates[[row[n] for n in wanted]]).reshape(-1, 3)
 
@@ -97,3 +103,14 @@ class Geometry:
         if self.axes is None or dof.node not in self.nodes:
             return dof.unit_vector
         return np.asarray(dof.unit_vector @ self.axes[self.nodes.index(dof.node)], dtype=np.float64)
+
+    def table(self) -> pd.DataFrame:
+        """Return one row per node: its coordinates [m]."""
+        import pandas as pd
+
+        index = pd.Index(self.nodes, name="node")
+        return pd.DataFrame(np.array(self.coordinates), index, ["x [m]", "y [m]", "z [m]"])
+
+    def _headline(self) -> str:
+        lines = f", {counted(len(self.lines), 'line')}" if len(self.lines) else ""
+        return counted(len(self.nodes), "node") + lines

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from acquisition.arrays import AnyArray, frozen_array
+from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frf import Form
 from acquisition.geometry import Geometry
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 @dataclass(frozen=True, eq=False)
-class Hits:
+class Hits(Displayed):
     """All hits at one point.
 
     Parameters
@@ -55,9 +60,13 @@ class Hits:
         """Number of hits."""
         return int(self.force.shape[0])
 
+    def _headline(self) -> str:
+        seen = counted(len(self.responses), "response")
+        return f"{counted(self.count, 'hit')} at {self.reference}, {seen}, {self.force.shape[-1]} samples"
+
 
 @dataclass(frozen=True, eq=False)
-class HammerTest:
+class HammerTest(Displayed):
     """A hammer test as it was recorded.
 
     Parameters
@@ -105,3 +114,20 @@ class HammerTest:
     def duration(self) -> float:
         """Length of a record [s]."""
         return self.samples / self.rate
+
+    def table(self) -> pd.DataFrame:
+        """Return one row per entry of ``points``: the point hit, how many hits, the responses, samples."""
+        import pandas as pd
+
+        rows = [
+            (str(p.reference), p.count, ", ".join(map(str, p.responses)), self.samples) for p in self.points
+        ]
+        return pd.DataFrame(rows, columns=["point", "hits", "responses", "samples"])
+
+    def _headline(self) -> str:
+        points, hits = len({p.reference for p in self.points}), sum(p.count for p in self.points)
+        window = f", window of {self.decay:g} 1/s" if self.decay else ""
+        return (
+            f"{counted(hits, 'hit')} at {counted(points, 'point')}, {self.samples} samples at {self.rate:g} Hz, "
+            f"for {self.form}{window}; from {self.source}"
+        )

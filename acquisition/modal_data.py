@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
 
-from acquisition.arrays import ComplexArray, FloatArray, frozen_array
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, frozen_array
+from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
 
+DOUBTFUL_DAMPING = 0.2
+"""From this ratio on damping is doubted: hardly a structure has it, and 0.2 per cent is usual [-]."""
+
 
 @dataclass(frozen=True, eq=False)
-class ModalData:
+class ModalData(Displayed):
     """Frequencies, damping ratios and shapes with their standard deviations.
 
     Parameters
@@ -78,6 +82,28 @@ class ModalData:
         """Return the number of modes."""
         return len(self.frequency)
 
+    def modes(self, keep: BoolArray) -> ModalData:
+        """Return some of the modes, those where ``keep`` (n_modes,) is true."""
+        along = ("frequency", "frequency_sigma", "damping", "damping_sigma")
+        columns = {name: getattr(self, name)[keep] for name in along}
+        shapes = {
+            name: getattr(self, name)[:, keep]
+            for name in ("shapes", "shape_sigma")
+            if getattr(self, name) is not None
+        }
+        return replace(self, **columns, **shapes)
+
+    def doubts(self) -> tuple[str, ...]:
+        """Return what in the numbers themselves looks like a mistake."""
+        assert self.damping is not None
+        most = float(np.nan_to_num(self.damping).max(initial=0.0))
+        if most < DOUBTFUL_DAMPING:
+            return ()
+        return (
+            f"damping ratios of up to {most:.3g}, which is {100 * most:.3g} %: if they are in per cent, "
+            "name the column damping_percent, or divide them by 100",
+        )
+
     def table(self) -> pd.DataFrame:
         """Return one row per mode: frequency [Hz], damping ratio [%], and their standard deviations."""
         assert self.damping is not None
@@ -89,3 +115,12 @@ class ModalData:
             "sigma [%]": 100 * self.damping_sigma,
         }
         return pd.DataFrame(columns, index=pd.RangeIndex(1, len(self) + 1, name="mode"))
+
+    def _headline(self) -> str:
+        if not len(self):
+            return "no modes"
+        span = f"{counted(len(self), 'mode')}, {self.frequency.min():g} to {self.frequency.max():g} Hz"
+        if self.shapes is None:
+            return f"{span}, no shapes"
+        scaled = "mass-normalised" if self.scaled else "not mass-normalised"
+        return f"{span}, shapes at {counted(len(self.dofs), 'degree')} of freedom, {scaled}"

@@ -2,34 +2,34 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from acquisition.arrays import FloatArray
 from acquisition.dof import Dof
+from acquisition.encoding import not_utf8
 from acquisition.errors import InputError
+from acquisition.geometry import Geometry
+from acquisition.modal_checks import check_frequencies, checked
+from acquisition.modal_columns import HEADINGS, check_headings, column, components, dof, numbers, plain
 from acquisition.modal_data import ModalData
+from acquisition.modal_json import read_modes_json
 from acquisition.uff import read_uff
 
-_SHAPE = re.compile(r"(\d+)([+-])(R?[XYZ])$", re.IGNORECASE)
-_AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
-_COLUMNS = {
-    "frequency": ("frequency", "frequency_hz", "frequency [hz]", "f"),
-    "sigma": ("sigma", "frequency_sigma", "frequency_sigma_hz", "sigma [hz]"),
-    "damping": ("damping", "damping_ratio", "zeta"),
-    "damping_sigma": ("damping_sigma",),
-}
+TABLES = (".csv", ".txt")
+"""Endings of tables of modes."""
+_SEPARATORS = {";": "semicolons", "\t": "tabulators"}
 
 
 def read_modes(path: Path | str) -> ModalData:
-    """Read modes from a table (.csv) or from data sets 55 and 2414 of a universal file.
+    """Read modes from a table (.csv), a result of our own (.json), or data sets 55 and 2414 of a universal file.
 
     The table has a header row with the columns ``frequency`` [Hz] and ``sigma`` [Hz]; ``damping`` and
-    ``damping_sigma`` [-] are optional, as are shape columns named by degree of freedom, ``3+Z`` (real). Lines
-    that begin with # are comments.
+    ``damping_sigma`` [-] are optional, or ``damping_percent`` and ``damping_sigma_percent``, as are shape columns
+    named by degree of freedom, ``3+Z`` (real part), ``3+Z imag`` and ``3+Z sigma``, and ``scaled``, 1 where the
+    shapes are mass-normalised. Rows with ``x``, ``y`` or ``z`` in place of a frequency give the
+    coordinates of the shape columns' points [m]. Lines that begin with # are comments.
 
     Parameters
     ----------
@@ -42,35 +42,85 @@ def read_modes(path: Path | str) -> ModalData:
         If the file cannot be read, a column is missing, or an entry is no number.
     """
     path = Path(path)
-    if path.suffix.lower() not in (".csv", ".txt"):
-        modal = read_uff(path).modal
-        if modal is None:
-            raise InputError(
-                f"{path}: holds no modes; give a table with a column 'frequency' or data sets 55 or 2414"
-            )
-        return modal
-    table = _table(path)
-    frequency = _column(table, "frequency", path)
+    if path.suffix.lower() == ".json":
+        return checked(read_modes_json(path), path)
+    if path.suffix.lower() not in TABLES:
+        return _of_universal_file(path)
+    table, coordinates = _split(_table(path), path)
+    check_headings(table, path)
+    frequency = column(table, "frequency", path)
     if frequency is None:
-        raise InputError(f"{path}: no column 'frequency' among {', '.join(table.columns)}; name the columns")
-    if not np.all(frequency > 0):
         raise InputError(
-            f"{path}: a frequency is missing or not positive; give every mode its frequency in Hz"
+            f"{path}: no column 'frequency' among {', '.join(table.columns)}; begin the table with a header such as "
+            "frequency,sigma,damping"
         )
-    sigma = _column(table, "sigma", path)
-    dofs = {name: dof for name in table.columns if (dof := _dof(name)) is not None}
-    shapes = [_numbers(table[name], name, path) for name in dofs]
-    if shapes and not np.isfinite(shapes).all():
+    check_frequencies(frequency, path)
+    sigma = column(table, "sigma", path)
+    dofs = {name: found for name in table.columns if (found := dof(name)) is not None}
+    real, imag, errors = (components(table, list(dofs), part, path) for part in ("", "imag", "sigma"))
+    if not np.isfinite([*(() if real is None else real), *(() if imag is None else imag)]).all():
         raise InputError(f"{path}: a shape has gaps; fill them or leave the column out")
-    signs = np.array([dof.sign for dof in dofs.values()], dtype=np.float64)
-    return ModalData(
+    signs = np.array([d.sign for d in dofs.values()], dtype=np.float64)
+    scaled = column(table, "scaled", path)
+    modal = ModalData(
         frequency=frequency,
         frequency_sigma=np.full(len(frequency), np.nan) if sigma is None else sigma,
-        damping=_column(table, "damping", path),
-        damping_sigma=_column(table, "damping_sigma", path),
-        dofs=tuple(Dof(dof.node, abs(dof.direction)) for dof in dofs.values()),
-        shapes=np.array(shapes, dtype=np.complex128) * signs[:, None] if shapes else None,
+        damping=column(table, "damping", path),
+        damping_sigma=column(table, "damping_sigma", path),
+        dofs=tuple(Dof(d.node, abs(d.direction)) for d in dofs.values()),
+        shapes=None if real is None else signs[:, None] * (real + 1j * (0.0 if imag is None else imag)),
+        shape_sigma=errors,
+        scaled=scaled is not None and bool(np.all(scaled == 1)),
+        geometry=_geometry(coordinates, dofs, path),
     )
+    return checked(modal, path)
+
+
+def _of_universal_file(path: Path) -> ModalData:
+    content = read_uff(path)
+    broken = [info for info in content.datasets if not info.ok and info.number in (0, 55, 2414)]
+    if broken:
+        raise InputError(
+            f"{path}: data set at line {broken[0].line}: {broken[0].message}; a mode may be lost, export it again"
+        )
+    if content.modal is None:
+        raise InputError(
+            f"{path}: holds no modes; give a table with a column 'frequency' or data sets 55 or 2414"
+        )
+    return content.modal
+
+
+def _split(table: pd.DataFrame, path: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Part the modes of a table from the coordinates of its points; these are indexed by x, y, z."""
+    heading = next((n for n in table.columns if plain(n) in HEADINGS["frequency"]), None)
+    if heading is None:
+        return table, table.iloc[:0]
+    axis = table[heading].fillna("").str.strip().str.lower()
+    there = axis.isin(["x", "y", "z"])
+    points = table[there].set_axis(axis[there], axis=0)
+    if points.index.has_duplicates:
+        raise InputError(
+            f"{path}: two rows of {points.index[points.index.duplicated()][0]} coordinates; give one"
+        )
+    if there.all():
+        raise InputError(f"{path}: holds no mode; give one row per mode beside the coordinates")
+    return table[~there], points
+
+
+def _geometry(points: pd.DataFrame, dofs: dict[str, Dof], path: Path) -> Geometry:
+    """Return the nodes of the shape columns, where their coordinates are given; what is left out of y and z is 0."""
+    if points.empty:
+        return Geometry.empty()
+    places: dict[int, tuple[float, ...]] = {}
+    for name, point in dofs.items():
+        told = numbers(points[name], name, path)
+        by_axis = dict(zip(points.index, told.tolist(), strict=True))
+        place = tuple(by_axis.get(axis, 0.0) for axis in ("x", "y", "z"))
+        if not np.isfinite(place).all():
+            raise InputError(f"{path}: column {name!r} lacks a coordinate in the rows x, y, z; give it in m")
+        if places.setdefault(point.node, place) != place:
+            raise InputError(f"{path}: node {point.node} has two places in the rows x, y, z; give it one")
+    return Geometry(tuple(places), np.array(list(places.values()), dtype=np.float64))
 
 
 def _table(path: Path) -> pd.DataFrame:
@@ -78,32 +128,27 @@ def _table(path: Path) -> pd.DataFrame:
         table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype=str)
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
+    except UnicodeDecodeError as error:
+        said = (
+            not_utf8(path, path.read_bytes())
+            or f"{path}: binary data, no table of modes; give a .csv of text"
+        )
+        raise InputError(said) from error
     except (ValueError, pd.errors.ParserError) as error:
         raise InputError(f"{path}: is no table of comma-separated columns ({error})") from None
     table.columns = [str(name).strip() for name in table.columns]
+    _check_separators(path, list(table.columns))
     if table.empty:
         raise InputError(f"{path}: holds no mode; give a header row and one row per mode")
     return table
 
 
-def _column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:
-    for column in table.columns:
-        if str(column).lower() in _COLUMNS[name]:
-            return _numbers(table[column], str(column), path)
-    return None
-
-
-def _numbers(column: pd.Series[str], name: str, path: Path) -> FloatArray:
-    numbers = pd.to_numeric(column, errors="coerce")
-    wrong = column[numbers.isna() & column.notna() & ~column.str.strip().str.lower().isin(["nan", ""])]
-    if len(wrong):
-        raise InputError(f"{path}: {wrong.iloc[0]!r} in column {name!r} is no number (use decimal points)")
-    return np.asarray(numbers, dtype=np.float64)
-
-
-def _dof(name: str) -> Dof | None:
-    found = _SHAPE.match(str(name))
-    if found is None:
-        return None
-    direction = _AXES.index(found[3].upper()) + 1
-    return Dof(int(found[1]), -direction if found[2] == "-" else direction)
+def _check_separators(path: Path, names: list[str]) -> None:
+    """See that the columns are separated by commas, or say what to type."""
+    for mark, word in _SEPARATORS.items():
+        if len(names) == 1 and mark in names[0]:
+            header = ",".join(part.strip() for part in names[0].split(mark))
+            raise InputError(
+                f"{path}: its columns are separated by {word}, a table of modes has commas, and points in its "
+                f"numbers: write the header as {header}, and the rows likewise"
+            )

@@ -24,6 +24,7 @@ from acquisition.hit_checks import (
     pulse_width,
     second_hits,
     upright,
+    why_broken,
 )
 from acquisition.verdicts import HitVerdict
 
@@ -42,10 +43,11 @@ REGROWTH = 5.0
 def judge_hits(test: HammerTest) -> tuple[HitVerdict, ...]:
     """Judge every hit of a test.
 
-    A hit is refused for a second hit, overload, a dead channel, a force that is too weak or far stronger than
-    usual, a pulse of odd length, or a response that the other hits at the point do not explain. That the
-    response has not decayed at the end of the record, that a record has an offset, that one response of several
-    is dead, or that the only two hits at a point disagree, is said but refuses nothing.
+    A hit is refused for a record that is too short, not finite or without a force, for a second hit, overload, a
+    dead channel, a force that is too weak or far stronger than usual, a pulse of odd length, or a response that the
+    other hits at the point do not explain. That the response has not decayed at the end of the record, that a
+    record has an offset, that one response of several is dead, or that the only two hits at a point disagree, is
+    said but refuses nothing.
 
     Parameters
     ----------
@@ -57,16 +59,49 @@ def judge_hits(test: HammerTest) -> tuple[HitVerdict, ...]:
     tuple of HitVerdict
         In the order of the hits; where a point was hit in several runs, these are numbered through.
     """
-    peaks = np.concatenate([upright(p.force).max(axis=-1) for p in test.points])
-    usual = float(np.median(peaks))
-    limits = _at_limits(test)
+    broken = [why_broken(p) for p in test.points]
+    sound = [_those(p, [not why for why in whys]) for p, whys in zip(test.points, broken, strict=True)]
+    judged = iter(_judge_sound(test, [p for p in sound if p.count]))
     verdicts: list[HitVerdict] = []
     seen: dict[Dof, int] = {}
-    for point, over in zip(test.points, limits, strict=True):
+    for point, whys in zip(test.points, broken, strict=True):
         first = seen.get(point.reference, 0)
-        verdicts += [replace(v, hit=first + v.hit) for v in _judge_point(point, test, usual, over)]
+        verdicts += [
+            replace(next(judged), hit=first + k + 1) if why is None else _unjudged(point, first + k + 1, why)
+            for k, why in enumerate(whys)
+        ]
         seen[point.reference] = first + point.count
     return tuple(verdicts)
+
+
+def _those(hits: Hits, wanted: list[bool]) -> Hits:
+    return hits if all(wanted) else replace(hits, force=hits.force[wanted], motion=hits.motion[wanted])
+
+
+def _unjudged(hits: Hits, number: int, why: str) -> HitVerdict:
+    return HitVerdict(hits.reference, number, False, (why,), peak=0.0, width=0.0, band10=0.0, band20=0.0)
+
+
+def _judge_sound(whole: HammerTest, points: list[Hits]) -> list[HitVerdict]:
+    """Judge hits whose records can be judged; in their order, numbered at each entry of ``points`` alone."""
+    if not points:
+        return []
+    test = replace(whole, points=tuple(points))
+    usual = _usual_peak(test)
+    limits = _at_limits(test)
+    return [
+        verdict
+        for point, over in zip(test.points, limits, strict=True)
+        for verdict in _judge_point(point, test, usual, over)
+    ]
+
+
+def _usual_peak(test: HammerTest) -> float:
+    """Return the median peak of the forces that stand out of their noise, of all where none does [N]."""
+    waves = [wave for p in test.points for wave in upright(p.force)]
+    peaks = np.array([float(wave.max()) for wave in waves])
+    clear = peaks >= BURIED * np.array([noise_level(wave) for wave in waves])
+    return float(np.median(peaks[clear] if clear.any() else peaks))
 
 
 def _at_limits(test: HammerTest) -> list[tuple[BoolArray, BoolArray]]:

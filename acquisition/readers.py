@@ -10,6 +10,8 @@ from acquisition.columns import Layout, read_columns, read_frf_columns, read_lay
 from acquisition.errors import InputError
 from acquisition.frf import FrfSet
 from acquisition.hammer import HammerTest
+from acquisition.mat.read import read_mat
+from acquisition.modal_data import ModalData
 from acquisition.uff import UffContent, read_uff
 
 Reader = Callable[[Path], HammerTest | FrfSet]
@@ -73,11 +75,22 @@ def read_test(
         found += [*content.tests, *([] if content.frfs is None else [content.frfs])]
     if text and layout is not None:
         plan = layout if isinstance(layout, Layout) else read_layout(layout)
+        if plan.mat is not None:
+            found += [_frfs_of_mat(f, plan) for f in text]
+            text = []
+    if text and layout is not None:
         found.append(
             read_frf_columns(text, plan) if plan.frequency_column is not None else read_columns(text, plan)
         )
     if not found:
         raise InputError(_nothing(files, content))
+    return found
+
+
+def _frfs_of_mat(path: Path, layout: Layout) -> FrfSet:
+    found = read_mat(path, layout)
+    if isinstance(found, ModalData):
+        raise InputError(f"{path}: {layout.source} names modes; for FRFs give frfs in its [mat]")
     return found
 
 
@@ -88,11 +101,12 @@ def _nothing(files: Sequence[Path], content: UffContent) -> str:
     return why if bad else f"{', '.join(map(str, files[:3]))}: {why}"
 
 
-def written_as_uff(path: Path) -> bool:
+def written_as_uff(path: Path | str) -> bool:
     """Tell whether a file is a universal file: by its ending, or because it starts as one does.
 
     A file that cannot be opened counts as one, so that it is refused with its name.
     """
+    path = Path(path)
     if path.suffix.lower() in UFF:
         return True
     if path.suffix.lower() in installed_readers():
@@ -110,9 +124,11 @@ def _ending(name: str) -> str:
 
 
 def _advice(path: Path, own: Mapping[str, Reader]) -> str:
+    if path.suffix.lower() == ".mat":
+        return "a MATLAB file needs a layout file with a table [mat] that names its variables; see docs/readers.md"
     if path.suffix.lower() in COLUMNS:
         return "column text needs a layout file with rate, units and points; see docs/readers.md"
-    known = ", ".join(sorted({*UFF, *COLUMNS, *own}))
+    known = ", ".join(sorted({*UFF, *COLUMNS, ".mat", *own}))
     return f"no reader for {path.suffix or 'files without ending'}; known are {known}; see docs/readers.md"
 
 

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray, frozen_array
+from acquisition.display import Displayed
 from acquisition.errors import InputError
 
 
 @dataclass(frozen=True, eq=False)
-class HitGroup:
+class HitGroup(Displayed):
     """FRFs that were averaged over the same hits.
 
     Parameters
@@ -43,7 +44,7 @@ class HitGroup:
 
 
 @dataclass(frozen=True, eq=False)
-class HitScatter:
+class HitScatter(Displayed):
     """Covariance of averaged FRFs, as deviations of the single hits.
 
     Responses measured in the same hit share its force and its noise, and a window ties neighbouring lines

@@ -9,6 +9,7 @@ import numpy as np
 import scipy.fft
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
+from acquisition.display import Displayed
 from acquisition.errors import EstimationError
 from acquisition.hammer import HammerTest, Hits
 
@@ -18,7 +19,7 @@ ALONE = 1e-9  # part of the power of a line that the other hits have, if one hit
 
 
 @dataclass(frozen=True, eq=False)
-class Spectra:
+class Spectra(Displayed):
     """Spectra of the hits at one point.
 
     Parameters

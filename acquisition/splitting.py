@@ -9,7 +9,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from acquisition.hammer import HammerTest, Hits
-from acquisition.hit_checks import noise_level, pulse_width, upright
+from acquisition.hit_checks import noise_level, pulse_width, pushes, upright
 
 BOUNCE = 0.2
 """Hits closer than this are one hit with a bounce, a double hit, wherever the spacing of the others allows [s]."""
@@ -17,6 +17,12 @@ COMPARABLE = 0.3  # of the largest force: what counts as a hit when records are 
 LOW, HIGH = 0.1, 10.0  # trigger: part of the usual peak, and multiple of the noise, at least
 NEAR_SPACING = 0.5  # of the usual spacing, or of a record: hits closer than this are left out
 USED_UP = 0.98  # of the shortest usual spacing
+CROWDED = 0.1
+"""Part of a record within which hits are one hit with a bounce, where none are `BOUNCE` apart: hits of a long record
+fill it, a bounce follows at once. Doubled, five quick hits in a short record are no longer split [-]."""
+
+ELSE = "record one hit at a time, or cut with modalkit.split_hits(test, duration=..., pre=...) in Python"
+"""What to do about records that cannot be cut out as proposed."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +37,9 @@ class _Found:
 def looks_long(test: HammerTest) -> bool:
     """Tell whether records hold several well-separated hits each, so that `split_hits` is called for.
 
-    The usual record must hold at least two hits of comparable force; a double hit does not make a record long.
+    The usual record must hold at least two hits of comparable force. A double hit does not make a record long, nor
+    does the ringing of a sharp anti-alias filter, however high its lobes: a hammer only pushes, while ringing swings
+    about zero from the pulse on, so its lobes are gone once the force is averaged over a period of it.
 
     Parameters
     ----------
@@ -41,9 +49,15 @@ def looks_long(test: HammerTest) -> bool:
     counts = []
     for point in test.points:
         for wave in upright(point.force):
-            level = max(COMPARABLE * float(wave.max()), HIGH * noise_level(wave))
-            counts.append(len(_groups(wave, level, test.rate)))
+            count = _count(wave, test.rate)
+            counts.append(_count(*pushes(wave, test.rate)) if count > 1 else count)
     return bool(np.median(counts) >= 2)
+
+
+def _count(wave: FloatArray, rate: float) -> int:
+    """Return how many hits of comparable force a record holds."""
+    level = max(COMPARABLE * float(wave.max()), HIGH * noise_level(wave))
+    return len(_groups(wave, level, rate))
 
 
 def propose_trigger(test: HammerTest) -> float:
@@ -64,7 +78,8 @@ def propose_trigger(test: HammerTest) -> float:
         peaks += [float(wave[a:b].max()) for a, b in zip(starts, stops, strict=True)]
     if not peaks:
         raise InputError(
-            f"{test.source}: no hit stands out of the noise of {noise:.2g} N; give a trigger level"
+            f"{test.source}: no hit stands out of the noise of {noise:.2g} N in records that seem to hold several "
+            "hits; check the force channel, or cut them with modalkit.split_hits(test, trigger=...) in Python"
         )
     strong = [p for p in peaks if p > 0.2 * max(peaks)]
     return max(LOW * float(np.median(strong)), HIGH * noise)
@@ -99,16 +114,17 @@ def split_hits(
         If nothing reaches the trigger, no hit can be cut out whole, or the records were already windowed.
     """
     if test.decay:
-        raise InputError(f"{test.source}: records with an exponential window cannot be split; split first")
+        raise InputError(
+            f"{test.source}: the records look as if they held several hits each, and an exponential window of "
+            f"{test.decay:g} 1/s over them that weakened the later ones; give the records without it, record one hit "
+            "at a time, or take the window out of --decay, exponential_window or the ID lines if there was none"
+        )
     level = propose_trigger(test) if trigger is None else float(trigger)
     found, width = _find(test, level)
     length = _length(test, found) if duration is None else round(duration * test.rate)
     lead = max(round(0.02 * length), int(np.ceil(5 * width))) if pre is None else round(pre * test.rate)
     if not 0 <= lead < length <= test.samples:
-        raise InputError(
-            f"{test.source}: {lead / test.rate:g} s before the trigger of records of {length / test.rate:g} s, "
-            f"cut out of {test.duration:g} s; give a shorter duration or pre"
-        )
+        raise InputError(_too_short(test, lead, length, duration is None))
     kept: dict[int, list[tuple[int, int]]] = {}
     messages = []
     for f in found:
@@ -117,13 +133,31 @@ def split_hits(
         kept.setdefault(f.point, []).extend((f.record, start - lead) for start in fits)
     points = tuple(_cut(test.points[k], rows, length) for k, rows in kept.items() if rows)
     if not points:
-        raise InputError(f"{test.source}: no hit has {length / test.rate:g} s alone; give a shorter duration")
+        raise InputError(
+            f"{test.source}: no hit has the {length / test.rate:g} s of a record to itself, before the next or the "
+            f"end; {ELSE}"
+        )
     count = sum(p.count for p in points)
     said = (
         f"{test.source}: long records were split into {count} hits of {length / test.rate:.4g} s "
         f"(trigger {level:.3g} N, {lead / test.rate:.3g} s before it)"
     )
     return replace(test, points=points), (said, *messages)
+
+
+def _too_short(test: HammerTest, lead: int, length: int, proposed: bool) -> str:
+    """Say why records of this length, with this lead before the trigger, cannot be cut out [samples]."""
+    span, before = length / test.rate, lead / test.rate
+    if length > test.samples:
+        return (
+            f"{test.source}: records of {span:g} s do not fit into the {test.duration:g} s recorded; {ELSE}"
+        )
+    if proposed:
+        return (
+            f"{test.source}: the hits follow one another after {span:g} s, which leaves no room for the {before:g} s "
+            f"kept before each; {ELSE}"
+        )
+    return f"{test.source}: records of {span:g} s have no room for {before:g} s before the trigger; {ELSE}"
 
 
 def _groups(wave: FloatArray, level: float, rate: float) -> list[int]:
@@ -134,7 +168,8 @@ def _groups(wave: FloatArray, level: float, rate: float) -> list[int]:
         return [int(s) for s in starts]
     gaps = np.diff(starts) / rate
     apart = gaps[gaps >= BOUNCE]
-    together = min(BOUNCE, 0.3 * float(np.median(apart))) if len(apart) else 0.1 * float(gaps.max())
+    near = max(0.1 * float(gaps.max()), CROWDED * len(wave) / rate)
+    together = min(BOUNCE, 0.3 * float(np.median(apart)) if len(apart) else near)
     return [int(s) for s in starts[np.concatenate([[True], gaps >= together])]]
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
@@ -204,7 +204,7 @@ def unstated_window(test: HammerTest) -> float | None:
     if heard is None:
         return None
     rate, error, freedom = heard
-    limit = max(3.0, float(stats.t.isf(1e-5, freedom))) * error
+    limit = max(3.0, -float(special.stdtrit(freedom, 1e-5))) * error
     return rate if rate > max(0.5, limit) else None
 
 

@@ -1,31 +1,38 @@
 """From FRFs to modes with uncertainties."""
 
-from identification.health import frf_health, mode_coherence
-from identification.identify import identify
-from identification.levels import LevelDependence, level_dependence, why_no_level_dependence
-from identification.mac import (
-    auto_mac,
-    comac,
-    common_dofs,
-    coordinate_table,
-    ecomac,
-    fdac,
-    frac,
-    frac_table,
-    mac,
-    mac_table,
-    macx,
-    mpc,
-    msf,
-    subspace_mac,
-)
-from identification.model import ModalModel
-from identification.pairing import Correlation, Pair, Subspace, correlate, pair
-from identification.poles import ESTIMATORS, PoleEstimator, PoleSets, lsce, lscf
-from identification.residues import Residues, fit_residues
-from identification.scaling import Shapes, modal_constants, mode_shapes, real_modes
-from identification.sdypy_bridge import beside, from_sdypy, second_opinion, to_sdypy
-from identification.stabilisation import StabilisationChart, stabilise
+from typing import TYPE_CHECKING
+
+from acquisition.lazy import load_on_demand
+
+if TYPE_CHECKING:
+    from identification.cmif import cmif
+    from identification.health import frf_health, mode_coherence
+    from identification.identify import identify
+    from identification.levels import LevelDependence, level_dependence, why_no_level_dependence
+    from identification.mac import (
+        auto_mac,
+        comac,
+        common_dofs,
+        coordinate_table,
+        ecomac,
+        fdac,
+        frac,
+        frac_table,
+        mac,
+        mac_table,
+        macx,
+        modes_table,
+        mpc,
+        msf,
+        subspace_mac,
+    )
+    from identification.model import ModalModel
+    from identification.pairing import Correlation, Pair, Subspace, correlate, pair
+    from identification.poles import ESTIMATORS, PoleEstimator, PoleSets, lsce, lscf
+    from identification.residues import Residues, fit_residues
+    from identification.scaling import Shapes, modal_constants, mode_shapes, real_modes
+    from identification.sdypy_bridge import beside, from_sdypy, second_opinion, to_sdypy
+    from identification.stabilisation import StabilisationChart, stabilise
 
 __all__ = [
     "ESTIMATORS",
@@ -41,6 +48,7 @@ __all__ = [
     "Subspace",
     "auto_mac",
     "beside",
+    "cmif",
     "comac",
     "common_dofs",
     "coordinate_table",
@@ -62,6 +70,7 @@ __all__ = [
     "modal_constants",
     "mode_coherence",
     "mode_shapes",
+    "modes_table",
     "mpc",
     "msf",
     "pair",
@@ -72,3 +81,24 @@ __all__ = [
     "to_sdypy",
     "why_no_level_dependence",
 ]
+
+load_on_demand(
+    __name__,
+    {
+        ".cmif": "cmif",
+        ".health": "frf_health mode_coherence",
+        ".identify": "identify",
+        ".levels": "LevelDependence level_dependence why_no_level_dependence",
+        ".mac": (
+            "auto_mac comac common_dofs coordinate_table ecomac fdac frac frac_table mac mac_table macx modes_table "
+            "mpc msf subspace_mac"
+        ),
+        ".model": "ModalModel",
+        ".pairing": "Correlation Pair Subspace correlate pair",
+        ".poles": "ESTIMATORS PoleEstimator PoleSets lsce lscf",
+        ".residues": "Residues fit_residues",
+        ".scaling": "Shapes modal_constants mode_shapes real_modes",
+        ".sdypy_bridge": "beside from_sdypy second_opinion to_sdypy",
+        ".stabilisation": "StabilisationChart stabilise",
+    },
+)

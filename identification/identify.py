@@ -32,6 +32,7 @@ _ORDER = 60
 _LEVELS = 25
 _POOR_FIT = 4.0  # power left over that of the noise that is worth a word
 _HIGHEST = 400
+_BEYOND = 2.0  # a band may end beyond the lines, but not at a number that scales their background to nothing
 
 
 def identify(
@@ -116,6 +117,11 @@ def _identified(
 
 def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tuple[str, ...]]:
     """Cut to the band; leave out the line at s = 0 and FRFs that are zero."""
+    if band is not None and not band[1] <= _BEYOND * float(frfs.frequency[-1]):
+        raise InputError(
+            f"{frfs.source}: the band is to end at {band[1]:g} Hz, the lines do at {frfs.frequency[-1]:g} Hz; "
+            "give a band that they reach"
+        )
     data = frfs if band is None else frfs.band(*band)
     data = data.double()
     first = float(data.frequency[0])

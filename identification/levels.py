@@ -16,6 +16,7 @@ from scipy import stats
 
 from acquisition import Windows
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.frf import FrfSet
 from identification.grams import Weights
@@ -33,7 +34,7 @@ AT_REST = 0.03
 
 
 @dataclass(frozen=True, eq=False)
-class LevelDependence:
+class LevelDependence(Displayed):
     """How frequencies and damping follow the force of the hits.
 
     The level of a hit is the largest force in its record: what a user reads off his analyser, and, with one hammer

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import ComplexArray, FloatArray, frozen_array
+from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
@@ -18,7 +19,7 @@ from identification.stabilisation import StabilisationChart
 
 
 @dataclass(frozen=True, eq=False)
-class ModalModel:
+class ModalModel(Displayed):
     """Modes of a structure with their uncertainty, and the fit they come from.
 
     The receptance between two degrees of freedom is
@@ -131,9 +132,9 @@ class ModalModel:
 
     def table(self) -> pd.DataFrame:
         """Return one row per mode: frequency [Hz], damping ratio [%], their standard deviations, MPC [-]."""
-        from identification.mac import mpc
+        from identification.mac import modes_table
 
-        table = self.modal.table()
-        if self.modal.shapes is not None:
-            table["MPC"] = mpc(self.modal.shapes)
-        return table
+        return modes_table(self.modal)
+
+    def _headline(self) -> str:
+        return f"{self.modal._headline()}; band {self.band[0]:g} to {self.band[1]:g} Hz"

@@ -41,7 +41,7 @@ def nearest_modes(poles: ComplexArray, hertz: Sequence[float], candidates: BoolA
     for value in hertz:
         distance = np.where(candidates, np.abs(frequency - value), np.inf)
         best = int(distance.argmin())
-        if distance[best] > max(_NEAR * value, 3 * df):
+        if not distance[best] <= max(_NEAR * value, 3 * df):  # nan is near nothing
             found = ", ".join(f"{f:.5g}" for f in frequency[candidates])
             raise InputError(f"no mode near {value:g} Hz to leave out; those found are at {found} Hz")
         meant[best] = True

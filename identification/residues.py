@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.display import Displayed
 from acquisition.frf import FrfSet
 from identification import basis, grams
 
 
 @dataclass(frozen=True, eq=False)
-class Residues:
+class Residues(Displayed):
     """What is linear in a modal model.
 
     Parameters

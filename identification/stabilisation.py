@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, frozen_array
+from acquisition.display import Displayed, counted
 from identification.poles.base import PoleSets
 
 _FREQUENCY = 0.005
@@ -17,7 +18,7 @@ _HEAVY = 0.35
 
 
 @dataclass(frozen=True, eq=False)
-class StabilisationChart:
+class StabilisationChart(Displayed):
     """Every pole of every order, and how it hangs together with the poles of the orders below.
 
     Parameters
@@ -77,6 +78,12 @@ class StabilisationChart:
                 "stable": self.stable,
                 "track": self.track,
             }
+        )
+
+    def _headline(self) -> str:
+        return (
+            f"{counted(len(self.poles), 'pole')} of {counted(len(self.orders), 'order')}, {int(self.stable.sum())} "
+            f"stable, {self.band[0]:g} to {self.band[1]:g} Hz"
         )
 
 

@@ -1,20 +1,25 @@
 """modalkit: from hammer hits to modes, to an updated model, to the cause of the gap between them."""
 
-from __future__ import annotations
+from modalkit.module_path import HOME, leave_current_folder, started_as_module
+
+if started_as_module(
+    "modalkit"
+):  # before anything is imported that a file in the current folder could stand for
+    leave_current_folder()
 
 import importlib.util
-from pathlib import Path
+import os
+from typing import TYPE_CHECKING
 
 _ROOMS = ("acquisition", "identification", "updating")
 
 
 def _check_rooms() -> None:
     """Refuse to start when Python finds somebody else's module under the name of one of our rooms."""
-    home = Path(__file__).resolve().parent.parent
     for room in _ROOMS:
         spec = importlib.util.find_spec(room)
-        found = Path(spec.origin).resolve() if spec is not None and spec.origin else None
-        if found is None or found.parent != home / room:
+        found = os.path.realpath(spec.origin) if spec is not None and spec.origin else None
+        if found is None or os.path.dirname(found) != os.path.join(HOME, room):  # noqa: PTH118, PTH120
             raise ImportError(
                 f"modalkit needs its own package {room!r} but Python finds {found}; "
                 "rename that file or run from another folder"
@@ -23,35 +28,43 @@ def _check_rooms() -> None:
 
 _check_rooms()
 
-from acquisition import (  # noqa: E402
-    FrfSet,
-    Geometry,
-    HammerTest,
-    InputError,
-    ModalData,
-    ModalkitError,
-    StudyError,
-    bootstrap_frfs,
-    decide,
-    estimate_frfs,
-    hits_table,
-    judge_hits,
-    read_uff,
-    reciprocity,
-    remove_sensor_mass,
-    split_hits,
-    write_uff,
-)
-from identification import ModalModel, identify  # noqa: E402
-from modalkit.diagnosing import diagnose_studies  # noqa: E402
-from modalkit.fitting import update_studies  # noqa: E402
-from modalkit.handling import Handling  # noqa: E402
-from modalkit.process import Session, open_study  # noqa: E402
-from modalkit.reading import Processed, read  # noqa: E402
-from modalkit.simulate import simulate_test  # noqa: E402
-from modalkit.study import Study, read_study  # noqa: E402
-from updating import Case, Diagnosis, diagnose, register  # noqa: E402
-from updating.correlation import correlate  # noqa: E402
+from acquisition.lazy import load_on_demand  # noqa: E402
+
+if TYPE_CHECKING:
+    from acquisition import (
+        FrfSet,
+        Geometry,
+        HammerTest,
+        InputError,
+        ModalData,
+        ModalkitError,
+        StudyError,
+        bootstrap_frfs,
+        decide,
+        estimate_frfs,
+        hits_table,
+        judge_hits,
+        read_uff,
+        reciprocity,
+        remove_sensor_mass,
+        split_hits,
+        write_uff,
+    )
+    from identification import ModalModel, cmif, identify
+    from modalkit import figures
+    from modalkit.comparing import compare, mac, modes_of
+    from modalkit.diagnosing import diagnose_studies
+    from modalkit.existing import Modes
+    from modalkit.figures import draw
+    from modalkit.fitting import update_studies
+    from modalkit.handling import Handling
+    from modalkit.process import Session, open_study
+    from modalkit.reading import Processed, read
+    from modalkit.saving import write_modes
+    from modalkit.simulate import simulate_test
+    from modalkit.study import Study, read_study
+    from updating import Case, Diagnosis, diagnose, register
+    from updating.correlation import correlate
 
 __version__ = "0.1.0"
 
@@ -66,19 +79,26 @@ __all__ = [
     "ModalData",
     "ModalModel",
     "ModalkitError",
+    "Modes",
     "Processed",
     "Session",
     "Study",
     "StudyError",
     "bootstrap_frfs",
+    "cmif",
+    "compare",
     "correlate",
     "decide",
     "diagnose",
     "diagnose_studies",
+    "draw",
     "estimate_frfs",
+    "figures",
     "hits_table",
     "identify",
     "judge_hits",
+    "mac",
+    "modes_of",
     "open_study",
     "read",
     "read_study",
@@ -89,5 +109,32 @@ __all__ = [
     "simulate_test",
     "split_hits",
     "update_studies",
+    "write_modes",
     "write_uff",
 ]
+
+load_on_demand(
+    __name__,
+    {
+        "acquisition": (
+            "FrfSet Geometry HammerTest InputError ModalData ModalkitError StudyError bootstrap_frfs decide "
+            "estimate_frfs hits_table judge_hits read_uff reciprocity remove_sensor_mass split_hits "
+            "write_uff"
+        ),
+        "identification": "ModalModel cmif identify",
+        "modalkit": "figures",
+        ".comparing": "compare mac modes_of",
+        ".diagnosing": "diagnose_studies",
+        ".existing": "Modes",
+        ".figures": "draw",
+        ".fitting": "update_studies",
+        ".handling": "Handling",
+        ".process": "Session open_study",
+        ".reading": "Processed read",
+        ".saving": "write_modes",
+        ".simulate": "simulate_test",
+        ".study": "Study read_study",
+        "updating": "Case Diagnosis diagnose register",
+        "updating.correlation": "correlate",
+    },
+)

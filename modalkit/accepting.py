@@ -7,19 +7,57 @@ from collections.abc import Mapping
 from typing import Any
 
 from acquisition.errors import StudyError
+from modalkit.study_errors import nearest
+from modalkit.study_units import si_value
 from updating import LIBRARY
 
 SOME = "points"
 """The label that takes several node numbers; any other takes one."""
 
+UNITS = {
+    "extension": "m",
+    "x": "m",
+    "y": "m",
+    "z": "m",
+    "dx": "m",
+    "dy": "m",
+    "extent": "m",
+    "mass": "kg",
+    "force": "N",
+    "fluid_density": "kg/m^3",
+    "viscosity": "Pa s",
+    "alpha": "1/s",
+    "beta": "s",
+    "decay": "1/s",
+    "delay": "s",
+    "slope": "1/N",
+}
+"""Units of the parameters of effects; those that are not here are ratios."""
 
-def accepted_values(entry: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+OWN_UNITS = {
+    ("damping_patch", "mass"): ("", ""),
+    ("clamp_rotation", "stiffness"): ("N m/rad", "N m/rad per m"),
+    ("clamp_translation", "stiffness"): ("N/m", "N/m per m"),
+}
+"""Units that a parameter has in one effect alone: on a plate the second, else the first."""
+
+
+def unit_of(effect: str, parameter: str, kind: str) -> str:
+    """Return the unit of a parameter of an effect on a kind of model, "" for a ratio."""
+    own = OWN_UNITS.get((effect, parameter))
+    return UNITS.get(parameter, "") if own is None else own[kind == "plate"]
+
+
+def accepted_values(entry: Mapping[str, Any], kind: str = "beam") -> tuple[str, dict[str, Any]]:
     """Return name and values of one ``[[model.effect]]``.
 
     Parameters
     ----------
     entry : mapping
         ``name``, and a value for each parameter and each label of the effect: ``points = [3]``, ``point = 3``.
+        A value may be a text with its unit, ``mass = "8.6 g"``.
+    kind : {"beam", "plate", "matrices"}
+        Kind of model, on which the unit of a spring along an edge depends.
 
     Raises
     ------
@@ -29,10 +67,14 @@ def accepted_values(entry: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
     values = {key: value for key, value in entry.items() if key != "name"}
     name = entry.get("name")
     if not isinstance(name, str) or name not in LIBRARY:
-        raise StudyError(f"[[model.effect]] knows no effect {name!r}; `modalkit effects` lists them")
+        meant = nearest(str(name), tuple(LIBRARY))
+        raise StudyError(f"[[model.effect]] knows no effect {name!r}{meant}; `modalkit effects` lists them")
     labels = LIBRARY[name].labels
     try:
-        return name, {k: nodes(k, v) if k in labels else _number(k, v) for k, v in values.items()}
+        return name, {
+            k: nodes(k, v) if k in labels else _number(k, v, unit_of(name, k, kind))
+            for k, v in values.items()
+        }
     except StudyError as error:
         raise StudyError(f"[[model.effect]] {name}: {error}") from error
 
@@ -55,7 +97,11 @@ def nodes(label: str, value: Any) -> int | tuple[int, ...]:
     return tuple(given) if several else int(given[0])
 
 
-def _number(name: str, value: Any) -> float:
+def _number(name: str, value: Any, unit: str) -> float:
+    try:
+        value = si_value(value, unit)
+    except ValueError as error:
+        raise StudyError(f"{name}: {error}") from error
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise StudyError(f"{name} = {value!r} must be a number")
     return float(value)

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from acquisition.errors import InputError
-from modalkit.process import Session
+from modalkit.process import Session, sessions_of
+from modalkit.study import Study
 from updating import Diagnosis, diagnose, diagnose_together
 from updating.effects import LIBRARY, Effect
 
 
 def diagnose_studies(
-    sessions: Sequence[Session], shared: Sequence[str] = (), without: Sequence[str] = ()
+    studies: Sequence[Session | Study | Path | str],
+    shared: Sequence[str] = (),
+    without: Sequence[str] = (),
 ) -> Diagnosis:
     """Diagnose one study, or several together.
 
     Parameters
     ----------
-    sessions : sequence of Session
-        Studies with their tests worked out.
+    studies : sequence of Session, Study or path
+        Studies, with their tests worked out or not yet.
     shared : sequence of str
         Effects of one and the same size in all studies; those of all others are free in each.
     without : sequence of str
@@ -31,7 +35,7 @@ def diagnose_studies(
     EstimationError
         If no measured mode of a study has a partner in its model.
     """
-    library = _library(without)
+    library, sessions = _library(without), sessions_of(studies)
     if len(sessions) > 1:
         return diagnose_together([session.case for session in sessions], shared=shared, library=library)
     if shared:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -11,8 +12,9 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import EstimationError, StudyError
 from acquisition.windows import Windows
 from identification import ModalModel
-from modalkit.process import Session
+from modalkit.process import Session, sessions_of
 from modalkit.reading import Judged, Processed
+from modalkit.study import Study
 from updating.frf_update import FrfUpdate, bootstrap_frf_update, update_frfs
 from updating.measured_frfs import MeasuredFrfs, measured_frfs, redrawn
 from updating.update import Update, bootstrap, redrawn_frequencies, update
@@ -20,14 +22,18 @@ from updating.update.system import Weights
 
 
 def update_studies(
-    sessions: Sequence[Session], shared: Sequence[str] = (), *, draws: int = 0, seed: int = 0
+    studies: Sequence[Session | Study | Path | str],
+    shared: Sequence[str] = (),
+    *,
+    draws: int = 0,
+    seed: int = 0,
 ) -> Update:
     """Update the models of one or several studies as their ``[update]`` tables say.
 
     Parameters
     ----------
-    sessions : sequence of Session
-        Studies with their tests worked out.
+    studies : sequence of Session, Study or path
+        Studies, with their tests worked out or not yet.
     shared : sequence of str
         Parameters that have one value in all studies; they are updated in all of them.
     draws : int
@@ -48,6 +54,7 @@ def update_studies(
     EstimationError
         If no measured mode has a partner.
     """
+    sessions = sessions_of(studies, with_baseline=False)
     tables = [session.study.update for session in sessions]
     methods = {table.method for table in tables}
     if methods == {"frf"} and len(sessions) == 1 and not shared:

@@ -8,6 +8,9 @@ from typing import Literal
 
 from acquisition import ESTIMATORS, Estimator, InputError
 
+FASTEST = 1e6
+"""Fastest decay of a window [1/s]: it is over within one sample of any hammer test."""
+
 HitName = tuple[str, int]
 
 
@@ -29,7 +32,7 @@ class Handling:
     use, leave : tuples of (str, int)
         Hits to use or to leave out against the proposal: the point as printed, ``"12+Z"``, and the number of
         the hit at it, from 1.
-    layout : Path, optional
+    layout : path, optional
         Rate, units and points of column text.
     sensor_masses : tuple of (str, float)
         Accelerometers whose mass is taken out of the FRFs: where, as printed, and its mass [kg].
@@ -46,13 +49,17 @@ class Handling:
     estimator: Estimator = "H1"
     use: tuple[HitName, ...] = ()
     leave: tuple[HitName, ...] = ()
-    layout: Path | None = None
+    layout: Path | str | None = None
     sensor_masses: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         """Check the entries."""
-        if self.decay < 0 or self.window < 0:
-            raise InputError(f"windows of {self.decay} and {self.window} 1/s: decay rates are not negative")
+        object.__setattr__(self, "layout", None if self.layout is None else Path(self.layout))
+        if not (0 <= self.decay <= FASTEST and 0 <= self.window <= FASTEST):
+            raise InputError(
+                f"windows of {self.decay:g} and {self.window:g} 1/s: decay rates are not negative, nor beyond "
+                f"{FASTEST:g} 1/s"
+            )
         if self.estimator not in ESTIMATORS:
             raise InputError(f"unknown estimator {self.estimator!r}; use {', '.join(ESTIMATORS)}")
 

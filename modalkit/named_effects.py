@@ -12,6 +12,7 @@ import numpy as np
 from acquisition.errors import InputError, StudyError
 from modalkit.accepting import SOME, nodes
 from updating import LIBRARY, Predictor
+from updating.effects import check_values
 from updating.models.state import State
 
 EffectValues = tuple[str, Mapping[str, Any]]
@@ -84,9 +85,7 @@ def check_effect(
         if missing := [node for node in given if node not in predictor.measured.nodes]:
             there = ", ".join(map(str, predictor.measured.nodes[:12]))
             raise StudyError(f"{where} {name}: the test has no point {missing[0]}; it has {there}")
-    for p in (takes[name] for name in takes if name in values):
-        if p.log and not values[p.name] > 0:
-            raise StudyError(f"{where} {name}: {p.name} = {values[p.name]:g} {p.unit} must be positive")
+    check_values(tuple(takes.values()), values, f"{where} {name}")
 
 
 def _as_tested(predictor: Predictor) -> Predictor:

@@ -5,18 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from acquisition import StudyError, Windows, read_modes
+import numpy as np
+
+from acquisition import ModalData, StudyError, Windows, read_modes
+from acquisition.display import Displayed
 from identification import ModalModel, frf_health, level_dependence
 from modalkit.files import Progress
 from modalkit.handling import Handling
-from modalkit.reading import Processed, read
-from modalkit.study import MeasurementTable, Study
+from modalkit.reading import Processed, read_frfs
+from modalkit.study import MeasurementTable, Study, read_study
 from updating import Case, Measured, measured_from_identified, measured_from_modes
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
-class Session:
+class Session(Displayed):
     """A study with everything that was worked out on the way to a case.
 
     Parameters
@@ -37,14 +45,20 @@ class Session:
     identified: ModalModel | None
     warnings: tuple[str, ...]
 
+    def _headline(self) -> str:
+        return self.case._headline()
 
-def open_study(study: Study, *, with_baseline: bool = True) -> Session:
+    def _frame(self) -> pd.DataFrame:
+        return self.case.measured._frame()
+
+
+def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Session:
     """Work out the case of a study: process and identify its test and its baseline.
 
     Parameters
     ----------
-    study : Study
-        The study.
+    study : Study or path
+        The study, or its file.
     with_baseline : bool
         Whether the baseline is worked out too; only a diagnosis needs it.
 
@@ -53,6 +67,7 @@ def open_study(study: Study, *, with_baseline: bool = True) -> Session:
     StudyError
         If the study names no data.
     """
+    study = study if isinstance(study, Study) else read_study(study)
     test, processed, identified = _measure(study, study.test, "test")
     baseline, *before = (
         _measure(study, study.baseline, "baseline")
@@ -72,6 +87,28 @@ def open_study(study: Study, *, with_baseline: bool = True) -> Session:
     own += _health(processed, identified)
     own += [f"baseline: {w}" for part in before if part is not None for w in part.warnings]
     return Session(study, case, processed, identified, tuple(dict.fromkeys(own)))
+
+
+def sessions_of(
+    studies: Sequence[Session | Study | Path | str], *, with_baseline: bool = True
+) -> list[Session]:
+    """Return studies worked out; those that are already stay as they are.
+
+    Parameters
+    ----------
+    studies : sequence of Session, Study or path
+        The studies, or their files.
+    with_baseline : bool
+        Whether the baselines are worked out too.
+
+    Raises
+    ------
+    StudyError
+        If there is no study.
+    """
+    if not studies:
+        raise StudyError("no study is given; name one or more study files")
+    return [s if isinstance(s, Session) else open_study(s, with_baseline=with_baseline) for s in studies]
 
 
 def process(
@@ -127,7 +164,7 @@ def _identified(
         sensor_masses=tuple(table.sensor_masses.items()),
     )
     files = [study.file(f) for f in table.files]
-    processed = read(files, handling=handling, progress=progress)
+    processed = read_frfs(files, handling=handling, progress=progress)
     return processed, processed.identify(
         band=band or table.band, order=order, add=[*table.add, *add], drop=[*table.drop, *drop]
     )
@@ -144,15 +181,44 @@ def _measure(
     }
     axes, spec = study.axes(table), study.spec()
     if table.modes is not None:
-        modes = read_modes(study.file(table.modes))
+        modes, below, beyond = modes_of(study, table, name)
         with _naming(study):
-            return measured_from_modes(modes, axes, spec, **options), None, None
+            measured = measured_from_modes(modes, axes, spec, **options)
+        return replace(measured, warnings=(*measured.warnings, *beyond), below=below), None, None
     if not table.files:
         raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
     processed, identified = _identified(study, table)
     with _naming(study):
         measured = measured_from_identified(identified, axes, spec, **options)
     return _with_levels(measured, processed, identified), processed, identified
+
+
+def modes_of(study: Study, table: MeasurementTable, name: str) -> tuple[ModalData, int, tuple[str, ...]]:
+    """Return the modes of a measurement's table that lie in its band, how many lie below it, and what to say of it.
+
+    Raises
+    ------
+    StudyError
+        If it names none, or none lies in the band.
+    """
+    assert table.modes is not None
+    path = study.file(table.modes)
+    modes = read_modes(path)
+    if table.band is None:
+        return modes, 0, ()
+    low, high = table.band
+    inside = (modes.frequency >= low) & (modes.frequency <= high)
+    if not inside.any():
+        raise StudyError(
+            f"{study.path}: [{name}] band = [{low:g}, {high:g}] Hz holds none of the {len(modes)} modes of {path}; "
+            f"they reach from {modes.frequency.min():g} to {modes.frequency.max():g} Hz"
+        )
+    if inside.all():
+        return modes, 0, ()
+    left = (
+        f"{int(np.sum(~inside))} of {len(modes)} modes of {table.modes} lie outside the band and are left out"
+    )
+    return modes.modes(inside), int(np.sum(modes.frequency < low)), (left,)
 
 
 def _health(processed: Processed | None, identified: ModalModel | None) -> tuple[str, ...]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from acquisition import (
     Dof,
@@ -25,19 +24,28 @@ from acquisition import (
     split_hits,
     state_window,
 )
-from identification import ModalModel, identify
+from acquisition.display import Displayed
+from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
+from modalkit.frf_checks import identical, without_constant
 from modalkit.handling import Handling
+from modalkit.informed import informed_band
 from modalkit.joining import together
+from modalkit.mixed import with_read
 from modalkit.remarks import on_hits, on_window
 from modalkit.sensors import without_sensors
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
 
 AS_READ = Handling()
 SAME_DECAY = 1e-3  # relative difference of decays that are the same
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class Judged(Displayed):
     """A test with what is thought of its hits.
 
     Parameters
@@ -51,9 +59,15 @@ class Judged:
     test: HammerTest
     verdicts: tuple[HitVerdict, ...]
 
+    def _headline(self) -> str:
+        return f"{self.test._headline()}; {sum(not v.used for v in self.verdicts)} left out"
+
+    def _frame(self) -> pd.DataFrame:
+        return self.test.table()
+
 
 @dataclass(frozen=True, eq=False)
-class Processed:
+class Processed(Displayed):
     """A test, turned into FRFs.
 
     Parameters
@@ -95,9 +109,14 @@ class Processed:
     ) -> ModalModel:
         """Identify the modes of a band; see :func:`identification.identify`.
 
-        Left out, the band of FRFs made of hits ends where the force is 20 dB down.
+        Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
+        the part in which the FRFs carry information, and what was done is among the warnings.
         """
+        from identification import identify
+
         reach = self._reach([*add, *drop]) if band is None else None
+        if reach is None and band is not None:
+            return self._informed(band, order, add, drop)
         if reach is None:
             return identify(self.frfs, band=band, order=order, add=add, drop=drop)
         model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
@@ -107,6 +126,18 @@ class Processed:
         )
         return replace(model, warnings=(*model.warnings, said))
 
+    def _informed(
+        self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
+    ) -> ModalModel:
+        """Identify the modes of the part of a band in which the FRFs carry information."""
+        from identification import identify
+
+        within, said = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
+        if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
+            within, said = band, None
+        model = identify(self.frfs, band=within, order=order, add=add, drop=drop)
+        return model if said is None else replace(model, warnings=(*model.warnings, said))
+
     def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
         """Return the band that the force reaches, if it ends before the lines do and no mode is named beyond."""
         force, lines = force_range(self.hits), self.frfs.frequency
@@ -114,6 +145,13 @@ class Processed:
         if force is None or not low < force.band20 < lines[-1] or max(named, default=0.0) >= force.band20:
             return None
         return low, force.band20
+
+    def _headline(self) -> str:
+        hits = f"; {len(self.hits)} hits, {sum(not v.used for v in self.hits)} left out" if self.hits else ""
+        return f"{self.frfs._headline()}{hits}"
+
+    def _frame(self) -> pd.DataFrame:
+        return self.frfs.table()
 
 
 def read(
@@ -123,13 +161,14 @@ def read(
     layout: Path | str | None = None,
     handling: Handling = AS_READ,
     progress: Progress | None = None,
-) -> Processed:
-    """Read files as one test and turn hits into FRFs.
+) -> Processed | Modes:
+    """Read files as one test: hits are turned into FRFs; modes that exist already are taken as they are.
 
     Parameters
     ----------
     path : path or sequence of paths
-        The files: UFF, column text with a layout, or what an installed reader knows.
+        The files: UFF, column text or .mat with a layout, a table or a JSON file of modes, or what an installed
+        reader knows.
     decay : float
         Decay rate of an exponential window applied before the files were written, where they do not say it
         themselves; short for ``Handling(decay=...)`` [1/s].
@@ -142,13 +181,52 @@ def read(
 
     Returns
     -------
-    Processed
+    Processed or Modes
+        Modes where the files hold these and neither hits nor FRFs. Both have `identify`, and that a table.
 
     Raises
     ------
     InputError
-        If the files hold neither raw hits nor FRFs, or what is said of their treatment does not fit them.
+        If the files hold nothing of that, or what is said of their treatment does not fit them.
     """
+    handling = _said(handling, decay, layout)
+    paths = [Path(p) for p in ([path] if isinstance(path, str | Path) else path)]
+    content = read_files(paths, layout=handling.layout, progress=progress)
+    modes = existing(content.modal, paths, content.title, content.warnings)
+    if modes is None or content.tests or content.frfs is not None:
+        return _processed(content, paths, handling)
+    if replace(handling, layout=None) != AS_READ:
+        raise InputError(
+            f"{modes.source}: holds modes; decay, windows, hits, estimator and sensor masses are for hits and FRFs"
+        )
+    return modes
+
+
+def read_frfs(
+    path: Path | str | Sequence[Path | str], *, handling: Handling = AS_READ, progress: Progress | None = None
+) -> Processed:
+    """Read files as `read` does, hits and FRFs only.
+
+    Parameters
+    ----------
+    path, handling, progress
+        As of `read`.
+
+    Raises
+    ------
+    InputError
+        If the files hold neither.
+    """
+    found = read(path, handling=handling, progress=progress)
+    if isinstance(found, Modes):
+        raise InputError(
+            f'{found.source}: holds modes, but neither raw hits nor FRFs; a study names them by modes = "..."'
+        )
+    return found
+
+
+def _said(handling: Handling, decay: float, layout: Path | str | None) -> Handling:
+    """Return the handling with what was said beside it."""
     handling = replace(handling, decay=decay) if decay else handling
     handling = handling if layout is None else replace(handling, layout=Path(layout))
     if handling.window_on is not None and not handling.decay:
@@ -156,20 +234,24 @@ def read(
             f"a window on {handling.window_on} is told of without its decay; add --decay, or exponential_window in a "
             "study"
         )
-    paths = [Path(p) for p in ([path] if isinstance(path, str | Path) else path)]
-    content = read_files(paths, layout=handling.layout, progress=progress)
+    return handling
+
+
+def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -> Processed:
     warnings = list(content.warnings)
     judged = _judged(content.tests, handling, warnings)
     if judged:
         warnings += on_hits([(j.test, j.verdicts) for j in judged])
         frfs = _estimated(judged, handling)
         if content.frfs is not None:
-            warnings.append("the files hold raw hits and FRFs; the FRFs were made afresh from the hits")
+            frfs = with_read(frfs, content.frfs, content.tests, warnings, decay=handling.decay)
     elif content.frfs is not None:
         frfs = _as_read(content.frfs, handling, warnings)
     else:
         names = ", ".join(str(p) for p in paths)
         raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
+    frfs = without_constant(frfs, warnings)
+    warnings += identical(frfs)
     frfs = without_sensors(frfs, handling.sensor_masses, warnings)
     return Processed(content, frfs, judged, handling, tuple(dict.fromkeys(warnings)))
 
@@ -210,7 +292,7 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
     for test in tests:
         one = test
         if looks_long(one):
-            one, said = split_hits(one)
+            one, said = split_hits(replace(one, decay=one.decay or handling.decay))
             warnings += said
         if handling.decay and one.decay:
             _check_decay(one.source, one.decay, handling.decay)

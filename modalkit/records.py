@@ -5,50 +5,66 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from acquisition import HitVerdict, rejected_points
+from acquisition import HitVerdict, ModalData, rejected_points
 from identification import ModalModel, mpc
+from modalkit.existing import Modes
 from updating import Diagnosis
 from updating.diagnosis.result import Ranked
 
 
-def modes_record(model: ModalModel, hits: Sequence[HitVerdict], warnings: Sequence[str]) -> dict[str, Any]:
-    """Return an identification as ``modalkit.modes/1``."""
+def modes_record(
+    model: ModalModel | Modes, hits: Sequence[HitVerdict] = (), warnings: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Return an identification, or modes that were read, as ``modalkit.modes/1``.
+
+    Beside the contract's keys it has ``nodes``, where their places are known, so that the file can be read back.
+    """
     modal = model.modal
-    assert modal.shapes is not None
     assert modal.damping is not None
     assert modal.damping_sigma is not None
-    purity = mpc(modal.shapes)
-    modes = []
-    for r in range(len(modal)):
-        shape = [
-            {
-                "node": dof.node,
-                "direction": dof.direction,
-                "re": modal.shapes[i, r].real,
-                "im": modal.shapes[i, r].imag,
-                "sigma": None if modal.shape_sigma is None else modal.shape_sigma[i, r],
-            }
-            for i, dof in enumerate(modal.dofs)
-        ]
-        modes.append(
-            {
-                "frequency_hz": modal.frequency[r],
-                "frequency_sigma_hz": modal.frequency_sigma[r],
-                "damping_ratio": modal.damping[r],
-                "damping_sigma": modal.damping_sigma[r],
-                "shape": shape,
-                "mpc": purity[r],
-                "scaled": modal.scaled,
-            }
-        )
+    purity = None if modal.shapes is None else mpc(modal.shapes)
+    modes = [
+        {
+            "frequency_hz": modal.frequency[r],
+            "frequency_sigma_hz": modal.frequency_sigma[r],
+            "damping_ratio": modal.damping[r],
+            "damping_sigma": modal.damping_sigma[r],
+            "shape": _shape(modal, r),
+            "mpc": None if purity is None else purity[r],
+            "scaled": modal.scaled,
+        }
+        for r in range(len(modal))
+    ]
     return {
         "schema": "modalkit.modes/1",
         "modes": modes,
-        "points_rejected": [*without_hits(hits), *model.points_rejected],
+        "points_rejected": [
+            *without_hits(hits),
+            *(() if isinstance(model, Modes) else model.points_rejected),
+        ],
         "hits": [hit_record(h) for h in hits],
-        "window_decay_removed": model.frfs.decay,
+        "window_decay_removed": 0.0 if isinstance(model, Modes) else model.frfs.decay,
         "warnings": list(warnings),
+        "nodes": [
+            {"node": node, "x": x, "y": y, "z": z}
+            for node, (x, y, z) in zip(modal.geometry.nodes, modal.geometry.coordinates, strict=True)
+        ],
     }
+
+
+def _shape(modal: ModalData, mode: int) -> list[dict[str, Any]]:
+    if modal.shapes is None:
+        return []
+    return [
+        {
+            "node": dof.node,
+            "direction": dof.direction,
+            "re": modal.shapes[i, mode].real,
+            "im": modal.shapes[i, mode].imag,
+            "sigma": None if modal.shape_sigma is None else modal.shape_sigma[i, mode],
+        }
+        for i, dof in enumerate(modal.dofs)
+    ]
 
 
 def without_hits(hits: Sequence[HitVerdict]) -> list[str]:

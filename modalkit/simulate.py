@@ -11,6 +11,7 @@ import pandas as pd
 
 from acquisition import FrfSet, HammerTest, estimate_frfs, hammer_test, judge_hits, write_uff
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.display import Displayed
 from acquisition.errors import InputError
 from modalkit.joining import together
 from modalkit.named_effects import EffectValues, check_effect, departure, said
@@ -18,7 +19,7 @@ from modalkit.process import Session, open_study
 from modalkit.rig import SAMPLING, Options, Rig, rig_of_data, rig_of_model
 from modalkit.rig.damping import damped_spec
 from modalkit.rig.systems import known_sensors, remounted, systems
-from modalkit.study import Study
+from modalkit.study import Study, read_study
 from updating import Predictor, Spec
 from updating.models.state import State
 from updating.reading import reading
@@ -26,7 +27,7 @@ from updating.simulation import damped_modes, simulated
 
 
 @dataclass(frozen=True, eq=False)
-class SimulatedTest:
+class SimulatedTest(Displayed):
     """A synthetic hammer test, with what stands behind it.
 
     Parameters
@@ -63,7 +64,7 @@ class SimulatedTest:
         sets = [estimate_frfs(test, verdicts=judge_hits(test)) for test in self.tests]
         return together(sets).band(0.0, self.rig.plan.rate / SAMPLING)
 
-    def write(self, path: Path, *, as_frfs: bool = False) -> None:
+    def write(self, path: Path | str, *, as_frfs: bool = False) -> None:
         """Write a universal file of raw hits, or of FRFs with their coherence; whole or not at all."""
         if as_frfs:
             write_uff(
@@ -74,9 +75,12 @@ class SimulatedTest:
                 path, tests=self.tests, geometry=self.rig.geometry, title=self.title, precision="single"
             )
 
+    def _headline(self) -> str:
+        return f"{self.title}: {'; '.join(test._headline() for test in self.tests)}"
+
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class Prepared(Displayed):
     """A study made ready to be hit on a computer, as often as one likes.
 
     Parameters
@@ -127,7 +131,7 @@ def prepare(study: Study, options: Options | None = None) -> Prepared:
 
 
 def simulate_test(
-    study: Study | Prepared,
+    study: Study | Prepared | Path | str,
     effects: Sequence[EffectValues] = (),
     *,
     seed: int = 0,
@@ -137,7 +141,7 @@ def simulate_test(
 
     Parameters
     ----------
-    study : Study or Prepared
+    study : Study, Prepared or path
         Its model is hit, accepted effects included.
     effects : sequence of (name, values)
         Effects put into the model and into the measurement; values in the units of ``modalkit effects``.
@@ -151,6 +155,7 @@ def simulate_test(
     StudyError
         If the study has no model, or an effect does not fit it.
     """
+    study = read_study(study) if isinstance(study, Path | str) else study
     ready = study if isinstance(study, Prepared) else prepare(study, options)
     rig, nominal, rng = ready.rig, ready.nominal, np.random.default_rng(seed)
     whole: tuple[EffectValues, ...] = (*ready.study.accepted(), *effects)

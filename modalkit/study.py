@@ -9,9 +9,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from acquisition.encoding import not_utf8
 from acquisition.errors import StudyError
 from modalkit.accepting import accepted_values
 from modalkit.matrices import matrices_of, matrices_spec
+from modalkit.probable_units import check_units
 from modalkit.study_errors import explain, known_keys
 from modalkit.study_tables import (
     MATRICES_ONLY,
@@ -26,6 +28,7 @@ from updating.axes import Axes
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
 from updating.models.imported import Imported
+from updating.models.spec_checks import check_places
 from updating.tolerances import Tolerances
 
 __all__ = [
@@ -38,6 +41,9 @@ __all__ = [
     "UpdateTable",
     "read_study",
 ]
+
+NOTHING = 1e-9
+"""Tolerances below this are none: their squares, and one over them, are no use as numbers [-]."""
 
 
 class Study(Strict):
@@ -114,11 +120,12 @@ class Study(Strict):
         for key in ("length", "width", "thickness", "material"):
             if getattr(model, key) is None:
                 raise StudyError(f"[model] of type {model.type} needs {key}")
+        check_units(model)
         assert model.material is not None
         assert model.length is not None
         assert model.width is not None
         assert model.thickness is not None
-        return Spec(
+        spec = Spec(
             model.type,
             model.length,
             model.width,
@@ -131,6 +138,8 @@ class Study(Strict):
             tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
             damping,
         )
+        check_places(spec)
+        return spec
 
     @cached_property
     def _imported(self) -> Imported:
@@ -152,7 +161,8 @@ class Study(Strict):
 
     def doubts(self) -> Tolerances:
         """Return the tolerances."""
-        values = self.tolerances.model_dump()
+        told = self.tolerances.model_dump()
+        values = {name: value if value > NOTHING else 0.0 for name, value in told.items()}
         damping = values.pop("damping")
         return Tolerances(values, damping)
 
@@ -164,9 +174,10 @@ class Study(Strict):
         StudyError
             If one is unknown, or a value is neither a number nor, where points are meant, node numbers.
         """
-        entries = [] if self.model is None else self.model.effect
+        if self.model is None:
+            return ()
         try:
-            return tuple(accepted_values(entry) for entry in entries)
+            return tuple(accepted_values(entry, self.model.type) for entry in self.model.effect)
         except StudyError as error:
             raise StudyError(f"{self.path}: {error}") from error
 
@@ -175,12 +186,12 @@ class Study(Strict):
         return Environment(**self.environment.model_dump())
 
 
-def read_study(path: Path) -> Study:
+def read_study(path: Path | str) -> Study:
     """Read a study file.
 
     Parameters
     ----------
-    path : Path
+    path : path
         The TOML file.
 
     Returns
@@ -192,6 +203,7 @@ def read_study(path: Path) -> Study:
     StudyError
         If the file cannot be read, is no TOML, or has a key or value that does not belong there.
     """
+    path = Path(path)
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
@@ -199,9 +211,8 @@ def read_study(path: Path) -> Study:
             f"{path}: cannot be read ({error.strerror}); give the path of a study file"
         ) from error
     except UnicodeDecodeError as error:
-        raise StudyError(
-            f"{path}: not a valid TOML file but binary data; give a study file that names it"
-        ) from error
+        binary = f"{path}: not a valid TOML file but binary data; give a study file that names it"
+        raise StudyError(not_utf8(path, path.read_bytes()) or binary) from error
     except tomllib.TOMLDecodeError as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
     if "path" in content:

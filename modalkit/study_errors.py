@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Sequence
+
 from pydantic import BaseModel, ValidationError
 
 from modalkit.study_tables import (
@@ -25,11 +28,21 @@ def explain(error: ValidationError, root: type[BaseModel]) -> str:
         place = ".".join(str(p) for p in problem["loc"])
         if problem["type"] == "extra_forbidden":
             known = known_keys(problem["loc"][:-1], root)
-            parts.append(f"unknown key {place}" + (f"; known here: {', '.join(known)}" if known else ""))
+            meant = nearest(str(problem["loc"][-1]), known)
+            parts.append(
+                f"unknown key {place}" + (f"; known here: {', '.join(known)}{meant}" if known else "")
+            )
         else:
             own = problem.get("ctx", {}).get("error")
-            parts.append(f"{place}: {problem['msg'].lower() if own is None else own}")
+            found = f", found {problem['input']!r}" if isinstance(problem["input"], str | int | float) else ""
+            parts.append(f"{place or 'study'}: {problem['msg'].lower() + found if own is None else own}")
     return "; ".join(parts)
+
+
+def nearest(word: str, known: Sequence[str]) -> str:
+    """Return a question after the known word that a word looks like, nothing where it looks like none."""
+    close = difflib.get_close_matches(word, known, n=1)
+    return f" (is {close[0]!r} meant?)" if close else ""
 
 
 def known_keys(place: tuple[int | str, ...], root: type[BaseModel]) -> list[str]:

@@ -2,11 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
+from modalkit.study_units import (
+    Density,
+    Hertz,
+    Length,
+    Mass,
+    Modulus,
+    Rate,
+    Share,
+    Size,
+    in_unit,
+)
+
+Place = tuple[Length, Length, Length]
 Vector = tuple[float, float, float]
+Span = tuple[Length, Length]
+
+LARGEST_LOSS = 5.0
+"""Above the loss factor of any material: rubbers reach some 3 where they turn to glass [-]."""
+
+LARGEST_ASTRAY = 100.0
+"""Points known no better than this say nothing of any structure [m]."""
+
+LossFactor = Annotated[float, in_unit(""), Field(ge=0, lt=LARGEST_LOSS)]
+Fluid = Annotated[float, in_unit("kg/m^3"), Field(gt=0, lt=30e3)]
+Alpha = Annotated[float, in_unit("1/s"), Field(ge=0, lt=1e9)]
+Beta = Annotated[float, in_unit("s"), Field(ge=0, lt=1e3)]
+Area = Annotated[float, in_unit("m^2"), Field(gt=0)]
+SecondMoment = Annotated[float, in_unit("m^4"), Field(gt=0)]
+Inertia = Annotated[float, in_unit("kg m^2"), Field(ge=0)]
+Weight = Annotated[float, Field(ge=0, lt=1e50)]
+Doubt = Annotated[float, in_unit(""), Field(ge=0)]
 
 MATRICES_ONLY = ("units", "stiffness", "mass_matrix", "stiffness_parts", "mass_parts", "nodes")
 """Keys of ``[model]`` that are of imported matrices alone; ``mass = "file"`` is read as ``mass_matrix``."""
@@ -17,11 +47,32 @@ class Strict(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _no_switches(cls, table: Any) -> Any:
+        """See that no key is ``true`` or ``false``, which would count as 1 or 0."""
+        for key, value in table.items() if isinstance(table, dict) else ():
+            if any(isinstance(v, bool) for v in (value if isinstance(value, list) else [value])):
+                raise ValueError(f"{key} is true or false; no key of a study is a switch")
+        return table
+
+
+def rising(name: str, ends: tuple[float, float] | None) -> None:
+    """See that the ends of a range stand in order.
+
+    Raises
+    ------
+    ValueError
+        If they do not.
+    """
+    if ends is not None and not ends[0] < ends[1]:
+        raise ValueError(f"{name} = [{ends[0]:g}, {ends[1]:g}] ends before it begins; give [low, high]")
+
 
 class AxesTable(Strict):
     """Model axes in test coordinates."""
 
-    origin: Vector = (0.0, 0.0, 0.0)
+    origin: Place = (0.0, 0.0, 0.0)
     x: Vector = (1.0, 0.0, 0.0)
     y: Vector = (0.0, 1.0, 0.0)
 
@@ -31,65 +82,103 @@ class MeasurementTable(Strict):
 
     files: list[str] = []
     modes: str | None = None
-    band: tuple[float, float] | None = None
-    exponential_window: float = Field(0.0, ge=0.0)
+    band: tuple[Annotated[float, in_unit("Hz"), Field(ge=0)], Hertz] | None = None
+    exponential_window: Rate = 0.0
     window_on: Literal["both", "responses"] | None = None
-    window: float = Field(0.0, ge=0.0)
+    window: Rate = 0.0
     estimator: Literal["H1", "H2", "Hv"] = "H1"
     use: list[tuple[str, int]] = []
     leave: list[tuple[str, int]] = []
-    add: list[float] = []
-    drop: list[float] = []
+    add: list[Hertz] = []
+    drop: list[Hertz] = []
     layout: str | None = None
-    sensor_masses: dict[str, float] = {}
-    calibration: float = Field(0.02, gt=0.0)
-    repeatability: float = Field(0.0005, ge=0.0)
-    position_sigma: float = Field(0.001, ge=0.0)
-    points: list[float] = []
-    sensor: float | None = None
+    sensor_masses: dict[str, Mass] = {}
+    calibration: Annotated[float, in_unit(""), Field(gt=0.0)] = 0.02
+    repeatability: Share = 0.0005
+    position_sigma: Annotated[float, in_unit("m"), Field(ge=0.0, lt=LARGEST_ASTRAY)] = 0.001
+    points: list[Length] = []
+    sensor: Length | None = None
     hits: int | None = Field(None, ge=1)
     axes: AxesTable = AxesTable()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        """See that the band is one, and that modes come without what is said of records and FRFs."""
+        rising("band", self.band)
+        if self.modes is None:
+            return self
+        if self.files:
+            raise ValueError("files and modes are both given; modes stand in place of files: leave one out")
+        told = [key for key in OF_RECORDS if getattr(self, key) != type(self).model_fields[key].default]
+        if told:
+            raise ValueError(
+                f"{', '.join(told)}: said of records or FRFs, but modes = {self.modes!r} are modes already; leave "
+                "it out, and change the modes themselves if they need it"
+            )
+        return self
+
+
+OF_RECORDS = (
+    "exponential_window",
+    "window_on",
+    "window",
+    "estimator",
+    "use",
+    "leave",
+    "add",
+    "drop",
+    "layout",
+    "sensor_masses",
+)
+"""Keys of a measurement that modes as data leave without meaning."""
 
 
 class MaterialTable(Strict):
     """``[model.material]``."""
 
-    E: float = Field(gt=0)
-    density: float = Field(gt=0)
-    poisson: float = Field(0.3, ge=0.0, lt=0.5)
+    E: Modulus
+    density: Density
+    poisson: Annotated[float, in_unit(""), Field(ge=0.0, lt=0.5)] = 0.3
 
 
 class DampingTable(Strict):
     """``[model.damping]``."""
 
-    alpha: float | None = None
-    beta: float | None = None
-    loss_factor: float | None = None
-    ratios: list[float] | None = None
+    alpha: Alpha | None = None
+    beta: Beta | None = None
+    loss_factor: LossFactor | None = None
+    ratios: Annotated[list[Share], Field(min_length=1)] | None = None
 
 
 class MassTable(Strict):
     """``[[model.mass]]``."""
 
-    at: list[float]
-    mass: float = Field(ge=0)
-    inertia: float = Field(0.0, ge=0)
+    at: Annotated[list[Length], Field(min_length=1, max_length=3)]
+    mass: Mass
+    inertia: Inertia = 0.0
 
 
 class RegionTable(Strict):
     """``[[model.region]]``."""
 
     name: str = Field(min_length=1)
-    x: tuple[float, float] | None = None
-    y: tuple[float, float] | None = None
-    E: float | None = None
-    density: float | None = None
-    thickness: float | None = None
-    area: float | None = None
-    inertia: float | None = None
-    alpha: float | None = None
-    beta: float | None = None
-    loss_factor: float | None = None
+    x: Span | None = None
+    y: Span | None = None
+    E: Modulus | None = None
+    density: Density | None = None
+    thickness: Size | None = None
+    area: Area | None = None
+    inertia: SecondMoment | None = None
+    alpha: Alpha | None = None
+    beta: Beta | None = None
+    loss_factor: LossFactor | None = None
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        """See that the limits stand in order."""
+        rising("x", self.x)
+        rising("y", self.y)
+        return self
 
 
 class ModelTable(Strict):
@@ -97,9 +186,9 @@ class ModelTable(Strict):
 
     type: Literal["beam", "plate", "matrices"]
     units: Literal["m-kg-s", "mm-t-s", "in-lbf-s"] | None = None
-    length: float | None = None
-    width: float | None = None
-    thickness: float | None = None
+    length: Length | None = None
+    width: Length | None = None
+    thickness: Length | None = None
     elements: int | list[int] | None = None
     clamped: list[str] = []
     theory: str | None = None
@@ -118,21 +207,29 @@ class ModelTable(Strict):
 class TolerancesTable(Strict):
     """``[tolerances]``: the modeller's own doubts, relative standard deviations."""
 
-    E: float = Field(0.01, ge=0)
-    density: float = Field(0.003, ge=0)
-    thickness: float = Field(0.005, ge=0)
-    length: float = Field(0.002, ge=0)
-    width: float = Field(0.002, ge=0)
-    damping: float = Field(0.3, gt=0)
+    E: Share = 0.01
+    density: Share = 0.003
+    thickness: Share = 0.005
+    length: Share = 0.002
+    width: Share = 0.002
+    damping: Doubt = Field(0.3, ge=1e-6)
 
 
 class EnvironmentTable(Strict):
     """``[environment]``."""
 
-    fluid_density: float | None = Field(None, gt=0)
-    free_surface: float | None = Field(None, gt=0)
-    bottom: float | None = Field(None, gt=0)
-    walls: tuple[float, float, float, float] | None = None
+    fluid_density: Fluid | None = None
+    free_surface: Size | None = None
+    bottom: Size | None = None
+    walls: tuple[Length, Length, Length, Length] | None = None
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        """See that the walls stand in order."""
+        if self.walls is not None:
+            rising("walls x0, x1", self.walls[:2])
+            rising("walls y0, y1", self.walls[2:])
+        return self
 
 
 class UpdateTable(Strict):
@@ -140,10 +237,10 @@ class UpdateTable(Strict):
 
     method: Literal["eigenvalue", "frf"] = "eigenvalue"
     parameters: list[str] | None = None
-    weights: Literal["covariance", "relative", "eigenvalue"] | list[float] = "covariance"
-    lines: int | list[float] | None = None
+    weights: Literal["covariance", "relative", "eigenvalue"] | list[Weight] = "covariance"
+    lines: Annotated[int, Field(ge=1)] | list[Hertz] | None = None
     stages: list[list[str]] | None = None
-    data: list[Literal["frequencies", "shapes"]] = ["frequencies"]
+    data: list[Literal["frequencies", "shapes", "constants"]] = ["frequencies"]
 
     @field_validator("parameters", "stages")
     @classmethod

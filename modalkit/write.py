@@ -5,16 +5,20 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from acquisition.errors import InputError
+from modalkit.outputs import check_output, json_of
 
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file in one step: what stood there before stays until the new file is complete.
+
+    Whether something else stands there is for :func:`modalkit.outputs.check_outputs` to say.
 
     Raises
     ------
@@ -30,6 +34,8 @@ def write_text(path: Path, text: str) -> None:
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as file:
             file.write(text)
+            file.flush()
+            os.fsync(file.fileno())  # or a power cut leaves an empty file under the name
         Path(name).chmod(0o644)
         Path(name).replace(path)
     except OSError as error:
@@ -38,50 +44,15 @@ def write_text(path: Path, text: str) -> None:
         Path(name).unlink(missing_ok=True)
 
 
-def check_place(path: Path | None) -> None:
-    """See that a file could be written, before work begins whose result would be lost; None is no file.
-
-    Raises
-    ------
-    InputError
-        If its folder does not exist or cannot be written, or it is a folder itself.
-    """
-    if path is None:
-        return
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; name a file")
-    if not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise InputError(
-            f"{path}: cannot be written (no such folder, or read-only); name a folder that exists"
-        )
-
-
-def check_json_place(path: Path | None) -> None:
-    """See that a JSON file could be written, and that no other file stands there, such as the study itself.
-
-    Raises
-    ------
-    InputError
-        If one does, or the folder cannot be written.
-    """
-    check_place(path)
-    if path is None or not path.is_file() or not path.stat().st_size:
-        return
-    try:
-        json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise InputError(f"{path}: stands there and is no JSON; name another file for the result") from error
-
-
-def write_json(path: Path, content: Any) -> None:
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
     """Write a JSON file in one step; what is not finite becomes null.
 
     Raises
     ------
     InputError
-        If it cannot be written, or another file than JSON stands there.
+        If it cannot be written, or something else than JSON of the content's schema stands there.
     """
-    check_json_place(path)
+    check_output(path, json_of(str(content["schema"])))
     write_text(path, json.dumps(plain(content), indent=1, allow_nan=False) + "\n")
 
 

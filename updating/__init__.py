@@ -1,15 +1,20 @@
 """Models, effects, updating and diagnosis."""
 
-from updating.axes import Axes
-from updating.case import Case
-from updating.diagnosis.diagnose import diagnose, diagnose_together
-from updating.diagnosis.result import Diagnosis
-from updating.effects import LIBRARY, Effect, Parameter, register
-from updating.environment import Environment
-from updating.measured import Measured, measured_from_identified, measured_from_modes
-from updating.models import Damping, Material, PointMass, Region, Spec, Structure, build_structure
-from updating.prediction import Prediction, Predictor
-from updating.tolerances import Tolerances
+from typing import TYPE_CHECKING
+
+from acquisition.lazy import load_on_demand
+
+if TYPE_CHECKING:
+    from updating.axes import Axes
+    from updating.case import Case
+    from updating.diagnosis.diagnose import diagnose, diagnose_together
+    from updating.diagnosis.result import Diagnosis
+    from updating.effects import LIBRARY, Effect, Parameter, register
+    from updating.environment import Environment
+    from updating.measured import Measured, measured_from_identified, measured_from_modes
+    from updating.models import Damping, Material, PointMass, Region, Spec, Structure, build_structure
+    from updating.prediction import Prediction, Predictor
+    from updating.tolerances import Tolerances
 
 __all__ = [
     "LIBRARY",
@@ -36,3 +41,19 @@ __all__ = [
     "measured_from_modes",
     "register",
 ]
+
+load_on_demand(
+    __name__,
+    {
+        ".axes": "Axes",
+        ".case": "Case",
+        ".diagnosis.diagnose": "diagnose diagnose_together",
+        ".diagnosis.result": "Diagnosis",
+        ".effects": "LIBRARY Effect Parameter register",
+        ".environment": "Environment",
+        ".measured": "Measured measured_from_identified measured_from_modes",
+        ".models": "Damping Material PointMass Region Spec Structure build_structure",
+        ".prediction": "Prediction Predictor",
+        ".tolerances": "Tolerances",
+    },
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from acquisition.display import Displayed
 from updating.environment import Environment
 from updating.measured import Measured
 from updating.models import Spec
@@ -12,7 +13,7 @@ from updating.tolerances import Tolerances
 
 
 @dataclass(frozen=True, eq=False)
-class Case:
+class Case(Displayed):
     """A test beside a model.
 
     Parameters
@@ -40,3 +41,7 @@ class Case:
     tolerances: Tolerances = field(default_factory=Tolerances)
     environment: Environment = field(default_factory=Environment)
     accepted: tuple[tuple[str, Mapping[str, float]], ...] = ()
+
+    def _headline(self) -> str:
+        baseline = "" if self.baseline is None else "; with a baseline"
+        return f"{self.title}: {self.measured._headline()}; model: {self.spec._headline()}{baseline}"

@@ -9,6 +9,7 @@ import numpy as np
 
 from acquisition import FORMS, FrfSet, StudyError
 from acquisition.arrays import FloatArray, IntArray
+from acquisition.display import Displayed
 from identification import frac
 from identification.arrangement import signs
 from updating.matching import Paired
@@ -18,7 +19,7 @@ from updating.simulation import UNKNOWN_DAMPING, identified_ratios, receptances,
 
 
 @dataclass(frozen=True, eq=False)
-class CorrelatedFrfs:
+class CorrelatedFrfs(Displayed):
     """Measured FRFs and a model's.
 
     Parameters

@@ -10,6 +10,7 @@ import pandas as pd
 
 from acquisition import Dof, FrfSet
 from acquisition.arrays import FloatArray, IntArray
+from acquisition.display import Displayed, counted
 from updating.case import Case
 from updating.correlated_frfs import CorrelatedFrfs, correlate_frfs
 from updating.matching import Paired, mac_of_constants, pair_modes
@@ -20,7 +21,7 @@ from updating.simulation.identified import partners
 
 
 @dataclass(frozen=True, eq=False)
-class Correlation:
+class Correlation(Displayed):
     """How far a test and a model agree.
 
     Parameters
@@ -55,6 +56,9 @@ class Correlation:
     def rms_percent(self) -> float:
         """R.m.s. frequency error over the pairs [%]."""
         return float(np.sqrt(np.mean(self.table["error [%]"] ** 2)))
+
+    def _headline(self) -> str:
+        return f"{self.rms_percent:.3g} % r.m.s. frequency error over {counted(len(self.table), 'pair')}"
 
 
 def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:

@@ -81,7 +81,8 @@ SAME = 0.95
 """...unless the shapes are the same."""
 
 LOWEST_MAC = 0.4
-"""Below this MAC a measured mode has no partner."""
+"""Below this MAC a measured mode has no partner, however near; the least MAC rises from here to `SAME` with the
+distance of its frequency ratio from the others' up to `ASTRAY`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +134,8 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     order = match(measured, prediction, np.arange(len(measured.frequency)), trusted)
     mac = mac_of_constants(measured, prediction, trusted)[np.arange(len(order)), order]
     ratio = np.log(measured.frequency / prediction.frequency[order])
-    near = np.abs(ratio - np.median(ratio)) < ASTRAY
-    keep = (mac >= LOWEST_MAC) & (near | (mac >= SAME))
+    distance = np.minimum(np.abs(ratio - np.median(ratio)) / ASTRAY, 1.0)
+    keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * distance
     if not keep.any():
         raise EstimationError(
             f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
@@ -159,28 +160,34 @@ SPOILT = 0.8
 MENDED = 0.05
 """...and by how much leaving one out must raise it [-]."""
 
+SPOILS = 2
+"""Fewest modes whose MAC rises by as much where points are bad: a bad point spoils most shapes, while a mode that is
+none, or one that the model lacks, spoils its own MAC alone. Doubled, a bad point in a test of few modes goes unseen."""
+
 
 def _trusted(measured: Measured, prediction: Prediction) -> BoolArray | None:
     """Return the rows left when the few points that spoil the shapes of all modes are out, None where none does."""
 
-    def agreement(rows: BoolArray) -> float:
+    def macs(rows: BoolArray) -> FloatArray:
         order = match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
-        return float(np.mean(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order]))
+        return np.asarray(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order])
 
     rows = np.ones(len(measured.seen), dtype=bool)
-    reached = agreement(rows)
+    all_points = macs(rows)
+    reached = float(all_points.mean())
     if reached >= SPOILT:
         return None
     moved = measured.hit if len(np.unique(measured.hit)) >= len(np.unique(measured.seen)) else measured.seen
     points = np.unique(moved)
     for _ in range(len(points) * 2 // 5):
         trials = [rows & (moved != point) for point in points]
-        found = [agreement(t) if len(np.unique(moved[t])) >= 3 else 0.0 for t in trials]
+        found = [float(macs(t).mean()) if len(np.unique(moved[t])) >= 3 else 0.0 for t in trials]
         best = int(np.argmax(found))
         if found[best] < reached + MENDED:
             break
         rows, reached = trials[best], found[best]
-    return None if rows.all() or reached < SPOILT else rows
+    mended = int((macs(rows) - all_points > MENDED).sum())
+    return None if rows.all() or reached < SPOILT or mended < SPOILS else rows
 
 
 def _moved(measured: Measured, rows: BoolArray) -> list[str]:
@@ -207,10 +214,12 @@ def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
 
 def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     """Pair by rank; let modes be skipped only where the ratios of frequencies are wild without."""
-    count = min(len(measured.frequency), len(prediction.frequency))
-    ratio = np.log(measured.frequency[:count] / prediction.frequency[:count])
+    above = prediction.frequency[measured.below :]
+    count = min(len(measured.frequency), len(above))
+    ratio = np.log(measured.frequency[:count] / above[:count])
     if count == len(measured.frequency) and np.std(ratio) < WILD:
-        return Paired(measured, np.arange(count), _distance(measured, float(np.exp(np.median(ratio)))))
+        order = measured.below + np.arange(count)
+        return Paired(measured, order, _distance(measured, float(np.exp(np.median(ratio)))))
     pairs = pair(measured.frequency, prediction.frequency, None)
     rows = np.array([p.test for p in pairs if p.model is not None and p.test is not None], dtype=int)
     order = np.array([p.model for p in pairs if p.model is not None and p.test is not None], dtype=int)
@@ -220,6 +229,27 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     keep[rows] = True
     lost = [f"mode at {f:.2f} Hz has no partner in the model" for f in measured.frequency[~keep]]
     return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))
+
+
+MISTAKEN = {
+    1e3: "the model's lengths are in mm, or its E in MPa",
+    10**4.5: "the model's E is in GPa",
+    1e-3: "the model's thickness alone is in mm, or the test's frequencies are in kHz",
+    10**-1.5: "the model's density is in g/cm3",
+    39.37: "the model's lengths are in inches",
+}
+"""Ratio of frequencies, test to model, that a unit other than SI makes: frequencies go as thickness over length
+squared, and as the root of E over density [-]."""
+
+LIKELY = 2.5
+"""How far from such a ratio, as a factor, test and model may be for it to be named: farther off than most gaps [-]."""
+
+
+def _probable(ratio: float) -> str:
+    """Return which unit was probably meant by a ratio of frequencies, test to model; nothing where none fits."""
+    off = {other: abs(np.log(ratio / other)) for other in MISTAKEN}
+    nearest = min(off, key=lambda other: off[other])
+    return f"; probably {MISTAKEN[nearest]}" if off[nearest] < np.log(LIKELY) else ""
 
 
 def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
@@ -234,7 +264,7 @@ def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
     if max(ratio, 1 / ratio) > NOTHING_IN_COMMON:
         raise EstimationError(
             f"{measured.title or 'test'}: no modes in common: {times}; check the units of the model (m, Pa, kg/m3) "
-            "and of the test (Hz)"
+            f"and of the test (Hz){_probable(ratio)}"
         )
     far = max(ratio, 1 / ratio) > DISTANT
     return (f"{times}, and only their order pairs them: they may be other modes",) if far else ()

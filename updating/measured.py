@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from acquisition import ModalData
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.display import Displayed, counted
 from acquisition.errors import StudyError
 from identification import ModalModel
 from updating.axes import Axes
 from updating.models import Spec
 from updating.placing import Key, check_among, place
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class Measured(Displayed):
     """Modes of one test as a model can predict them.
 
     The *constants* are the modal constants phi_response * phi_reference of each FRF: with absolute level for
@@ -67,6 +72,8 @@ class Measured:
         Relative change of each frequency per newton of the hits' peak force [1/N].
     level : float, optional
         Mean peak force of the hits [N].
+    below : int
+        How many modes are known to lie below the lowest of these: left out by a band [-].
     """
 
     frequency: FloatArray
@@ -97,6 +104,7 @@ class Measured:
     slope: FloatArray | None = None
     slope_sigma: FloatArray | None = None
     level: float | None = None
+    below: int = 0
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -120,6 +128,24 @@ class Measured:
         columns = {n: getattr(self, n)[:, keep] for n in across if getattr(self, n) is not None}
         rows = {n: getattr(self, n)[keep] for n in along if getattr(self, n) is not None}
         return replace(self, **rows, **columns)
+
+    def _headline(self) -> str:
+        at = f"{counted(len(self.constants), 'channel')} at {counted(len(self.nodes), 'point')}"
+        span = f"{self.frequency.min():g} to {self.frequency.max():g} Hz" if len(self.frequency) else ""
+        return (
+            f"{counted(len(self.frequency), 'mode')} {span}, {at}, {'with' if self.absolute else 'no'} level"
+        )
+
+    def _frame(self) -> pd.DataFrame:
+        import pandas as pd
+
+        columns = {
+            "frequency [Hz]": self.frequency,
+            "sigma [Hz]": self.frequency_sigma,
+            "damping [%]": 100 * self.damping,
+            "sigma [%]": 100 * self.damping_sigma,
+        }
+        return pd.DataFrame(columns, index=pd.RangeIndex(1, len(self.frequency) + 1, name="mode"))
 
 
 def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: float | str) -> Measured:
@@ -169,6 +195,7 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
             *placed.warnings,
             *check_among(placed.points, placed.keys, spec),
             *_without_sigma(modes, float(options.get("repeatability", 0.0))),
+            *modes.doubts(),
         ),
         directions=_directions(placed.keys, spec),
         **options,  # type: ignore[arg-type]
@@ -176,7 +203,13 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
 
 
 def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
-    """Warn where nobody said how well frequencies are known."""
+    """Warn where nobody said how well frequencies are known; refuse such that nothing makes uncertain."""
+    exact = np.flatnonzero(~(np.nan_to_num(modes.frequency_sigma) > 0))
+    if repeatability == 0 and len(exact):
+        raise StudyError(
+            f"mode {exact[0] + 1} at {modes.frequency[exact[0]]:g} Hz has no uncertainty: its sigma is 0 or missing, "
+            "and repeatability is 0; give one of them"
+        )
     missing = int(np.sum(~np.isfinite(modes.frequency_sigma)))
     if not missing:
         return ()

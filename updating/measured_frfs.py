@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.display import Displayed
 from acquisition.errors import StudyError
 from acquisition.frf import FORMS, FrfSet
 from identification import ModalModel
@@ -16,7 +17,7 @@ from updating.measured import Measured
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredFrfs:
+class MeasuredFrfs(Displayed):
     """Receptances of a test between points of the model, along its axes.
 
     Parameters

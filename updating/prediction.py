@@ -14,6 +14,7 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.display import Displayed
 from updating.environment import Environment
 from updating.measured import Measured
 from updating.models.build import build_structure
@@ -23,11 +24,12 @@ from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State
+from updating.models.whole import Whole
 from updating.reading import Reading, reading
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class Prediction(Displayed):
     """Modes of a model at the points of a test.
 
     Parameters
@@ -72,7 +74,7 @@ class Prediction:
 
 
 @dataclass(frozen=True, eq=False)
-class Predictor:
+class Predictor(Displayed):
     """A specimen's model, looked at from the points of a test.
 
     Parameters
@@ -124,6 +126,13 @@ class Predictor:
             points = np.zeros((1, self.spec.dim))
         modes = 30 if self.spec.kind == "beam" else 40
         return reduce_structure(build_structure(self.spec), points, directions, modes=modes)
+
+    @cached_property
+    def whole(self) -> Predictor:
+        """The same specimen on all degrees of freedom, for states of its full matrices."""
+        other = replace(self)
+        other.__dict__["reduced"] = Whole(self.reduced)
+        return other
 
     def once(self, name: str, build: Callable[[], FloatArray]) -> FloatArray:
         """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""

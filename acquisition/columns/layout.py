@@ -13,8 +13,10 @@ import numpy as np
 
 from acquisition.columns.units import QUANTITIES
 from acquisition.dof import Dof
+from acquisition.encoding import not_utf8
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
+from acquisition.mat.layout import MatLayout, mat_layout
 
 DIRECTIONS = {"x": 1, "y": 2, "z": 3, "rx": 4, "ry": 5, "rz": 6}
 PARTS = ("real", "imag", "magnitude", "phase")
@@ -89,7 +91,8 @@ class FileRule:
     direction : str
         Direction in these files; "" for that of the column.
     column : str or int
-        Heading or number of the column; "" for the force.
+        Heading or number of the column; "" for the force. Of FRFs either column of the two, whose response it
+        places.
     """
 
     match: str
@@ -126,6 +129,8 @@ class Layout:
         Where the nodes are.
     source : str
         Where the layout came from, for messages.
+    mat : MatLayout, optional
+        Which variable of a MATLAB file is what.
     """
 
     columns: tuple[Column, ...]
@@ -140,6 +145,7 @@ class Layout:
     decay: float = 0.0
     nodes: Geometry = field(default_factory=Geometry.empty)
     source: str = "layout"
+    mat: MatLayout | None = None
 
 
 def dof_of(node: int, direction: str) -> Dof:
@@ -169,7 +175,10 @@ def read_layout(path: Path | str) -> Layout:
         table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); give the layout file") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        said = not_utf8(Path(path), Path(path).read_bytes())
+        raise InputError(said or f"{path}: not a TOML file but binary data") from error
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: not a TOML file: {error}") from error
     return layout_from(table, source=str(path))
 
@@ -182,7 +191,7 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
     InputError
         If a key is unknown or has a value of the wrong kind.
     """
-    top = {k: v for k, v in table.items() if k not in ("column", "file", "nodes")}
+    top = {k: v for k, v in table.items() if k not in ("column", "file", "nodes", "mat")}
     columns = tuple(
         _built(Column, entry, f"{source}: [[column]] {n + 1}")
         for n, entry in enumerate(table.get("column", ()))
@@ -191,12 +200,15 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
         _built(FileRule, entry, f"{source}: [[file]] {n + 1}")
         for n, entry in enumerate(table.get("file", ()))
     )
-    parts = {"columns": columns, "files": files, "nodes": _nodes(table.get("nodes", {}), source)}
+    mat = mat_layout(table["mat"], source) if "mat" in table else None
+    parts = {"columns": columns, "files": files, "nodes": _nodes(table.get("nodes", {}), source), "mat": mat}
     layout: Layout = _built(Layout, {**top, **parts, "source": source}, source)
-    if not columns:
+    if not columns and mat is None:
         raise InputError(f"{source}: no [[column]]; add one for the force and one for each response")
     for n, column in enumerate(columns):
         _check_column(column, f"{source}: [[column]] {n + 1}")
+    for n, rule in enumerate(files):
+        _check_rule(rule, columns, f"{source}: [[file]] {n + 1}")
     if layout.rate is not None and layout.rate <= 0:
         raise InputError(f"{source}: rate = {layout.rate:g}; give the sampling rate in Hz")
     return layout
@@ -228,6 +240,20 @@ def _check_column(column: Column, where: str) -> None:
         raise InputError(f"{where}: {error}") from error
 
 
+def _check_rule(rule: FileRule, columns: tuple[Column, ...], where: str) -> None:
+    """See that a rule speaks of a column there is, and of a direction."""
+    known = [c.index if c.name is None else c.name for c in columns]
+    if rule.column != "" and rule.column not in known:
+        raise InputError(
+            f"{where}: no [[column]] is {rule.column!r}; they are {', '.join(map(repr, known))}, or leave it out for "
+            "the force"
+        )
+    try:
+        dof_of(rule.node, rule.direction or "+z")
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
 _KINDS: dict[str, tuple[type, ...]] = {
     "int": (int,),
     "float": (int, float),
@@ -244,7 +270,7 @@ def _built(kind: type, entry: Mapping[str, Any], where: str) -> Any:
     known = {f.name: str(f.type) for f in fields(kind)}
     for key, value in entry.items():
         if key not in known:
-            names = tuple(k for k in known if k not in ("source", "columns", "files"))
+            names = tuple(k for k in known if k not in ("source", "columns", "files", "mat"))
             raise InputError(f"{where}: unknown key {key!r}{_meant(key, names)}; keys are {', '.join(names)}")
         allowed = _KINDS.get(known[key])
         if allowed and (not isinstance(value, allowed) or isinstance(value, bool)):

@@ -67,7 +67,7 @@ def read_columns(
     files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
     if not files:
         raise InputError(f"{plan.source}: no files to read")
-    _check_rules(plan, files)
+    check_rules(plan, files)
     form = _form(plan)
     records = [record for path in files for record in _records(path, plan)]
     rates = np.array([r.rate for r in records])
@@ -163,8 +163,14 @@ def _records(path: Path, layout: Layout) -> list[_Record]:
     return records
 
 
-def _check_rules(layout: Layout, files: Sequence[Path]) -> None:
-    """Refuse files that no rule of the layout places while a rule places no file: one of them is misspelt."""
+def check_rules(layout: Layout, files: Sequence[Path]) -> None:
+    """Refuse files that no rule of the layout places while a rule places no file: one of them is misspelt.
+
+    Raises
+    ------
+    InputError
+        If there are such.
+    """
     lost = [f for f in files if not any(fnmatch(f.name, rule.match) for rule in layout.files)]
     idle = [rule.match for rule in layout.files if not any(fnmatch(f.name, rule.match) for f in files)]
     if lost and idle:

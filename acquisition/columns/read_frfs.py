@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.columns.blocks import Block
 from acquisition.columns.layout import Column, Layout, read_layout
-from acquisition.columns.read import blocks_of, scaled
+from acquisition.columns.read import blocks_of, check_rules, scaled
 from acquisition.columns.units import QUANTITIES
+from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frf import FrfSet
 
@@ -42,9 +46,12 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
             f"{plan.source}: FRFs need frequency_column, and columns of one quantity: accelerance, mobility or "
             "receptance"
         )
-    pairs = _pairs(plan)
+    check_rules(plan, files)
     axes, rows = [], []
+    found: dict[tuple[Dof, Dof], str] = {}
     for block in (block for path in files for block in blocks_of(path, plan)):
+        pairs = [_in_file(pair, block.path, plan) for pair in _pairs(plan)]
+        _note(found, pairs, block, plan)
         axis = block.index_of(plan.frequency_column, f"frequency_column {plan.frequency_column!r}")
         values = scaled(block, [c for pair in pairs for c in pair], [axis])
         axes.append(values[-1])
@@ -54,12 +61,11 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
         )
         if not same:
             raise InputError(f"{block.path}, line {block.first}: another frequency axis than {files[0]}")
-    times = len(axes)
     return FrfSet(
         frequency=axes[0],
         values=np.stack(rows),
-        responses=tuple(pair[0].dof for pair in pairs) * times,
-        references=tuple(pair[0].reference for pair in pairs) * times,
+        responses=tuple(response for response, _ in found),
+        references=tuple(reference for _, reference in found),
         form=form,
         decay=plan.decay,
         geometry=plan.nodes,
@@ -88,6 +94,38 @@ def _pairs(layout: Layout) -> list[tuple[Column, Column]]:
                 'give "real" and "imag", or "magnitude" and "phase"'
             )
     return pairs
+
+
+def _in_file(pair: tuple[Column, Column], path: Path, layout: Layout) -> tuple[Column, Column]:
+    """Return the columns of an FRF with the points that they have in this file: of the force, and of the response."""
+    first, second = pair
+    for rule in reversed([rule for rule in layout.files if fnmatch(path.name, rule.match)]):  # the first wins
+        if rule.column == "":
+            direction = rule.direction or first.reference_direction
+            first = replace(first, reference_node=rule.node, reference_direction=direction)
+        elif any(rule.column in (c.name, c.index) for c in pair):
+            first = replace(first, node=rule.node, direction=rule.direction or first.direction)
+    return first, second
+
+
+def _note(
+    found: dict[tuple[Dof, Dof], str], pairs: Sequence[tuple[Column, Column]], block: Block, layout: Layout
+) -> None:
+    """Note which FRFs a block holds.
+
+    Raises
+    ------
+    InputError
+        If another block holds one of them.
+    """
+    where = f"{block.path}, line {block.first}"
+    for key in ((pair[0].dof, pair[0].reference) for pair in pairs):
+        if key in found:
+            raise InputError(
+                f"{where}: FRF {key[0]}/{key[1]} is in {found[key]} already; say in {layout.source} by a [[file]] rule "
+                "for each file which node was hit there (or seen: column = ...)"
+            )
+        found[key] = where
 
 
 def _complex(column: Column, one: FloatArray, two: FloatArray) -> ComplexArray:

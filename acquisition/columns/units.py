@@ -41,7 +41,7 @@ _TABLES = {
     "velocity": _VELOCITIES,
     "displacement": _LENGTHS,
 }
-_RESPONSES = {"accelerance": "acceleration", "mobility": "velocity", "receptance": "displacement"}
+RESPONSES = {"accelerance": "acceleration", "mobility": "velocity", "receptance": "displacement"}
 
 
 def factor_to_si(unit: str, quantity: str, where: str) -> float:
@@ -67,9 +67,9 @@ def factor_to_si(unit: str, quantity: str, where: str) -> float:
     text = text.replace("/s/s", "/s2").replace("m/sec", "m/s")
     if text in ("", "1/kg") and (not text or quantity == "accelerance"):
         return 1.0
-    if quantity in _RESPONSES:
+    if quantity in RESPONSES:
         response, _, force = text.rpartition("/")
-        return factor_to_si(response, _RESPONSES[quantity], where) / factor_to_si(force, "force", where)
+        return factor_to_si(response, RESPONSES[quantity], where) / factor_to_si(force, "force", where)
     table = _TABLES[quantity]
     if text not in table:
         raise InputError(

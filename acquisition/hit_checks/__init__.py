@@ -1,9 +1,11 @@
 """What the records of a hit show: its pulse, a second hit, overload, a channel gone dead, an outlier."""
 
+from acquisition.hit_checks.broken import why_broken
 from acquisition.hit_checks.dropout import dead_from, dropouts, left_at_end
 from acquisition.hit_checks.outliers import agreement, odd_responses, unexplained
 from acquisition.hit_checks.overload import at_common_limit, clipped, flat_pulse, flat_waves
 from acquisition.hit_checks.pulse import force_bands, noise_level, pulse_ends, pulse_width, upright
+from acquisition.hit_checks.ringing import pushes
 from acquisition.hit_checks.second import second_hits
 
 __all__ = [
@@ -20,7 +22,9 @@ __all__ = [
     "odd_responses",
     "pulse_ends",
     "pulse_width",
+    "pushes",
     "second_hits",
     "unexplained",
     "upright",
+    "why_broken",
 ]

@@ -31,7 +31,8 @@ def _constant_from(records: FloatArray) -> FloatArray:
     index = np.clip(last[..., None] - np.arange(1, span + 1), 0, length - 1)
     before = np.take_along_axis(size, index, axis=-1).max(axis=-1)
     alive = before <= np.maximum(1e-3 * size.max(axis=-1), 3 * step)  # died away, or into the last bits
-    return np.asarray(np.where(alive | (last > 0.98 * length), 1.0, last / length), dtype=np.float64)
+    to_the_end = last > min(0.98 * length, length - 3)
+    return np.asarray(np.where(alive | to_the_end, 1.0, last / length), dtype=np.float64)
 
 
 def _silent_from(records: FloatArray) -> FloatArray:

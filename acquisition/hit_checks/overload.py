@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.ndimage
-import scipy.signal
 
 from acquisition.arrays import BoolArray, FloatArray
 from acquisition.hit_checks.pulse import noise_level, pulse_width
@@ -81,9 +80,11 @@ def flat_waves(record: FloatArray) -> bool:
     record : (n_samples,) array
         Response record [any].
     """
+    from scipy.signal import find_peaks  # late: it brings all of scipy.stats along
+
     centred = record - record.mean()
     size = np.abs(centred)
-    tops, _ = scipy.signal.find_peaks(size, height=0.85 * size.max(), distance=3)
+    tops, _ = find_peaks(size, height=0.85 * size.max(), distance=3)
     if len(tops) < 4:
         return False
     swings = {start: rest for start, *rest in (_swing(centred, int(top)) for top in tops[:40])}

@@ -37,6 +37,21 @@ def ringing_period(wave: FloatArray) -> float:
     return 2 * lobe if lobe <= LONGEST * max(width, 2.0) else 0.0
 
 
+def pushes(wave: FloatArray, rate: float) -> tuple[FloatArray, float]:
+    """Return a force without the ringing of a filter, and the rate at which it is now sampled [Hz].
+
+    Parameters
+    ----------
+    wave : (n_samples,) array
+        Force record, pulse upwards and without offset [N].
+    rate : float
+        Its sampling rate [Hz].
+    """
+    period = ringing_period(wave)
+    clean, factor = without_ringing(wave, period) if period else (wave, 1)
+    return clean, rate * factor
+
+
 def without_ringing(wave: FloatArray, period: float) -> tuple[FloatArray, int]:
     """Return the wave averaged twice over a period of its ringing, and the factor of samples it now has.
 

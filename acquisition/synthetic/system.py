@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, frozen_array
+from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 
 
 @dataclass(frozen=True, eq=False)
-class ModalSystem:
+class ModalSystem(Displayed):
     """Poles and residues of a linear structure, H(s) = sum_r R_r / (s - p_r) + conj(R_r) / (s - conj(p_r)).
 
     The residues hold between the listed degrees of freedom as they point: whoever lists a transducer in -z

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import pandas as pd
 
+from acquisition.display import Displayed
 from acquisition.frf import FrfSet
 from acquisition.geometry import Geometry
 from acquisition.hammer import HammerTest
@@ -21,7 +22,7 @@ class DatasetInfo:
     file : str
         Name of the file.
     number : int
-        Data set number.
+        Data set number; 0 for what has none that can be read.
     kind : str
         What it is, in words.
     line : int
@@ -32,6 +33,8 @@ class DatasetInfo:
         Whether it was read.
     message : str
         What is wrong with it or odd about it; empty if nothing.
+    unused : str
+        What it is called in the list of what is not used, in the plural; empty if it is used.
     """
 
     file: str
@@ -41,15 +44,18 @@ class DatasetInfo:
     description: str
     ok: bool = True
     message: str = ""
+    unused: str = ""
 
     @property
     def place(self) -> str:
         """File, data set and line, for messages."""
+        if self.number == 0:
+            return f"{self.file}, line {self.line}"
         return f"{self.file}, data set {self.number} at line {self.line}"
 
 
 @dataclass(frozen=True, eq=False)
-class UffContent:
+class UffContent(Displayed):
     """Everything that one test's universal files hold, in SI units.
 
     Parameters
@@ -84,3 +90,8 @@ class UffContent:
             [[d.file, d.line, d.number, d.kind, d.description, d.ok, d.message] for d in self.datasets],
             columns=["file", "line", "data set", "kind", "description", "ok", "message"],
         )
+
+    def _headline(self) -> str:
+        held = [f"{len(self.geometry.nodes)} nodes"] if self.geometry.nodes else []
+        held += [part._headline() for part in (*self.tests, self.frfs, self.modal) if part is not None]
+        return f"{self.title or 'no title'}: {'; '.join(held) or 'nothing that can be used'}"

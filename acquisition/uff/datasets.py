@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from hashlib import blake2b
 from typing import IO
 
 from acquisition.arrays import IntArray
@@ -14,7 +14,7 @@ from acquisition.uff.content import DatasetInfo
 from acquisition.uff.header58 import parse_header
 from acquisition.uff.lines import read_lines
 from acquisition.uff.measurements import FUNCTION_TYPES, Measurement, described, measure
-from acquisition.uff.mode_sets import ModeSet, read_mode
+from acquisition.uff.mode_sets import ModeSet, SigmaSet, read_mode, read_sigma, same_shape
 from acquisition.uff.nodes import NodeSet
 from acquisition.uff.source import Source
 from acquisition.uff.systems import System, read_systems
@@ -49,9 +49,10 @@ class Finds:
     nodes: list[NodeSet] = field(default_factory=list)
     lines: list[IntArray] = field(default_factory=list)
     modes: list[ModeSet] = field(default_factory=list)
+    sigmas: dict[int, list[SigmaSet]] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
     systems: dict[int, System] = field(default_factory=dict)
-    seen_modes: dict[bytes, int] = field(default_factory=dict)
+    seen_modes: dict[tuple[float, ...], list[ModeSet]] = field(default_factory=dict)
     title: str = ""
     files: int = 0
 
@@ -101,7 +102,7 @@ def read_file(source: Source, finds: Finds, spool: IO[bytes], checked: Callable[
         If the file holds no data set.
     """
     blocks = list(split_blocks(source))
-    if not blocks:
+    if not any(block.number for block in blocks):
         raise InputError(
             f"{source.name}: no data set found; a universal file has '    -1' lines around each data set, "
             "export the test as one"
@@ -117,7 +118,8 @@ def read_file(source: Source, finds: Finds, spool: IO[bytes], checked: Callable[
     done = 0
     for block, unit in zip(blocks, units, strict=True):
         here = _Here(source, block, unit, spool)
-        info = DatasetInfo(source.name, block.number, KINDS.get(block.number, "not used"), block.line, "")
+        kind = "unreadable" if block.fault else KINDS.get(block.number, "not used")
+        info = DatasetInfo(source.name, block.number, kind, block.line, "")
         try:
             finds.infos.append(_read_block(here, info, finds))
         except InputError as error:
@@ -125,6 +127,13 @@ def read_file(source: Source, finds: Finds, spool: IO[bytes], checked: Callable[
         source.passed(done, block.stop)
         checked(block.stop - done)
         done = block.stop
+    finds.warnings += _unused(source.name, [i.unused for i in finds.infos[-len(blocks) :] if i.unused])
+
+
+def _unused(name: str, kinds: Sequence[str]) -> list[str]:
+    """Say in one line what a file holds that is not used."""
+    listed = "; ".join(f"{count} {kind}" for kind, count in Counter(kinds).items())
+    return [f"{name}: not used: {listed}"] if listed else []
 
 
 def without_copies(records: Sequence[Measurement]) -> tuple[list[Measurement], list[str]]:
@@ -168,10 +177,13 @@ def _running(stated: Sequence[Units | None], current: Units) -> Iterator[Units]:
 
 def _read_block(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
     number = here.block.number
+    if here.block.fault:
+        raise InputError(here.block.fault)
     if number == 58:
         return _read_58(here, info, finds)
     if number == 164:
         found, remark = read_units(here.body)
+        remark = remark if here.block.closed else "its closing delimiter -1 is missing"
         plain = found.length == 1 and found.force == 1
         text = "SI" if plain else f"1 m = {found.length:g}, 1 N = {found.force:g} in the file's units"
         return replace(info, description=text, message=remark)
@@ -194,7 +206,7 @@ def _read_block(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
         title = "" if title.upper() == "NONE" else title
         finds.title = finds.title or title
         return replace(info, description=title)
-    return replace(info, description="present, not used")
+    return replace(info, description="present, not used", unused=f"data sets {number}")
 
 
 def _read_nodes(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
@@ -207,17 +219,27 @@ def _read_nodes(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
 
 
 def _read_mode(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
-    body = here.body
-    mode = read_mode(here.block.number, body, here.units, here.place, finds.files)
+    sigma = read_sigma(here.body) if here.block.number == 55 else None
+    if sigma is not None:
+        finds.sigmas.setdefault(finds.files, []).append(sigma)
+        return replace(
+            info, kind="shape sigma", description=f"of mode {sigma.mode}, {len(sigma.nodes)} nodes"
+        )
+    mode = read_mode(here.block.number, here.body, here.units, here.place, finds.files)
     if mode is None:
-        return replace(info, description="no mode at nodes, present, not used")
+        return replace(
+            info,
+            description="no mode at nodes, present, not used",
+            unused=f"data sets {here.block.number} that hold no mode at nodes",
+        )
     text = (
         f"complex mode, {mode.eigenvalue:.6g}" if mode.is_complex else f"normal mode, {mode.frequency:.6g} Hz"
     )
     info = replace(info, kind="modes", description=f"{text}, {len(mode.nodes)} nodes")
-    key = blake2b(body, digest_size=16).digest()
-    if finds.seen_modes.setdefault(key, finds.files) != finds.files:
-        return replace(info, message="the same mode stands in an earlier file; it counts once")
+    twin = next((known for known in finds.seen_modes.get(mode.key, ()) if same_shape(mode, known)), None)
+    if twin is not None:
+        return replace(info, message=f"the same mode stands in {twin.place}; it counts once")
+    finds.seen_modes.setdefault(mode.key, []).append(mode)
     finds.modes.append(mode)
     return info
 
@@ -229,7 +251,7 @@ def _read_58(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
     text = f"{header.response} / {header.reference}, {header.points} points"
     info = replace(info, kind=kind, description=text, message="; ".join(located.notes))
     if header.function_type not in USED:
-        return replace(info, description=text + ", present, not used")
+        return replace(info, description=text + ", present, not used", unused=f"functions 58 of type {kind}")
     order = len(finds.records)
     record, notes = measure(
         located, here.units, here.place, file=finds.files, order=order, digest=finds.several
@@ -240,7 +262,7 @@ def _read_58(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
 
 def _broken(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
     """Keep the place of a broken time record in the count of hits, if its header can be read."""
-    if here.block.number != 58:
+    if here.block.number not in (0, 58):
         return info
     start = here.block.start
     try:

@@ -7,18 +7,17 @@ from dataclasses import dataclass
 
 from acquisition.dof import Dof
 from acquisition.errors import InputError
+from acquisition.uff.id_lines import averages_of, decay_of, hit_of, stamp_of
 
 _NAME = re.compile(r"\W*(\d+)\W*?([+-]?)([XYZ])([+-]?)\W*$", re.IGNORECASE)
-_AVERAGES = re.compile(r"averages\s*[:=]?\s*(\d+)", re.IGNORECASE)
-_DECAY = re.compile(r"exponential window decay\s*[:=]?\s*([-+.\deE]+)", re.IGNORECASE)
-_STAMP = re.compile(r"\b\d{1,2}:\d{2}:\d{2}(?:[.,]\d+)?\b")
-_NUMBERED = re.compile(
-    r"\b(?:hit|impact|blow|shot|strike|stroke)\s*(?:no\.?|nr\.?|number)?\s*[:=#]?\s*(\d{1,6})\b",
-    re.IGNORECASE,
-)
+# a number as programs print it: one digit before the point if there is an exponent
+_PRINTED = re.compile(r"[+-]?(?:\d\.\d*+[eEdD][+-]?\d++|\d++(?:\.\d*+)?)")
 # where the fields of records 6, 7 and 8 to 11 end
 IDENTITY = (5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
 FORM = (10, 20, 30, 43, 56, 69)
+_NAMED = (0, 5, 6, 8, 9)  # of these, type, nodes and directions, which no program leaves blank
+_LONGEST = 200  # characters of a field, as of the last column
+_WHOLE = (0, 1, 2, 3, 5, 6, 8, 9)  # the fields of record 6 that are whole numbers
 AXIS = (10, 15, 20, 25, 46, 200)
 PRECISION = {2: (False, 4), 4: (False, 8), 5: (True, 4), 6: (True, 8)}
 
@@ -60,6 +59,8 @@ class Header58:
         Half a unit in the last printed place of ``increment``.
     abscissa, ordinate, denominator : Axis
         Records 8, 9 and 10.
+    odd : tuple of str
+        Fields that do not fill their columns.
     """
 
     title: tuple[str, ...]
@@ -76,29 +77,32 @@ class Header58:
     abscissa: Axis
     ordinate: Axis
     denominator: Axis
+    odd: tuple[str, ...] = ()
 
     @property
     def decay(self) -> float:
         """Decay of an exponential window that the ID lines speak of [1/s]."""
-        found = _DECAY.search(" ".join(self.title))
-        return float(found[1]) if found else 0.0
+        return decay_of(self.title)[0]
 
     @property
     def averages(self) -> int:
         """Number of averages that the ID lines speak of, 0 if they do not."""
-        found = _AVERAGES.search(" ".join(self.title))
-        return int(found[1]) if found else 0
+        return averages_of(self.title)[0]
+
+    @property
+    def notes(self) -> list[str]:
+        """What is odd about the header and had to be assumed."""
+        return [note for note in (*self.odd, decay_of(self.title)[1], averages_of(self.title)[1]) if note]
 
     @property
     def hit(self) -> str:
         """Number of the hit that the ID lines speak of; empty if they do not."""
-        found = _NUMBERED.search(" ".join(self.title))
-        return found[1] if found else ""
+        return hit_of(self.title)
 
     @property
     def stamp(self) -> str:
         """ID line with the time of day; empty if there is none."""
-        return next((line for line in self.title if _STAMP.search(line)), "")
+        return stamp_of(self.title)
 
 
 def parse_header(raw: bytes) -> Header58:
@@ -118,7 +122,10 @@ def parse_header(raw: bytes) -> Header58:
         raise InputError(f"ordinate data type {ordinate} does not exist (2, 4, 5 or 6 are known)")
     if points <= 0:
         raise InputError(f"it announces {points} points")
-    even = _whole(form[2]) == 1
+    spacing = _whole(form[2])
+    if spacing not in (0, 1):
+        raise InputError(f"abscissa spacing {spacing} does not exist (0 uneven and 1 even are known)")
+    even = spacing == 1
     step = _real(form[4])
     if even and not 1e-12 < step < 1e12:
         raise InputError(f"the abscissa has an increment of {step:g}")
@@ -138,6 +145,7 @@ def parse_header(raw: bytes) -> Header58:
         abscissa=axes[0],
         ordinate=axes[1],
         denominator=axes[2],
+        odd=_odd(lines),
     )
 
 
@@ -152,8 +160,33 @@ def _fields(line: str, ends: tuple[int, ...]) -> list[str]:
     """Cut a line at its columns or, where tabs stand in it, at blanks."""
     words = line.split()
     if "\t" in line:
-        return (words + [""] * len(ends))[: len(ends)]
+        return ([word[:_LONGEST] for word in words] + [""] * len(ends))[: len(ends)]
     return [line[a:b] for a, b in zip((0, *ends), ends, strict=False)]
+
+
+def _odd(lines: list[str]) -> tuple[str, ...]:
+    """Say which fields of the header do not fill their columns: a character may be lost there."""
+    wrong: list[str] = []
+    for line, ends, whole in ((lines[5], IDENTITY, _WHOLE), (lines[6], FORM, (0, 1, 2)), *_axis_lines(lines)):
+        fields = _fields(line, ends)
+        if "\t" in line:
+            wrong += [line.strip()[:40]] if len(line.split()) != len(ends) else []
+            continue
+        given = [fields[i] for i in whole if not fields[i].rstrip().endswith(".")]
+        wrong += [field for field in given if field.strip() and field != field.rstrip()]
+        wrong += [""] if line is lines[5] and any(not fields[i].strip() for i in _NAMED) else []
+    reals = [field for field in _fields(lines[6], FORM)[3:] if field.strip()] if "\t" not in lines[6] else []
+    wrong += [field for field in reals if _PRINTED.fullmatch(field.strip()) is None]
+    ends_at = [len(field) - len(field.rstrip()) for field in reals]
+    wrong += [field for field, gap in zip(reals, ends_at, strict=True) if gap != min(ends_at)]
+    return tuple(
+        f"{field.strip()!r} in its header does not fill its column: a character may be lost"
+        for field in dict.fromkeys(wrong)
+    )
+
+
+def _axis_lines(lines: list[str]) -> list[tuple[str, tuple[int, ...], tuple[int, ...]]]:
+    return [(line, AXIS, (0, 1, 2, 3)) for line in lines[7:10]]
 
 
 def _whole(field: str) -> int:

@@ -25,8 +25,8 @@ Read = Callable[[Measurement, AnyArray], None]
 
 def assemble_tests(
     records: Sequence[Measurement], geometry: Geometry, source: str, read: Read
-) -> tuple[tuple[HammerTest, ...], list[str]]:
-    """Return hammer tests from time records, and what had to be left out.
+) -> tuple[tuple[HammerTest, ...], list[str], dict[str, str]]:
+    """Return hammer tests from time records, what had to be left out, and which hit was by place of a broken record.
 
     Parameters
     ----------
@@ -41,6 +41,7 @@ def assemble_tests(
         Writes the values of a record to a place in memory.
     """
     warnings: list[str] = []
+    broken: dict[str, str] = {}
     forces, motions = _sorted_out(records, warnings)
     plans: dict[_Key, list[list[Hit]]] = defaultdict(list)
     for reference, shocks in forces.items():
@@ -50,7 +51,7 @@ def assemble_tests(
         for form in dict.fromkeys(m.quantity for list_ in answers.values() for m in list_):
             same = {d: [m for m in list_ if m.quantity == form] for d, list_ in answers.items()}
             for key, hits in _groups(
-                reference, shocks, {d: v for d, v in same.items() if v}, warnings, source
+                reference, shocks, {d: v for d, v in same.items() if v}, (warnings, broken), source
             ):
                 plans[key].append(hits)
     tests = []
@@ -59,7 +60,7 @@ def assemble_tests(
             tests.append(_test(key, points, geometry, source, read))
         except InputError as error:
             warnings.append(str(error))
-    return tuple(tests), warnings
+    return tuple(tests), warnings, broken
 
 
 def _test(key: _Key, points: list[list[Hit]], geometry: Geometry, source: str, read: Read) -> HammerTest:
@@ -112,10 +113,11 @@ def _groups(
     reference: Dof,
     shocks: Sequence[Measurement],
     answers: dict[Dof, list[Measurement]],
-    warnings: list[str],
+    remarks: tuple[list[str], dict[str, str]],
     source: str,
 ) -> Iterable[tuple[_Key, list[Hit]]]:
     """Return the hits at one point, one group for each set of responses, rate, length and window."""
+    warnings, broken = remarks
     hits, uncertain = pair_up(shocks, answers)
     if uncertain:
         told = ", ".join(f"{len(list_)} at {dof}" for dof, list_ in answers.items())
@@ -124,7 +126,12 @@ def _groups(
     groups: dict[tuple[frozenset[Dof], float, int, float], list[Hit]] = defaultdict(list)
     for hit in hits:
         dofs = frozenset(hit.motion)
-        trouble = _missing(dofs, whole) or _trouble([hit.force, *hit.motion.values()])
+        records = [hit.force, *hit.motion.values()]
+        spoilt = next((m.place for m in records if m.values is None), "")
+        if spoilt and not _missing(dofs, whole):
+            broken[spoilt] = f"hit {hit.number} at {reference}"
+            continue
+        trouble = _missing(dofs, whole) or _trouble(records)
         if trouble:
             warnings.append(f"{source}: hit {hit.number} at {reference} is left out: {trouble}")
             continue
@@ -158,9 +165,6 @@ def _step_of(steps: Iterable[float], record: Measurement) -> float:
 
 def _trouble(records: Sequence[Measurement]) -> str:
     """Say why the records of a hit do not form one; empty if they do."""
-    broken = [m.place for m in records if m.values is None]
-    if broken:
-        return f"{broken[0]} is broken"
     lengths = {m.points for m in records}
     if len(lengths) > 1:
         return f"its records have different lengths {sorted(lengths)}"

@@ -8,6 +8,7 @@ import numpy as np
 
 from acquisition.arrays import IntArray
 from acquisition.errors import InputError
+from acquisition.uff.text_columns import check_columns
 from acquisition.uff.values58 import numbers_of
 
 _BEAMS = (11, 21, 22, 23, 24)
@@ -47,13 +48,16 @@ def _trace(body: bytes) -> tuple[list[tuple[int, int]], str]:
     if len(header) < 2 or header[1] < 0 or not nodes:
         raise InputError("data set 82: number of nodes or nodes missing")
     count = header[1]
-    remark = f"it announces {count} nodes and holds {len(nodes)}" if count > len(nodes) else ""
+    check_columns(lines[2])
+    wrong = count > len(nodes) or (count and any(nodes[count:]))
+    remark = f"it announces {count} nodes and holds {len(nodes)}" if wrong else ""
     nodes = nodes[:count] if count else nodes
     return [(a, b) for a, b in pairwise(nodes) if a > 0 and b > 0], remark
 
 
 def _elements(body: bytes) -> tuple[list[tuple[int, int]], str]:
     entries = _whole(body, 2412)
+    check_columns(body)
     pairs: list[tuple[int, int]] = []
     strange: set[int] = set()
     at = 0

@@ -32,6 +32,8 @@ FUNCTION_TYPES = {
     12: "spectrum",
     25: "orders",
 }
+# The largest value that can be meant [SI]: its square must not overflow. Doubling it changes nothing.
+LARGEST = 1e100
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +175,7 @@ def described(
         single=header.function_type == 1 and header.item_size == 4,
         density=density,
     )
-    return found, notes
+    return found, [*header.notes, *notes]
 
 
 def _checked(located: Located, found: Measurement, minimum: float, digest: bool) -> bytes:
@@ -190,14 +192,16 @@ def _checked(located: Located, found: Measurement, minimum: float, digest: bool)
         if factor != 1 or values.dtype != dtype:
             scaled = np.empty_like(values, dtype=dtype)
             put(scaled, values, factor)
-        good = np.isfinite(scaled)
-        if not good.all():
+        plain = scaled.view(scaled.real.dtype)
+        if not max(float(plain.max()), -float(plain.min())) < LARGEST:  # nan is not either
+            good = np.abs(scaled).astype(np.float64) < LARGEST
             bad = np.flatnonzero(~good) + first
             first_bad = int(bad[0]) if first_bad < 0 else first_bad
             total += len(bad)
     if total and not (spare_first and total == 1 and first_bad == 0):
         raise InputError(
-            f"{total} of its {located.header.points} values are not finite, the first at point {first_bad + 1}"
+            f"{total} of its {located.header.points} values are not finite or too large to be meant, "
+            f"the first at point {first_bad + 1}"
         )
     return sum_.digest() if digest else b""
 

@@ -9,14 +9,32 @@ import numpy as np
 
 from acquisition.arrays import AnyArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import InputError
+from acquisition.uff.id_lines import LENGTH
+from acquisition.uff.text_columns import check_columns, check_digits
 from acquisition.uff.units import Units
 from acquisition.uff.values58 import numbers_of
 
+# How far the MAC of a mode with its copy, printed with five digits, may be from 1. Doubling it changes nothing: the
+# shapes of different modes at the very same frequency are far apart.
+_ROUNDING = 1e-6
 NORMAL, COMPLEX = 2, (3, 7)
-_HERTZ = re.compile(r"(?:FR\s*=\s*|\b)([\d.]+(?:[eE][-+]?\d+)?)\s*(?:Hz\b|:d=)", re.IGNORECASE)
-_DAMPING = re.compile(r"damping ratio\s*[:=]?\s*([\d.]+(?:[eE][-+]?\d+)?)", re.IGNORECASE)
-_SIGMA = re.compile(r"(?<!damping )sigma\s*[:=]?\s*([\d.]+(?:[eE][-+]?\d+)?)\s*Hz\b", re.IGNORECASE)
-_DAMPING_SIGMA = re.compile(r"damping sigma\s*[:=]?\s*([\d.]+(?:[eE][-+]?\d+)?)", re.IGNORECASE)
+_AMOUNT = r"((?<![\d.])[\d.]{1,40}(?:[eE][-+]?\d{1,4})?+)\s*+"
+_HERTZ = re.compile(rf"{_AMOUNT}(?:Hz\b|:d=)", re.IGNORECASE)
+_DAMPING = re.compile(rf"damping ratio\s*+[:=]?\s*+{_AMOUNT}", re.IGNORECASE)
+_SIGMA = re.compile(rf"(?<!damping )sigma\s*+[:=]?\s*+{_AMOUNT}Hz\b", re.IGNORECASE)
+_DAMPING_SIGMA = re.compile(rf"damping sigma\s*+[:=]?\s*+{_AMOUNT}", re.IGNORECASE)
+_OF_SHAPE = re.compile(rf"shape sigma of mode (\d{{1,6}}): {_AMOUNT}Hz\s*")
+_SIGMAS = re.compile(r"(?<!\w)sigma\s*+[:=]?\s*+\S{1,40}+\s*+Hz", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class SigmaSet:
+    """Standard deviations of one mode's shape: its number and frequency [Hz], nodes (n,), values (n, 6) [as shapes]."""
+
+    mode: int
+    frequency: float
+    nodes: IntArray
+    values: FloatArray
 
 
 @dataclass(frozen=True)
@@ -73,6 +91,25 @@ class ModeSet:
         """Whether an eigenvalue is stated."""
         return self.eigenvalue != 0
 
+    @property
+    def key(self) -> tuple[float, ...]:
+        """What a mode that stands twice has in common: frequency, damping or eigenvalue, and those of the ID lines."""
+        stated = (
+            (self.eigenvalue.real, self.eigenvalue.imag)
+            if self.is_complex
+            else (self.frequency, self.damping)
+        )
+        return (*stated, *np.nan_to_num([self.told.frequency, self.told.damping]).tolist())
+
+
+def same_shape(one: ModeSet, other: ModeSet) -> bool:
+    """Tell whether two modes have the same nodes and, but for a factor, the same shape."""
+    if not np.array_equal(one.nodes, other.nodes):
+        return False
+    across = abs(np.vdot(one.shape, other.shape)) ** 2
+    squares = np.vdot(one.shape, one.shape).real * np.vdot(other.shape, other.shape).real
+    return bool(across >= (1 - _ROUNDING) * squares)
+
 
 def read_mode(number: int, body: bytes, units: Units, place: str, file: int) -> ModeSet | None:
     """Read one data set 55 or 2414 of a normal (2) or complex mode (3, 7); None if it holds something else.
@@ -99,8 +136,29 @@ def read_mode(number: int, body: bytes, units: Units, place: str, file: int) -> 
         )
     reals, rest = _parameters55(lines) if number == 55 else _parameters2414(lines)
     nodes, shape = _shape(b"\n".join(rest), width, is_complex=data_type > 4)
-    told = _told(b" ".join(lines[first : first + 5]).decode("latin-1"))
+    told = _told(b" ".join(line[:LENGTH] for line in lines[first : first + 5]).decode("latin-1"))
     return _mode(analysis, reals, (place, file), (nodes, shape), told, units)
+
+
+def read_sigma(body: bytes) -> SigmaSet | None:
+    """Read the standard deviations of a shape from a data set 55 of unknown analysis type; None if it holds others.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read.
+    """
+    lines = body.splitlines()
+    found = _OF_SHAPE.match(lines[0][:LENGTH].decode("latin-1")) if lines else None
+    if found is None:
+        return None
+    kinds = _integers(lines[5]) if len(lines) > 8 else []
+    if len(kinds) != 6 or kinds[4] != 2 or kinds[5] not in (3, 6):
+        raise InputError("its standard deviations are cut off or garbled")
+    nodes, values = _shape(b"\n".join(lines[8:]), kinds[5], is_complex=False)
+    if np.any(values.real < 0):
+        raise InputError("it holds standard deviations below zero")
+    return SigmaSet(int(found[1]), float(found[2]), nodes, values.real.copy())
 
 
 def _parameters55(lines: list[bytes]) -> tuple[dict[str, float], list[bytes]]:
@@ -110,6 +168,11 @@ def _parameters55(lines: list[bytes]) -> tuple[dict[str, float], list[bytes]]:
     values, used = numbers_of(lines[7]), 8
     while 6 <= len(values) < wanted and used < len(lines):
         values, used = np.concatenate([values, numbers_of(lines[used])]), used + 1
+    check_digits(b"\n".join(lines[7:used]))
+    if len(values) != wanted and len(counts) > 1:
+        raise InputError(
+            f"its record 8 holds {len(values)} numbers and record 7 announces {wanted}: one is lost or broken in two"
+        )
     values = np.concatenate([values, np.zeros(6)])
     normal = ("frequency", "mass", "damping")
     complex_ = ("re", "im", "a_re", "a_im", "b_re", "b_im")
@@ -120,7 +183,8 @@ def _parameters55(lines: list[bytes]) -> tuple[dict[str, float], list[bytes]]:
 def _parameters2414(lines: list[bytes]) -> tuple[dict[str, float], list[bytes]]:
     """Return the parameters of records 12 and 13 by name, and the lines behind them."""
     first, second = numbers_of(lines[11]), numbers_of(lines[12])
-    if len(first) < 6 or len(second) < 6:
+    check_digits(lines[11] + b"\n" + lines[12])
+    if len(first) != 6 or len(second) != 6:
         raise InputError("its real parameters (records 12 and 13) are incomplete")
     values = [*first[:6].tolist(), *second[:6].tolist()]
     names = ("time", "frequency", "eigenvalue", "mass", "damping", "hysteretic")
@@ -165,6 +229,8 @@ def _shape(text: bytes, width: int, *, is_complex: bool) -> tuple[IntArray, Comp
         raise InputError(
             f"its shape holds {len(numbers)} numbers, not a multiple of {columns}: it is cut off or garbled"
         )
+    check_columns(text)
+    check_digits(text)
     table = numbers.reshape(-1, columns)
     labels = table[:, 0]
     if not np.isfinite(table).all() or np.any(labels % 1) or np.any(np.abs(labels) > 1e15):
@@ -195,7 +261,7 @@ def _told(text: str) -> Told:
         except ValueError:
             return np.nan
 
-    plain = re.sub(r"sigma\s*[:=]?\s*\S+\s*Hz", "", text, flags=re.IGNORECASE)
+    plain = _SIGMAS.sub("", text)
     hertz = _HERTZ.search(plain)
     try:
         frequency = float(hertz[1]) if hertz else np.nan

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray
+from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.dof import Dof
 from acquisition.geometry import Geometry
 from acquisition.modal_data import ModalData
-from acquisition.uff.mode_sets import ModeSet
+from acquisition.uff.mode_sets import ModeSet, SigmaSet
 
 
 @dataclass(frozen=True, eq=False)
 class Mode:
     """One mode: its data set, its pole [rad/s], whether damping is stated, shape in SI, whether mass-normalised.
 
-    ``hertz`` tells whether its eigenvalue was taken for (damping, frequency) in Hz.
+    ``hertz`` tells whether its eigenvalue was taken for (damping, frequency) in Hz; ``scale`` (6,) is what the shape
+    of the file was multiplied by; ``sigma`` (n, 6) its standard deviations, where they are given.
     """
 
     stated: ModeSet
@@ -28,9 +29,13 @@ class Mode:
     damped: bool
     shape: ComplexArray
     scaled: bool
+    scale: ComplexArray
+    sigma: FloatArray | None = None
 
 
-def solve_modes(sets: Sequence[ModeSet]) -> tuple[list[Mode], list[str]]:
+def solve_modes(
+    sets: Sequence[ModeSet], sigmas: Mapping[int, Sequence[SigmaSet]] | None = None
+) -> tuple[list[Mode], list[str]]:
     """Return modes with poles in rad/s, and what had to be assumed.
 
     Complex eigenvalues come as (real, imaginary) in rad/s or as (damping, frequency) in Hz. The frequency in the
@@ -42,8 +47,33 @@ def solve_modes(sets: Sequence[ModeSet]) -> tuple[list[Mode], list[str]]:
         members = list(group)
         hertz, remark = _in_hertz([s for s in members if s.is_complex])
         remarks += [remark] if remark else []
-        modes += [_solved(s, hertz=hertz) for s in members]
+        solved = [_solved(s, hertz=hertz) for s in members]
+        with_sigma, lost = _with_sigmas(solved, (sigmas or {}).get(members[0].file, ()))
+        modes += with_sigma
+        remarks += lost
+    if len({mode.scaled for mode in modes}) > 1:
+        bare = next(mode for mode in modes if not mode.scaled)
+        remarks.append(
+            f"{bare.stated.place}: it states no modal mass and others do: no shape counts as mass-normalised"
+        )
     return modes, remarks
+
+
+def _with_sigmas(modes: Sequence[Mode], sigmas: Sequence[SigmaSet]) -> tuple[list[Mode], list[str]]:
+    """Return the modes of a file with the standard deviations of their shapes, and what belongs to none."""
+    waiting, out = list(sigmas), []
+    for mode in modes:
+        hertz = abs(mode.pole) / (2 * np.pi)
+        own = next((s for s in waiting if abs(s.frequency / hertz - 1) < 1e-9 and _same(s, mode)), None)
+        if own is not None:
+            waiting.remove(own)
+        out.append(replace(mode, sigma=None if own is None else own.values * np.abs(mode.scale)))
+    where = modes[0].stated.place if modes else ""
+    return out, [f"{where}: shape sigma of mode {s.mode} belongs to no mode of its file" for s in waiting]
+
+
+def _same(sigma: SigmaSet, mode: Mode) -> bool:
+    return np.array_equal(sigma.nodes, mode.stated.nodes)
 
 
 def describe(mode: Mode) -> str:
@@ -104,14 +134,14 @@ def _solved(mode: ModeSet, *, hertz: bool) -> Mode:
         pole = complex(-mode.damping * omega, omega * np.sqrt(1 - mode.damping**2))
     pole = _with_all_digits(mode, pole)
     mass = mode.mass if not mode.is_complex else mode.modal_a / (2j * pole.imag) if pole.imag else 0j
-    shape = mode.shape
+    scale = np.ones(6, dtype=np.complex128)
     if mass != 0:
-        scale = np.sqrt(mode.units.force / mode.units.length / np.complex128(mass))
-        shape = shape * scale * np.array([1, 1, 1, *[mode.units.length] * 3])
+        level = np.sqrt(mode.units.force / mode.units.length / np.complex128(mass))
+        scale = level * np.array([1, 1, 1, *[mode.units.length] * 3])
+    shape = mode.shape * scale
     damped = mode.is_complex or mode.damping > 0
-    return Mode(
-        mode, pole, hertz, damped and pole.real != 0, shape, bool(mass != 0 and np.isfinite(shape).all())
-    )
+    known = bool(mass != 0 and np.isfinite(shape).all())
+    return Mode(mode, pole, hertz, damped and pole.real != 0, shape, known, scale)
 
 
 def _with_all_digits(mode: ModeSet, pole: complex) -> complex:
@@ -133,6 +163,10 @@ def join_modes(modes: Sequence[Mode], geometry: Geometry) -> ModalData:
     table = np.zeros((len(nodes), 6, len(ordered)), dtype=np.complex128)
     for column, mode in enumerate(ordered):
         table[[row[n] for n in mode.stated.nodes.tolist()], :, column] = mode.shape
+    sigma = np.full((len(nodes), 6, len(ordered)), np.nan)
+    for column, mode in enumerate(ordered):
+        if mode.sigma is not None:
+            sigma[[row[n] for n in mode.stated.nodes.tolist()], :, column] = mode.sigma
     moving = np.argwhere(np.any(table != 0, axis=-1))
     poles = np.array([mode.pole for mode in ordered])
     return ModalData(
@@ -142,6 +176,12 @@ def join_modes(modes: Sequence[Mode], geometry: Geometry) -> ModalData:
         damping_sigma=np.array([m.stated.told.damping_sigma for m in ordered]),
         dofs=tuple(Dof(nodes[n], int(axis) + 1) for n, axis in moving),
         shapes=table[moving[:, 0], moving[:, 1]] if len(moving) else None,
+        shape_sigma=_known(sigma[moving[:, 0], moving[:, 1]]),
         scaled=all(mode.scaled for mode in ordered),
         geometry=geometry,
     )
+
+
+def _known(sigma: FloatArray) -> FloatArray | None:
+    """Return standard deviations; None unless every component has one."""
+    return sigma if sigma.size and np.isfinite(sigma).all() else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -37,6 +37,8 @@ class NodeSet:
         Coordinate systems of the same file, filled in while it is read.
     units : Units
         The file's units.
+    placed : dict
+        Those systems in global terms, kept as they are worked out.
     """
 
     number: int
@@ -47,6 +49,7 @@ class NodeSet:
     moving: IntArray
     systems: Mapping[int, System]
     units: Units
+    placed: dict[int, Placed | str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,11 +174,10 @@ def _find(one: NodeSet, label: int, rows: FloatArray, remarks: list[str]) -> Pla
     if label == 0 or (label not in one.systems and label == 1):
         return None
     try:
-        return place_system(one.systems, label)
+        return place_system(one.systems, label, one.placed)
     except InputError as error:
-        told = f"{one.place}: nodes {_named(one.nodes[rows].tolist())}: {error}; the global one is taken"
-        if told not in remarks:
-            remarks.append(told)
+        nodes = _named(one.nodes[rows].tolist())
+        remarks.append(f"{one.place}: nodes {nodes}: {error}; the global one is taken")
         return None
 
 

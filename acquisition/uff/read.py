@@ -144,16 +144,18 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
     remark = turned(nodes, [d for m in finds.records for d in (m.response, m.reference)])
     times = [m for m in records if m.function_type == 1]
     has_force = any(m.quantity == "force" for m in times)
-    tests, lost = assemble_tests(times, nodes.geometry, source, report.read) if has_force else ((), [])
+    tests, lost, broken = (
+        assemble_tests(times, nodes.geometry, source, report.read) if has_force else ((), [], {})
+    )
     if times and not has_force:
         count = f"{len(times)} time record" + ("s" if len(times) > 1 else "")
         lost = [f"{source}: {count} and no force among them: not used"]
     frfs, odd = assemble_frfs(records, nodes.geometry, source, report.read)
-    solved, doubts = solve_modes(finds.modes)
+    solved, doubts = solve_modes(finds.modes, finds.sigmas)
     modal = join_modes(solved, nodes.geometry) if solved else None
     taken = {m.stated.place: describe(m) for m in solved}
     infos = tuple(replace(info, description=taken.get(info.place, info.description)) for info in finds.infos)
-    told = [_told(info) for info in finds.infos if info.message and info.number]
+    told = [_told(info, broken.get(info.place)) for info in finds.infos if info.message and info.line]
     remarks = [remark] if remark else []
     warnings = dict.fromkeys(
         [*told, *finds.warnings, *copies, *nodes.remarks, *remarks, *lost, *odd, *doubts]
@@ -161,6 +163,8 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
     return UffContent(tests, frfs, modal, nodes.geometry, infos, tuple(warnings), finds.title)
 
 
-def _told(info: DatasetInfo) -> str:
-    end = "" if info.ok else "; it is left out, export it again if it is needed"
+def _told(info: DatasetInfo, hit: str | None) -> str:
+    """Say what is wrong with a data set, and which hit goes with it, in one line."""
+    left_out = "it is left out" if hit is None else f"it is left out and {hit} with it"
+    end = "" if info.ok else f"; {left_out}, export it again if it is needed"
     return f"{info.place}: {info.message}{end}"

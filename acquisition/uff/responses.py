@@ -126,4 +126,4 @@ def _variance(values: AnyArray, coherence: FloatArray | None, averages: IntArray
         return None
     safe = np.clip(coherence, 1e-12, 1.0)
     spread = (1 - safe) / (safe * (averages[:, None] - 1))
-    return np.asarray(np.abs(values) ** 2 * spread, dtype=np.float64)
+    return np.asarray(np.square(np.abs(values), dtype=np.float64) * spread, dtype=np.float64)

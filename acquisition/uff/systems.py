@@ -78,27 +78,56 @@ class Placed:
         return bool(self.kind == CARTESIAN and same)
 
 
-def place_system(systems: Mapping[int, System], label: int, seen: tuple[int, ...] = ()) -> Placed:
+def place_system(
+    systems: Mapping[int, System], label: int, placed: dict[int, Placed | str] | None = None
+) -> Placed:
     """Return a system in global terms, through the systems it is given in.
+
+    Parameters
+    ----------
+    systems : mapping
+        By label.
+    label : int
+        Which; 0 is the global one.
+    placed : dict, optional
+        Systems placed before, and why others could not be; it is added to.
 
     Raises
     ------
     InputError
         If a system is missing, given in itself, or its points lie on one line.
     """
-    if label == 0:
-        return Placed(CARTESIAN, np.zeros(3), np.eye(3))
-    if label in seen or label not in systems:
-        raise InputError(
-            f"coordinate system {label} is {'given in itself' if label in seen else 'not defined'}"
-        )
-    system = systems[label]
-    points = place_system(systems, system.reference, (*seen, label)).to_global(system.points)
+    known = {} if placed is None else placed
+    known.setdefault(0, Placed(CARTESIAN, np.zeros(3), np.eye(3)))
+    way: dict[int, None] = {}
+    current = label
+    while current not in known:
+        if current in way or current not in systems:
+            why = "given in itself" if current in way else "not defined"
+            known[current] = f"coordinate system {current} is {why}"
+            break
+        way[current] = None
+        current = systems[current].reference
+    for one in reversed(way):
+        reference = known[systems[one].reference]
+        known[one] = reference if isinstance(reference, str) else _placed(systems[one], one, reference)
+    found = known[label]
+    if isinstance(found, str):
+        raise InputError(found)
+    return found
+
+
+def _placed(system: System, label: int, reference: Placed) -> Placed | str:
+    """Return a system in global terms, where the one it is given in is, or why it has no place."""
+    try:
+        points = reference.to_global(system.points)
+    except InputError as error:
+        return str(error)
     first, second = points[1] - points[0], points[2] - points[0]
     across = np.cross(second, first)
     size = float(np.linalg.norm(first)), float(np.linalg.norm(across))
     if min(size) < 1e-9 * max(float(np.abs(points).max()), 1e-30):
-        raise InputError(f"coordinate system {label}: its points lie on one line")
+        return f"coordinate system {label}: its points lie on one line"
     x, y = first / size[0], across / size[1]
     return Placed(system.kind, points[0], _snapped(np.array([x, y, np.cross(x, y)])))
 

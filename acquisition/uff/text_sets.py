@@ -11,8 +11,11 @@ import pyuff
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import InputError
+from acquisition.uff.text_columns import check_columns, check_digits
 from acquisition.uff.units import Units, units_of
 from acquisition.uff.values58 import numbers_of
+
+_FACTORS = 4  # of length, force and temperature, and the offset of temperature
 
 
 def read_units(body: bytes) -> tuple[Units, str]:
@@ -27,9 +30,14 @@ def read_units(body: bytes) -> tuple[Units, str]:
     try:
         code = int(float(lines[0][:10] or 0))
         words = " ".join(lines[1:]).upper().replace("D", "E").split()
-        factors = [float(word) for word in words[:2]]
+        factors = [float(word) for word in words]
     except (ValueError, IndexError, OverflowError):
         raise InputError("data set 164 cannot be read: units code or factors are no numbers") from None
+    if len(factors) > _FACTORS:
+        raise InputError(
+            f"data set 164 holds {len(factors)} factors, {_FACTORS} at most are meant: one is broken in two"
+        )
+    check_digits("\n".join(lines[1:]).encode())
     length, force = (*factors, 0.0, 0.0)[:2]
     return units_of(code, length, force)
 
@@ -80,6 +88,8 @@ def read_nodes(number: int, body: bytes) -> tuple[IntArray, FloatArray]:
         raise InputError(
             f"data set {number} holds {len(entries)} entries, not a multiple of seven: it is cut off or garbled"
         )
+    check_columns(body)
+    check_digits(body)
     if len(body.split()) == len(entries):
         labels, coordinates = _nodes_of_pyuff(number, body)
     else:  # columns that touch, which pyuff does not part

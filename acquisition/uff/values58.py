@@ -13,15 +13,17 @@ import numpy as np
 
 from acquisition.arrays import AnyArray, FloatArray
 from acquisition.errors import InputError
-from acquisition.uff.blocks import Block, header_end
+from acquisition.uff.blocks import HEADER_LINES, Block, header_end
 from acquisition.uff.header58 import Header58, parse_header
 from acquisition.uff.source import Source
 from acquisition.uff.stored import Stored
+from acquisition.uff.text_columns import LineForms, form_of
 
 _TOUCHING = re.compile(rb"(?<=[\d.])(?=[+-])")
 _FORTRAN = re.compile(rb"[dD](?=[+\-\d ])")
 _NO_LETTER = re.compile(rb"(?<=\d)([+-]\d{3})(?=[\s+-]|\Z)")  # Fortran's 1.00000-105
 _CHUNK = 1 << 22
+_PER_LINE = {4: 6, 8: 4}  # real numbers on a line of single and of double precision, as the format has it
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +80,7 @@ def locate(source: Source, block: Block, spool: IO[bytes]) -> Located:
     header = parse_header(raw)
     notes: list[str] = []
     if block.binary is None:
-        stored = _text(data, (body, block.stop), header, spool, notes)
+        stored = _text(data, (body, block.stop), block.line + 2 + HEADER_LINES, header, spool, notes)
     else:
         stored = _binary(source, block, body, header, notes)
     if not block.closed:
@@ -100,17 +102,35 @@ def _binary(source: Source, block: Block, body: int, header: Header58, notes: li
             "or big (2) endian, can be read: export it again as text"
         )
     layout = _layout(header, "<" if order == 1 else ">", "f4", f"f{header.item_size}")
-    _enough((block.stop - body) // layout.itemsize, header.points)
-    end = body + header.points * layout.itemsize
-    surplus = block.stop - end
     announced = (*(block.binary or ()), 0, 0, 0, 0)[3]
-    if surplus and _any_set(source.data, end, block.stop):
-        if body + announced != block.stop:
-            raise InputError(
-                f"it announces {announced} bytes and holds {block.stop - body}: bytes are missing or lost"
-            )
-        notes.append(f"{surplus} bytes after its {header.points} points are left out")
+    needed = header.points * layout.itemsize
+    _accounted(source.data, (body, block.stop), announced, needed, notes, little=order == 1)
+    _enough((block.stop - body) // layout.itemsize, header.points)
     return Stored(source.file, body, layout, header.points)
+
+
+def _accounted(
+    data: mmap, place: tuple[int, int], announced: int, needed: int, notes: list[str], *, little: bool
+) -> None:
+    """Compare the bytes between header and delimiter with those announced and those the points need."""
+    body, stop = place
+    held = stop - body
+    if held > needed and announced != held and data[body + needed : stop] in (b"\n", b"\r\n"):
+        held = needed  # the delimiter has a line of its own
+    if held > needed and announced != held:
+        raise InputError(
+            f"it announces {announced} bytes, its points need {needed} and {held} stand there: "
+            "bytes are missing or lost"
+        )
+    if held > needed:
+        notes.append(f"{held - needed} bytes after its points are left out")
+    elif held == needed and announced not in (0, held):
+        notes.append(f"it announces {announced} bytes and holds the {held} that its points need")
+    if held == stop - body and data[stop - 1 : stop + 1] in (b"\n ", b"\r\n"):
+        note = "its last byte is a line end: a byte before it is missing"
+        if little:  # the exponent's byte, of numbers under 1e-30
+            raise InputError(note)
+        notes.append(note.replace("is missing", "may be missing"))
 
 
 def _layout(header: Header58, mark: str, x: str, y: str) -> np.dtype[np.void]:
@@ -118,37 +138,62 @@ def _layout(header: Header58, mark: str, x: str, y: str) -> np.dtype[np.void]:
     return np.dtype([values] if header.even else [("x", mark + x), values])
 
 
-def _any_set(data: mmap, start: int, stop: int) -> bool:
-    return any(data[i : min(i + _CHUNK, stop)].strip(b"\x00") for i in range(start, stop, _CHUNK))
+def _text(
+    data: mmap, place: tuple[int, int], line: int, header: Header58, spool: IO[bytes], notes: list[str]
+) -> Stored:
+    """Put the numbers of a text into the temporary file, as doubles.
 
-
-def _text(data: mmap, place: tuple[int, int], header: Header58, spool: IO[bytes], notes: list[str]) -> Stored:
-    """Put the numbers of a text into the temporary file, as doubles."""
+    ``line`` is that of its first number.
+    """
     layout = _layout(header, "=", "f8", "f8")
     wanted = header.points * layout.itemsize // 8
-    offset, found, surplus, lost = spool.seek(0, 2), 0, 0, False
-    for numbers in _pieces(data, *place):
+    offset, found, lost, forms = spool.seek(0, 2), 0, False, LineForms()
+    for text in _pieces(data, *place):
+        numbers = numbers_of(text)
+        forms.add(text)
         keep = numbers[: max(wanted - found, 0)]
         spool.write(keep.tobytes())
-        surplus += len(numbers) - len(keep)
         lost = lost or bool(numbers[len(keep) :].any())
         found += len(numbers)
     if found < wanted:
         spool.truncate(offset)
     _enough(found * 8 // layout.itemsize, header.points)
-    if lost:
+    _in_columns(data, place, line, forms)
+    surplus = found - wanted
+    if surplus and forms.uneven(_PER_LINE[header.item_size]):
+        raise InputError(
+            f"{surplus} numbers more than its {header.points} points need, on lines of unequal length: "
+            "one is broken in two or one too many"
+        )
+    if lost or surplus >= forms.on_last:  # zeros that fill the last line are no numbers
         notes.append(f"{surplus} numbers after its {header.points} points are left out")
     return Stored(spool, offset, layout, header.points)
 
 
-def _pieces(data: mmap, start: int, stop: int) -> Iterator[FloatArray]:
-    """Yield the numbers of a text, some whole lines at a time."""
+def _in_columns(data: mmap, place: tuple[int, int], line: int, forms: LineForms) -> None:
+    broken = forms.broken()
+    if broken is None:
+        return
+    for text in _pieces(data, *place):
+        for row in text.split(b"\n"):
+            if form_of(row) == broken:
+                quoted = row.strip()[:80].decode("latin-1")
+                raise InputError(
+                    f"line {line} ({quoted!r}) does not keep to the columns of the others: "
+                    "a character is lost or damaged"
+                )
+            line += 1
+        line -= text.endswith(b"\n")
+
+
+def _pieces(data: mmap, start: int, stop: int) -> Iterator[bytes]:
+    """Yield a text some whole lines at a time."""
     while start < stop:
         end = stop
         if stop - start > _CHUNK:
             newline = data.rfind(b"\n", start, start + _CHUNK)
             end = newline + 1 if newline >= 0 else min(start + 64 * _CHUNK, stop)
-        yield numbers_of(data[start:end])
+        yield data[start:end]
         start = end
 
 

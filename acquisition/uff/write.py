@@ -96,6 +96,8 @@ def _write_whole(target: Path, *chunks: Iterable[bytes | memoryview]) -> None:
         with os.fdopen(handle, "wb") as file:
             for parts in chunks:
                 file.writelines(parts)
+            file.flush()
+            os.fsync(file.fileno())  # or a power cut leaves an empty file under the name
         Path(beside).chmod(0o644)
         Path(beside).replace(target)
     except OSError as error:

@@ -4,7 +4,14 @@ from identification.mac.coordinates import comac, ecomac
 from identification.mac.frfs import fdac, frac
 from identification.mac.shapes import auto_mac, mac, macx, mpc, msf
 from identification.mac.subspace import subspace_mac
-from identification.mac.tables import CommonDofs, common_dofs, coordinate_table, frac_table, mac_table
+from identification.mac.tables import (
+    CommonDofs,
+    common_dofs,
+    coordinate_table,
+    frac_table,
+    mac_table,
+    modes_table,
+)
 
 __all__ = [
     "CommonDofs",
@@ -19,6 +26,7 @@ __all__ = [
     "mac",
     "mac_table",
     "macx",
+    "modes_table",
     "mpc",
     "msf",
     "subspace_mac",

@@ -9,17 +9,18 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import ComplexArray
+from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
 from identification.mac.coordinates import comac, ecomac
 from identification.mac.frfs import frac
-from identification.mac.shapes import auto_mac, mac
+from identification.mac.shapes import auto_mac, mac, mpc
 
 
 @dataclass(frozen=True, eq=False)
-class CommonDofs:
+class CommonDofs(Displayed):
     """Shapes of two sets of modes at the degrees of freedom both have.
 
     Parameters
@@ -71,6 +72,20 @@ def _rows(modes: ModalData, place: dict[Dof, tuple[int, int]], wanted: tuple[Dof
 def mode_names(modes: ModalData) -> list[str]:
     """Name modes by number and frequency: ``3: 187.02 Hz``."""
     return [f"{i}: {f:.5g} Hz" for i, f in enumerate(modes.frequency, start=1)]
+
+
+def modes_table(modes: ModalData) -> pd.DataFrame:
+    """Return one row per mode: frequency [Hz], damping ratio [%], their standard deviations, MPC [-].
+
+    Parameters
+    ----------
+    modes : ModalData
+        Modes, identified or read; those without shapes have no MPC.
+    """
+    table = modes.table()
+    if modes.shapes is not None:
+        table["MPC"] = mpc(modes.shapes)
+    return table
 
 
 def mac_table(first: ModalData, second: ModalData | None = None) -> pd.DataFrame:

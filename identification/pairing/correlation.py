@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.modal_data import ModalData
 from identification.mac import common_dofs, mac
@@ -20,7 +21,7 @@ _SPREAD = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Correlation:
+class Correlation(Displayed):
     """What two sets of modes have to do with each other.
 
     Parameters
@@ -90,6 +91,12 @@ class Correlation:
             others,
             np.nan if group is None else group.mac,
         ]
+
+    def _headline(self) -> str:
+        return (
+            f"{counted(len(self.pairs), 'pair')} of {len(self.test)} and {len(self.model)} modes, compared at "
+            f"{counted(len(self.dofs), 'degree')} of freedom"
+        )
 
 
 def correlate(test: ModalData, model: ModalData, *, min_mac: float = _MIN_MAC) -> Correlation:

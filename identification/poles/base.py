@@ -10,10 +10,11 @@ import numpy as np
 
 from acquisition import errors, frf
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.display import Displayed
 
 
 @dataclass(frozen=True, eq=False)
-class PoleSets:
+class PoleSets(Displayed):
     """Poles found at each of several model orders, physical and mathematical ones alike.
 
     Parameters

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.modal_data import ModalData
 
 
 @dataclass(frozen=True, eq=False)
-class Shapes:
+class Shapes(Displayed):
     """Mode shapes of the measured degrees of freedom.
 
     Parameters

@@ -4,17 +4,17 @@ from modalkit.batch.find import Found, find_studies
 from modalkit.batch.part import SCHEMA, part_record
 from modalkit.batch.run import BatchResult, Part, run_batch
 from modalkit.batch.tables import tables
-from modalkit.batch.writing import check_table_place, write_tables
+from modalkit.batch.writing import table_places, write_tables
 
 __all__ = [
     "SCHEMA",
     "BatchResult",
     "Found",
     "Part",
-    "check_table_place",
     "find_studies",
     "part_record",
     "run_batch",
+    "table_places",
     "tables",
     "write_tables",
 ]

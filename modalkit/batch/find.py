@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,19 +24,22 @@ class Found:
         The study file.
     digest : str
         SHA-256 of the study file and of every file it names, hexadecimal: what the result depends on.
+    inputs : tuple of Path
+        These files; the study file alone where it cannot be read.
     """
 
     name: str
     path: Path
     digest: str
+    inputs: tuple[Path, ...] = ()
 
 
-def find_studies(folder: Path) -> tuple[Found, ...]:
+def find_studies(folder: Path | str) -> tuple[Found, ...]:
     """Return the studies of a folder and the folders in it, in the order of their paths.
 
     Parameters
     ----------
-    folder : Path
+    folder : path
         Where to look. A TOML file with a ``[test]`` is a study, and so is one that cannot be read, for it may be
         one that is broken; hidden folders are passed over.
 
@@ -44,6 +48,7 @@ def find_studies(folder: Path) -> tuple[Found, ...]:
     InputError
         If there is no such folder, or no study in it.
     """
+    folder = Path(folder)
     if folder.is_file():
         raise InputError(f"{folder}: is a file; name the folder of the studies")
     if not folder.is_dir():
@@ -51,7 +56,7 @@ def find_studies(folder: Path) -> tuple[Found, ...]:
     paths = [p for p in sorted(folder.rglob("*.toml")) if _is_open(p.relative_to(folder)) and _is_study(p)]
     if not paths:
         raise InputError(f"{folder}: no study in it; a study is a .toml file with a [test]")
-    return tuple(Found(p.relative_to(folder).as_posix(), p, _digest(p)) for p in paths)
+    return tuple(_found(path, path.relative_to(folder).as_posix()) for path in paths)
 
 
 def _is_open(path: Path) -> bool:
@@ -65,12 +70,16 @@ def _is_study(path: Path) -> bool:
         return True
 
 
-def _digest(path: Path) -> str:
-    """Return the hash of all a study is made of; of the file alone where the study cannot be read."""
+def _found(path: Path, name: str) -> Found:
     try:
         inputs = read_study(path).inputs()
     except ModalkitError:
         inputs = (path,)
+    return Found(name, path, _digest(inputs), inputs)
+
+
+def _digest(inputs: Sequence[Path]) -> str:
+    """Return the hash of all a study is made of."""
     total = hashlib.sha256()
     for one in inputs:
         total.update(one.name.encode() + b"\0")

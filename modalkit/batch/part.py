@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from acquisition import ModalData, read_modes
+from acquisition import ModalData
 from acquisition.errors import ModalkitError
 from modalkit.diagnosing import diagnose_studies, warnings_of
 from modalkit.fitting import update_studies
 from modalkit.json_update import to_json
-from modalkit.process import Session, open_study, process
+from modalkit.process import Session, modes_of, open_study, process
 from modalkit.records import diagnosis_record
 from modalkit.study import Study, read_study
 from updating import Measured
@@ -21,12 +21,12 @@ from updating import Measured
 SCHEMA = "modalkit.part/1"
 
 
-def part_record(path: Path) -> dict[str, Any]:
+def part_record(path: Path | str) -> dict[str, Any]:
     """Identify a study, update it where it has an ``[update]``, and diagnose it where it has a ``[model]``.
 
     Parameters
     ----------
-    path : Path
+    path : path
         The study file.
 
     Returns
@@ -73,7 +73,8 @@ def _updated(session: Session) -> dict[str, Any]:
 
 def _modes_alone(study: Study) -> tuple[list[dict[str, float]], list[str]]:
     if study.test.modes is not None:
-        return _modes(read_modes(study.file(study.test.modes))), []
+        modes, _, beyond = modes_of(study, study.test, "test")
+        return _modes(modes), [*modes.doubts(), *beyond]
     processed, identified = process(study)
     warnings = dict.fromkeys([*processed.warnings, *identified.warnings])
     return _modes(identified.modal), list(warnings)

@@ -11,10 +11,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from acquisition.display import Displayed
 from acquisition.errors import EstimationError, InputError
 from modalkit import __version__
 from modalkit.batch.find import Found
-from modalkit.serving.journal import Journal, read_journal
+from modalkit.serving.journal import Journal, is_store, read_journal
 from modalkit.serving.pool import RunCommand, in_flight, warm_pool
 
 SCHEMA = "modalkit.batchrun/1"
@@ -23,7 +24,7 @@ _FINISHED = {"finished": True}
 
 
 @dataclass(frozen=True)
-class Part:
+class Part(Displayed):
     """One study of a batch.
 
     Parameters
@@ -45,7 +46,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class BatchResult:
+class BatchResult(Displayed):
     """What came out of a folder of studies, in the order of their paths.
 
     Parameters
@@ -66,13 +67,16 @@ class BatchResult:
         """Those that failed."""
         return tuple(part for part in self.parts if part.record is None)
 
+    def _headline(self) -> str:
+        return f"{len(self.worked)} studies worked out, {len(self.skipped)} failed"
+
 
 def run_batch(
     studies: Sequence[Found],
     *,
     workers: int = 1,
     scheduler: str | None = None,
-    store: Path | None = None,
+    store: Path | str | None = None,
     resume: bool = False,
     progress: Callable[[Part], None] | None = None,
 ) -> BatchResult:
@@ -86,7 +90,7 @@ def run_batch(
         Studies in flight at a time on this machine, each in a process of its own [-].
     scheduler : str, optional
         Address of a Dask scheduler whose workers run the studies; they see the files under the same paths.
-    store : Path, optional
+    store : path, optional
         File that takes each result as it comes; that of a run that came to its end is begun anew.
     resume : bool
         Whether to run only what the store does not hold: studies that are new, have changed, or failed.
@@ -106,7 +110,7 @@ def run_batch(
         check_scheduler(scheduler)
     parts: dict[str, Part] = {}
     with ExitStack() as stack:
-        journal = None if store is None else stack.enter_context(_journal(store, resume))
+        journal = None if store is None else stack.enter_context(_journal(Path(store), resume))
         for part in _kept(journal):
             parts[part.name] = part
         wanted = {found.name: found for found in studies}
@@ -129,8 +133,10 @@ def run_batch(
 
 def _journal(store: Path, resume: bool) -> Journal:
     """Open a store; one of a run that came to its end is begun anew, unless it is to be gone on with."""
-    if not resume and store.is_file() and read_journal(store)[0][-1:] == [_FINISHED]:
-        store.unlink()
+    if not resume and store.is_file():
+        documents, _ = read_journal(store)
+        if is_store(documents) and documents[-1] == _FINISHED:
+            store.unlink()
     return Journal(store, resume=resume)
 
 

@@ -34,6 +34,8 @@ CAUSES = {
     "parameter": TEXT, "value": NUMBER, "unit": TEXT, "low95": NUMBER, "high95": NUMBER, "at_bound": FLAG,
 }  # fmt: skip
 SKIPPED = {"study": TEXT, "message": TEXT}
+COLUMNS = {"": STUDIES, "modes": MODES, "factors": FACTORS, "causes": CAUSES, "skipped": SKIPPED}
+"""The tables by name, with the types of their columns."""
 
 
 def tables(result: BatchResult) -> dict[str, pd.DataFrame]:

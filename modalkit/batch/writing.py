@@ -10,18 +10,24 @@ from pathlib import Path
 import pandas as pd
 
 from acquisition.errors import InputError
-from modalkit.write import check_place
+from modalkit.batch.tables import COLUMNS
+from modalkit.outputs import Kind, check_output, table_of
 
 FORMATS = (".csv", ".parquet")
 
 
-def check_table_place(path: Path) -> None:
-    """See that a table can be written, before work begins whose result would be lost.
+def table_places(path: Path) -> list[tuple[Path, Kind]]:
+    """Return where the tables of a batch go, and their kinds.
+
+    Parameters
+    ----------
+    path : Path
+        The main table; the others stand beside it.
 
     Raises
     ------
     InputError
-        If the ending is not that of a table, the extra for it is missing, or the folder cannot be written.
+        If the ending is not that of a table, or the extra for it is missing.
     """
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"{path}: a table ends in {' or '.join(FORMATS)}")
@@ -29,7 +35,11 @@ def check_table_place(path: Path) -> None:
         raise InputError(
             f"{path}: Parquet needs an extra: pip install 'modalkit-ema[parquet]'; .csv needs none"
         )
-    check_place(path)
+    return [(place_of(path, name), _kind(path, name)) for name in COLUMNS]
+
+
+def _kind(path: Path, name: str) -> Kind:
+    return table_of(list(COLUMNS[name]), path.suffix, name or "table")
 
 
 def place_of(path: Path, name: str) -> Path:
@@ -55,8 +65,10 @@ def write_tables(path: Path, tables: Mapping[str, pd.DataFrame]) -> list[Path]:
     Raises
     ------
     InputError
-        If they cannot be written.
+        If they cannot be written, or something else than such a table stands in the place of one.
     """
+    for name in tables:
+        check_output(place_of(path, name), _kind(path, name))
     written = []
     try:
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}.") as folder:

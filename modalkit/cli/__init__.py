@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import typer
-from rich.console import Console
-from threadpoolctl import threadpool_limits
 
 from acquisition.errors import ModalkitError
-from modalkit.cli import batching, blinding, compare, demonstrate, diagnosing, fitting, look, simulating
+from modalkit.cli.on_demand import CommandsOnDemand
+from modalkit.module_path import leave_current_folder
 
 app = typer.Typer(
+    cls=CommandsOnDemand,
     help="From hammer hits to modes, to an updated model, to the cause of the gap between test and model.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for module in (look, compare, fitting, diagnosing, simulating, blinding, batching, demonstrate):
-    module.add_commands(app)
 
 _Usage: type[Exception] = typer.BadParameter.__mro__[1]
 """The error of wrong arguments, whichever click typer brings along."""
 
+_BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
+@app.callback()
+def _program() -> None:
+    """Stand for the program, which is a group even where it holds one command."""
+
 
 def main() -> None:
     """Run the command line; an error on purpose is one line and exit code 2."""
+    leave_current_folder()
     arguments = [a for a in sys.argv[1:] if a != "--debug"]
     debug = len(arguments) < len(sys.argv) - 1
     try:
-        with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
+        with _one_blas_thread():
             code = app(args=arguments, prog_name="modalkit", standalone_mode=False)
     except ModalkitError as error:
         if debug:
@@ -42,11 +51,14 @@ def main() -> None:
         _fail(_message(error))
     except (typer.Abort, KeyboardInterrupt):
         _fail("interrupted; nothing was written")
+    except MemoryError as error:
+        if debug:
+            raise
+        _fail(f"there is not enough memory ({error}); give fewer or shorter records, or a narrower band")
     except (
         ArithmeticError,
         AttributeError,
         LookupError,
-        MemoryError,
         OSError,
         TypeError,
         ValueError,
@@ -58,12 +70,30 @@ def main() -> None:
         sys.exit(code if isinstance(code, int) else 0)
 
 
+@contextmanager
+def _one_blas_thread() -> Iterator[None]:
+    """Keep linear algebra to one thread: two are slower on small eigenproblems.
+
+    What is loaded later takes it from the environment, what is loaded already has to be asked.
+    """
+    os.environ.update(dict.fromkeys(_BLAS_THREADS, "1"))
+    if "numpy" not in sys.modules:
+        yield
+        return
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1, user_api="blas"):
+        yield
+
+
 def _message(error: Exception) -> str:
     """Return what click has to say about wrong arguments."""
     return str(getattr(error, "format_message", lambda: error)())
 
 
 def _fail(message: str) -> None:
+    from rich.console import Console
+
     Console(stderr=True, soft_wrap=True, highlight=False).print(
         f"modalkit: {message}", markup=False, style="bold red"
     )

@@ -12,16 +12,18 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from acquisition.errors import EstimationError
 from modalkit.batch import (
     BatchResult,
-    check_table_place,
     find_studies,
     part_record,
     run_batch,
+    table_places,
     tables,
     write_tables,
 )
-from modalkit.cli.common import check_folder, out, progress, several, show_table
+from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, several, show_table
+from modalkit.outputs import check_outputs, json_of, store_of
 from modalkit.write import write_json
 
+PART = json_of("modalkit.part/1")
 _SHOWN = ["study", "verdict", "effects", "probability", "gap_before_percent", "gap_after_percent", "f1_hz"]
 
 
@@ -46,10 +48,16 @@ def batch(
     ] = None,
 ) -> None:
     """Identify, update and diagnose a folder of studies, and write modes, factors and causes as tables."""
-    check_table_place(output)
+    check_workers(workers)
+    store = output.with_name(f"{output.name}.jsonl")
+    places = [*table_places(output), (store, store_of("modalkit.batchrun/1"))]
+    check_outputs(*places)
     check_folder(json_dir)
     with progress.status("looking for studies"):
         studies = find_studies(folder)
+    parts = [] if json_dir is None else [_part_place(json_dir, one.name) for one in studies]
+    there = [(path, PART) for path in parts if path.exists()]
+    check_outputs(*places, *there, reads=[path for one in studies for path in one.inputs])
     columns = (TextColumn("studies"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=progress, disable=not progress.is_terminal) as bar:
         task = bar.add_task("studies", total=len(studies))
@@ -57,7 +65,7 @@ def batch(
             studies,
             workers=workers,
             scheduler=scheduler,
-            store=output.with_name(f"{output.name}.jsonl"),
+            store=store,
             resume=resume,
             progress=lambda _: bar.advance(task),
         )
@@ -76,14 +84,19 @@ def part(
     json: Annotated[Path, typer.Option("--json", help="file for the record")],
 ) -> None:
     """Work out one study of a batch."""
+    check_outputs((json, PART), reads=read_by([study]))
     write_json(json, part_record(study))
+
+
+def _part_place(folder: Path, name: str) -> Path:
+    return folder / f"{name.removesuffix('.toml')}.json"
 
 
 def _write_parts(folder: Path, result: BatchResult) -> None:
     for one in result.worked:
-        path = folder / f"{one.name.removesuffix('.toml')}.json"
+        path = _part_place(folder, one.name)
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_json(path, one.record)
+        write_json(path, one.record or {})
 
 
 def _show(result: BatchResult) -> None:

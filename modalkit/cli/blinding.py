@@ -12,12 +12,14 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, Plan, check_store, run_blind, score
-from modalkit.cli.common import check_folder, out, progress, several, show_figures
+from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, several, show_figures
 from modalkit.cli.options import Figures
-from modalkit.cli.scores import score_figures, show_score, write_markdown
-from modalkit.write import check_json_place, check_place, write_json
+from modalkit.cli.scores import MARKDOWN, score_figures, show_score, write_markdown
+from modalkit.outputs import check_outputs, json_of, store_of
+from modalkit.write import write_json
 
 _SEED_BITS = 63
+_MOST_TRIALS = 10_000_000  # their numbers alone take 80 MB
 _USED = {
     "STUDY": ("--trials", "--seed", "--json", "--figures"),
     "--real": ("--json",),
@@ -78,7 +80,13 @@ def blind(
         [name for name, value in given.items() if value is not None and value is not False and value != ""],
     )
     _check_numbers(trials, seed, workers, least=1 if study is None else 0)
-    check_json_place(json)
+    schema = "plan" if study is not None else "real" if real or data is not None else "blind"
+    check_outputs(
+        (json, json_of(f"modalkit.{schema}/1")),
+        (markdown, MARKDOWN),
+        (store, store_of("modalkit.blindrun/1")),
+        reads=read_by([study] if study is not None else []),
+    )
     check_folder(figures)
     if check is not None:
         return _check(check, seed)
@@ -93,7 +101,6 @@ def blind(
         return plan_study(
             study, trials=trials or 0, seed=own_seed, workers=workers, json=json, figures=figures
         )
-    check_place(markdown)
     known = Plan()
     plan = Plan(kinds=_names(kinds) or known.kinds, effects=_names(effects), leave_out=leave_out)
     result = _run(
@@ -133,8 +140,9 @@ def _check_numbers(trials: int | None, seed: int | None, workers: int, *, least:
     """Refuse numbers that no run can have."""
     if trials is not None and trials < least:
         raise InputError(f"--trials {trials}: at least {least} is needed")
-    if workers < 1:
-        raise InputError(f"--workers {workers}: at least 1 is needed")
+    if trials is not None and trials > _MOST_TRIALS:
+        raise InputError(f"--trials {trials}: at most {_MOST_TRIALS} go into one run")
+    check_workers(workers)
     if seed is not None and seed < 0:
         raise InputError(f"--seed {seed}: give 0 or a positive number")
 

@@ -8,15 +8,19 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from acquisition.errors import InputError
 
+if TYPE_CHECKING:
+    import pandas as pd
+
+_LONGEST_NAME = 1000  # characters of a path; a longer text of a study is none
+_MOST_WORKERS = 1000
 _PIPE_WIDTH = 160  # characters a table may take where no terminal says how wide it is
 
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else _PIPE_WIDTH)
@@ -57,6 +61,40 @@ def reading(then: str = "reading") -> Iterator[Callable[[float], None]]:
         yield told
 
 
+def read_by(files: Sequence[Path], *more: Path | None) -> Iterator[Path]:
+    """Yield every file that a command reads: those given, and of a study all that it names.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        Data files and studies.
+    *more : Path or None
+        Further ones.
+
+    Raises
+    ------
+    StudyError
+        If a study cannot be read.
+    """
+    yield from (path for path in (*files, *more) if path is not None)
+    for path in filter(is_study, files):
+        from modalkit.study import read_study
+
+        study = read_study(path)
+        yield from study.inputs()
+        yield from (study.file(name) for name in _texts(study.model_dump(mode="json")))
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """Yield the short texts in the tables of a study, some of which are names of files."""
+    if isinstance(value, str) and len(value) < _LONGEST_NAME and "\0" not in value:
+        yield value
+    elif isinstance(value, dict):
+        yield from (text for one in value.values() for text in _texts(one))
+    elif isinstance(value, list):
+        yield from (text for one in value for text in _texts(one))
+
+
 def check_once(studies: Sequence[Path]) -> None:
     """Refuse a study that is given twice.
 
@@ -72,6 +110,20 @@ def check_once(studies: Sequence[Path]) -> None:
         seen.add(path.resolve())
 
 
+def check_workers(workers: int) -> None:
+    """Refuse a number of processes that no machine should have to bear.
+
+    Raises
+    ------
+    InputError
+        If there are none, or more than 1000.
+    """
+    if workers < 1:
+        raise InputError(f"--workers {workers}: at least 1 is needed")
+    if workers > _MOST_WORKERS:
+        raise InputError(f"--workers {workers}: at most {_MOST_WORKERS}, each is a process of 200 MB")
+
+
 def several(count: int, noun: str) -> str:
     """Return a count with its noun, in the plural where it is one: ``3 modes``."""
     return f"{count} {noun}" + ("" if count == 1 else "s")
@@ -84,7 +136,7 @@ def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] |
     if named:
         table.add_column(str(frame.index.name), justify="right")
     for column in frame.columns:
-        numeric = pd.api.types.is_numeric_dtype(frame[column])
+        numeric = frame[column].dtype.kind in "biufc"
         table.add_column(str(column), justify="right" if numeric else "left")
     for index, row in zip(frame.index, frame.itertuples(index=False), strict=True):
         cells = [
@@ -132,6 +184,15 @@ def show_figures(folder: Path | None, build: Callable[[], dict[str, Any]]) -> No
         return
     from modalkit.figures import save_figures
 
-    with working("drawing"):
+    with drawing():
         for path in save_figures(build(), folder):
             out.print(f"figure: {path}", markup=False)
+
+
+@contextmanager
+def drawing() -> Iterator[None]:
+    """Say that figures are drawn, as on every machine: a ``matplotlibrc`` in the current folder is not followed."""
+    from matplotlib import style
+
+    with working("drawing"), style.context("default", after_reset=True):
+        yield

@@ -8,12 +8,26 @@ from typing import Annotated, Any
 
 import typer
 
-from modalkit.cli.common import out, show_figures, show_table, show_warnings, working
+from acquisition.errors import InputError
+from identification import Correlation as Comparison
+from modalkit import comparing
+from modalkit.cli.common import (
+    check_folder,
+    is_study,
+    out,
+    read_by,
+    several,
+    show_figures,
+    show_table,
+    show_warnings,
+    working,
+)
 from modalkit.cli.options import Figures
 from modalkit.json_correlation import correlation_record
+from modalkit.outputs import Kind, check_outputs, json_of, text_of
 from modalkit.process import Session, open_study
 from modalkit.study import read_study
-from modalkit.write import check_json_place, check_place, write_json, write_text
+from modalkit.write import write_json, write_text
 from updating.correlation import Correlation
 from updating.correlation import correlate as compare
 from updating.prediction import Predictor
@@ -37,12 +51,25 @@ def add_commands(app: typer.Typer) -> None:
 
 
 def correlate(
-    study: Annotated[Path, typer.Argument(help="study file")],
+    study: Annotated[Path, typer.Argument(help="study file; with OTHER also a file of modes, FRFs or hits")],
+    other: Annotated[
+        Path | None,
+        typer.Argument(help="another test to compare with: a study, or a file of modes, FRFs or hits"),
+    ] = None,
     json: Json = None,
     figures: Figures = None,
 ) -> None:
-    """Pair the modes of test and model and say how far they agree, FRFs included."""
-    check_json_place(json)
+    """Pair the modes of test and model, or of two tests, and say how far they agree, FRFs included."""
+    schema = "modalkit.correlation/1" if other is None else "modalkit.comparison/1"
+    check_outputs((json, json_of(schema)), reads=read_by([s for s in (study, other) if s]))
+    check_folder(figures)
+    if other is not None:
+        _correlate_tests(study, other, json, figures)
+        return
+    if not is_study(study):
+        raise InputError(
+            f"{study}: is no study; name a study file, or a second test to compare this one with"
+        )
     with working("reading and identifying"):
         session = open_study(read_study(study), with_baseline=False)
     identified = session.identified
@@ -67,6 +94,32 @@ def correlate(
     show_figures(figures, lambda: _correlation_figures(session, result))
 
 
+def _correlate_tests(first: Path, second: Path, json: Path | None, figures: Path | None) -> None:
+    """Lay two tests side by side."""
+    with working("reading and identifying"):
+        found = comparing.compare(first, second)
+    names = {"test": "first", "test [Hz]": "first [Hz]", "model": "second", "model [Hz]": "second [Hz]"}
+    table = found.table().rename(columns=names | {"error [%]": "difference [%]"})
+    digits = {"first": 0, "second": 0, "first [Hz]": 3, "second [Hz]": 3, "difference [%]": 3, "MAC": 3}
+    show_table(table, f"{first} beside {second}: {several(len(found.pairs), 'pair')}", digits=digits)
+    if len(found.dofs) > 1:
+        mac = comparing.mac(found.test, found.model)
+        numbered = mac.set_axis([str(n) for n in range(1, mac.shape[1] + 1)], axis=1).rename_axis("mode")
+        title = "MAC, first down and second across"
+        show_table(numbered, title, digits=dict.fromkeys(map(str, numbered.columns), 2))
+    show_warnings(found.notes)
+    if json is not None:
+        write_json(json, comparing.comparison_record(found))
+        out.print(f"written: {json}", markup=False)
+    show_figures(figures, lambda: _drawn(found))
+
+
+def _drawn(found: Comparison) -> dict[str, Any]:
+    from modalkit.figures import draw
+
+    return draw(found)
+
+
 def tables(
     paper: Annotated[
         str | None, typer.Option(help="A: submerged structures; B: beam with tape; default both")
@@ -81,7 +134,8 @@ def tables(
     """Make the papers' tables through the whole chain, our value beside the published one."""
     from modalkit.tables import fluid_work, render, work
 
-    check_place(output)
+    check_outputs((output, _tables_as(form)))
+    check_folder(figures)
     with working("making the tables"):
         made = fluid_work(paper) if fluid else work(paper)
         text = render(made.tables(), form.value)
@@ -91,6 +145,13 @@ def tables(
         write_text(output, text + "\n")
         out.print(f"written: {output}", markup=False)
     show_figures(figures, made.figures)
+
+
+def _tables_as(form: TableFormat) -> Kind:
+    """Return the kind of file that the papers' tables are written to."""
+    endings = {TableFormat.md: ".md", TableFormat.csv: ".csv", TableFormat.latex: ".tex"}
+    begins = ("## Paper ", "paper,table,", "\\begin{table}\n\\caption{Paper ")
+    return text_of("tables of the papers", "tables", endings[form], *begins)
 
 
 def _correlation_figures(session: Session, result: Correlation) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from acquisition.errors import InputError
-from modalkit.cli.common import out, show_figures, show_table, working
+from modalkit.cli.common import check_folder, out, show_figures, show_table, working
 from modalkit.cli.diagnosing import diagnosis_figures, show_diagnosis
 from modalkit.process import open_study
 from modalkit.study import read_study
@@ -39,6 +39,7 @@ def demo(
     figures: Annotated[Path | None, typer.Option("--figures", help="folder for the figures")] = None,
 ) -> None:
     """Run the main job on shipped data: hits to modes to the cause of the gap."""
+    check_folder(figures)
     study = read_study(sample("beam_wet"))
     out.print(f"Study: {study.name}\n", style="bold", markup=False)
     with working("hits to FRFs to modes"):

@@ -9,16 +9,26 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 
-from acquisition.errors import InputError
-from modalkit.cli.common import check_once, out, show_figures, show_table, show_warnings, working
+from modalkit.cli.common import (
+    check_folder,
+    check_once,
+    drawing,
+    out,
+    read_by,
+    show_figures,
+    show_table,
+    show_warnings,
+    working,
+)
 from modalkit.cli.options import Figures
 from modalkit.diagnosing import diagnose_studies, warnings_of
 from modalkit.letter import letter, separated
 from modalkit.library import effects_record, effects_table
+from modalkit.outputs import check_outputs, json_of
 from modalkit.process import Session, open_study
 from modalkit.records import diagnosis_record
 from modalkit.study import read_study
-from modalkit.write import check_json_place, write_json
+from modalkit.write import write_json
 from updating import Diagnosis
 from updating.diagnosis.result import NextTest
 
@@ -42,8 +52,7 @@ def diagnose(
     figures: Figures = None,
 ) -> None:
     """Say where the gap between test and model lies, what causes it, and how far it closes."""
-    check_json_place(json)
-    _check_report(report, json)
+    _check_places(studies, json, report, figures)
     check_once(studies)
     with working("reading and identifying"):
         sessions = [open_study(read_study(path)) for path in studies]
@@ -61,29 +70,28 @@ def _names(listed: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in listed.split(",") if name.strip())
 
 
-def _check_report(report: Path | None, json: Path | None) -> None:
-    """See that the report has a place of its own, before work begins whose result would be lost."""
-    if report is None:
-        return
-    from modalkit.report import check_report_place
+def _check_places(studies: list[Path], json: Path | None, report: Path | None, figures: Path | None) -> None:
+    """See that the results have places of their own, before work begins that would be lost."""
+    wanted = [(json, json_of("modalkit.diagnosis/1"))]
+    if report is not None:
+        from modalkit.report import REPORT
 
-    if json is not None and report.resolve() == json.resolve():
-        raise InputError(f"{report}: asked for as report and as JSON; give each its own file")
-    check_report_place(report)
+        wanted.append((report, REPORT))
+    check_outputs(*wanted, reads=read_by(studies))
+    check_folder(figures)
 
 
 def _draw(diagnosis: Diagnosis, sessions: list[Session], report: Path | None, figures: Path | None) -> None:
     """Write the report and the figures, drawn once."""
     from modalkit.report import diagnosis_report, drawings, write_report
 
-    with working("drawing"):
+    with drawing():
         drawn = drawings(diagnosis, sessions)
-    if report is not None:
-        with working("writing the report"):
+        if report is not None:
             page = diagnosis_report(diagnosis, sessions, when=datetime.now().astimezone(), drawn=drawn)
             write_report(report, page)
-        out.print(f"report: {report}", markup=False)
-    show_figures(figures, lambda: {name: drawing.figure for name, drawing in drawn.items()})
+            out.print(f"report: {report}", markup=False)
+    show_figures(figures, lambda: {name: one.figure for name, one in drawn.items()})
 
 
 def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
@@ -96,7 +104,11 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     gap = diagnosis.gap
     modes = gap.modes if len(sessions) > 1 else gap.modes.drop(columns="study", errors="ignore")
     show_table(modes, f"Gap: {gap.rms_percent:.3g} % r.m.s. over {len(gap.modes)} modes", digits=digits)
-    show_table(diagnosis.table().head(10), "Explanations, most probable first", digits={"probability": 4})
+    show_table(
+        diagnosis.table().head(10).reset_index(),
+        "Explanations, most probable first",
+        digits={"probability": 4},
+    )
     if diagnosis.next_test:
         rows = [
             {"measure next": t.measure, "separates": _separates(t), "sigma": t.expected_sigma}
@@ -133,6 +145,7 @@ def effects(
     table: Annotated[bool, typer.Option("--table", help="print one row each, in Markdown")] = False,
 ) -> None:
     """List the effects that can be named, with priors, footprints and what separates them."""
+    check_outputs((json, json_of("modalkit.effects/1")))
     record = effects_record()
     if json is not None:
         write_json(json, record)

@@ -8,13 +8,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 import typer
 
-from modalkit.cli.common import check_once, out, show_figures, show_table, show_warnings, working
+from modalkit.cli.common import (
+    check_folder,
+    check_once,
+    out,
+    read_by,
+    show_figures,
+    show_table,
+    show_warnings,
+    working,
+)
 from modalkit.cli.options import Figures
 from modalkit.fitting import update_studies
 from modalkit.json_update import to_json
+from modalkit.outputs import check_outputs, json_of
 from modalkit.process import open_study
 from modalkit.study import read_study
-from modalkit.write import check_json_place, write_json
+from modalkit.write import write_json
 from updating.frf_update import FrfUpdate
 from updating.update import Update
 
@@ -35,14 +45,15 @@ def update(
     studies: Annotated[list[Path], typer.Argument(help="study file(s)")],
     shared: Annotated[str, typer.Option(help="parameters that several studies share, comma-separated")] = "",
     bootstrap: Annotated[
-        int, typer.Option(help="draw the hits anew so often, for intervals; 0 for none")
+        int, typer.Option(min=0, max=100_000, help="draw the hits anew so often, for intervals; 0 for none")
     ] = 0,
-    seed: Annotated[int, typer.Option(help="of the draws")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="of the draws")] = 0,
     json: Annotated[Path | None, typer.Option("--json", help="file for the result as JSON")] = None,
     figures: Figures = None,
 ) -> None:
     """Update the parameters named in the study's update table, by eigenvalues or by FRFs."""
-    check_json_place(json)
+    check_outputs((json, json_of("modalkit.update/1")), reads=read_by(studies))
+    check_folder(figures)
     check_once(studies)
     with working("reading and identifying"):
         sessions = [open_study(read_study(path), with_baseline=False) for path in studies]

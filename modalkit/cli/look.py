@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
-import pandas as pd
 import typer
 
 from acquisition import (
+    Dof,
     InputError,
     StudyError,
     UffContent,
@@ -18,10 +18,11 @@ from acquisition import (
     reciprocity,
     write_uff,
 )
-from identification import ModalModel
 from modalkit.cli.common import (
+    check_folder,
     is_study,
     out,
+    read_by,
     reading,
     several,
     show_figures,
@@ -43,19 +44,26 @@ from modalkit.cli.options import (
     handling,
 )
 from modalkit.cli.showing import (
-    frf_figures,
-    mode_figures,
     save_modes,
     show_hits,
     show_modes,
     show_rejected,
     show_second_opinion,
 )
+from modalkit.existing import Modes
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
-from modalkit.process import process
-from modalkit.reading import Processed, numbered, read
-from modalkit.study import read_study
+from modalkit.outputs import check_outputs, json_of, uff_of
+from modalkit.reading import Processed, numbered, read, read_frfs
+from modalkit.saving import modes_kind
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
+
+NAMED = 12
+"""So many degrees of freedom are named in one line."""
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -85,14 +93,23 @@ def inspect(
         out.print("records hold several hits each; they are split when they are used")
     for verdicts in judged:
         show_hits(verdicts)
-    show_warnings(content.warnings)
+    if content.modal is not None and len(content.modal):
+        show_modes(Modes(content.modal, ", ".join(map(str, files))))
     bad = [d for d in content.datasets if not d.ok]
-    if content.datasets and len(bad) == len(content.datasets):
-        raise InputError(f"{bad[0].place}: {bad[0].message}")
+    all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
+    error = f"{bad[0].place}: {bad[0].message}" if all_bad else ""
+    show_warnings([w for w in content.warnings if not error or not w.startswith(error)])
+    if error:
+        raise InputError(error)
 
 
 def _in_short(content: UffContent) -> pd.DataFrame:
-    """Return the table of data sets with those of a kind in one row, unless there is something to say of them."""
+    """Return the table of data sets with those of a kind in one row, unless there is something to say of them.
+
+    What there is to say stands in the warnings.
+    """
+    from pandas import concat
+
     table = content.table()
     plain = table["ok"] & (table["message"] == "")
     rows = [table[~plain]]
@@ -101,22 +118,33 @@ def _in_short(content: UffContent) -> pd.DataFrame:
         if len(group) > 1:
             row["description"] = f"{len(group)} of them, the first: " + row["description"]
         rows.append(row)
-    return pd.concat(rows).sort_values(["file", "line"], kind="stable")
+    return concat(rows).sort_values(["file", "line"], kind="stable").drop(columns="message")
 
 
 def _usable(content: UffContent) -> list[str]:
     parts = [several(len(content.geometry.nodes), "node")] if content.geometry.nodes else []
     for test in content.tests:
         count = sum(p.count for p in test.points)
-        where = several(len({p.reference for p in test.points}), "point")
-        parts.append(f"{several(count, 'hit')} at {where}, {test.samples} samples at {test.rate:g} Hz")
+        hit, seen = [p.reference for p in test.points], [d for p in test.points for d in p.responses]
+        parts.append(
+            f"{several(count, 'hit')} at {_places(hit)}, seen at {_places(seen)}, {test.samples} samples at "
+            f"{test.rate:g} Hz"
+        )
     if content.frfs is not None:
         f = content.frfs
         span = f"{f.frequency[0]:g} to {f.frequency[-1]:g} Hz in steps of {f.df:g} Hz"
-        parts.append(f"{several(len(f.responses), 'FRF')} ({f.form}), {span}")
+        where = f"hit at {_places(f.references)}, seen at {_places(f.responses)}"
+        parts.append(f"{several(len(f.responses), 'FRF')} ({f.form}), {where}, {span}")
     if content.modal is not None:
         parts.append(several(len(content.modal), "mode"))
     return parts
+
+
+def _places(dofs: Sequence[Dof]) -> str:
+    """Return how many points there are, and which, the first of many."""
+    names = list(dict.fromkeys(str(dof) for dof in dofs))
+    shown = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
+    return f"{several(len(names), 'point')} ({shown})"
 
 
 def frf(
@@ -133,6 +161,8 @@ def frf(
     figures: Figures = None,
 ) -> None:
     """Turn hits into FRFs with coherence, and write them as UFF."""
+    check_outputs((output, uff_of("frfs")), reads=read_by(files, layout))
+    check_folder(figures)
     said = handling(
         decay=decay,
         window_on=window_on,
@@ -144,7 +174,7 @@ def frf(
         sensors=sensor_mass,
     )
     with reading("averaging the hits") as progress:
-        processed = read(files, handling=said, progress=progress)
+        processed = read_frfs(files, handling=said, progress=progress)
     show_hits(processed.hits)
     show_table(processed.frfs.table(), "FRFs")
     show_rejected(processed.hits)
@@ -154,7 +184,7 @@ def frf(
     write_uff(output, frfs=processed.frfs, geometry=processed.frfs.geometry, title=processed.content.title)
     out.print(f"written: {output}", markup=False)
     show_warnings(processed.warnings)
-    show_figures(figures, lambda: frf_figures(processed))
+    show_figures(figures, lambda: _drawn(processed))
 
 
 def identify(
@@ -172,11 +202,17 @@ def identify(
     layout: Layout = None,
     sensor_mass: SensorMass = None,
     json: Annotated[Path | None, typer.Option("--json", help="file for the modes as JSON")] = None,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="UFF file for the modes")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="file for the modes: .uff, .csv or .json")
+    ] = None,
     check: Annotated[bool, typer.Option("--check", help="also show the poles of sdypy-EMA")] = False,
     figures: Figures = None,
 ) -> None:
-    """Identify frequencies, damping and mode shapes, with their uncertainties."""
+    """Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already."""
+    check_outputs(
+        (json, json_of("modalkit.modes/1")), (output, modes_kind(output)), reads=read_by(files, layout)
+    )
+    check_folder(figures)
     said = handling(
         decay=decay,
         window_on=window_on,
@@ -189,15 +225,18 @@ def identify(
     )
     with reading("identifying") as progress:
         processed, model = _identified(files, said, band, order, (add or (), drop or ()), progress)
-    show_hits(processed.hits)
-    show_modes(model)
-    show_rejected(processed.hits, model.points_rejected)
-    if check:
-        show_second_opinion(processed, model)
-    warnings = [*processed.warnings, *model.warnings]
+    if isinstance(model, Modes) or processed is None:
+        show_modes(model)
+    else:
+        show_hits(processed.hits)
+        show_modes(model)
+        show_rejected(processed.hits, model.points_rejected)
+        if check:
+            show_second_opinion(processed, model)
+    warnings = [*(() if processed is None else processed.warnings), *model.warnings]
     show_warnings(warnings)
     save_modes(processed, model, warnings, json, output)
-    show_figures(figures, lambda: mode_figures(processed, model))
+    show_figures(figures, lambda: _drawn(*(() if processed is None else (processed,)), model))
 
 
 def _identified(
@@ -207,12 +246,27 @@ def _identified(
     order: int | None,
     named: tuple[Sequence[float], Sequence[float]],
     progress: Progress,
-) -> tuple[Processed, ModalModel]:
-    """Return FRFs and modes of files, or of a study's test."""
+) -> tuple[Processed | None, ModalModel | Modes]:
+    """Return FRFs and modes of files, or of a study's test; modes that exist already have no FRFs."""
     add, drop = named
     if len(files) == 1 and is_study(files[0]):
+        from modalkit.process import process
+        from modalkit.study import read_study
+
         if said != Handling():
             raise StudyError(f"{files[0]}: a study says in [test] how its files are treated; write it there")
         return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)
-    processed = read(files, handling=said, progress=progress)
-    return processed, processed.identify(band=band, order=order, add=add, drop=drop)
+    found = read(files, handling=said, progress=progress)
+    if not isinstance(found, Modes):
+        return found, found.identify(band=band, order=order, add=add, drop=drop)
+    if order is not None or add or drop:
+        raise InputError(
+            f"{found.source}: holds modes; --order, --add and --drop are for FRFs that are identified"
+        )
+    return None, found.identify(band=band)
+
+
+def _drawn(*results: Processed | ModalModel | Modes) -> dict[str, Any]:
+    from modalkit.figures import draw
+
+    return {name: figure for result in results for name, figure in draw(result).items()}

@@ -10,8 +10,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from acquisition.errors import InputError
 from modalkit.blind.real import CASES, RULES, RealOutcome, counts, real_record, real_table, run_real
 from modalkit.cli.common import out, progress, show_table
+from modalkit.outputs import check_outputs, json_of
 from modalkit.tables.chain import sample_folder
-from modalkit.write import check_json_place, write_json
+from modalkit.write import write_json
 
 _GAP = """\
 Gap: r.m.s. error of the frequencies where nothing else is said, before and after, the latter on modes held out; beside
@@ -37,7 +38,7 @@ def show_real(data: Path | None, json: Path | None, workers: int) -> None:
     InputError
         If the folder of data does not exist, or the record cannot be written.
     """
-    check_json_place(json)
+    check_outputs((json, json_of("modalkit.real/1")))
     if data is not None and not data.is_dir():
         raise InputError(f"{data}: no such folder; name the one of the measured data")
     columns = (TextColumn("real structures"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())

@@ -10,7 +10,18 @@ from modalkit.blind.scoring.score import Score
 from modalkit.blind.scoring.section import Section
 from modalkit.blind.scoring.sections import sections
 from modalkit.cli.common import out, show_table
+from modalkit.outputs import Kind, check_output
 from modalkit.write import write_text
+
+
+def _takes_a_score(path: Path) -> bool:
+    """Tell whether a page has the two marks, or is nothing but a score."""
+    page = path.read_text(encoding="utf-8", errors="replace")
+    return page.startswith("## What matters first\n") or (BEGIN in page and END in page)
+
+
+MARKDOWN = Kind(f"a score, nor a page with the lines {BEGIN} and {END}", "score", ".md", _takes_a_score)
+"""The kind of file that a score is written to."""
 
 
 def show_score(score: Score) -> None:
@@ -48,8 +59,9 @@ def write_markdown(path: Path, score: Score) -> None:
     Raises
     ------
     InputError
-        If it cannot be written.
+        If it cannot be written, or another page stands there.
     """
+    check_output(path, MARKDOWN)
     page = path.read_text(encoding="utf-8") if path.is_file() else ""
     marked = BEGIN in page and END in page
     write_text(path, into_page(page, score) if marked else score_markdown(score, level=2))

@@ -4,44 +4,64 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
-import pandas as pd
-
-from acquisition import HitVerdict, force_range, hits_table, write_uff
-from identification import ModalModel
+from acquisition import HitVerdict, force_range, hits_table
 from modalkit.cli.common import out, several, show_table, show_warnings, working
-from modalkit.reading import Processed
-from modalkit.records import modes_record, without_hits
+from modalkit.existing import Modes
 from modalkit.write import write_json
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
+    from modalkit.reading import Processed
 
 
 def save_modes(
-    processed: Processed, model: ModalModel, warnings: Sequence[str], json: Path | None, uff: Path | None
+    processed: Processed | None,
+    model: ModalModel | Modes,
+    warnings: Sequence[str],
+    json: Path | None,
+    output: Path | None,
 ) -> None:
-    """Write the modes as JSON and as UFF, where files are given, and say so."""
+    """Write the modes as JSON, and as what the ending of the output names, where files are given, and say so."""
+    from modalkit.records import modes_record
+    from modalkit.saving import write_modes
+
+    hits = () if processed is None else processed.hits
+    title = "" if processed is None else processed.content.title
     if json is not None:
-        write_json(json, modes_record(model, processed.hits, warnings))
+        write_json(json, modes_record(model, hits, warnings))
         out.print(f"written: {json}", markup=False)
-    if uff is not None:
-        write_uff(uff, modal=model.modal, geometry=model.modal.geometry, title=processed.content.title)
-        out.print(f"written: {uff}", markup=False)
+    if output is not None:
+        write_modes(output, model, hits=hits, warnings=warnings, title=title)
+        out.print(f"written: {output}", markup=False)
 
 
 def show_rejected(hits: Sequence[HitVerdict], more: Sequence[str] = ()) -> None:
     """Print the points that were left out, with the reason."""
+    from modalkit.records import without_hits
+
     for text in [*without_hits(hits), *more]:
         out.print(f"left out: {text}", markup=False)
 
 
-def show_modes(model: ModalModel) -> None:
+def show_modes(model: ModalModel | Modes) -> None:
     """Print the modes, and what is to be known of their shapes."""
     digits = {"frequency [Hz]": 4, "sigma [Hz]": 5, "damping [%]": 4, "sigma [%]": 5, "MPC": 3}
-    title = f"{several(len(model), 'mode')} between {model.band[0]:g} and {model.band[1]:g} Hz"
-    show_table(model.table(), title, digits=digits)
-    scaled = "mass-normalised" if model.modal.scaled else "not mass-normalised (no drive point to trust)"
+    if isinstance(model, Modes):
+        where, unscaled = f"from {model.source}", "not mass-normalised"
+    else:
+        where = f"between {model.band[0]:g} and {model.band[1]:g} Hz"
+        unscaled = "not mass-normalised (no drive point to trust)"
+    show_table(model.table(), f"{several(len(model), 'mode')} {where}", digits=digits)
+    if model.modal.shapes is None:
+        out.print("No shapes.")
+        return
+    scaled = "mass-normalised" if model.modal.scaled else unscaled
     out.print(f"Shapes at {several(len(model.modal.dofs), 'degree')} of freedom, {scaled}.")
-    if model.frfs.decay:
+    if not isinstance(model, Modes) and model.frfs.decay:
         out.print(f"Window: {model.frfs.decay:.4g} 1/s of decay was taken out of the damping.")
 
 
@@ -70,30 +90,3 @@ def show_second_opinion(processed: Processed, model: ModalModel) -> None:
     title = "Second opinion, beside ours: sdypy-EMA (LSCF)"
     show_table(both, title, digits=dict.fromkeys(both.columns, 4))
     show_warnings(table.attrs.get("warnings", ()))
-
-
-def frf_figures(processed: Processed) -> dict[str, Any]:
-    """Draw FRFs and hits."""
-    from modalkit.figures import frf_figure
-
-    return {"frf": frf_figure(processed.frfs), **_hit_figures(processed)}
-
-
-def _hit_figures(processed: Processed) -> dict[str, Any]:
-    from modalkit.figures import hits_figure
-
-    names = ["hits"] + [f"hits_{n}" for n in range(2, len(processed.judged) + 1)]
-    return {n: hits_figure(j.test, j.verdicts) for n, j in zip(names, processed.judged, strict=False)}
-
-
-def mode_figures(processed: Processed, model: ModalModel) -> dict[str, Any]:
-    """Draw FRFs, modes and hits."""
-    from modalkit.figures import auto_mac_figure, frf_figure, shapes_figure, stabilisation_figure
-
-    return {
-        "frf": frf_figure(model.frfs, model),
-        "stabilisation": stabilisation_figure(model),
-        "auto_mac": auto_mac_figure(model.modal),
-        "shapes": shapes_figure(model.modal),
-        **_hit_figures(processed),
-    }

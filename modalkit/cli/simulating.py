@@ -8,14 +8,13 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 
-from acquisition.errors import InputError
-from modalkit.cli.common import out, several, show_figures, show_table, working
+from modalkit.cli.common import check_folder, out, read_by, several, show_figures, show_table, working
 from modalkit.cli.options import Figures
 from modalkit.named_effects import parse_effect
+from modalkit.outputs import check_outputs, uff_of
 from modalkit.rig import Options
 from modalkit.simulate import SimulatedTest, simulate_test
-from modalkit.study import Study, read_study
-from modalkit.write import check_place
+from modalkit.study import read_study
 from updating import LIBRARY
 
 
@@ -32,13 +31,16 @@ def simulate(
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="seed of all scatter and noise")] = 0,
     frfs: Annotated[bool, typer.Option("--frfs", help="write averaged FRFs instead of raw hits")] = False,
-    hits: Annotated[int | None, typer.Option(min=1, help="hits at each point")] = None,
-    samples: Annotated[int | None, typer.Option(min=64, help="samples per record")] = None,
-    rate: Annotated[float | None, typer.Option(min=1e-3, help="sampling rate [Hz]")] = None,
+    hits: Annotated[int | None, typer.Option(min=1, max=1000, help="hits at each point")] = None,
+    samples: Annotated[int | None, typer.Option(min=64, max=4_194_304, help="samples per record")] = None,
+    rate: Annotated[float | None, typer.Option(min=1.0, max=1e8, help="sampling rate [Hz]")] = None,
     noise: Annotated[
-        float | None, typer.Option(min=0.0, help="noise of the responses, r.m.s. of their largest magnitude")
+        float | None,
+        typer.Option(min=0.0, max=100.0, help="noise of the responses, r.m.s. of their largest magnitude"),
     ] = None,
-    points: Annotated[int | None, typer.Option(help="how many points, where the study has none")] = None,
+    points: Annotated[
+        int | None, typer.Option(min=2, max=10_000, help="how many points, where the study has none")
+    ] = None,
     remount: Annotated[
         bool,
         typer.Option(
@@ -50,21 +52,15 @@ def simulate(
     """Make a synthetic hammer test of a study's model, with effects in it."""
     effects = [parse_effect(text) for text in effect or ()]
     options = Options(hits=hits, samples=samples, rate=rate, noise=noise, points=points, remount=remount)
+    check_outputs((output, uff_of("simulated")), reads=read_by([study]))
+    check_folder(figures)
     asked = read_study(study)
-    _check_output(output, asked)
     with working("hitting the model"):
         made = simulate_test(asked, effects, seed=seed, options=options)
         made.write(output, as_frfs=frfs)
     _show(made)
     out.print(f"written: {output}", markup=False)
     show_figures(figures, lambda: _figures(made))
-
-
-def _check_output(output: Path, study: Study) -> None:
-    """See that the file can be written and is none that the study reads."""
-    check_place(output)
-    if output.resolve() in {path.resolve() for path in study.inputs()}:
-        raise InputError(f"{output}: the study reads this file; name another for the simulated test")
 
 
 def _figures(made: SimulatedTest) -> dict[str, Any]:

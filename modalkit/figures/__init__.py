@@ -1,7 +1,9 @@
 """Figures: pure functions from finished results to matplotlib figures that belong to no window."""
 
 from modalkit.figures.blind import blind_figures
+from modalkit.figures.cmif import cmif_figure
 from modalkit.figures.diagnosis import diagnosis_figure
+from modalkit.figures.every import draw
 from modalkit.figures.evolution import evolution_figure
 from modalkit.figures.frac import frac_figure
 from modalkit.figures.frf import frf_figure
@@ -17,7 +19,9 @@ from modalkit.figures.update import update_figure
 __all__ = [
     "auto_mac_figure",
     "blind_figures",
+    "cmif_figure",
     "diagnosis_figure",
+    "draw",
     "evolution_figure",
     "frac_figure",
     "frf_figure",

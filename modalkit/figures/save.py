@@ -10,21 +10,23 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from acquisition import InputError
+from modalkit.outputs import PNG, check_output
 
 RESOLUTION = 150
 """Dots per inch of the files: 1800 px at full width."""
 
 
-def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
+def save_figures(figures: Mapping[str, Figure], folder: Path | str) -> list[Path]:
     """Write figures as PNG files.
 
-    Every figure is drawn before the first file is written, and every file is put in place in one step.
+    Every figure is drawn before the first file is written, and every file is put in place in one step; none
+    replaces a file that modalkit has not drawn.
 
     Parameters
     ----------
     figures : mapping of str to Figure
         Figures by file name, without its ending.
-    folder : Path
+    folder : path
         Where to; made if it is not there.
 
     Returns
@@ -35,14 +37,17 @@ def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     Raises
     ------
     InputError
-        If a name is not a plain file name, or the folder cannot be written to.
+        If a name is not a plain file name, the folder cannot be written to, or somebody else's file stands there.
     """
     for name in figures:
         if not name or Path(name).name != name:
             raise InputError(f"figure name {name!r} is not a plain file name; leave out folders")
+    folder = Path(folder)
     drawn = {folder / f"{name}.png": _png(figure) for name, figure in figures.items()}
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        for path in drawn:
+            check_output(path, PNG)
         for path, content in drawn.items():
             _put(path, content)
     except OSError as error:

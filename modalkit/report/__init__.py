@@ -2,6 +2,6 @@
 
 from modalkit.report.drawings import Drawing, drawings
 from modalkit.report.page import diagnosis_report
-from modalkit.report.place import check_report_place, write_report
+from modalkit.report.place import REPORT, write_report
 
-__all__ = ["Drawing", "check_report_place", "diagnosis_report", "drawings", "write_report"]
+__all__ = ["REPORT", "Drawing", "diagnosis_report", "drawings", "write_report"]

@@ -11,7 +11,7 @@ from modalkit.figures.words import answer
 from modalkit.process import Session
 from modalkit.report.drawings import Drawing, drawings
 from modalkit.report.html import Raw, element, joined, text
-from modalkit.report.place import DOCTYPE
+from modalkit.report.place import BEGIN
 from modalkit.report.provenance import provenance
 from modalkit.report.sections import (
     not_examined,
@@ -72,9 +72,8 @@ def _page(title: str, body: Raw) -> str:
     style = files("modalkit.report").joinpath("style.css").read_text(encoding="utf-8")
     return "\n".join(
         (
-            DOCTYPE,
-            '<html lang="en">',
-            '<head><meta charset="utf-8">',
+            BEGIN,
+            '<meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f"<title>{text(title)}: diagnosis</title>",
             f"<style>\n{style}</style></head>",

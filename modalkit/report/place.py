@@ -4,28 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from acquisition.errors import InputError
-from modalkit.write import check_place, write_text
+from modalkit.outputs import check_output, text_of
+from modalkit.write import write_text
 
-DOCTYPE = "<!doctype html>"
+BEGIN = '<!doctype html>\n<html lang="en">\n<head><meta name="generator" content="modalkit">'
 """How every report begins."""
 
-
-def check_report_place(path: Path | None) -> None:
-    """See that a report could be written, and that no other file stands there; None is no report.
-
-    Raises
-    ------
-    InputError
-        If one does, or the folder cannot be written.
-    """
-    check_place(path)
-    if path is None or not path.is_file() or not path.stat().st_size:
-        return
-    with path.open("rb") as file:
-        begins = file.read(200).lstrip().lower()
-    if not begins.startswith(DOCTYPE.encode()):
-        raise InputError(f"{path}: stands there and is no HTML file; name another file for the report")
+REPORT = text_of("a report written by modalkit", "report", ".html", BEGIN)
+"""The kind of file."""
 
 
 def write_report(path: Path, text: str) -> None:
@@ -34,7 +20,7 @@ def write_report(path: Path, text: str) -> None:
     Raises
     ------
     InputError
-        If it cannot be written, or another file than HTML stands there.
+        If it cannot be written, or something else than a report stands there.
     """
-    check_report_place(path)
+    check_output(path, REPORT)
     write_text(path, text)

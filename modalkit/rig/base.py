@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from acquisition import Dof, Geometry, HammerPlan
 from acquisition.arrays import FloatArray
+from acquisition.display import Displayed
 from updating import Measured
 
 PULSE = 1.2
@@ -52,7 +53,7 @@ class Options:
 
 
 @dataclass(frozen=True, eq=False)
-class Rig:
+class Rig(Displayed):
     """A test without its data.
 
     Parameters

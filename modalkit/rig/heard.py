@@ -108,7 +108,8 @@ def _force_noise(session: Session) -> float:
         half = judged.test.samples // 2
         growth = np.exp(judged.test.decay * np.arange(half, judged.test.samples) / judged.test.rate)
         for point in judged.test.points:
-            tail = point.force[:, half:] * growth
+            offset = np.median(point.force, axis=-1, keepdims=True)
+            tail = (point.force - offset)[:, half:] * growth
             spread = np.abs(tail - np.median(tail, axis=-1, keepdims=True))
             levels.append(1.4826 * np.median(spread, axis=-1))
     return float(np.median(np.concatenate(levels)))

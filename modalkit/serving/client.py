@@ -15,8 +15,9 @@ from types import TracebackType
 from typing import Any, Self
 
 from acquisition.errors import EstimationError
+from modalkit.module_path import child_environment
 
-COMMAND = (sys.executable, "-m", "modalkit.serving")
+COMMAND = (sys.executable, "-P", "-m", "modalkit.serving")
 TIMEOUT = 900.0
 ATTEMPTS = 3
 _GRACE = 60.0  # s beyond a command's time in which the process must have answered
@@ -24,7 +25,7 @@ _START = 300.0  # s in which it must have loaded
 _KEPT = frozenset(
     (
         *("PATH", "HOME", "USERPROFILE", "LANG", "LC_ALL", "LC_CTYPE", "TMPDIR", "TEMP", "TMP"),
-        *("PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH"),
+        *("PYTHONHOME", "VIRTUAL_ENV", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH"),
         *("SYSTEMROOT", "PATHEXT", "COMSPEC"),
     )
 )
@@ -34,7 +35,8 @@ _SET = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": 
 class WarmProcess:
     """A process with modalkit loaded, for commands that must not know anything of this one.
 
-    It gets what an interpreter needs of the environment, no descriptors but its pipes, and one BLAS thread. One
+    It gets what an interpreter needs of the environment, no descriptors but its pipes, and one BLAS thread; the
+    current folder is not on its module path. One
     command at a time; a process that dies is replaced, and the command repeated.
 
     Parameters
@@ -99,7 +101,7 @@ class WarmProcess:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
-                env={k: v for k, v in os.environ.items() if k in _KEPT} | _SET,
+                env={k: v for k, v in os.environ.items() if k in _KEPT} | _SET | child_environment(),
                 start_new_session=True,
             )
             self._greeted = False

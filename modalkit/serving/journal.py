@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import os
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from acquisition.errors import InputError
+from modalkit.outputs import is_torn_header
 
 try:
     from fcntl import LOCK_EX, LOCK_NB, flock
@@ -57,6 +58,11 @@ def read_journal(path: Path) -> tuple[list[dict[str, Any]], int]:
     return documents, size
 
 
+def is_store(documents: Sequence[Mapping[str, Any]]) -> bool:
+    """Tell whether documents begin as those of our stores do; another's lines are not to be cut."""
+    return bool(documents) and str(documents[0].get("schema", "")).startswith("modalkit.")
+
+
 class Journal:
     """A journal that is written.
 
@@ -100,6 +106,8 @@ class Journal:
         if not resume:
             raise InputError(f"{self.path}: stands there; --resume goes on with it, or name another file")
         documents, size = read_journal(self.path)
+        if not (is_store(documents) or (not documents and is_torn_header(self.path.read_bytes()))):
+            raise InputError(f"{self.path}: is no store of a run; name another file")
         os.ftruncate(self._file, size)
         return tuple(documents)
 

@@ -17,6 +17,7 @@ from typing import Any, BinaryIO, Literal, NoReturn
 
 from modalkit import __version__
 from modalkit.cli import main
+from modalkit.cli.on_demand import load_all
 
 _LAST = 4000  # bytes of a command's messages that are kept
 
@@ -46,6 +47,7 @@ def serve(requests: BinaryIO, answers: BinaryIO) -> None:
     requests, answers : binary file
         Unbuffered; one JSON document a line.
     """
+    load_all()
     gc.collect()
     gc.freeze()  # what is loaded is shared with the forks; collecting in it would copy it
     answers.write(_line({"ready": __version__}))

@@ -70,15 +70,15 @@ class Start:
     values: Mapping[str, Mapping[str, float]] | None
 
 
-def fluid_tables(folder: Path | None = None) -> list[PaperTable]:
+def fluid_tables(folder: Path | str | None = None) -> list[PaperTable]:
     """Predict the wet frequencies of plate and beam in every way.
 
     Parameters
     ----------
-    folder : Path, optional
+    folder : path, optional
         Where the sample studies are; left out, those that come with the package.
     """
-    home = folder or sample_folder()
+    home = Path(folder) if folder else sample_folder()
     dry = [open_study(read_study(home / n / "published.toml")).case for n in ("beam_dry", "plate_dry")]
     wet = [open_study(read_study(home / n / "published.toml")).case for n in ("beam_wet", "plate_wet")]
     joint = [joint_values(variant, dry) for variant in VARIANTS]

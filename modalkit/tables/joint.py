@@ -58,15 +58,15 @@ NOTES = (
 )
 
 
-def joint_table(folder: Path | None = None) -> PaperTable:
+def joint_table(folder: Path | str | None = None) -> PaperTable:
     """Update beam and plate together in all variants.
 
     Parameters
     ----------
-    folder : Path, optional
+    folder : path, optional
         Where the sample studies are; left out, those that come with the package.
     """
-    home = folder or sample_folder()
+    home = Path(folder) if folder else sample_folder()
     cases = [open_study(read_study(home / n / "published.toml")).case for n in ("beam_dry", "plate_dry")]
     results = [_updated(variant, cases) for variant in VARIANTS]
     rows = [_row(variant, result, cases) for variant, result in zip(VARIANTS, results, strict=True)]

@@ -10,6 +10,7 @@ import pytest
 
 from acquisition import Dof, FrfSet, HammerTest, InputError
 from acquisition import readers as doors
+from acquisition.columns import layout_from
 from acquisition.readers import read_test
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "readers.md"
@@ -95,3 +96,56 @@ def test_unknown_files_and_wrong_readers_are_named(tmp_path):
         read_test(tmp_path / "x.xyz")
     with pytest.raises(InputError, match="its reader returned list"):
         read_test(tmp_path / "x.xyz", readers={".xyz": lambda path: []})
+
+
+FRF_COLUMNS = [
+    {"name": "re", "quantity": "accelerance", "part": "real"},
+    {"name": "im", "quantity": "accelerance", "part": "imag"},
+]
+
+
+def frf_texts(folder: Path, count: int) -> list[Path]:
+    """Write text files of one FRF each, whose real part is the number of the file."""
+    files = []
+    for n in range(1, count + 1):
+        lines = ["f,re,im", *(f"{f},{n},0" for f in (1.0, 2.0, 3.0))]
+        files.append(folder / f"p{n}.csv")
+        files[-1].write_text("\n".join(lines))
+    return files
+
+
+@pytest.mark.parametrize("column", [None, "re", "im"])
+def test_rules_of_files_place_frfs(tmp_path, column):
+    """Five files, one point each: hit there, or seen there where the rule names a column of the FRF."""
+    files = frf_texts(tmp_path, 5)
+    own = {} if column is None else {"column": column}
+    rules = [{"match": f"p{n}.csv", "node": 10 * n, "direction": "-z", **own} for n in range(1, 6)]
+    layout = {"frequency_column": "f", "column": FRF_COLUMNS, "file": rules}
+    (frfs,) = read_test(files, layout=layout_from(layout))
+    there, fixed = tuple(Dof(10 * n, -3) for n in range(1, 6)), (Dof(1, 3),) * 5
+    placed = (frfs.references, frfs.responses) if column is None else (frfs.responses, frfs.references)
+    assert placed == (there, fixed)
+    assert frfs.values[:, 0].real.tolist() == [1, 2, 3, 4, 5]
+
+
+def test_one_frf_in_two_files_is_refused(tmp_path):
+    """Without rules five files would become one degree of freedom."""
+    files = frf_texts(tmp_path, 2)
+    layout = {"frequency_column": "f", "column": FRF_COLUMNS}
+    with pytest.raises(InputError, match=r"p2\.csv, line 2: FRF 1\+Z/1\+Z is in .*p1\.csv, line 2 already"):
+        read_test(files, layout=layout_from(layout))
+    rules = [{"match": "q*.csv", "node": 3}]
+    with pytest.raises(InputError, match=r"no \[\[file\]\] rule"):
+        read_test(files, layout=layout_from({**layout, "file": rules}))
+
+
+@pytest.mark.parametrize(
+    ("rule", "says"),
+    [
+        ({"match": "p1.csv", "node": 3, "column": "ree"}, r"\[\[file\]\] 1: no \[\[column\]\] is 'ree'"),
+        ({"match": "p1.csv", "node": 3, "direction": "up"}, r"\[\[file\]\] 1: direction 'up' is none"),
+    ],
+)
+def test_a_rule_that_means_nothing_is_refused(rule, says):
+    with pytest.raises(InputError, match=says):
+        layout_from({"frequency_column": "f", "column": FRF_COLUMNS, "file": [rule]})

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from acquisition import Dof, HammerPlan, HammerTest, Hits, InputError, hammer_test, judge_hits, modal_system
 from acquisition.splitting import looks_long, propose_trigger, split_hits
@@ -107,9 +108,101 @@ def test_what_cannot_be_split_says_why(rng):
     test, _ = long_test(rng, TIMES)
     with pytest.raises(InputError, match="reaches the trigger of 10000 N"):
         split_hits(test, trigger=1e4)
-    with pytest.raises(InputError, match="shorter duration"):
+    with pytest.raises(InputError, match=r"the 5 s of a record to itself.*one hit at a time"):
         split_hits(test, duration=5.0)
-    with pytest.raises(InputError, match="shorter duration or pre"):
+    with pytest.raises(InputError, match=r"records of 50 s do not fit into the 14 s recorded"):
         split_hits(test, duration=50.0)
-    with pytest.raises(InputError, match="split first"):
+    with pytest.raises(InputError, match=r"no room for 2 s before the trigger"):
+        split_hits(test, duration=1.0, pre=2.0)
+    with pytest.raises(
+        InputError, match=r"several hits each, and an exponential window of 3 1/s.*without it.*out of --decay"
+    ):
         split_hits(replace(test, decay=3.0))
+
+
+COARSE, OVER = 1536.0, 16
+
+
+def through(test, kind, order, corner):
+    """Return a finely sampled test through an anti-alias filter (corner relative to the rate), taken coarsely."""
+    design = {"ellip": (0.1, 80), "cheby1": (0.5,)}[kind]
+    filters = {"ellip": scipy.signal.ellip, "cheby1": scipy.signal.cheby1}
+    sos = filters[kind](order, *design, corner * COARSE, fs=test.rate, output="sos")
+    return replace(
+        test,
+        rate=COARSE,
+        points=tuple(
+            replace(
+                p,
+                force=scipy.signal.sosfilt(sos, p.force)[:, ::OVER],
+                motion=scipy.signal.sosfilt(sos, p.motion)[..., ::OVER],
+            )
+            for p in test.points
+        ),
+    )
+
+
+@pytest.mark.parametrize("samples", [128, 2048])
+@pytest.mark.parametrize(("kind", "order"), [("ellip", 8), ("ellip", 12), ("cheby1", 12)])
+def test_the_ringing_of_a_sharp_filter_is_not_several_hits(rng, kind, order, samples):
+    """Pulses shorter than a sample leave side lobes of 30 to 50 %, some samples after the peak."""
+    highest = 0.0
+    for width in (1e-4, 5e-4, 1e-3):
+        plan = HammerPlan(
+            rate=OVER * COARSE, samples=OVER * samples, hits=2, width=width, pre_trigger=0.02, adc_bits=None
+        )
+        fine = hammer_test(SYSTEM, plan, rng=rng)
+        for corner in (0.15, 0.25, 1 / 2.56, 0.45):
+            test = through(fine, kind, order, corner)
+            for wave in test.points[0].force:
+                top = int(wave.argmax())
+                tops, _ = scipy.signal.find_peaks(wave[top + 1 :])
+                highest = max(highest, float(wave[top + 1 :][tops].max() / wave[top]))
+            assert not looks_long(test)
+            assert samples < 2048 or all(v.used for v in judge_hits(test))
+    assert highest > 0.3  # so the lobes would count as hits of comparable force
+
+
+@pytest.mark.parametrize("kind", ["ellip", "cheby1"])
+def test_hits_through_a_sharp_filter_are_split_and_a_double_hit_is_found(rng, kind):
+    plan = HammerPlan(
+        rate=OVER * COARSE, samples=OVER * 1536, hits=4, width=5e-4, pre_trigger=0.1, adc_bits=None
+    )
+    single = hammer_test(SYSTEM, plan, rng=rng)
+    (point,) = single.points
+    once = replace(single, points=(replace(point, force=point.force[:1], motion=point.motion[:1]),))
+    row = replace(
+        once,
+        points=(
+            replace(
+                point,
+                force=np.concatenate(list(point.force))[None],
+                motion=np.concatenate(list(point.motion), axis=-1)[None],
+            ),
+        ),
+    )
+    test = through(row, kind, 8, 1 / 2.56)
+    assert looks_long(test) and split_hits(test)[0].points[0].count == 3  # the last ends with the record
+    late = int(0.05 * once.rate)
+    double = replace(
+        once,
+        points=tuple(
+            replace(
+                p,
+                force=p.force + 0.4 * np.roll(p.force, late, axis=-1),
+                motion=p.motion + 0.4 * np.roll(p.motion, late, axis=-1),
+            )
+            for p in once.points
+        ),
+    )
+    test = through(double, kind, 8, 1 / 2.56)
+    (verdict,) = judge_hits(test)
+    assert not looks_long(test) and "double hit: 4" in verdict.reasons[0]
+
+
+def test_records_that_are_all_double_hits_are_not_long(rng):
+    every = {(0, hit): "double" for hit in range(4)}
+    test = hammer_test(SYSTEM, HammerPlan(rate=RATE, samples=8192, hits=4, bad=every), rng=rng)
+    point = test.points[0]
+    force = point.force + 0.4 * np.roll(point.force, 200, axis=-1)
+    assert not looks_long(replace(test, points=(replace(point, force=force),)))

@@ -18,7 +18,8 @@ from modalkit.batch import BatchResult, Part, find_studies, part_record, tables,
 from modalkit.batch import run as batch_run
 from modalkit.batch.find import Found
 from modalkit.batch.run import run_batch
-from modalkit.batch.writing import check_table_place
+from modalkit.batch.writing import table_places
+from modalkit.outputs import check_outputs
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 MODES = """
@@ -219,7 +220,7 @@ def test_columns_and_types_do_not_depend_on_what_is_in_them(tmp_path: Path) -> N
 
 def test_tables_are_written_all_or_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "table.csv"
-    path.write_text("old")
+    path.write_text("study,title\nold")
 
     def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
@@ -229,7 +230,7 @@ def test_tables_are_written_all_or_none(tmp_path: Path, monkeypatch: pytest.Monk
     with pytest.raises(InputError, match="No space left"):
         write_tables(path, frames)
     assert [p.name for p in tmp_path.iterdir()] == ["table.csv"]
-    assert path.read_text() == "old"
+    assert path.read_text() == "study,title\nold"
 
 
 @pytest.mark.parametrize(
@@ -237,10 +238,10 @@ def test_tables_are_written_all_or_none(tmp_path: Path, monkeypatch: pytest.Monk
 )
 def test_a_table_without_a_place_is_refused(tmp_path: Path, name: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        check_table_place(tmp_path / name)
+        check_outputs(*table_places(tmp_path / name))
 
 
 def test_a_missing_extra_is_an_error_that_names_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"modalkit-ema\[parquet\]"):
-        check_table_place(tmp_path / "table.parquet")
+        table_places(tmp_path / "table.parquet")

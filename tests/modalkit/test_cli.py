@@ -34,7 +34,22 @@ def beam(name: str = "beam_dry.uff") -> Path:
 def test_inspect_lists_what_is_usable(run: Run) -> None:
     code, out, _ = run("inspect", beam())
     assert code == 0
-    assert "75 hits at 5 points" in out
+    assert "75 hits at 5 points (1+Z, 2+Z, 3+Z, 4+Z, 5+Z), seen at 1 point (" in " ".join(out.split())
+
+
+def test_inspect_names_the_degrees_of_freedom_of_text(run: Run, tmp_path: Path) -> None:
+    columns = "".join(
+        f'[[column]]\nname = "{name}"\nquantity = "accelerance"\npart = "{part}"\n'
+        for name, part in (("re", "real"), ("im", "imag"))
+    )
+    rules = "".join(f'[[file]]\nmatch = "p{n}.csv"\nnode = {n}\n' for n in (1, 2, 3))
+    (tmp_path / "layout.toml").write_text('frequency_column = "f"\n' + columns + rules)
+    files = [tmp_path / f"p{n}.csv" for n in (1, 2, 3)]
+    for file in files:
+        file.write_text("f,re,im\n1,1,0\n2,1,0\n3,1,0\n")
+    code, out, _ = run("inspect", *files, "--layout", tmp_path / "layout.toml")
+    assert code == 0
+    assert "hit at 3 points (1+Z, 2+Z, 3+Z), seen at 1 point (1+Z)" in " ".join(out.split())
 
 
 def test_identify_finds_the_published_frequencies(run: Run, tmp_path: Path) -> None:

@@ -225,7 +225,7 @@ def fails(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) ->
 @pytest.mark.parametrize("command", ["correlate", "update", "diagnose"])
 def test_a_result_is_never_written_over_the_study(tmp_path: Path, fails: Fails, command: str) -> None:
     path = exported(tmp_path)
-    assert "stands there and is no JSON" in fails(command, path, "--json", path)
+    assert "this command reads it" in fails(command, path, "--json", path)
     assert path.read_text() == STUDY
     assert "no such folder" in fails(command, path, "--json", tmp_path / "nowhere" / "x.json")
     assert "is a folder" in fails(command, path, "--json", tmp_path)
@@ -237,7 +237,7 @@ def test_a_simulated_test_is_never_written_over_what_the_study_reads(
 ) -> None:
     path = exported(tmp_path)
     before = (tmp_path / name).read_bytes()
-    assert "the study reads this file" in fails("simulate", path, "--output", tmp_path / name)
+    assert "this command reads it" in fails("simulate", path, "--output", tmp_path / name)
     assert (tmp_path / name).read_bytes() == before
 
 

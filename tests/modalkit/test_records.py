@@ -193,8 +193,8 @@ def test_what_is_not_finite_is_null() -> None:
 
 def test_a_file_is_written_whole(tmp_path: Path) -> None:
     path = tmp_path / "out.json"
-    write_json(path, {"a": (1, np.nan)})
-    assert json.loads(path.read_text(encoding="utf-8")) == {"a": [1, None]}
+    write_json(path, {"schema": "modalkit.modes/1", "a": (1, np.nan)})
+    assert json.loads(path.read_text(encoding="utf-8")) == {"schema": "modalkit.modes/1", "a": [1, None]}
     write_text(path, "größer")
     assert path.read_text(encoding="utf-8") == "größer"
     assert [p.name for p in tmp_path.iterdir()] == ["out.json"]

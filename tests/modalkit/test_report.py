@@ -22,8 +22,9 @@ from modalkit.figures.diagnosis import fitted
 from modalkit.figures.diagnosis.frfs import LINES, thinned
 from modalkit.letter import letter
 from modalkit.process import Session, open_study
-from modalkit.report import Drawing, check_report_place, diagnosis_report, drawings, write_report
+from modalkit.report import Drawing, diagnosis_report, drawings, write_report
 from modalkit.report.html import Column, element, table
+from modalkit.report.place import BEGIN
 from modalkit.report.provenance import fingerprint
 from modalkit.report.svg import inline_svg
 from modalkit.study import Study, read_study
@@ -246,18 +247,15 @@ def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
 def test_a_report_stands_over_no_other_file(tmp_path: Path) -> None:
     study, report = tmp_path / "study.toml", tmp_path / "out.html"
     study.write_text("title = 'mine'\n")
-    with pytest.raises(InputError, match="no HTML file"):
-        check_report_place(study)
-    with pytest.raises(InputError, match="no HTML file"):
-        write_report(study, "<!doctype html>")
+    with pytest.raises(InputError, match="not a report written by modalkit"):
+        write_report(study, BEGIN)
     assert study.read_text() == "title = 'mine'\n"
     with pytest.raises(InputError, match="no such folder"):
-        check_report_place(tmp_path / "nowhere" / "out.html")
-    write_report(report, "<!doctype html>\nfirst")
-    write_report(report, "<!doctype html>\nsecond")
+        write_report(tmp_path / "nowhere" / "out.html", BEGIN)
+    write_report(report, f"{BEGIN}\nfirst")
+    write_report(report, f"{BEGIN}\nsecond")
     assert report.read_text().endswith("second")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["out.html", "study.toml"]
-    check_report_place(None)
 
 
 def test_cells_that_are_not_known_are_a_dash() -> None:
@@ -303,7 +301,7 @@ def test_the_command_writes_report_and_figures(
     assert all(" ".join(line.partition(":")[2].split()) in read.text for line in letter_lines)
     code, _, error = call("--report", study)
     assert code == 2
-    assert "no HTML file" in error and study.read_text(encoding="utf-8").startswith("#")
+    assert "this command reads it" in error and study.read_text(encoding="utf-8").startswith("#")
     code, _, error = call("--report", tmp_path / "same", "--json", tmp_path / "same")
     assert code == 2
     assert "give each its own file" in error

@@ -20,6 +20,8 @@ E = 210e9
 density = 7850.0
 """
 PLATE = BEAM.replace("beam", "plate").replace("0.0305", "0.2")
+MASS = "[[model.mass]]\nat = {}\nmass = 0.01\n"
+REGION = "[[model.region]]\nname = 'a'\nx = [0.0, 0.1]\n"
 TEST = '[test]\nfiles = ["a.uff"]\n'
 
 
@@ -155,6 +157,56 @@ def test_a_baseline_has_the_keys_of_a_test(tmp_path: Path) -> None:
         (TEST + BEAM.replace("[model.material]", "theory='kirchhoff'\n[model.material]"), r"theory"),
         (TEST + "axes = { x = [1, 1, 0] }\n" + BEAM, r"not perpendicular"),
         (TEST + BEAM + "[[model.effect]]\nname = 'E'\nfactor = 'big'\n", r"factor"),
+        (
+            TEST + BEAM.replace("[model.material]", "elements=1000000000\n[model.material]"),
+            r"more than 20000",
+        ),
+        (TEST + BEAM + MASS.format("[99.0]"), r"x = 99 m is off the beam, which reaches from 0 to 0\.376"),
+        (TEST + BEAM + MASS.format("[-5]"), r"x = -5 m is off the beam"),
+        (TEST + PLATE + MASS.format("[0.1, 0.9]"), r"y = 0\.9 m is off the plate"),
+        (TEST + BEAM + MASS.format("[0.1, 0.0]"), r"needs 1 coordinate on a beam, found 2"),
+        (TEST + BEAM + MASS.format("[0.1, 0.0, 0.0, 0.0, 0.0]"), r"model\.mass\.0\.at"),
+        (TEST + BEAM + MASS.format("[]"), r"model\.mass\.0\.at"),
+        (TEST + BEAM + MASS.format("[true]"), r"at is true or false"),
+        (TEST + BEAM + MASS.format("[0.1]") + "inertia = -1.0\n", r"model\.mass\.0\.inertia.*found -1"),
+        (TEST + BEAM + REGION + "E = -210e9\n", r"model\.region\.0\.E: .*greater than 0, found -2"),
+        (TEST + BEAM + REGION + "density = 0.0\n", r"model\.region\.0\.density"),
+        (TEST + BEAM + REGION + "thickness = -0.01\n", r"model\.region\.0\.thickness"),
+        (TEST + BEAM + REGION + "area = 0\n", r"model\.region\.0\.area"),
+        (TEST + BEAM + REGION + "inertia = -1\n", r"model\.region\.0\.inertia"),
+        (TEST + BEAM + REGION + "loss_factor = -1\n", r"model\.region\.0\.loss_factor"),
+        (TEST + BEAM + REGION + "alpha = -1\n", r"model\.region\.0\.alpha"),
+        (TEST + BEAM + REGION + "thickness = 1e300\n", r"thickness = 1e\+300 is .* times that of the beam"),
+        (TEST + BEAM + REGION + "density = 1e-300\n", r"density = 1e-300 is .* times that of the beam"),
+        (TEST + BEAM + MASS.format("[0.1]").replace("0.01", "1e300"), r"mass = 1e\+300 is .* times that of"),
+        (TEST + BEAM + "[model.damping]\nbeta = 1e300\n", r"model\.damping\.beta: .*less than 1000"),
+        (TEST + "[environment]\nfluid_density = 1e300\n", r"environment\.fluid_density: .*less than 30000"),
+        (TEST + "position_sigma = 1e300\n", r"test\.position_sigma"),
+        (TEST + BEAM + REGION + "y = [0.0, 0.1]\n", r"region 'a' has y; a beam reaches along x alone"),
+        (TEST + PLATE + REGION + "area = 1e-4\n", r"area or inertia; those are of beams"),
+        (TEST + BEAM + REGION.replace("0.1]", "0.1, 0.2, 0.3, 0.4]"), r"model\.region\.0\.x"),
+        (TEST + BEAM + REGION.replace("0.1]", "0.7]"), r"region 'a': x = 0\.7 m is off the beam"),
+        (TEST + BEAM + REGION.replace("0.0,", "0.3,"), r"x = \[0\.3, 0\.1\] ends before it begins"),
+        (TEST + BEAM + "[model.damping]\nratios = [-1, 5]\n", r"model\.damping\.ratios\.0.*found -1"),
+        (TEST + BEAM + "[model.damping]\nratios = []\n", r"model\.damping\.ratios"),
+        (TEST + BEAM + "[model.damping]\nloss_factor = 30\n", r"model\.damping\.loss_factor: .*less than 5"),
+        (TEST + BEAM + "[model.damping]\nalpha = -2\n", r"model\.damping\.alpha"),
+        (TEST + "band = [100.0, 5.0]\n", r"band = \[100, 5\] ends before it begins"),
+        (TEST + "band = [-1.0, 5.0]\n", r"test\.band\.0"),
+        (TEST + "add = [0.0]\n", r"test\.add\.0"),
+        (TEST + "sensor_masses = { '1+Z' = -0.1 }\n", r"test\.sensor_masses"),
+        (TEST + "repeatability = 2.0\n", r"test\.repeatability: .*less than 1"),
+        (TEST + "hits = true\n", r"hits is true or false"),
+        (TEST + "[tolerances]\nE = 5\n", r"tolerances\.E: .*less than 1, found 5"),
+        (TEST + "[tolerances]\nE = -0.1\n", r"tolerances\.E"),
+        (TEST + "[environment]\nwalls = [1.0, 0.0, 0.0, 1.0]\n", r"walls x0, x1 = \[1, 0\]"),
+        (TEST + "[update]\nlines = 0\n", r"update\.lines"),
+        (TEST + "[update]\nweights = [-1.0]\n", r"update\.weights"),
+        (TEST.replace("files", "modes = 'm.csv'\nfiles"), r"files and modes are both given"),
+        ("[test]\nmodes = 'm.csv'\ndrop = [3.0]\n", r"drop: said of records or FRFs, but modes = 'm.csv'"),
+        ("[test]\nmodes = 'm.csv'\nexponential_window = 3.0\n", r"exponential_window: said of records"),
+        (TEST + BEAM.replace("length", "lenght"), r"is 'length' meant\?"),
+        (TEST + BEAM + "[[model.effect]]\nname = 'sensor_mas'\nmass = 1.0\n", r"is 'sensor_mass' meant\?"),
     ],
 )
 def test_what_is_wrong_is_said_in_one_line(tmp_path: Path, text: str, says: str) -> None:
@@ -163,6 +215,16 @@ def test_what_is_wrong_is_said_in_one_line(tmp_path: Path, text: str, says: str)
 
 def test_a_mass_on_a_plate_needs_two_coordinates(tmp_path: Path) -> None:
     assert "mass" in complaint(tmp_path, TEST + PLATE + "[[model.mass]]\nat = [0.3]\nmass = 0.01\n")
+
+
+def test_a_place_may_miss_the_edge_by_digits_that_are_not_written_out(tmp_path: Path) -> None:
+    text = TEST + BEAM + MASS.format("[0.3761]") + REGION.replace("0.1]", "0.37605]")
+    assert study(tmp_path, text).spec().masses[0].at == (0.3761,)
+
+
+def test_constants_may_be_data(tmp_path: Path) -> None:
+    text = TEST + '[update]\ndata = ["frequencies", "constants"]\n'
+    assert study(tmp_path, text).update.data == ["frequencies", "constants"]
 
 
 def test_a_file_that_is_not_there_or_is_no_text(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """One body of tests for every effect of the library."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -298,3 +299,22 @@ def test_an_accepted_effect_takes_its_own_parameters_only(values: dict[str, floa
 def test_an_accepted_effect_must_exist() -> None:
     with pytest.raises(StudyError, match="moon_phase"):
         accepted_state(Predictor(BEAM, blank(POINTS)), "moon_phase", {})
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "says"),
+    [
+        ("lumped_mass", {"mass": 0.01, "x": 99.0}, "x = 99 m is off the structure"),
+        ("lumped_mass", {"mass": -0.01, "x": 0.1}, "mass = -0.01 kg must be positive"),
+        ("lumped_mass", {"mass": 1e300, "x": 0.1}, "million times beyond"),
+        ("sensor_mass", {"mass": 0.01, "bulk": -1.0}, "bulk = -1 must not be negative"),
+        ("local_stiffness", {"x": 0.1, "extent": 0.02, "loss": 1.0}, "takes away all stiffness"),
+        ("local_stiffness", {"x": 0.1, "extent": 0.02, "loss": -1e300}, "million times beyond"),
+        ("clamp_rotation", {"stiffness": -1.0}, "stiffness = -1 N m/rad must be positive"),
+        ("E", {"factor": 0.0}, "factor = 0 must be positive"),
+        ("length", {"extension": -0.376}, "leaves nothing of the structure"),
+    ],
+)
+def test_values_that_nothing_has_are_refused(name: str, values: dict[str, float], says: str) -> None:
+    with pytest.raises(StudyError, match=re.escape(says)):
+        accepted_state(LOOK["beam"], name, values)

@@ -57,6 +57,15 @@ def test_shapes_find_their_partner_in_any_order_and_level(
     assert match(test, MODEL, np.arange(5)).tolist() == order
 
 
+def test_modes_that_a_band_left_out_count_in_the_rank() -> None:
+    """Modes 12 to 14 of a series as dense as a plate's: their ratios to 11 to 13 are as even as to their own."""
+    hertz = 100.0 + 5.0 * np.arange(20)
+    model = replace(MODEL.select(np.zeros(20, dtype=int)), frequency=hertz)
+    test = replace(seen_as(MODEL.select(np.arange(3)), shapes=False), frequency=1.01 * hertz[11:14])
+    assert pair_modes(test, model).order.tolist() != [11, 12, 13]
+    assert pair_modes(replace(test, below=11), model).order.tolist() == [11, 12, 13]
+
+
 def test_without_shapes_the_rank_decides() -> None:
     test = seen_as(MODEL, shapes=False)
     assert match(test, MODEL, np.array([0, 1, 2, 4, 5, 3])).tolist() == [0, 1, 2, 4, 5, 3]
@@ -118,3 +127,33 @@ def test_a_uniform_change_keeps_all_pairs() -> None:
     for shapes in (True, False):
         paired = pair_modes(seen_as(soft.select(np.arange(5)), shapes=shapes), MODEL)
         assert paired.order.tolist() == list(range(5))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_false_mode_between_true_ones_gets_no_partner_and_costs_no_point(seed: int) -> None:
+    """As an identification invents where hits of different levels show a mode at different places."""
+    rng = np.random.default_rng(seed)
+    true = MODEL.select(np.arange(3))
+    test = seen_as(true)
+    mixed = true.constants @ rng.normal(size=3) / 3 + 0.3 * np.std(true.constants) * rng.normal(
+        size=len(test.seen)
+    )
+    false = 0.54 * true.frequency[2]
+    at = int(np.searchsorted(true.frequency, false))
+
+    def between(values, extra):
+        return np.insert(values, at, extra, axis=-1)
+
+    seen = replace(
+        test,
+        frequency=between(test.frequency, false),
+        frequency_sigma=between(test.frequency_sigma, 0.01),
+        damping=between(test.damping, 0.02),
+        damping_sigma=between(test.damping_sigma, 1e-3),
+        constants=between(test.constants, mixed),
+        constants_sigma=between(test.constants_sigma, 0.01 * np.abs(mixed).max()),
+    )
+    paired = pair_modes(seen, MODEL)
+    assert paired.trusted is None
+    assert false not in paired.measured.frequency and paired.order.tolist() == [0, 1, 2]
+    assert any(f"{false:.2f} Hz has no partner" in w for w in paired.warnings)

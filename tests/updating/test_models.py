@@ -110,7 +110,7 @@ def test_the_regions_matrices_sum_to_the_whole(spec: Spec, kind: str) -> None:
 
 @pytest.mark.parametrize("spec", [BEAM, PLATE])
 def test_a_point_mass_is_counted_once_and_by_no_region(spec: Spec) -> None:
-    heavy = replace(spec, masses=(PointMass((0.2, 0.11), 0.5),), clamped=())
+    heavy = replace(spec, masses=(PointMass((0.2, 0.11)[: spec.dim], 0.5),), clamped=())
     structure = build_structure(heavy)
     lift = np.zeros(structure.fields.n_dofs)
     for component in structure.fields.components[:1]:

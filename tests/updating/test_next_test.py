@@ -161,6 +161,9 @@ def test_the_unknown_gets_advice_and_no_figure() -> None:
     assert answer.verdict == "unknown"
     assert answer.next_test
     assert all(test.separates == () and np.isnan(test.expected_sigma) for test in answer.next_test)
+    advice = " ".join(test.measure for test in answer.next_test)
+    assert "in another state, as a baseline" in advice  # what holds for a building too
+    assert "bare" not in advice and "dry" not in advice
 
 
 def test_no_gap_needs_no_test() -> None:

@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.diagnosis.same_places import same_rows
 from updating.matching import match
 from updating.measured import Measured
 from updating.models.state import NOMINAL
@@ -128,17 +129,7 @@ class Before:
     @cached_property
     def _rows(self) -> tuple[IntArray, IntArray]:
         """Rows of the test and of the baseline with the same two points, in either order."""
-        there: dict[frozenset[int], int] = {}
-        base, test = self.baseline, self.measured
-        for row, (a, b) in enumerate(zip(base.seen, base.hit, strict=True)):
-            there[frozenset((base.nodes[a], base.nodes[b]))] = row
-        pairs = [
-            (row, there[key])
-            for row, (a, b) in enumerate(zip(test.seen, test.hit, strict=True))
-            if (key := frozenset((test.nodes[a], test.nodes[b]))) in there
-        ]
-        rows = np.array(pairs, dtype=int).reshape(-1, 2)
-        return rows[:, 0], rows[:, 1]
+        return same_rows(self.measured, self.baseline)
 
     def shapes(self, now: Prediction) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return what the baseline says the present constants miss.

@@ -20,6 +20,7 @@ from updating.diagnosis.next_test import propose
 from updating.diagnosis.posed import Posed
 from updating.diagnosis.problem import Problem
 from updating.diagnosis.result import Diagnosis, Gap, Shrink, Where
+from updating.diagnosis.same_places import unmatched
 from updating.diagnosis.search import Search, search
 from updating.diagnosis.several import Several
 from updating.diagnosis.shrink import shrinkage
@@ -142,7 +143,8 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
         before = pair_modes(case.baseline, looking.predict())
         doubt = doubt_in_mass(predictor.looking(before.measured, ()), before.measured, before.order)
         tolerances = replace(tolerances, factors={**tolerances.factors, "section": doubt})
-        warnings += [f"baseline: {w}" for w in before.warnings]
+        said = (*case.baseline.warnings, *before.warnings, *unmatched(case.measured, before.measured))
+        warnings += [f"baseline: {w}" for w in said]
         additions.append(_corrected(before))
         baseline, baseline_order = before.measured, before.order
         predictor = predictor.looking(case.measured, tuple(additions))

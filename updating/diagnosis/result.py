@@ -8,6 +8,7 @@ from typing import Literal
 import pandas as pd
 
 from acquisition.arrays import FloatArray
+from acquisition.display import Displayed, counted
 
 Verdict = Literal["named", "class", "unknown", "none"]
 Metric = Literal["frequency", "damping", "frf", "combined"]
@@ -15,7 +16,7 @@ Place = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Gap:
+class Gap(Displayed):
     """The gap between the test and the nominal model, mode by mode.
 
     Parameters
@@ -32,6 +33,15 @@ class Gap:
     rms_percent: float
     floor_percent: float
     frac: FloatArray
+
+    def _headline(self) -> str:
+        return (
+            f"{self.rms_percent:.3g} % r.m.s. frequency error over {counted(len(self.modes), 'mode')}, "
+            f"noise floor {self.floor_percent:.2g} %"
+        )
+
+    def _frame(self) -> pd.DataFrame:
+        return self.modes
 
 
 @dataclass(frozen=True)
@@ -60,7 +70,7 @@ class ParameterEstimate:
 
 
 @dataclass(frozen=True, eq=False)
-class Ranked:
+class Ranked(Displayed):
     """One set of effects with its probability."""
 
     effects: tuple[str, ...]
@@ -69,6 +79,10 @@ class Ranked:
     parameters: dict[str, ParameterEstimate]
     plausible: bool
     p_value: float
+
+    def _headline(self) -> str:
+        sizes = "; ".join(f"{n} = {e}" for n, e in self.parameters.items())
+        return f"{' + '.join(self.effects) or '(tolerances alone)'}, {100 * self.probability:.4g} %: {sizes}"
 
 
 @dataclass(frozen=True)
@@ -100,7 +114,7 @@ class Seat:
 
 
 @dataclass(frozen=True, eq=False)
-class Where:
+class Where(Displayed):
     """Where the cause sits.
 
     Parameters
@@ -139,6 +153,11 @@ class Where:
     modes: pd.DataFrame | None = None
     band: str = ""
 
+    def _headline(self) -> str:
+        share = 100 * self.channels.get(self.channel, 0.0)
+        places = " and ".join(f"({', '.join(f'{x:.3g}' for x in at)}) m" for at in self.locations[:3])
+        return f"{self.channel} ({share:.0f} %)" + (f", at {places}" if places else "")
+
 
 @dataclass(frozen=True)
 class Closed:
@@ -159,7 +178,7 @@ class HeldPoints:
 
 
 @dataclass(frozen=True)
-class Shrink:
+class Shrink(Displayed):
     """How far the gap shrinks, on the data fitted and on modes held out in turn [%].
 
     Parameters
@@ -195,7 +214,7 @@ class Shrink:
 
 
 @dataclass(frozen=True)
-class NextTest:
+class NextTest(Displayed):
     """A measurement, what it separates, and by how many sigma.
 
     Parameters
@@ -220,7 +239,7 @@ class NextTest:
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class Diagnosis(Displayed):
     """The whole answer.
 
     Parameters
@@ -264,14 +283,18 @@ class Diagnosis:
         return tuple(dict.fromkeys(name for names in self.sets for name in names))
 
     def table(self) -> pd.DataFrame:
-        """Return the ranking, one row per set of effects."""
-        rows = [
-            {
-                "effects": " + ".join(r.effects) or "(tolerances alone)",
-                "probability": r.probability,
-                "fits (p)": r.p_value,
-                "parameters": ", ".join(f"{n} = {e}" for n, e in r.parameters.items()),
-            }
-            for r in self.ranking
-        ]
-        return pd.DataFrame(rows)
+        """Return the ranking, one row per set of effects, with its probability [-] to four decimals.
+
+        The effects are the index, so that no width of a terminal hides the probability; `ranking` has all digits.
+        """
+        columns = {
+            "probability": [round(r.probability, 4) for r in self.ranking],
+            "fits (p)": [float(f"{r.p_value:.3g}") for r in self.ranking],
+            "parameters": [", ".join(f"{n} = {e}" for n, e in r.parameters.items()) for r in self.ranking],
+        }
+        names = [" + ".join(r.effects) or "(tolerances alone)" for r in self.ranking]
+        return pd.DataFrame(columns, index=pd.Index(names, name="effects"))
+
+    def _headline(self) -> str:
+        which = " | ".join(" + ".join(names) for names in self.sets)
+        return f"{self.title}: {self.verdict}{f' ({which})' if which else ''}; {self.gap._headline()}"

@@ -19,6 +19,7 @@ from updating.effects.fluid import FluidAddedMass, FluidDamping
 from updating.effects.gain import CalibrationGain
 from updating.effects.joint_nonlinearity import JointNonlinearity
 from updating.effects.length import Length
+from updating.effects.limits import check_values
 from updating.effects.local_stiffness import LocalStiffness
 from updating.effects.mass import LumpedMass, SensorMass
 from updating.effects.orthotropy import Orthotropy
@@ -92,7 +93,17 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
             f"[[model.effect]] {name}: it takes {', '.join(sorted(takes)) or 'no parameters'}, "
             f"found {', '.join(sorted(values)) or 'none'}"
         )
+    check_values(parameters, values, f"[[model.effect]] {name}")
     return effect.state(predictor, values)
 
 
-__all__ = ["LIBRARY", "Channel", "Effect", "Parameter", "Variant", "accepted_state", "register"]
+__all__ = [
+    "LIBRARY",
+    "Channel",
+    "Effect",
+    "Parameter",
+    "Variant",
+    "accepted_state",
+    "check_values",
+    "register",
+]

@@ -58,20 +58,22 @@ def buckling_load(predictor: Predictor) -> float:
 
 
 def _buckling(predictor: Predictor) -> float:
-    reduced = predictor.reduced
+    reduced = predictor.reduced.small
     n = reduced.ranks[frozenset()]
     stiffness = np.zeros((n, n))
     for term, whole in zip(reduced.structure.terms, reduced.sums, strict=True):
         if term.kind == "stiffness":
             stiffness += whole[:n, :n]
-    return 1 / float(linalg.eigh(_unit(predictor)[:n, :n], stiffness, eigvals_only=True)[-1])
+    return 1 / float(
+        linalg.eigh(reduced.project(tension(reduced.structure))[:n, :n], stiffness, eigvals_only=True)[-1]
+    )
 
 
 def _unit(predictor: Predictor) -> FloatArray:
     reduced = predictor.reduced
 
     def build() -> FloatArray:
-        return np.asarray(reduced.basis.T @ (tension(reduced.structure) @ reduced.basis))
+        return reduced.project(tension(reduced.structure))
 
     return predictor.once("tension", build)
 

@@ -64,7 +64,7 @@ def covered(predictor: Predictor, kind: str, inside: FloatArray) -> FloatArray:
         Shares at the quadrature points, of :func:`shares` [-].
     """
     reduced, factors = predictor.reduced, predictor.base.factors
-    if predictor.spec.kind == "beam":
+    if predictor.spec.kind == "beam" or reduced.whole:
         return reduced.weighted(kind, inside, factors)
     cell = _cells(predictor.spec, reduced.fields.points)
     size = np.bincount(cell, reduced.fields.weights)

@@ -92,7 +92,7 @@ def _edges(predictor: Predictor, freed: Literal["rotation", "translation"]) -> F
     """Integrate the square of the slope, or of the displacement, across every clamped edge, as (r, r) [m in w]."""
     reduced = predictor.reduced
     full = edge_slopes(reduced.structure) if freed == "rotation" else edge_shifts(reduced.structure)
-    return np.asarray(reduced.basis.T @ (full @ reduced.basis))
+    return reduced.project(full)
 
 
 def edge_slopes(structure: Structure) -> Sparse:

@@ -187,6 +187,7 @@ def _wetted(predictor: Predictor, around: Environment) -> _Wetted:
     A structure that an accepted ``length`` makes longer bends inside its clamps, where no fluid is; a shorter
     one ends where it ends.
     """
+    predictor.reduced.refuse_whole("a fluid's pressure, which couples every point to every other")
     spec = predictor.spec
     stretch = predictor.base.factors.get("length", 1.0)
     start = -predictor.growth * (stretch - 1.0)

@@ -1,5 +1,6 @@
 """A length that differs from the drawing, penetration into a clamp included."""
 
+from acquisition.errors import StudyError
 from updating.effects.base import Effect, Parameter, Values
 from updating.models.state import State
 from updating.prediction import Predictor
@@ -23,8 +24,17 @@ class Length(Effect):
         return (Parameter("extension", "m", -0.06 * size, 0.12 * size, why),)
 
     def state(self, predictor: Predictor, values: Values) -> State:
-        """Return the stretched structure."""
-        return State(factors={"length": 1 + values["extension"] / predictor.spec.length})
+        """Return the stretched structure.
+
+        Raises
+        ------
+        StudyError
+            If nothing is left of it.
+        """
+        stretch = 1 + values["extension"] / predictor.spec.length
+        if not stretch > 0:
+            raise StudyError(f"length: extension = {values['extension']:g} m leaves nothing of the structure")
+        return State(factors={"length": stretch})
 
     def obstacle(self, predictor: Predictor) -> str | None:
         """Need a model that has a length."""

@@ -92,7 +92,7 @@ class LocalStiffness(Effect):
         if predictor.spec.kind == "matrices":
             return State(regional={(int(values["region"]), "E"): 1 - values["loss"]})
         factors = predictor.base.factors
-        if predictor.spec.kind == "beam":
+        if predictor.spec.kind == "beam" or predictor.reduced.whole:
             lost = self._softening(predictor, values)
             return State(stiffness=(-predictor.reduced.weighted("stiffness", lost, factors),))
         inside = shares(predictor, values, soft=SOFT)

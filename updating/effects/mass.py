@@ -154,9 +154,11 @@ class LumpedMass(Effect):
             mass = predictor.reduced.unit_mass(point) * values["mass"]
             return State(mass=(mass + inertia * _reduced_inertia(predictor, point),))
         rows = predictor.reduced.rows(point)
-        turns = [rows[name] for name in ("wx", "wy") if name in rows]
-        turning = sum((row.T @ row for row in turns), np.zeros(()))
-        return State(mass=(values["mass"] * rows["w"].T @ rows["w"] + inertia * turning,))
+        body = values["mass"] * (rows["w"].T @ rows["w"])
+        for name in ("wx", "wy"):
+            if name in rows:
+                body = body + inertia * (rows[name].T @ rows[name])
+        return State(mass=(body,))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the place; where no shapes tell it from its mirror images, these too."""
@@ -186,8 +188,8 @@ def _outline(predictor: Predictor) -> tuple[Parameter, ...]:
 
 
 def _reduced_inertia(predictor: Predictor, points: FloatArray) -> FloatArray:
-    basis = predictor.reduced.basis
-    return np.asarray(basis.T @ (unit_inertia(predictor.reduced.structure, points) @ basis))
+    reduced = predictor.reduced
+    return reduced.project(unit_inertia(reduced.structure, points))
 
 
 def sensor_roves(predictor: Predictor) -> bool:

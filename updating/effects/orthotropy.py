@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from updating.effects.base import Effect, Parameter, Values
 from updating.models.state import State
 from updating.models.terms import FieldTerm
@@ -49,10 +47,11 @@ class Orthotropy(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the plate with its terms across scaled."""
         reduced = predictor.reduced
-        change = np.zeros_like(reduced.sums[0])
-        for term, whole in zip(reduced.structure.terms, reduced.sums, strict=True):
+        sums = reduced.sums
+        change = 0.0 * sums[0]
+        for term, whole in zip(reduced.structure.terms, sums, strict=True):
             assert isinstance(term, FieldTerm)
             power = SHARES.get((term.left, term.right), 0.0)
             if term.kind == "stiffness" and power:
-                change += (values["ratio"] ** power - 1) * term.scale(predictor.base.factors) * whole
+                change = change + (values["ratio"] ** power - 1) * term.scale(predictor.base.factors) * whole
         return State(stiffness=(change,))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.box import Place, covered, mirror_images, place, shares, starting_places
@@ -90,9 +88,9 @@ class DampingPatch(Effect):
         """Return stiffness and mass of the bare structure under the layer, each (r, r) [SI]."""
         reduced, factors = predictor.reduced, predictor.base.factors
         if predictor.spec.kind == "matrices":
-            parts = {"stiffness": np.zeros_like(reduced.sums[0]), "mass": np.zeros_like(reduced.sums[0])}
+            parts = dict.fromkeys(("stiffness", "mass"), 0.0 * reduced.sums[0])
             for term, regions in zip(reduced.structure.terms, reduced.parts, strict=True):
-                parts[term.kind] += term.scale(factors) * regions[int(values["region"])]
+                parts[term.kind] = parts[term.kind] + term.scale(factors) * regions[int(values["region"])]
             return parts["stiffness"], parts["mass"]
         inside = shares(predictor, values)
         stiffness = covered(predictor, "stiffness", inside)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from acquisition.display import Displayed
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.frf_update.columns import columns
@@ -31,7 +32,7 @@ STEPS = 4
 
 
 @dataclass(frozen=True, eq=False)
-class FrfBootstrap:
+class FrfBootstrap(Displayed):
     """An update by FRFs and its repetitions.
 
     Parameters

@@ -147,8 +147,7 @@ def _pairs(
         partner = match(test, prediction, specimen.order)
         found[name] = (prediction.select(partner), partner)
     after, partner = found["after"]
-    effects = dict(specimen.accepted) | specimen.panel.effects(values)
-    whole = full_modes(predictor, predictor.base.plus(state), effects, int(partner.max()) + 1)
+    whole = full_modes(predictor, lambda on: specimen.panel.state(on, values), int(partner.max()) + 1)
     after_hz = after.frequency if whole is None else whole[0][partner]
     mac = np.full(len(partner), np.nan)
     if test.has_shapes:

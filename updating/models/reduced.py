@@ -53,6 +53,23 @@ class Reduced:
     basis: FloatArray
     ranks: Mapping[frozenset[str], int]
 
+    @property
+    def whole(self) -> bool:
+        """Whether matrices are over all degrees of freedom: not on a reduced basis."""
+        return False
+
+    @property
+    def small(self) -> Reduced:
+        """The structure on a reduced basis: this one."""
+        return self
+
+    def refuse_whole(self, what: str) -> None:
+        """Do nothing: ``what`` is known here; a model of all degrees of freedom refuses it."""
+
+    def project(self, full: Sparse) -> FloatArray:
+        """Return a matrix over all degrees of freedom (n_dofs, n_dofs) on the basis, (r, r)."""
+        return np.asarray(self.basis.T @ (full @ self.basis))
+
     @cached_property
     def sampled(self) -> dict[str, FloatArray]:
         """Fields of the basis at the quadrature points, each (n_points, r)."""
@@ -114,8 +131,7 @@ class Reduced:
     @cached_property
     def point_masses(self) -> FloatArray:
         """Matrix of the masses the modeller knows of, shape (r, r) [kg in w]."""
-        full = self.structure.point_masses()
-        return np.asarray(self.basis.T @ (full @ self.basis))
+        return self.project(self.structure.point_masses())
 
     def matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
         """Return stiffness and mass of a state on the columns its releases admit [SI]."""
@@ -197,7 +213,7 @@ class Reduced:
 
     def unit_mass(self, points: FloatArray) -> FloatArray:
         """Return the mass matrix of 1 kg at each of some points (n_points, dim) [m], shape (r, r) [-]."""
-        return np.asarray(self.basis.T @ (self.structure.unit_mass(points) @ self.basis))
+        return self.project(self.structure.unit_mass(points))
 
     def eigen(self, state: State) -> tuple[FloatArray, FloatArray]:
         """Return all eigenvalues [rad^2/s^2] and mass-normalised vectors of a state in the reduced basis."""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
+from acquisition.display import Displayed, counted
 from acquisition.errors import StudyError
+from updating.models.spec_checks import check_parts
 
 if TYPE_CHECKING:
     from updating.models.imported.matrices import Imported
@@ -22,6 +25,9 @@ THEORIES = {
     "matrices": {"imported"},
 }
 """Theories of each kind of model."""
+
+MOST_ELEMENTS = 20_000
+"""More elements than this of a uniform beam or plate say nothing new and cost memory: some 2 GB on a plate [-]."""
 
 DIMENSIONS = {"beam": 1, "plate": 2, "matrices": 3}
 """How many coordinates a place on the model has."""
@@ -120,7 +126,7 @@ class Damping:
 
 
 @dataclass(frozen=True)
-class Spec:
+class Spec(Displayed):
     """A beam or a rectangular plate: x from 0 to length, y from 0 to width, hit along z; or imported matrices.
 
     Parameters
@@ -149,7 +155,8 @@ class Spec:
     Raises
     ------
     StudyError
-        If a dimension is not positive, or an edge or a theory does not exist for this kind.
+        If a dimension is not positive, an edge or a theory does not exist for this kind, or a mass or region cannot be
+        or lies off the structure.
     """
 
     kind: Kind
@@ -167,8 +174,8 @@ class Spec:
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "thickness"):
-            if not getattr(self, name) > 0:
-                raise StudyError(f"model: {name} must be positive, found {getattr(self, name)}")
+            if not 0 < getattr(self, name) < float("inf"):
+                raise StudyError(f"model: {name} must be positive and finite, found {getattr(self, name)}")
         edges = EDGES[self.kind]
         if unknown := set(self.clamped) - edges:
             raise StudyError(f"model: a {self.kind} has no edge {sorted(unknown)}; use {sorted(edges)}")
@@ -180,11 +187,12 @@ class Spec:
             or min(self.elements, default=1) < 1
         ):
             raise StudyError(f"model: elements = {list(self.elements)} does not fit a {self.kind}")
-        if short := [list(m.at) for m in self.masses if len(m.at) < self.dim]:
+        if math.prod(self.elements) > MOST_ELEMENTS:
             raise StudyError(
-                f"model: mass at {short[0]} needs {self.dim} coordinates on "
-                + ("imported matrices" if self.kind == "matrices" else f"a {self.kind}")
+                f"model: elements = {list(self.elements)} are more than {MOST_ELEMENTS}; fewer are as exact and "
+                "fit the memory"
             )
+        check_parts(self)
         if not self.regions:
             object.__setattr__(self, "regions", _default_regions(self))
 
@@ -200,6 +208,11 @@ class Spec:
     def with_elements(self, *elements: int) -> Spec:
         """Return the same specimen with another mesh."""
         return replace(self, elements=elements)
+
+    def _headline(self) -> str:
+        held = f"clamped at {', '.join(self.clamped)}" if self.clamped else "free"
+        size = " x ".join(f"{n:g}" for n in (self.length, self.width, self.thickness))
+        return f"{self.kind} of {size} m, {held}, {self.theory}, {counted(len(self.regions), 'region')}"
 
 
 def _default_regions(spec: Spec) -> tuple[Region, ...]:

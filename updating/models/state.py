@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TypeVar
 
 from acquisition.arrays import FloatArray
+from acquisition.display import Displayed
 from updating.models.spec import Theory
 
 
@@ -40,7 +41,7 @@ class Loss:
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class State(Displayed):
     """What differs from the nominal model and the nominal measurement.
 
     Parameters

@@ -169,7 +169,9 @@ def build_field_structure(spec: Spec) -> FieldStructure:
     for index, region in enumerate(spec.regions):
         inside = region_mask(region, fields.points)
         if not inside.any():
-            raise StudyError(f"region {region.name!r} holds no part of the model; check its x and y")
+            raise StudyError(
+                f"region {region.name!r} holds no part of the model; check its x and y, or use more elements"
+            )
         region_of[inside] = index
     terms = (
         plate_terms(spec, fields, region_of) if spec.kind == "plate" else beam_terms(spec, fields, region_of)

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import FloatArray
+from acquisition.display import Displayed
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.models.damping import Matrices
@@ -30,7 +31,7 @@ APART = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Simulated:
+class Simulated(Displayed):
     """A model that can be excited and looked at.
 
     Parameters

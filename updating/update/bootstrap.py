@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from acquisition.display import Displayed
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.update.result import Estimate, Update
@@ -49,7 +50,7 @@ class Draws:
 
 
 @dataclass(frozen=True, eq=False)
-class Bootstrap:
+class Bootstrap(Displayed):
     """An update and its repetitions.
 
     Parameters

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.matching import pair_modes
@@ -55,7 +55,7 @@ def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False)
         )
     predictor = _on_own_basis(predictor, panel) if lean else predictor
     paired = pair_modes(case.measured, predictor.predict())
-    number = 1 + np.flatnonzero(np.isin(case.measured.frequency, paired.measured.frequency))
+    number = 1 + _rows_of(paired.measured.frequency, case.measured.frequency)
     updated = {knob.effect for knob in panel.knobs}
     if updated & set(accepted):
         kept = tuple((n, v) for n, v in case.accepted if n not in updated)
@@ -69,8 +69,16 @@ def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False)
         panel,
         (*case.measured.warnings, *paired.warnings),
         np.ones(len(number)),
-        {name: values for name, values in accepted.items() if name not in updated},
     )
+
+
+def _rows_of(kept: FloatArray, every: FloatArray) -> IntArray:
+    """Return which of all frequencies those kept are, in the same order; of equal ones the first that is left."""
+    rows: list[int] = []
+    for frequency in kept.tolist():
+        start = rows[-1] + 1 if rows else 0
+        rows.append(start + int(np.flatnonzero(every[start:] == frequency)[0]))
+    return np.array(rows, dtype=np.int64)
 
 
 def _on_own_basis(predictor: Predictor, panel: Panel) -> Predictor:

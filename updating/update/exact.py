@@ -2,40 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.clamp import edge_slopes
-from updating.effects.mass import sensor_places, sensor_share
 from updating.models.fields import Sparse
 from updating.models.solve import DENSE
 from updating.models.state import State
 from updating.models.structure import FieldStructure
+from updating.models.whole import ReducedOnlyError, size_of
 from updating.prediction import Predictor
 from updating.update.basis import Factor
 
-PLAIN = frozenset({"E", "density", "thickness", "section_scale", "length", "shear"})
-"""Effects that are nothing but factors of the model."""
-
-NO_STRUCTURE = frozenset({"calibration_gain", "exponential_window"})
-"""Effects of the measurement, which leave the structure alone."""
-
 
 def full_modes(
-    predictor: Predictor, state: State, effects: Mapping[str, Mapping[str, float]], count: int
+    predictor: Predictor, change: Callable[[Predictor], State], count: int
 ) -> tuple[FloatArray, FloatArray] | None:
     """Solve the full model for its lowest elastic modes.
+
+    Accepted effects and the change are asked for what they do to the full matrices by the same lines as on the
+    reduced basis, with all their parameters.
 
     Parameters
     ----------
     predictor : Predictor
         The specimen.
-    state : State
-        Everything that departs from the nominal model.
-    effects : mapping of str to mapping
-        Effects in the state and the values of their parameters.
+    change : function
+        Departure from the nominal model that a predictor is asked for, on top of its additions.
     count : int
         Number of elastic modes.
 
@@ -46,21 +40,33 @@ def full_modes(
     vectors : (n_dofs, count) array
         Mass-normalised shapes [kg^-1/2].
 
-    Both are None together if an effect is known to the reduced model alone.
+    None in place of both if an effect is known on the reduced basis alone, or asks for another theory than the
+    specimen's.
     """
-    if set(effects) - PLAIN - NO_STRUCTURE - {"sensor_mass", "clamp_rotation"}:
+    state = _on_all(predictor.whole, change)
+    if state is None or state.theory not in (None, predictor.spec.theory):
         return None
     structure = predictor.reduced.structure
-    stiffness, mass = structure.matrices(state)
-    if "sensor_mass" in effects:
-        points, share = sensor_places(predictor), sensor_share(predictor)
-        mass = Sparse(mass + share * effects["sensor_mass"]["mass"] * structure.unit_mass(points))
-    if "clamp_rotation" in effects:
-        stiffness = Sparse(stiffness + effects["clamp_rotation"]["stiffness"] * edge_slopes(structure))
+    stiffness, mass = (Sparse(matrix) for matrix in predictor.whole.reduced.matrices(state))
     first = structure.rigid_modes
     wanted = first + count
     if isinstance(structure, FieldStructure) and not state.released and structure.unknowns > DENSE:
         values, vectors = Factor(structure, stiffness, mass).lowest(wanted)
     else:
         values, vectors = structure.eigen(wanted, stiffness=stiffness, mass=mass, released=state.released)
-    return np.asarray(np.sqrt(np.maximum(values[first:], 0.0)) / (2 * np.pi)), vectors[:, first:]
+    shift = 1.0 + state.slope * (predictor.measured.level or 0.0)
+    frequency = shift * np.sqrt(np.maximum(values[first:], 0.0)) / (2 * np.pi)
+    return np.asarray(frequency), vectors[:, first:]
+
+
+def _on_all(whole: Predictor, change: Callable[[Predictor], State]) -> State | None:
+    """Return the state on all degrees of freedom; None if some part of it cannot be stated on them.
+
+    An effect of a user's own may be written for dense matrices alone.
+    """
+    try:
+        state = whole.base.plus(change(whole))
+    except (ReducedOnlyError, TypeError, ValueError, AttributeError):
+        return None
+    size = (whole.reduced.structure.n_dofs,) * 2
+    return state if all(size_of(m) == size for m in (*state.stiffness, *state.mass)) else None

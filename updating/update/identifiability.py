@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.stats import chi2
 
 from acquisition.arrays import BoolArray, FloatArray
+from acquisition.display import Displayed
 
 FLOOR = 1e-10
 """Singular values under this share of the largest are none [-]."""
@@ -60,7 +61,7 @@ class Coupling:
 
 
 @dataclass(frozen=True, eq=False)
-class Determinability:
+class Determinability(Displayed):
     """What data determine at a setting of the parameters.
 
     Parameters

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray
+from acquisition.display import Displayed, counted
 from updating.update.identifiability import Determinability
 from updating.update.text import report_text
 
@@ -56,7 +57,7 @@ class Estimate:
 
 
 @dataclass(frozen=True, eq=False)
-class Update:
+class Update(Displayed):
     """An updated model.
 
     Parameters
@@ -150,3 +151,10 @@ class Update:
         used = self.pairs[self.pairs["used"]]
         error = used[f"{which}_hz"] / used["test_hz"] - 1
         return float(100 * np.sqrt(np.mean(error**2)))
+
+    def _headline(self) -> str:
+        end = "converged" if self.converged else "not converged"
+        return (
+            f"{counted(len(self.parameters), 'parameter')}, r.m.s. frequency error {self.rms_percent('before'):.3g} -> "
+            f"{self.rms_percent('after'):.3g} %, {end} after {counted(self.iterations, 'iteration')}"
+        )

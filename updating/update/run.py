@@ -169,9 +169,9 @@ def _full(system: System, index: int, solution: Solution) -> tuple[FloatArray, F
     """Return the full model's frequencies of the partners, and all its low modes; None where there is no such."""
     specimen, look = system.specimens[index], solution.looks[index]
     values = system.values(solution.theta, index)
-    effects = dict(specimen.accepted) | specimen.panel.effects(values)
-    state = specimen.predictor.base.plus(specimen.panel.state(specimen.predictor, values))
-    modes = full_modes(specimen.predictor, state, effects, int(look.partner.max()) + 1)
+    modes = full_modes(
+        specimen.predictor, lambda on: specimen.panel.state(on, values), int(look.partner.max()) + 1
+    )
     return None if modes is None else (modes[0][look.partner], modes[1])
 
 

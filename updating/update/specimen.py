@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -66,8 +66,6 @@ class Specimen:
         What was left out.
     correction : (n_modes,) array
         Ratio of the full model's frequencies to the reduced model's [-].
-    accepted : mapping of str to mapping
-        Effects in the model beforehand and the values of their parameters.
     level : bool
         Whether the measured constants are data with their level, not up to a factor per mode.
     near : Prediction, optional
@@ -83,7 +81,6 @@ class Specimen:
     panel: Panel
     warnings: tuple[str, ...]
     correction: FloatArray
-    accepted: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     level: bool = False
     near: Prediction | None = None
 

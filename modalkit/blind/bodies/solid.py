@@ -10,7 +10,6 @@ on the path (``available()``).
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -23,7 +22,7 @@ from modalkit.blind.bodies.body import Loss
 from modalkit.blind.bodies.parts import Attached
 from modalkit.blind.bodies.plate_mesh import plate_lines
 from modalkit.blind.bodies.plate_parts import PlateAttached
-from modalkit.blind.bodies.solid_deck import Bricks, Point, deck, run, simpson, trapezoid
+from modalkit.blind.bodies.solid_deck import Bricks, Point, deck, program, run, simpson, trapezoid
 
 _SPARE = 12
 
@@ -268,7 +267,7 @@ class Solid:
 
 def available() -> bool:
     """Return whether CalculiX is on the path."""
-    return shutil.which("ccx") is not None
+    return program() is not None
 
 
 @lru_cache(maxsize=32)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -174,15 +175,16 @@ def run(text: str, *, read: IntArray, time_limit: float = TIME_LIMIT) -> tuple[F
     StudyError
         If CalculiX is missing, fails, or takes too long.
     """
+    ccx = program()
+    if ccx is None:
+        raise StudyError("a solid needs CalculiX, and there is no ccx: install calculix-ccx")
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "job.inp").write_text(text, encoding="ascii")
         try:
             done = subprocess.run(
-                ["ccx", "job"], cwd=folder, capture_output=True, text=True, timeout=time_limit, check=False,
+                [ccx, "job"], cwd=folder, capture_output=True, text=True, timeout=time_limit, check=False,
                 env={**os.environ, "OMP_NUM_THREADS": "1"},
             )  # fmt: skip
-        except FileNotFoundError as missing:
-            raise StudyError("a solid needs CalculiX, and there is no ccx: install calculix-ccx") from missing
         except subprocess.TimeoutExpired as late:
             message = f"ccx has not solved a solid within {time_limit:g} s: ask for fewer elements or modes"
             raise StudyError(message) from late
@@ -190,6 +192,13 @@ def run(text: str, *, read: IntArray, time_limit: float = TIME_LIMIT) -> tuple[F
         if done.returncode or not table.exists() or not table.stat().st_size:
             raise StudyError(f"ccx failed on a solid: {' '.join(done.stdout.split()[-30:])}")
         return printed(table.read_text(), read)
+
+
+def program() -> str | None:
+    """Return where CalculiX is installed; one in the current folder is not meant, nor one beside a study."""
+    folders = [p for p in os.environ.get("PATH", os.defpath).split(os.pathsep) if Path(p).is_absolute()]
+    found = shutil.which("ccx", path=os.pathsep.join(folders))
+    return found if found is not None and Path(found).is_absolute() else None
 
 
 def printed(text: str, read: IntArray) -> tuple[FloatArray, FloatArray]:

@@ -137,7 +137,7 @@ def _shapes_too(design: Design) -> Change:
 def _baseline(design: Design) -> Change:
     return Change(
         "baseline",
-        "test the same specimen before (bare, dry, sensor off) as a baseline",
+        "test the same structure in another state (before the change) as a baseline",
         replace(design, baseline=True),
         lambda s: replace(s, baseline=True),
     )

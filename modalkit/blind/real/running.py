@@ -19,6 +19,7 @@ from modalkit.blind.answer import Answer, read_answer
 from modalkit.blind.real.anonymous import write_anonymous
 from modalkit.blind.real.case import Case
 from modalkit.blind.real.judging import Judgement, judge
+from modalkit.module_path import child_environment
 
 DiagnoseTogether = Callable[[Sequence[Path], tuple[str, ...], tuple[str, ...]], Mapping[str, Any]]
 TIMEOUT = 900.0
@@ -152,10 +153,19 @@ def diagnose_together(
     """
     folder = studies[0].parent
     out = folder / "diagnosis.json"
-    command = [sys.executable, "-m", "modalkit", "diagnose", *(s.name for s in studies), "--json", out.name]
+    command = [
+        sys.executable,
+        "-P",
+        "-m",
+        "modalkit",
+        "diagnose",
+        *(s.name for s in studies),
+        "--json",
+        out.name,
+    ]
     command += ["--shared", ",".join(shared)] if shared else []
     command += ["--without", ",".join(without)] if without else []
-    environment = {k: v for k, v in os.environ.items() if k not in _HIDDEN_VARIABLES}
+    environment = {k: v for k, v in os.environ.items() if k not in _HIDDEN_VARIABLES} | child_environment()
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         done = subprocess.run(

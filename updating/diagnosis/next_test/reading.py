@@ -44,7 +44,9 @@ class Reading(Trial):
         nuisance = np.zeros((len(value), len(rival.shift)))
         names = site.problem.names
         powers = np.array([[row.get(name, 0.0) for name in names] for row in self.tolerances(site)])
-        columns = np.hstack([powers.reshape(-1, len(names)) * site.problem.sigmas, self.others(site, rival)])
+        columns = np.hstack(
+            [powers.reshape(len(value), len(names)) * site.problem.sigmas, self.others(site, rival)]
+        )
         nuisance[:, site.doubts(rival)] = columns
         return Outcome(
             value + nuisance @ rival.shift,

@@ -8,6 +8,7 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.comparison import SHAPES
 from updating.diagnosis.evidence import Explanation
 from updating.diagnosis.next_test.base import Site
+from updating.diagnosis.next_test.same_test import THIN
 from updating.diagnosis.problem import Problem
 from updating.diagnosis.result import NextTest
 from updating.diagnosis.search import Search
@@ -43,7 +44,7 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
             "point or two beside it"
         )
     if problem.baseline is None:
-        told.append("test the specimen without what was added to it (bare, dry), as a baseline")
+        told.append(_another_state(problem))
     if not told:
         told.append(
             "take the specimen down, mount it anew and repeat the test: does the gap come back the same?"
@@ -54,6 +55,17 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
         told.append("hang the specimen up free and test it: is the gap the clamp's?")
     where = f"{site.title}: " if site.title else ""
     return tuple(NextTest(where + text, (), float("nan"), whole=False) for text in told)
+
+
+def _another_state(problem: Problem) -> str:
+    """Return which state of the structure to test as a baseline; not every one can be stripped or dried."""
+    around = problem.predictor.environment.fluid_density
+    if around is not None and around >= THIN:
+        return "test the same specimen in air, as a baseline"
+    return (
+        "test the same structure in another state, as a baseline: before the change in question, or without a part "
+        "that can be taken off"
+    )
 
 
 def _points_that_miss(site: Site, problem: Problem, explanation: Explanation) -> list[str]:

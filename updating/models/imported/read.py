@@ -32,7 +32,7 @@ READERS: dict[str, Callable[[Path], Sparse]] = {
 """Reader by the ending of the file name."""
 
 
-def read_matrix(path: Path) -> Sparse:
+def read_matrix(path: Path | str) -> Sparse:
     """Read a matrix: MatrixMarket, Harwell-Boeing, .npz or CalculiX.
 
     Raises
@@ -40,6 +40,7 @@ def read_matrix(path: Path) -> Sparse:
     StudyError
         If the file is missing, of an unknown kind, or not what its name says.
     """
+    path = Path(path)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise StudyError(

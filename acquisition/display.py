@@ -1,0 +1,113 @@
+"""How results display themselves: a few lines in a terminal, a table in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from html import escape
+from numbers import Number
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LINES, ROWS = 12, 60
+"""Rows of a result's table in a terminal and in a notebook; longer ones are cut in the middle."""
+
+WIDTH = 60
+"""Characters of a text among other values; longer ones are cut at the end."""
+
+ITEMS = 4
+"""So many plain values are listed; of more, only their number is given."""
+
+LONGEST = 400
+"""Characters of the line that describes a result."""
+
+
+class Displayed:
+    """A dataclass that displays itself by what it holds, not by every number in it.
+
+    A subclass says in `_headline` what it is in one line; its ``table()``, where it has one, is shown below. What has
+    no headline of its own is described field by field: arrays by their shape, tables and sequences by their length.
+    """
+
+    def __init_subclass__(cls, **more: Any) -> None:
+        """Give the class its repr before ``@dataclass`` does, which leaves alone what is there."""
+        super().__init_subclass__(**more)
+        if "__repr__" not in cls.__dict__:
+            cls.__repr__ = cls.__repr__  # type: ignore[method-assign]
+
+    def _headline(self) -> str:
+        """Return what this is, in one line."""
+        return described(self)
+
+    def _frame(self) -> pd.DataFrame | None:
+        """Return the table to show, None for none."""
+        table = getattr(self, "table", None)
+        return table() if callable(table) else table
+
+    def __repr__(self) -> str:
+        """Return one line, and the table below it."""
+        line, rows = f"{type(self).__name__}: {_cut(self._headline(), LONGEST)}", self._frame()
+        if rows is None or not len(rows):
+            return line
+        return f"{line}\n{rows.to_string(max_rows=LINES, max_colwidth=WIDTH, float_format=_number)}"
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows: the line, the table, and the warnings."""
+        line = f"<p><b>{type(self).__name__}</b>: {escape(_cut(self._headline(), LONGEST))}</p>"
+        rows = self._frame()
+        table = "" if rows is None or not len(rows) else rows.to_html(max_rows=ROWS, float_format=_number)
+        return f"<div>{line}{table}{_warnings(getattr(self, 'warnings', ()))}</div>"
+
+
+def described(result: Any) -> str:
+    """Return the fields of a dataclass in one line, long ones by their size; what is empty is left out.
+
+    Parameters
+    ----------
+    result : dataclass
+        Any, frozen or not.
+    """
+    values = {f.name: getattr(result, f.name) for f in fields(result)}
+    return ", ".join(f"{name}: {_brief(v)}" for name, v in values.items() if v is not None and not _empty(v))
+
+
+def counted(count: int, noun: str) -> str:
+    """Return a count with its noun, in the plural where it is one: ``3 modes``."""
+    return f"{count} {noun}" + ("" if count == 1 else "s")
+
+
+def _empty(value: Any) -> bool:
+    return isinstance(value, str | tuple | list | Mapping) and not value
+
+
+def _brief(value: Any) -> str:
+    if hasattr(value, "dtype") and hasattr(value, "shape") and value.shape:
+        return f"array {'x'.join(str(n) for n in value.shape)}"
+    if hasattr(value, "columns") and hasattr(value, "index"):
+        return f"table of {counted(len(value), 'row')}"
+    if isinstance(value, bool | complex) or not isinstance(value, Number | Mapping | tuple | list):
+        return type(value).__name__ if hasattr(value, "__dataclass_fields__") else _cut(str(value), WIDTH)
+    if isinstance(value, Number):
+        return f"{value:.6g}" if isinstance(value, float) else str(value)
+    kinds = {type(v).__name__ for v in value}
+    if not isinstance(value, Mapping) and len(value) <= ITEMS and kinds <= {"int", "float", "str"}:
+        return f"({', '.join(_brief(v) for v in value)})"
+    return f"{len(value)} {kinds.pop() if len(kinds) == 1 else 'entries'}"
+
+
+def _cut(text: str, length: int) -> str:
+    line = " ".join(text.split())
+    return line if len(line) <= length else line[: length - 3] + "..."
+
+
+def _number(value: float) -> str:
+    return f"{value:.6g}"
+
+
+def _warnings(warnings: tuple[str, ...]) -> str:
+    if not warnings:
+        return ""
+    items = "".join(f"<li>{escape(str(w))}</li>" for w in warnings)
+    return f"<details><summary>{counted(len(warnings), 'warning')}</summary><ul>{items}</ul></details>"

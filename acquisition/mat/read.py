@@ -1,0 +1,123 @@
+"""FRFs and modes from a MATLAB file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from acquisition.arrays import AnyArray, FloatArray
+from acquisition.columns.layout import Layout, read_layout
+from acquisition.columns.units import QUANTITIES, factor_to_si
+from acquisition.dof import Dof
+from acquisition.errors import InputError
+from acquisition.frf import FrfSet
+from acquisition.geometry import Geometry
+from acquisition.mat.file import variables
+from acquisition.mat.layout import AXES, MatLayout
+from acquisition.modal_data import ModalData
+
+
+def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalData:
+    """Read what a layout names of a MATLAB file: FRFs, or modes.
+
+    Parameters
+    ----------
+    path : path
+        The file, of version 5 to 7.2.
+    layout : Layout or path
+        Its ``[mat]`` says which variable is what; ``[nodes]`` and ``decay`` count too. See docs/readers.md.
+
+    Raises
+    ------
+    InputError
+        If the file is of another version, damaged, or does not hold what the layout says.
+    """
+    plan = layout if isinstance(layout, Layout) else read_layout(layout)
+    if plan.mat is None:
+        raise InputError(
+            f"{path}: {plan.source} has no table [mat] that names the variables; see docs/readers.md"
+        )
+    if plan.mat.frfs:
+        return read_mat_frfs(path, plan.mat, geometry=plan.nodes, decay=plan.decay)
+    return read_mat_modes(path, plan.mat, geometry=plan.nodes)
+
+
+def read_mat_frfs(path: Path | str, layout: MatLayout, *, geometry: Geometry, decay: float = 0.0) -> FrfSet:
+    """Read FRFs; see `read_mat`."""
+    held = variables(Path(path), [layout.frequency, layout.frfs])
+    lines = _vector(held[layout.frequency], layout.frequency, path)
+    responses, references = ([Dof.of(d) for d in dofs] for dofs in (layout.responses, layout.references))
+    sizes = {"line": len(lines), "response": len(responses), "reference": len(references)}
+    values = held[layout.frfs]
+    if values.ndim < len(layout.axes):
+        values = values.reshape(values.shape + (1,) * (len(layout.axes) - values.ndim))
+    expected = tuple(sizes[axis] for axis in layout.axes)
+    lacking = [axis for axis in AXES if axis not in layout.axes and sizes[axis] != 1]
+    if values.shape != expected or lacking:
+        said = " x ".join(f"{sizes[a]} {a}s" for a in layout.axes)
+        raise InputError(
+            f"{path}: {layout.frfs!r} has shape {values.shape}, but the layout says {said}"
+            + (f" and several {lacking[0]}s without an axis" if lacking else "")
+            + "; correct axes, responses or references of [mat]"
+        )
+    order = [layout.axes.index(axis) for axis in ("response", "reference", "line") if axis in layout.axes]
+    form = QUANTITIES[layout.quantity]
+    assert form is not None
+    factor = factor_to_si(layout.unit, layout.quantity, f"{path}: {layout.frfs}")
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused by the set
+        values = np.asarray(factor * values.transpose(order).reshape(-1, len(lines)), dtype=np.complex128)
+    return FrfSet(
+        frequency=lines,
+        values=values,
+        responses=tuple(a for a in responses for _ in references),
+        references=tuple(references) * len(responses),
+        form=form,
+        decay=decay,
+        geometry=geometry,
+        source=str(path),
+    )
+
+
+def read_mat_modes(path: Path | str, layout: MatLayout, *, geometry: Geometry) -> ModalData:
+    """Read modes; see `read_mat`."""
+    names = [name for name in (layout.frequency, layout.damping, layout.shapes) if name]
+    held = variables(Path(path), names)
+    frequency = _vector(held[layout.frequency], layout.frequency, path)
+    if not np.all(frequency > 0):
+        raise InputError(
+            f"{path}: {layout.frequency!r} holds a frequency that is not positive; leave such modes out"
+        )
+    damping = _vector(held[layout.damping], layout.damping, path) if layout.damping else None
+    dofs = [Dof.of(d) for d in layout.dofs]
+    shapes = held[layout.shapes] if layout.shapes else None
+    if shapes is not None and (shapes.shape != (len(dofs), len(frequency)) or not np.isfinite(shapes).all()):
+        raise InputError(
+            f"{path}: {layout.shapes!r} has shape {shapes.shape} for {len(dofs)} dofs and {len(frequency)} modes, or "
+            "gaps; give one row for each of dofs and one column for each mode"
+        )
+    if damping is not None and len(damping) != len(frequency):
+        raise InputError(
+            f"{path}: {len(frequency)} frequencies but {len(damping)} of {layout.damping!r}; name others"
+        )
+    sign = np.array([dof.sign for dof in dofs], dtype=np.float64)
+    return ModalData(
+        frequency=frequency,
+        frequency_sigma=np.full(len(frequency), np.nan),
+        damping=damping if damping is None else damping * (0.01 if layout.damping_unit == "percent" else 1.0),
+        dofs=tuple(Dof(dof.node, abs(dof.direction)) for dof in dofs),
+        shapes=None if shapes is None else np.asarray(sign[:, None] * shapes, dtype=np.complex128),
+        scaled=layout.scaled,
+        geometry=geometry,
+    )
+
+
+def _vector(values: AnyArray, name: str, path: Path | str) -> FloatArray:
+    """Return a row or a column as a vector."""
+    if np.iscomplexobj(values) or values.size != max(values.shape) or not values.size:
+        raise InputError(
+            f"{path}: {name!r} of shape {values.shape} is no row or column of real numbers; name another"
+        )
+    if not np.isfinite(values).all():
+        raise InputError(f"{path}: {name!r} has gaps; fill them or leave them out")
+    return np.asarray(values, dtype=np.float64).ravel()

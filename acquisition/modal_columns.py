@@ -1,0 +1,125 @@
+"""The columns of a table of modes: their headings, the units in these, and the numbers below."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from acquisition.arrays import FloatArray
+from acquisition.dof import Dof
+from acquisition.errors import InputError
+
+_SHAPE = re.compile(r"(\d+)([+-])(R?[XYZ])(?: (imag|sigma))?$", re.IGNORECASE)
+_AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
+PERCENT = 0.01
+
+HEADINGS: dict[str, dict[str, float]] = {
+    "frequency": dict.fromkeys(("frequency", "frequency_hz", "frequency [hz]", "f"), 1.0),
+    "sigma": dict.fromkeys(("sigma", "frequency_sigma", "frequency_sigma_hz", "sigma [hz]"), 1.0),
+    "damping": {
+        **dict.fromkeys(("damping", "damping_ratio", "zeta", "damping [-]"), 1.0),
+        **dict.fromkeys(("damping_percent", "damping [%]", "zeta_percent", "zeta [%]"), PERCENT),
+    },
+    "damping_sigma": {
+        **dict.fromkeys(("damping_sigma", "damping_sigma [-]"), 1.0),
+        **dict.fromkeys(("damping_sigma_percent", "damping_sigma [%]", "sigma [%]"), PERCENT),
+    },
+    "scaled": {"scaled": 1.0},
+}
+"""Headings of each column, and what their numbers are multiplied by."""
+
+_RESEMBLES = 0.85
+"""So much like a known heading is one that was misspelt: one letter in seven [-]."""
+
+
+def check_headings(table: pd.DataFrame, path: Path) -> None:
+    """Refuse a heading that all but is one: its column would be lost without a word.
+
+    Raises
+    ------
+    InputError
+        If there is such.
+    """
+    known = [heading for headings in HEADINGS.values() for heading in headings]
+    for name in table.columns:
+        if plain(name) not in known and part_of(name) is None:
+            begins = str(name).strip().lower().startswith(("damping", "zeta"))
+            close = difflib.get_close_matches(plain(name), known, n=1, cutoff=0.0 if begins else _RESEMBLES)
+            if close:
+                raise InputError(
+                    f"{path}: column {name!r} is none of a table of modes; is {close[0]!r} meant? rename it"
+                )
+
+
+def plain(heading: object) -> str:
+    """Return a heading in small letters, units in square brackets."""
+    return re.sub(r"\s*[\[(]\s*", " [", str(heading).strip().lower()).replace(")", "]")
+
+
+def column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:
+    """Return a quantity of every mode, None where the table does not have it [Hz, or - for ratios].
+
+    Raises
+    ------
+    InputError
+        If two columns give it, or an entry is no number.
+    """
+    found = [column for column in table.columns if plain(column) in HEADINGS[name]]
+    if len(found) > 1:
+        raise InputError(f"{path}: {' and '.join(map(repr, found))} both give the {name}; leave one out")
+    if not found:
+        return None
+    column = found[0]
+    return numbers(table[column], str(column), path, HEADINGS[name][plain(column)])
+
+
+def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -> FloatArray:
+    """Return a column as numbers times a scale; what is written with a sign of per cent is in per cent.
+
+    Raises
+    ------
+    InputError
+        If an entry is no number.
+    """
+    text = column.fillna("").str.strip()
+    share = text.str.endswith("%") & (plain(name) in {**HEADINGS["damping"], **HEADINGS["damping_sigma"]})
+    numbers = pd.to_numeric(text.where(~share, text.str.rstrip("% ")), errors="coerce")
+    wrong = column[numbers.isna() & ~text.str.lower().isin(["nan", ""])]
+    if len(wrong):
+        raise InputError(f"{path}: {wrong.iloc[0]!r} in column {name!r} is no number (use decimal points)")
+    return np.asarray(numbers, dtype=np.float64) * np.where(share, PERCENT, scale)
+
+
+def dof(name: str) -> Dof | None:
+    """Return the degree of freedom that heads a shape column, as ``3+Z``, or None."""
+    found = _SHAPE.match(str(name))
+    if found is None or found[4]:
+        return None
+    direction = _AXES.index(found[3].upper()) + 1
+    return Dof(int(found[1]), -direction if found[2] == "-" else direction)
+
+
+def part_of(name: str) -> str | None:
+    """Return which part of a shape a column holds: "", "imag" or "sigma"; None if it is no shape's."""
+    found = _SHAPE.match(str(name))
+    return None if found is None else (found[4] or "").lower()
+
+
+def components(table: pd.DataFrame, dofs: list[str], part: str, path: Path) -> FloatArray | None:
+    """Return one part of all shapes, shape (n_dofs, n_modes); None if no degree of freedom has it.
+
+    Raises
+    ------
+    InputError
+        If some have it and others have not, or it belongs to none.
+    """
+    names = [name for name in table.columns if part_of(name) == part]
+    wanted = [f"{dof} {part}".strip() for dof in dofs]
+    if names and sorted(names) != sorted(wanted):
+        odd = sorted(set(names).symmetric_difference(wanted))[0]
+        raise InputError(f"{path}: column {odd!r} stands without its like; give every shape column its own")
+    return np.array([numbers(table[name], name, path) for name in wanted]) if names else None

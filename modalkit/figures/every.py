@@ -1,0 +1,108 @@
+"""All figures of a result in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from acquisition import FrfSet, HammerTest, InputError, ModalData, judge_hits
+from identification import Correlation, ModalModel
+from modalkit.existing import Modes
+from modalkit.figures.cmif import cmif_figure
+from modalkit.figures.diagnosis import diagnosis_figure
+from modalkit.figures.frf import frf_figure
+from modalkit.figures.hits import hits_figure
+from modalkit.figures.matrix import auto_mac_figure, mac_figure
+from modalkit.figures.save import save_figures
+from modalkit.figures.shapes import shapes_figure
+from modalkit.figures.stabilisation import stabilisation_figure
+from modalkit.figures.words import hertz
+from modalkit.reading import Processed
+from updating import Diagnosis
+
+Drawings = dict[str, Figure]
+
+
+def draw(result: Any, *, folder: Path | str | None = None) -> dict[str, Figure]:
+    """Draw all there is to see of a result.
+
+    Parameters
+    ----------
+    result : HammerTest, FrfSet, Processed, ModalModel, ModalData, Modes, identification.Correlation, Diagnosis
+        What to draw.
+    folder : path, optional
+        Where the figures are saved as PNG files too; made if it is not there.
+
+    Returns
+    -------
+    dict of str to Figure
+        By name, which is the file's.
+
+    Raises
+    ------
+    InputError
+        If there is no figure of such a thing, or the folder cannot be written to.
+    """
+    for kind, drawn in _BY_KIND.items():
+        if isinstance(result, kind):
+            figures = drawn(result)
+            break
+    else:
+        names = ", ".join(kind.__name__ for kind in _BY_KIND)
+        raise InputError(f"no figures of a {type(result).__name__}; there are some of {names}")
+    if folder is not None:
+        save_figures(figures, folder)
+    return figures
+
+
+def _of_frfs(frfs: FrfSet) -> Drawings:
+    try:
+        return {"frf": frf_figure(frfs), "cmif": cmif_figure(frfs)}
+    except InputError:  # no response was measured with every reference
+        return {"frf": frf_figure(frfs)}
+
+
+def _of_processed(processed: Processed) -> Drawings:
+    names = ["hits"] + [f"hits_{n}" for n in range(2, len(processed.judged) + 1)]
+    hits = {n: hits_figure(j.test, j.verdicts) for n, j in zip(names, processed.judged, strict=False)}
+    return _of_frfs(processed.frfs) | hits
+
+
+def _of_model(model: ModalModel) -> Drawings:
+    return {
+        "frf": frf_figure(model.frfs, model),
+        "stabilisation": stabilisation_figure(model),
+        **_of_modes(model.modal),
+    }
+
+
+def _of_modes(modal: ModalData) -> Drawings:
+    return {"auto_mac": auto_mac_figure(modal), "shapes": shapes_figure(modal)}
+
+
+def _of_correlation(found: Correlation) -> Drawings:
+    rows, columns = (
+        [f"{i + 1}: {hertz(f)}" for i, f in enumerate(m.frequency)] for m in (found.test, found.model)
+    )
+    title = f"{len(found.pairs)} of {len(rows)} and {len(columns)} modes belong together"
+    note = f"MAC, shapes at {len(found.dofs)} degrees of freedom in common"
+    return {
+        "mac": mac_figure(
+            found.mac, rows, columns, title=title, note=note, row_name="first test", column_name="second test"
+        )
+    }
+
+
+_BY_KIND: dict[type, Callable[[Any], Drawings]] = {
+    HammerTest: lambda test: {"hits": hits_figure(test, judge_hits(test))},
+    FrfSet: _of_frfs,
+    Processed: _of_processed,
+    ModalModel: _of_model,
+    ModalData: _of_modes,
+    Modes: lambda modes: _of_modes(modes.modal),
+    Correlation: _of_correlation,
+    Diagnosis: lambda diagnosis: {"diagnosis": diagnosis_figure(diagnosis)},
+}

@@ -1,0 +1,127 @@
+"""Where in a band the FRFs carry information: not where the force, or the filter before the converter, left none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from acquisition import FrfSet, HammerTest, HitVerdict
+from acquisition.arrays import BoolArray, FloatArray
+from acquisition.estimators import kept_hits
+from acquisition.hit_checks import noise_level, upright
+
+WEAK, FILTERED = 1e-2, 1e-4
+"""Power of the force: 20 dB under its largest, lines without coherence count as lost; 40 dB under what it is just
+below rate / 2.56, all lines above do: there the anti-alias filter falls, and what is folded back from beyond is of a
+size with them. Ten times as much: good lines are lost; a tenth: folded and empty ones are taken for data [-]."""
+
+LOST = 0.5
+"""Coherence, freed of what chance gives few hits, under which more of a response is noise than force. Doubled, only
+perfect lines would count [-]."""
+
+ABOVE_NOISE = 10.0
+"""Power of the force over that of its noise, where single hits give no coherence: H1 is low by a tenth there. Doubled,
+the band ends sooner [-]."""
+
+ABOUT = 17
+"""Lines over which force and coherence are averaged: single lines scatter. Doubled, edges are found half as sharply."""
+
+SOME = 0.02
+"""Part of the band that may be lost without a word [-]."""
+
+Judged = tuple[HammerTest, Sequence[HitVerdict]]
+
+
+def informed_band(
+    frfs: FrfSet, tests: Sequence[Judged], band: tuple[float, float]
+) -> tuple[tuple[float, float], str | None]:
+    """Return the part of a band in which the FRFs carry information, and what to say where it is not all of it.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        FRFs of a test.
+    tests : sequence of (HammerTest, verdicts)
+        The hits they were made of; empty where they were read.
+    band : tuple of float
+        Band asked for [Hz].
+    """
+    inside = (frfs.frequency >= band[0]) & (frfs.frequency <= band[1]) & (frfs.frequency > 0)
+    coherent = _coherent(frfs)
+    lost = _lost_to_force(frfs, tests, coherent) if tests else _lost_at_the_end(coherent, inside)
+    if lost is None or (lost & inside).sum() <= max(SOME * inside.sum(), ABOUT):
+        return band, None
+    first, last = _longest(inside & ~lost)
+    if last - first < 2 * ABOUT:
+        return band, (
+            f"hardly a line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak there; "
+            "do not trust modes of this band"
+        )
+    low = band[0] if not (lost & inside)[:first].any() else float(frfs.frequency[first])
+    high = band[1] if not (lost & inside)[last:].any() else float(frfs.frequency[last])
+    why = (
+        "the force, or the filter before the converter, leaves too little"
+        if tests
+        else "the coherence is lost"
+    )
+    return (low, high), (
+        f"modes are sought from {low:.4g} to {high:.4g} Hz only, not from {band[0]:.4g} to {band[1]:.4g} Hz as asked: "
+        f"{why} in the rest; hit with a harder tip, sample faster, or name a mode there with add, to go further"
+    )
+
+
+def _coherent(frfs: FrfSet) -> FloatArray | None:
+    """Return the coherence of the best FRF about each line, without what chance gives, (n_lines,) [-]."""
+    if frfs.coherence is None:
+        return None
+    count = 1 if frfs.averages is None else int(frfs.averages.min())
+    chance = 1.0 / count if count > 1 else 0.0
+    mean = uniform_filter1d(frfs.coherence, ABOUT, axis=1, mode="nearest").max(axis=0)
+    return np.asarray((mean - chance) / (1.0 - chance), dtype=np.float64)
+
+
+def _lost_to_force(frfs: FrfSet, tests: Sequence[Judged], coherent: FloatArray | None) -> BoolArray | None:
+    """Return the lines at which no point was hit with force enough."""
+    parts = [
+        _of_test(test, verdicts, frfs.frequency, coherent)
+        for test, verdicts in tests
+        if any(v.used for v in verdicts) or not verdicts
+    ]
+    return np.asarray(np.all(parts, axis=0)) if parts else None
+
+
+def _of_test(
+    test: HammerTest, verdicts: Sequence[HitVerdict], frequency: FloatArray, coherent: FloatArray | None
+) -> BoolArray:
+    power, noise = np.zeros(test.samples // 2 + 1), 0.0
+    for hits, keep in kept_hits(test, verdicts):
+        waves = upright(np.asarray(hits.force[keep], dtype=np.float64))
+        power += (np.abs(np.fft.rfft(waves, axis=-1)) ** 2).sum(axis=0)
+        noise += sum(noise_level(wave) ** 2 for wave in waves) * test.samples
+    smooth = uniform_filter1d(power[1:], ABOUT, mode="nearest")
+    lines = np.fft.rfftfreq(test.samples, 1 / test.rate)[1:]
+    level = np.interp(frequency, lines, smooth) / smooth.max()
+    weak = level * smooth.max() < (1 + ABOVE_NOISE) * noise if coherent is None else coherent < LOST
+    corner = test.rate / 2.56
+    passed = level[(frequency > 0.9 * corner) & (frequency <= corner)].max(initial=0.0)
+    return np.asarray(((level < WEAK) & weak) | ((level < FILTERED * passed) & (frequency > corner)))
+
+
+def _lost_at_the_end(coherent: FloatArray | None, inside: BoolArray) -> BoolArray | None:
+    """Return the lines at the upper end of a band from which no coherence comes back."""
+    if coherent is None:
+        return None
+    good = np.flatnonzero(inside & (coherent >= LOST))
+    return None if not len(good) else np.asarray(inside & (np.arange(len(inside)) > good[-1]))
+
+
+def _longest(good: BoolArray) -> tuple[int, int]:
+    """Return the first and last line of the longest run of good ones."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]]).astype(np.int8)))
+    if not len(edges):
+        return 0, 0
+    starts, stops = edges[::2], edges[1::2]
+    best = int((stops - starts).argmax())
+    return int(starts[best]), int(stops[best]) - 1

@@ -1,0 +1,61 @@
+"""Text in another encoding, and tables with other separators: what is wrong, and what to type."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from acquisition import InputError, StudyError, read_layout, read_modes
+from modalkit.study import read_study
+
+STUDY = '[test]\nmodes = "modes.csv"\ntitle = "Brücke"\n'
+
+
+@pytest.mark.parametrize(("read", "error"), [(read_study, StudyError), (read_layout, InputError)])
+def test_latin_1_is_named_with_its_line_and_what_to_type(tmp_path: Path, read, error) -> None:
+    path = tmp_path / "study.toml"
+    path.write_bytes(STUDY.encode("latin-1"))
+    with pytest.raises(error) as raised:
+        read(path)
+    said = str(raised.value)
+    assert "line 3 holds 'ü' in another encoding, probably Latin-1" in said
+    assert "iconv -f WINDOWS-1252 -t UTF-8 study.toml > study_utf8.toml" in said
+    assert "binary" not in said
+
+
+def test_utf_16_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_bytes(STUDY.encode("utf-16"))
+    with pytest.raises(StudyError, match=r"written in UTF-16; .* iconv -f UTF-16LE"):
+        read_study(path)
+
+
+def test_what_is_no_text_is_still_called_binary(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_bytes(b"\x89PNG\r\n\x1a\n\0\0\0\x0d\xff\xfe\xfd")
+    with pytest.raises(StudyError, match="binary data"):
+        read_study(path)
+    with pytest.raises(InputError, match="binary data"):
+        read_layout(path)
+    table = path.rename(tmp_path / "modes.csv")
+    with pytest.raises(InputError, match="binary data"):
+        read_modes(table)
+
+
+def test_a_table_in_latin_1_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "modes.csv"
+    path.write_bytes("frequency,Größe\n10,0.1\n".encode("latin-1"))
+    with pytest.raises(InputError, match="line 1 holds 'ö' in another encoding"):
+        read_modes(path)
+
+
+@pytest.mark.parametrize(("mark", "word"), [(";", "semicolons"), ("\t", "tabulators")])
+def test_a_table_with_other_separators_says_so(tmp_path: Path, mark: str, word: str) -> None:
+    path = tmp_path / "modes.csv"
+    path.write_text(f"frequency{mark} sigma\n10{mark}0.1\n", encoding="utf-8")
+    with pytest.raises(InputError, match=f"separated by {word}.*write the header as frequency,sigma"):
+        read_modes(path)
+    path.write_text("hertz\n10\n", encoding="utf-8")
+    with pytest.raises(InputError, match="no column 'frequency' among hertz; begin the table with"):
+        read_modes(path)

@@ -1,0 +1,70 @@
+"""A band that is given is cut to where the FRFs carry information, and that is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from acquisition import Dof, FrfSet, HammerTest, UffContent, estimate_frfs, hammer_test, judge_hits
+from acquisition.synthetic import HammerPlan, modal_system
+from modalkit.handling import Handling
+from modalkit.informed import informed_band
+from modalkit.reading import Judged, Processed
+
+FREQUENCIES = np.array([60.0, 151.0, 288.0, 417.0, 530.0])
+SYSTEM = modal_system(
+    frequency=FREQUENCIES,
+    damping=np.full(5, 0.005),
+    response_shapes=np.array([[1.0, 0.8, -0.6, 0.9, 0.7]]),
+    point_shapes=np.array([[1.0, 0.8, -0.6, 0.9, 0.7], [-0.5, 0.9, 0.8, -0.4, 0.6]]),
+    responses=[Dof(1, 3)],
+    points=[Dof(1, 3), Dof(2, 3)],
+)
+
+
+def hit(**more: object) -> tuple[FrfSet, HammerTest]:
+    plan = replace(
+        HammerPlan(rate=2048.0, samples=2048, hits=4, force_noise=0.1, response_noise=1e-3), **more
+    )  # type: ignore[arg-type]
+    test = hammer_test(SYSTEM, plan, rng=np.random.default_rng(2))
+    return estimate_frfs(test), test
+
+
+@pytest.mark.parametrize("hits", [1, 4])
+def test_a_band_beyond_the_force_ends_where_the_force_does(hits: int) -> None:
+    """The spectrum of a haversine of 5 ms is zero at 400 Hz and every 200 Hz from there."""
+    frfs, test = hit(width=5e-3, width_scatter=0.01, hits=hits)
+    (low, high), said = informed_band(frfs, [(test, ())], (20.0, 1000.0))
+    assert low == 20.0 and 330 < high < 420
+    assert said is not None and "to 1000 Hz as asked" in said and "harder tip" in said
+
+
+def test_a_band_that_the_force_reaches_is_left_alone() -> None:
+    frfs, test = hit(width=1e-3, force_noise=0.01)
+    assert informed_band(frfs, [(test, ())], (20.0, 700.0)) == ((20.0, 700.0), None)
+    frfs, test = hit(width=3e-3, force_noise=1e-4, response_noise=1e-6)  # weak, but clean: worth what it says
+    assert informed_band(frfs, [(test, ())], (20.0, 620.0)) == ((20.0, 620.0), None)
+
+
+def test_a_band_to_the_nyquist_frequency_ends_in_the_fall_of_the_filter() -> None:
+    frfs, test = hit(width=3e-4, force_noise=1e-4, response_noise=1e-6)
+    (_, high), said = informed_band(frfs, [(test, ())], (20.0, 1024.0))
+    assert 2048 / 2.56 < high < 0.49 * 2048 and said is not None and "filter" in said
+
+
+def test_frfs_that_were_read_end_where_coherence_does_not_come_back() -> None:
+    frfs, _ = hit(width=5e-3, width_scatter=0.01, force_noise=0.5)
+    (_, high), said = informed_band(frfs, [], (20.0, 1000.0))
+    assert high < 700 and said is not None and "coherence" in said
+    bare = replace(frfs, coherence=None, variance=None, scatter=None)
+    assert informed_band(bare, [], (20.0, 1000.0)) == ((20.0, 1000.0), None)
+
+
+def test_no_mode_is_found_beyond_the_force_and_the_user_hears_of_it() -> None:
+    frfs, test = hit(width=5e-3, width_scatter=0.01)
+    processed = Processed(UffContent(), frfs, (Judged(test, judge_hits(test)),), Handling(), ())
+    model = processed.identify(band=(20.0, 1000.0))
+    np.testing.assert_allclose(model.modal.frequency, FREQUENCIES[:3], rtol=1e-3)
+    assert any("as asked" in w for w in model.warnings)

@@ -1,0 +1,127 @@
+"""Every number that is typed is refused in one line where it is none, or out of range."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from pathlib import Path
+from typing import get_type_hints
+
+import numpy as np
+import pytest
+
+from acquisition import InputError
+from identification.overrule import nearest_modes
+from modalkit.cli import main
+from modalkit.cli.on_demand import ENTRIES, loaded
+from modalkit.handling import Handling
+
+SAMPLE = Path(__file__).resolve().parents[2] / "sample_data" / "beam_wet"
+WORDS = {
+    "frf": ("frf", str(SAMPLE / "beam_wet.uff"), "-o", "out.uff"),
+    "identify": ("identify", str(SAMPLE / "beam_wet.uff")),
+    "simulate": ("simulate", str(SAMPLE / "published.toml"), "-o", "out.uff"),
+    "update": ("update", str(SAMPLE / "study.toml")),
+    "blind": ("blind",),
+    "batch": ("batch", str(SAMPLE), "-o", "out.csv"),
+}
+OUT_OF_RANGE = """
+identify --drop -3
+identify --drop 0
+identify --add -4
+identify --band -10 500
+identify --band 500 5
+identify --band 0 1e300
+identify --order 0
+identify --order 1000000000
+identify --decay -8
+identify --decay 1e300
+identify --window 1e300
+frf --window -1
+frf --sensor-mass 1+Z=-1
+simulate --points -1
+simulate --points 1000000000
+simulate --samples 1000000000000
+simulate --hits 1000000000
+simulate --rate 1e300
+simulate --rate 1e-3
+simulate --noise 1e300
+simulate --seed -1
+simulate --effect E:factor=1e300
+update --bootstrap -1
+update --bootstrap 1000000000000
+update --seed -1
+blind --trials 0
+blind --trials 1000000000000
+blind --workers 0
+blind --workers 1000000
+blind --seed -4
+batch --workers -1
+batch --workers 1000000
+"""
+
+
+def floats() -> list[tuple[str, str, int]]:
+    """Return every option that takes floating-point numbers, by command, and how many at a time."""
+    found = []
+    for entry in ENTRIES:
+        command = loaded(entry.module)[entry.name]
+        hints = get_type_hints(inspect.unwrap(command.callback))
+        for parameter in command.params:
+            if "float" in str(hints.get(parameter.name)):
+                found.append((entry.name, max(parameter.opts, key=len), parameter.nargs))
+    return found
+
+
+@pytest.fixture
+def refused(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path):
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words: str) -> str:
+        monkeypatch.setattr(sys, "argv", ["modalkit", *words])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        said = capfd.readouterr().err.strip()
+        assert ended.value.code == 2, said
+        assert list(tmp_path.iterdir()) == []
+        assert "this should not have happened" not in said
+        assert "Warning:" not in said
+        return said
+
+    return call
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-inf"])
+@pytest.mark.parametrize(("command", "option", "count"), floats())
+def test_what_is_no_finite_number_is_refused(refused, command, option, count, value) -> None:
+    said = refused(*WORDS[command], *((option, value) if count == 1 else (option, "5", value)))
+    assert option in said
+
+
+@pytest.mark.parametrize("line", OUT_OF_RANGE.strip().splitlines())
+def test_what_is_out_of_range_is_refused(refused, line: str) -> None:
+    command, *words = line.split()
+    assert len(refused(*WORDS[command], *words).splitlines()) == 1
+
+
+def test_the_options_are_found() -> None:
+    assert {"--band", "--add", "--drop", "--decay", "--window", "--rate", "--noise"} <= {
+        o for _, o, _ in floats()
+    }
+
+
+def test_no_mode_is_near_what_is_no_number() -> None:
+    poles = np.array([-1 + 100j, -1 + 200j])
+    with pytest.raises(InputError, match="no mode near nan Hz"):
+        nearest_modes(poles, [float("nan")], np.ones(2, dtype=bool), 0.1)
+    for value in (float("nan"), float("inf"), -1.0):
+        with pytest.raises(InputError, match="decay rates are not negative"):
+            Handling(decay=value)
+
+
+def test_too_little_memory_is_said_in_plain_words(refused, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise MemoryError("Unable to allocate 7.28 TiB")
+
+    monkeypatch.setattr("modalkit.cli.look.read_files", full)
+    assert "there is not enough memory (Unable to allocate 7.28 TiB)" in refused("inspect", "a.uff")
