@@ -59,7 +59,11 @@ def hammer_test(
     if "wrong place" in plan.bad.values() and len(first.points) < 2:
         raise InputError("hammer plan: a hit in the wrong place needs a system with a second point")
     contour = _Contour.over(plan)
-    drift = 1.0 + plan.drift * rng.standard_normal(len(first.points)) if plan.drift else np.ones(len(first.points))
+    drift = (
+        1.0 + plan.drift * rng.standard_normal(len(first.points))
+        if plan.drift
+        else np.ones(len(first.points))
+    )
     force = np.empty((len(first.points), plan.hits, plan.samples))
     motion = np.empty((len(first.points), plan.hits, len(first.responses), plan.samples))
     for point, hit in np.ndindex(len(first.points), plan.hits):

@@ -48,7 +48,9 @@ def test_noise_of_the_force_makes_no_modes_and_its_sigmas_hold() -> None:
 def test_common_noise_is_found_where_it_is_and_only_there() -> None:
     rng = np.random.default_rng(3)
     n_frf, n_lines = 12, 800
-    model = (rng.standard_normal((n_frf, 1)) + 1j * rng.standard_normal((n_frf, 1))) * np.linspace(1.0, 3.0, n_lines)
+    model = (rng.standard_normal((n_frf, 1)) + 1j * rng.standard_normal((n_frf, 1))) * np.linspace(
+        1.0, 3.0, n_lines
+    )
 
     def white(shape: tuple[int, ...]) -> np.ndarray:
         return (rng.standard_normal(shape) + 1j * rng.standard_normal(shape)) / np.sqrt(2)

@@ -199,5 +199,5 @@ def test_options_that_do_not_exist():
         identify(frfs, method="ssi")
     with pytest.raises(InputError, match="order 1"):
         identify(frfs, order=1)
-    with pytest.raises(InputError, match=r"band 2000-3000 Hz holds 0 lines"):
+    with pytest.raises(InputError, match=r"lines do at 1000 Hz; give a band that they reach"):
         identify(frfs, band=(2000.0, 3000.0))
