@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import re
 from pathlib import Path
 
@@ -14,7 +15,9 @@ from acquisition.errors import InputError
 from acquisition.modal_data import ModalData
 from acquisition.uff import read_uff
 
-_SHAPE = re.compile(r"(\d+)([+-])(R?[XYZ])$", re.IGNORECASE)
+_SHAPE = re.compile(r"(\d{1,18})([+-])(R?[XYZ])$", re.IGNORECASE)
+_PASSED = ("mode", "no", "nr", "number", "name", "note", "comment", "description", "remark")
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 _COLUMNS = {
     "frequency": ("frequency", "frequency_hz", "frequency [hz]", "f"),
@@ -63,6 +66,7 @@ def read_modes(path: Path | str) -> ModalData:
         raise InputError(
             f"{path}: a frequency is missing or not positive; give every mode its frequency in Hz"
         )
+    _check_names(table, path)
     sigma = _column(table, "sigma", path)
     dofs = {name: dof for name in table.columns if (dof := _dof(name)) is not None}
     shapes = [_numbers(table[name], name, path) for name in dofs]
@@ -116,11 +120,28 @@ def _table(path: Path) -> pd.DataFrame:
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
     except (ValueError, pd.errors.ParserError) as error:
-        raise InputError(f"{path}: is no table of comma-separated columns ({error})") from None
+        said = " ".join(str(error).split())
+        raise InputError(f"{path}: is no table of comma-separated columns ({said})") from None
+    if not table.index.equals(pd.RangeIndex(len(table))):
+        raise InputError(f"{path}: lines have more values than the header has names; name every column")
     table.columns = [str(name).strip() for name in table.columns]
     if table.empty:
         raise InputError(f"{path}: holds no mode; give a header row and one row per mode")
     return table
+
+
+def _check_names(table: pd.DataFrame, path: Path) -> None:
+    """Refuse a column of a name that means nothing here: what it holds would be lost without a word."""
+    known = [*(name for names in _COLUMNS.values() for name in names), *_PASSED]
+    for name in table.columns:
+        if name.lower() in known or _SHAPE.match(name.lower().removeprefix("sigma").strip()):
+            continue
+        close = difflib.get_close_matches(name.lower()[:40], known, n=1)
+        meant = f", is {close[0]!r} meant" if close else ""
+        raise InputError(
+            f"{path}: column {name[:40]!r} is none known here{meant}; known are frequency, sigma, damping, "
+            "damping_sigma and degrees of freedom as 3+Z: rename it or leave it out"
+        )
 
 
 def _column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:
@@ -131,11 +152,17 @@ def _column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:
 
 
 def _numbers(column: pd.Series[str], name: str, path: Path) -> FloatArray:
-    numbers = pd.to_numeric(column, errors="coerce")
-    wrong = column[numbers.isna() & column.notna() & ~column.str.strip().str.lower().isin(["nan", ""])]
+    words = column.fillna("").str.strip()
+    missing = words.str.lower().isin(["nan", ""])
+    wrong = words[~missing & ~words.str.fullmatch(_NUMBER)]
     if len(wrong):
-        raise InputError(f"{path}: {wrong.iloc[0]!r} in column {name!r} is no number (use decimal points)")
-    return np.asarray(numbers, dtype=np.float64)
+        raise InputError(
+            f"{path}: {wrong.iloc[0][:40]!r} in column {name!r} is no number (use decimal points)"
+        )
+    numbers = np.asarray(words.where(~missing, "nan"), dtype=np.float64)
+    if np.isinf(numbers).any():
+        raise InputError(f"{path}: a number in column {name!r} is beyond all bounds; correct it")
+    return numbers
 
 
 def _dof(name: str) -> Dof | None:
