@@ -69,7 +69,7 @@ def check_json_place(path: Path | None) -> None:
         return
     try:
         json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: stands there and is no JSON; name another file for the result") from error
 
 
