@@ -13,9 +13,10 @@ from acquisition.arrays import FloatArray
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 
-_SHAPE = re.compile(r"(\d+)([+-])(R?[XYZ])(?: (imag|sigma))?$", re.IGNORECASE)
+_SHAPE = re.compile(r"(\d{1,18})([+-])(R?[XYZ])(?: (imag|sigma))?$", re.IGNORECASE)
 _AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 PERCENT = 0.01
+_NUMBER = re.compile(r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?")
 
 HEADINGS: dict[str, dict[str, float]] = {
     "frequency": dict.fromkeys(("frequency", "frequency_hz", "frequency [hz]", "f"), 1.0),
@@ -32,12 +33,15 @@ HEADINGS: dict[str, dict[str, float]] = {
 }
 """Headings of each column, and what their numbers are multiplied by."""
 
-_RESEMBLES = 0.85
-"""So much like a known heading is one that was misspelt: one letter in seven [-]."""
+PASSED = ("mode", "no", "nr", "number", "name", "note", "comment", "description", "remark", "mpc", "mpc [-]")
+"""Headings of what modes may have besides, which is not read."""
+
+_RESEMBLES = 0.6
+"""So much like a known heading is one that may have been misspelt: two letters in five [-]."""
 
 
 def check_headings(table: pd.DataFrame, path: Path) -> None:
-    """Refuse a heading that all but is one: its column would be lost without a word.
+    """Refuse a heading that means nothing here: what its column holds would be lost without a word.
 
     Raises
     ------
@@ -45,19 +49,21 @@ def check_headings(table: pd.DataFrame, path: Path) -> None:
         If there is such.
     """
     known = [heading for headings in HEADINGS.values() for heading in headings]
-    for name in table.columns:
-        if plain(name) not in known and part_of(name) is None:
-            begins = str(name).strip().lower().startswith(("damping", "zeta"))
-            close = difflib.get_close_matches(plain(name), known, n=1, cutoff=0.0 if begins else _RESEMBLES)
-            if close:
-                raise InputError(
-                    f"{path}: column {name!r} is none of a table of modes; is {close[0]!r} meant? rename it"
-                )
+    for name in map(str, table.columns):
+        if plain(name) in (*known, *PASSED) or part_of(name) is not None:
+            continue
+        begins = name.strip().lower().startswith(("damping", "zeta"))
+        close = difflib.get_close_matches(plain(name)[:40], known, n=1, cutoff=0.0 if begins else _RESEMBLES)
+        meant = f", is {close[0]!r} meant" if close else ""
+        raise InputError(
+            f"{path}: column {name[:40]!r} is none known here{meant}; known are frequency, sigma, damping, "
+            "damping_sigma and degrees of freedom as 3+Z: rename it or leave it out"
+        )
 
 
 def plain(heading: object) -> str:
     """Return a heading in small letters, units in square brackets."""
-    return re.sub(r"\s*[\[(]\s*", " [", str(heading).strip().lower()).replace(")", "]")
+    return re.sub(r" ?[\[(] ?", " [", " ".join(str(heading).lower().split())).replace(")", "]")
 
 
 def column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:
@@ -87,11 +93,18 @@ def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -
     """
     text = column.fillna("").str.strip()
     share = text.str.endswith("%") & (plain(name) in {**HEADINGS["damping"], **HEADINGS["damping_sigma"]})
-    numbers = pd.to_numeric(text.where(~share, text.str.rstrip("% ")), errors="coerce")
-    wrong = column[numbers.isna() & ~text.str.lower().isin(["nan", ""])]
+    words = text.where(~share, text.str.rstrip("% "))
+    missing = words.str.lower().isin(["nan", ""])
+    whole = words.map(lambda word: _NUMBER.fullmatch(word) is not None)
+    wrong = text[~missing & ~whole]
     if len(wrong):
-        raise InputError(f"{path}: {wrong.iloc[0]!r} in column {name!r} is no number (use decimal points)")
-    return np.asarray(numbers, dtype=np.float64) * np.where(share, PERCENT, scale)
+        raise InputError(
+            f"{path}: {wrong.iloc[0][:40]!r} in column {name!r} is no number (use decimal points)"
+        )
+    numbers = np.asarray(words.where(~missing, "nan"), dtype=np.float64)
+    if np.isinf(numbers).any():
+        raise InputError(f"{path}: a number in column {name!r} is beyond all bounds; correct it")
+    return numbers * np.where(share, PERCENT, scale)
 
 
 def dof(name: str) -> Dof | None:

@@ -47,13 +47,13 @@ def read_modes(path: Path | str) -> ModalData:
     if path.suffix.lower() not in TABLES:
         return _of_universal_file(path)
     table, coordinates = _split(_table(path), path)
-    check_headings(table, path)
     frequency = column(table, "frequency", path)
     if frequency is None:
         raise InputError(
             f"{path}: no column 'frequency' among {', '.join(table.columns)}; begin the table with a header such as "
             "frequency,sigma,damping"
         )
+    check_headings(table, path)
     check_frequencies(frequency, path)
     sigma = column(table, "sigma", path)
     dofs = {name: found for name in table.columns if (found := dof(name)) is not None}
@@ -135,7 +135,10 @@ def _table(path: Path) -> pd.DataFrame:
         )
         raise InputError(said) from error
     except (ValueError, pd.errors.ParserError) as error:
-        raise InputError(f"{path}: is no table of comma-separated columns ({error})") from None
+        said = " ".join(str(error).split())
+        raise InputError(f"{path}: is no table of comma-separated columns ({said})") from None
+    if not table.index.equals(pd.RangeIndex(len(table))):
+        raise InputError(f"{path}: lines have more values than the header has names; name every column")
     table.columns = [str(name).strip() for name in table.columns]
     _check_separators(path, list(table.columns))
     if table.empty:

@@ -213,7 +213,7 @@ def read_study(path: Path | str) -> Study:
     except UnicodeDecodeError as error:
         binary = f"{path}: not a valid TOML file but binary data; give a study file that names it"
         raise StudyError(not_utf8(path, path.read_bytes()) or binary) from error
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
     if "path" in content:
         raise StudyError(f"{path}: unknown key path; known here: {', '.join(known_keys((), Study))}")

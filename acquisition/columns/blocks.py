@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,14 @@ class Style:
     def number(self, field: str) -> float:
         """Return the number in a field; ValueError if it is none."""
         return float(field.replace(self.decimal, ".")) if self.decimal != "." else float(field)
+
+    def is_number(self, field: str) -> bool:
+        """Tell whether a field holds a number."""
+        try:
+            self.number(field)
+        except ValueError:
+            return False
+        return True
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +106,8 @@ class Block:
         InputError
             If a line is short, a field is no number, or a number is not finite.
         """
-        lines: Sequence[str] = [line.replace('"', "") for line in self.lines]
+        between = self.style.separator or " "
+        lines = [between.join(self.style.split(line)) if '"' in line else line for line in self.lines]
         if self.style.decimal != ".":
             lines = [line.replace(self.style.decimal, ".") for line in lines]
         try:
@@ -154,7 +164,12 @@ def read_text(path: Path) -> list[str]:
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path") from error
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return raw.decode("utf-16", errors="replace").splitlines()
+        try:
+            return raw.decode("utf-16").splitlines()
+        except UnicodeDecodeError as error:
+            raise InputError(
+                f"{path}: marked as UTF-16 and is not ({error.reason}); export it again"
+            ) from error
     if b"\0" in raw[:4096]:
         raise InputError(
             f"{path}: binary, no column text; export it as text, or write a reader (docs/readers.md)"
@@ -198,6 +213,7 @@ def plain_blocks(
         if body and not blank:
             body.append(line)
         elif body and style is not None:
+            _check_above(above, first - 1, style, least, path)
             names = _heading(above, style, wanted) or (blocks[-1].names if blocks else ())
             blocks.append(Block(path, names, tuple(body), first, style, layout.rate, {}))
             body, above = [], []
@@ -212,6 +228,30 @@ def plain_blocks(
             f"{path}: no line of {least} or more numbers in it; check skip, separator and decimal in the layout"
         )
     return blocks
+
+
+def _check_above(above: Sequence[str], number: int, style: Style, least: int, path: Path) -> None:
+    """Refuse a row of numbers with a fault above the others: taken as a heading, it would be lost."""
+    for line_number, line in enumerate(above, start=number - len(above) + 1):
+        fields = [field for field in style.split(line) if field]
+        alike = [field for field in fields if _LIKE.fullmatch(field)]
+        numbers = [field for field in alike if style.is_number(field)]
+        last = line_number == number
+        whole = len(fields) >= least
+        row = (whole or last) and len(alike) >= 2 and 2 * len(alike) >= len(fields)
+        bare = bool(numbers) and len(numbers) == len(fields) < len(style.split(line)) + (len(fields) > 1)
+        mixed = last and whole and bool(numbers) and all(any(c.isdigit() for c in field) for field in fields)
+        joined = last and whole and len(numbers) >= max(2, least - 1)
+        broken = last and len(fields) == 1 and not numbers and bool(alike) and "e" in line.lower()
+        if row or bare or mixed or joined or broken:
+            raise InputError(
+                f"{path}, line {line_number}: {line.strip()[:60]!r} is nearly a line of numbers; mend it, or leave it "
+                "out with skip in the layout"
+            )
+
+
+_LIKE = re.compile(r"[\s\d.,eE+-]*\d[\s\d.,eE+-]*")
+"""Words of characters that numbers have."""
 
 
 def _heading(above: Sequence[str], style: Style, wanted: Collection[str]) -> tuple[str, ...]:

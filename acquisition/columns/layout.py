@@ -178,7 +178,7 @@ def read_layout(path: Path | str) -> Layout:
     except UnicodeDecodeError as error:
         said = not_utf8(Path(path), Path(path).read_bytes())
         raise InputError(said or f"{path}: not a TOML file but binary data") from error
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not a TOML file: {error}") from error
     return layout_from(table, source=str(path))
 
@@ -220,9 +220,15 @@ def _nodes(table: Any, source: str) -> Geometry:
         raise InputError(f"{source}: nodes = {table!r}; write a table [nodes] with lines 3 = [0.1, 0.0, 0.0]")
     for name, place in table.items():
         numbers = isinstance(place, list) and all(type(c) in (int, float) for c in place)
-        if not str(name).isdecimal() or not numbers or len(place) != 3 or not np.all(np.isfinite(place)):
+        if (
+            not str(name).isdecimal()
+            or len(str(name)) > 18
+            or not numbers
+            or len(place) != 3
+            or not np.all(np.isfinite(place))
+        ):
             raise InputError(
-                f"{source}: [nodes] {name} = {place!r}; give node number = [x, y, z] in m, as 3 = [0.1, 0.0, 0.0]"
+                f"{source}: [nodes] {name[:40]} = {place!r}; give node number = [x, y, z] in m, as 3 = [0.1, 0.0, 0.0]"
             )
     return Geometry(tuple(int(n) for n in table), np.array(list(table.values()), dtype=np.float64))
 

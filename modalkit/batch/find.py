@@ -66,7 +66,7 @@ def _is_open(path: Path) -> bool:
 def _is_study(path: Path) -> bool:
     try:
         return "test" in tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+    except (OSError, ValueError, RecursionError):
         return True
 
 

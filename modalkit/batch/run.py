@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import tempfile
 from collections.abc import Callable, Generator, Sequence
@@ -122,7 +123,7 @@ def run_batch(
         with closing(_running(missing, workers, scheduler)) as running:
             for part in running:
                 if journal is not None:
-                    journal.append(asdict(part))
+                    journal.append(_line(part))
                 parts[part.name] = part
                 if progress is not None:
                     progress(part)
@@ -154,12 +155,27 @@ def _kept(journal: Journal | None) -> list[Part]:
         raise InputError(
             f"{journal.path}: made by modalkit {header.get('version')}, this is {__version__}; remove it to begin anew"
         )
-    try:
-        return [
-            part for part in (Part(**line) for line in lines if line != _FINISHED) if part.record is not None
-        ]
-    except TypeError as error:
-        raise InputError(f"{journal.path}: a line is no result ({error}); remove it to begin anew") from error
+    parts = []
+    for line in (line for line in lines if line != _FINISHED):
+        try:
+            part = Part(**{key: value for key, value in line.items() if key != "sha256"})
+        except TypeError as error:
+            raise InputError(
+                f"{journal.path}: a line is no result ({error}); remove it to begin anew"
+            ) from error
+        if _line(part) != line:
+            raise InputError(
+                f"{journal.path}: the result of {part.name} was changed; remove it to begin anew"
+            )
+        parts.append(part)
+    return [part for part in parts if part.record is not None]
+
+
+def _line(part: Part) -> dict[str, Any]:
+    """Return a part as its line in the store, with the hash by which a change is seen."""
+    content = asdict(part)
+    plain = json.dumps(content, sort_keys=True, separators=(",", ":")).encode()
+    return content | {"sha256": hashlib.sha256(plain).hexdigest()}
 
 
 def _running(studies: Sequence[Found], workers: int, scheduler: str | None) -> Generator[Part, None, None]:

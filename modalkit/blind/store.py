@@ -162,7 +162,7 @@ def _opened(where: str, index: int, document: Mapping[str, Any], commitment: str
         open_seal(outcome.sealed, commitment)
     except ModalkitError as error:
         raise InputError(f"{where}: {error}") from error
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise InputError(
             f"{where}: cannot be read ({type(error).__name__} {error}); it was changed"
         ) from error

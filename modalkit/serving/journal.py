@@ -37,18 +37,20 @@ def read_journal(path: Path) -> tuple[list[dict[str, Any]], int]:
     Raises
     ------
     InputError
-        If it cannot be read, or a whole line is no JSON.
+        If it cannot be read, ends as no journal does, or a whole line is no JSON.
     """
     try:
         content = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); name the store of a run") from error
     size = content.rfind(b"\n") + 1
+    if content[size : size + 1] not in (b"", b"{"):
+        raise InputError(f"{path}: no store of a run, or damaged; name another file")
     documents = []
     for number, line in enumerate(content[:size].splitlines(), start=1):
         try:
             document = json.loads(line)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise InputError(
                 f"{path}, line {number}: no JSON; the file was changed or is no store of a run"
             ) from error

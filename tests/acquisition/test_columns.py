@@ -306,3 +306,58 @@ def test_segments_of_an_lvm_file_are_hits(tmp_path):
     path.write_text(LVM)
     with pytest.raises(InputError, match="1000 Hz by its header, at 2000 Hz by"):
         read_columns(path, layout_from({"rate": 2000.0, "column": columns}))
+
+
+FIRST_ROWS = ["1.0,2.0 1,3.0", "1.0,2.0", "1.0,2.0,3.0e", "t,f,a1.0,2.0,3.0"]
+
+
+@pytest.mark.parametrize("line", FIRST_ROWS)
+def test_a_damaged_first_row_is_no_heading(tmp_path, line):
+    (tmp_path / "a.csv").write_text(f"hammer,acc 1,acc 2\n{line}\n" + "1.0,2.0,3.0\n" * 5)
+    with pytest.raises(InputError, match=r"line 2: .*skip in the layout"):
+        read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+
+
+def test_a_quote_inside_a_number_is_a_fault(tmp_path):
+    rows = '1.0,"2.0",3.0\n' * 4
+    (tmp_path / "a.csv").write_text("hammer,acc 1,acc 2\n" + rows)
+    assert read_columns(tmp_path / "a.csv", layout_file(tmp_path)).points[0].force.shape == (1, 4)
+    (tmp_path / "a.csv").write_text("hammer,acc 1,acc 2\n" + rows + '1.0,2"0,3.0\n')
+    with pytest.raises(InputError, match="line 6, column 1"):
+        read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+
+
+def test_damage_where_a_row_has_two_columns(tmp_path):
+    text = 'rate = 10.0\n[[column]]\nindex = 0\nquantity = "force"\n[[column]]\nindex = 1\nquantity = "velocity"\n'
+    (tmp_path / "a.csv").write_text("Samples,4\n" + "1.0,2.0\n" * 4)
+    assert read_columns(tmp_path / "a.csv", layout_file(tmp_path, text)).points[0].force.shape == (1, 4)
+    (tmp_path / "a.csv").write_text("f,a\n1.0,2.0P+00\n" + "1.0,2.0\n" * 4)
+    with pytest.raises(InputError, match="is nearly a line of numbers"):
+        read_columns(tmp_path / "a.csv", layout_file(tmp_path, text))
+
+
+LVM_DAMAGE = [
+    (LVM.replace("***End_of_Header***\nX_Value", "***End_of_He\nX_Value", 1), "the headers do not end"),
+    (LVM.replace("Y_Unit_Label\tg\tNewtons\n", "", 1), "'Y_Unit_Label"),
+    (LVM.replace("0,002\t1,25\t4,5\n", "0,002\t1,25\t4,5\n" * 2), "3 samples announced and 4 there"),
+    (LVM.replace("0,001\t1,5\t3,5", "0,\t01\t1,5\t3,5"), "stands beyond the 3 columns"),
+    (LVM.replace("Decimal_Separator\t,\n", ""), "a header cannot be read"),
+]
+
+
+@pytest.mark.parametrize(("text", "said"), LVM_DAMAGE)
+def test_a_damaged_lvm_file_is_refused(tmp_path, text, said):
+    (tmp_path / "a.lvm").write_text(text)
+    columns = [{"name": "force", "quantity": "force"}, {"name": "acc", "quantity": "acceleration"}]
+    with pytest.raises(InputError, match=said):
+        read_columns(tmp_path / "a.lvm", layout_from({"column": columns}))
+
+
+DEEP = ["x = " + "[" * 20_000, "x = " + "{a=" * 20_000, "x = " + "9" * 6000]
+
+
+@pytest.mark.parametrize("text", DEEP)
+def test_toml_deeper_than_a_stack_or_longer_than_a_number(tmp_path, text):
+    (tmp_path / "layout.toml").write_text(text)
+    with pytest.raises(InputError, match="not a TOML file"):
+        read_layout(tmp_path / "layout.toml")

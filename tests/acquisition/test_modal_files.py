@@ -161,3 +161,22 @@ def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):
     path.write_text(text)
     with pytest.raises(InputError, match=word):
         read_modes(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("frequency,sigmo\n10.5,0.1\n", "column 'sigmo' is none known here, is 'sigma' meant"),
+        ("frequency,sigma,x+Z\n10.5,0.1,1\n", "column 'x\\+Z' is none known"),
+        ("frequency\n10.5,0.1\n", "more values than the header has names"),
+        ("frequency,sigma\n10.5,0.1\n11,0.1,7\n", "no table of comma-separated columns"),
+        ("frequency,sigma\ninf,0.1\n", "'inf' in column 'frequency' is no number"),
+        ("frequency,sigma\n1e999,0.1\n", "beyond all bounds"),
+        ("frequency,sigma\n1_0,0.1\n", "is no number"),
+    ],
+)
+def test_a_damaged_table_of_modes_is_refused_in_one_line(tmp_path, text, said):
+    (tmp_path / "modes.csv").write_text(text)
+    with pytest.raises(InputError, match=said) as error:
+        read_modes(tmp_path / "modes.csv")
+    assert "\n" not in str(error.value)

@@ -245,3 +245,15 @@ def test_a_missing_extra_is_an_error_that_names_it(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"modalkit-ema\[parquet\]"):
         table_places(tmp_path / "table.parquet")
+
+
+def test_a_changed_result_is_not_taken_up(tmp_path: Path) -> None:
+    store = tmp_path / "run.jsonl"
+    part = batch_run.Part("a/study.toml", "0" * 64, {"modes": [{"frequency_hz": 12.5}]}, None)
+    lines = [{"schema": batch_run.SCHEMA, "version": batch_run.__version__}, batch_run._line(part)]
+    text = "".join(json.dumps(line) + "\n" for line in lines)
+    store.write_text(text)
+    assert run_batch((), store=store, resume=True).parts == ()
+    store.write_text(text.replace("12.5", "13.5"))
+    with pytest.raises(InputError, match=r"the result of a/study\.toml was changed"):
+        run_batch((), store=store, resume=True)

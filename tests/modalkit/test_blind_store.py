@@ -336,3 +336,18 @@ def test_a_drawn_seed_is_told_before_the_run_where_it_will_be_needed(
     assert blinding._seed(None, None, False) != first
     assert len(told) == 1
     assert blinding._seed(7, tmp_path / "run.jsonl", True) == 7
+
+
+@pytest.mark.parametrize("content", [b"[" * 20_000 + b"\n", b'{"a":' * 20_000 + b"\n"])
+def test_a_line_nested_deeper_than_a_stack(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "run.jsonl").write_bytes(content)
+    with pytest.raises(InputError, match="line 1: no JSON"):
+        read_journal(tmp_path / "run.jsonl")
+
+
+def test_a_file_of_another_kind_without_a_line_end_is_not_emptied(tmp_path: Path) -> None:
+    path = tmp_path / "notes.txt"
+    path.write_text("not ours")
+    with pytest.raises(InputError, match="no journal"):
+        Journal(path, resume=True)
+    assert path.read_text() == "not ours"

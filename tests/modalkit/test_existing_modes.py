@@ -149,7 +149,7 @@ def test_the_commands_take_modes(tmp_path: Path, run: Run) -> None:
 def test_lines_of_frfs_are_no_modes(tmp_path: Path) -> None:
     table = tmp_path / "frf.csv"
     rows = [f"{0.5 * k},{np.cos(k)},{np.sin(k)}" for k in range(1, 40)]
-    table.write_text("\n".join(["frequency,real,imag", *rows]))
+    table.write_text("\n".join(["frequency,1+Z,1+Z imag", *rows]))
     with pytest.raises(InputError, match=r"lines, no modes.*layout"):
         mk.read(table)
 

@@ -242,3 +242,10 @@ def test_a_study_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_bytes(b"\xef\xbb\xbf" + TEST.encode())
     assert read_study(path).test.files == ["a.uff"]
+
+
+@pytest.mark.parametrize("text", ["x = " + "[" * 20_000, "x = " + "{a=" * 20_000, "x = " + "9" * 6000])
+def test_toml_deeper_than_a_stack_or_longer_than_a_number(tmp_path: Path, text: str) -> None:
+    (tmp_path / "study.toml").write_text(text)
+    with pytest.raises(StudyError, match="not a valid TOML file"):
+        read_study(tmp_path / "study.toml")

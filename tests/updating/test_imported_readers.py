@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import gzip
 import io
+import re
+import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +20,7 @@ from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported import read_deck_table, read_imported, read_matrix, read_table
 from updating.models.imported.calculix import read_dofs
+from updating.models.imported.deck import read_deck
 
 K, M = (clamp(matrix) for matrix in beam_matrices(6))
 
@@ -94,13 +98,13 @@ BROKEN = [
     ("k.mtx", b"%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1.0 2.0\n", "complex"),
     ("k.rsa", b"title\n", "not a Harwell-Boeing file"),
     ("k.npz", b"no archive", "not an .npz archive"),
-    ("k.sti", b"", "not a matrix of CalculiX|is empty"),
-    ("k.sti", b"1 1 soft\n", "not a matrix of CalculiX"),
+    ("k.sti", b"", "is empty"),
+    ("k.sti", b"1 1 soft\n", "line 1: 'soft' is no number"),
     ("k.sti", b"0 1 2.0\n", "CalculiX counts from 1"),
     ("k.sti", b"1 1\n2 2\n", "2 numbers on a line"),
     ("k.sti", b"1 1 1.0 0.0\n2 2 1.0 0.0\n", "4 numbers on a line"),
-    ("k.sti", b"1 1 1.0\n2 ", "not a matrix of CalculiX"),
-    ("k.sti", b"1.5 1 1.0\n", "not a matrix of CalculiX"),
+    ("k.sti", b"1 1 1.0\n2 ", "line 2: 1 numbers on a line where 3 should be"),
+    ("k.sti", b"1.5 1 1.0\n", "line 1: '1.5' is no whole number"),
     ("k.sti", b"1 1 1.0\n99999999999 1 1.0\n", "row or column 99999999999 in a matrix of 2 entries"),
     ("k.sti", b" \n\n", "is empty"),
     ("k.mtx", b"%%MatrixMarket matrix coordinate pattern symmetric\n1 1 1\n1 1\n", "pattern"),
@@ -307,3 +311,144 @@ def test_a_whole_structure_is_read(tmp_path: Path) -> None:
     assert found.order == 12
     assert found.nodes.row.tolist() == table.row.tolist()
     assert found.source == "k.npz, m.mtx"
+
+
+HEAD = b"%%MatrixMarket matrix coordinate real general\n"
+
+
+def damaged_archive(**changes: Any) -> bytes:
+    """Return a compressed matrix as ``save_npz`` writes it, with some of its arrays changed."""
+    csr = sparse.csr_array(K)
+    parts = {"indptr": csr.indptr, "indices": csr.indices, "data": csr.data, "shape": np.array(csr.shape)}
+    return archive(format=np.array(b"csr"), **(parts | changes))
+
+
+def marked(content: bytes, offset: int, value: int) -> bytes:
+    """Set a field of the headers of an archive's members, and of its directory where it stands two bytes further."""
+    changed = bytearray(content)
+    for mark, shift in ((b"PK\x03\x04", 0), (b"PK\x01\x02", 2)):
+        for found in re.finditer(re.escape(mark), content):
+            changed[found.start() + offset + shift] = value
+    return bytes(changed)
+
+
+def boeing(*, pointers: str = "1 2 3", indices: str = "1 2", layout: str = "(3I8)") -> bytes:
+    """Return a Harwell-Boeing file of a diagonal of two."""
+    cards = ["".join(f"{w:>8s}" for w in text.split()) for text in (pointers, indices)]
+    head = ["title", f"{3:14d}{1:14d}{1:14d}{1:14d}{0:14d}", f"{'RUA':14s}{2:14d}{2:14d}{2:14d}{0:14d}"]
+    head.append(f"{layout:16s}{'(3I8)':16s}{'(2E20.12)':20s}{'':20s}")
+    return "\n".join([*head, *cards, f"{2.0:20.12E}{3.0:20.12E}"]).encode() + b"\n"
+
+
+DAMAGED = [
+    (
+        "k.mtx",
+        HEAD + b"2 2 2\n1 1 2,5\n2 2 1.0\n",
+        "line 3: '2,5' holds a comma; write numbers with a decimal point",
+    ),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1P+11\n2 2 1.0\n", "line 3: '2.1P\\+11' is no number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1e+11\n2 2 1.0\0\n", "line 4: '1.0.x00' is no number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1e+11\n2 2 1.0e", "line 4: '1.0e' is no number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 2.1e+11\n2 2", "line 4: 2 numbers on a line where 3 should be"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 2 .1\n2 2 1.0\n", "line 3: 4 numbers on a line"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1 1e999\n2 2 1.0\n", "line 3: '1e999' is beyond any number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 1e999 1.0\n2 2 1.0\n", "line 3: '1e999' is no whole number"),
+    ("k.mtx", HEAD + b"2 2 2\n1 3 1.0\n2 2 1.0\n", "column 3 in a matrix of 2 x 2"),
+    ("k.mtx", HEAD + b"2 2 3\n1 1 1.0\n2 2 1.0\n", "3 entries announced and 2 there"),
+    ("k.mtx", HEAD + b"999999999 999999999 1\n1 1 1.0\n", "row or column 999999999 in a matrix of 1 entries"),
+    ("k.mtx", HEAD + b"2 2 99999999999999999999\n1 1 1.0\n", "line 2: the size is not given"),
+    ("k.mtx.gz", gzip.compress(HEAD)[:-9], "not a whole .gz"),
+    ("k.mtx.gz", gzip.compress(HEAD + b" " * 100_000_000), "unpack to more than"),
+    ("k.rsa", boeing(layout="(999999999I8)"), "fills 7999999992 columns"),
+    ("k.rua", boeing(pointers="1 9 3"), "pointers do not rise"),
+    ("k.rua", boeing(pointers="1 2 9"), "pointers do not rise"),
+    ("k.rua", boeing(indices="1 7"), "an index lies beyond its 2 rows"),
+    ("k.rua", boeing(indices="1 0"), "an index lies beyond its 2 rows"),
+    ("k.rua", boeing() + b"1.0\n", "4 lines behind the header where 3 are announced"),
+    ("k.npz", damaged_archive(indptr=np.arange(len(K.indptr)) * 1000), "pointers that do not rise"),
+    ("k.npz", damaged_archive(indptr=K.indptr[:-1]), "whole numbers should be"),
+    ("k.npz", damaged_archive(indices=K.indices - 1), "an index beyond"),
+    ("k.npz", damaged_archive(indices=K.indices * 1000), "an index beyond"),
+    ("k.npz", damaged_archive(data=K.data[:-1]), "pointers that do not rise"),
+    ("k.npz", damaged_archive(shape=np.array([10**12, 10**12])), "row or column 1000000000000 in a matrix"),
+    ("k.npz", damaged_archive(data=K.data * np.inf), "an entry is not finite"),
+    ("k.npz", marked(damaged_archive(), 6, 1), "encrypted"),
+    ("k.npz", marked(damaged_archive(), 8, 99), "not supported"),
+    ("k.npy", b"\x93NUMPY\x01\x00\x50\x00" + b"(" * 80, "header of an array cannot be read"),
+    ("k.npz", archive(data=np.eye(2), offsets=np.arange(2), shape=np.array([2, 2])), "without its format"),
+    ("k.npz", archive(K=np.ones((4, 2))), "is 4 x 2; stiffness and mass are square"),
+    ("k.rsa", boeing().replace(b"2.000000000000E", b"2.000\r0000000E"), "another count of numbers"),
+]
+
+
+@pytest.mark.parametrize(("name", "content", "said"), DAMAGED)
+def test_what_would_reach_a_parser_unchecked_is_refused(
+    tmp_path: Path, name: str, content: bytes, said: str
+) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(StudyError, match=said) as error:
+        read_matrix(tmp_path / name)
+    assert name in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_bomb_is_not_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "k.npz"
+    np.savez_compressed(path, K=np.zeros((4000, 4000)))
+    tracemalloc.start()
+    with pytest.raises(StudyError, match="unpack to more than"):
+        read_matrix(path)
+    assert tracemalloc.get_traced_memory()[1] < 1e6
+    tracemalloc.stop()
+
+
+def test_exponents_of_fortran_in_a_market_file(tmp_path: Path) -> None:
+    (tmp_path / "k.mtx").write_bytes(HEAD + b"2 2 2\n1 1 2.1D+11\n2 2 -1.5d-3\n")
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.mtx").toarray(), np.diag([2.1e11, -1.5e-3]))
+
+
+NODES = "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 2, 0, 0\n"
+
+SLIPS = [
+    (NODES + "*BOUNDARY\n1,-2000000000,3\n", "first and last direction, 1 to 6"),
+    (NODES + "*BOUNDARY\n1, 3, 1\n", "none is in it"),
+    (NODES + "*BOUNDARY\n7, 1, 3\n", "node 7 stands in no"),
+    (NODES + "*NSET, NSET=A, GENERATE\n1, 3, 0\n", "no node is in it"),
+    (NODES + "*NSET, NSET=A, GEMERATE\n1, 3\n", "is GENERATE meant"),
+    (NODES + "*BOUNDRY\n1, 1, 3\n", "is \\*BOUNDARY meant"),
+    (NODES + "2, 1.5, 0, 0\n", "node 2 stands at another place before"),
+    (NODES + "4, 1. 5, 0, 0\n", "is no node"),
+    (NODES + "4, nan, 0, 0\n", "is no node"),
+    (NODES + "*INCLUDE, INPUT=job.inp\n" * 8, "line 5: .*job.inp includes itself"),
+]
+
+
+@pytest.mark.parametrize(("text", "said"), SLIPS)
+def test_slips_in_a_deck_are_named(tmp_path: Path, text: str, said: str) -> None:
+    (tmp_path / "job.inp").write_text(text)
+    with pytest.raises(StudyError, match=said):
+        read_deck(tmp_path / "job.inp")
+
+
+def test_a_deck_costs_no_more_than_its_size(tmp_path: Path) -> None:
+    ends = "*BOUNDARY\nA, 1, 3\n" * 200
+    (tmp_path / "job.inp").write_text(NODES + "*NSET, NSET=A, GENERATE\n1, 999999999999\n" * 200 + ends)
+    tracemalloc.start()
+    held = read_deck(tmp_path / "job.inp").held
+    assert tracemalloc.get_traced_memory()[1] < 1e6
+    tracemalloc.stop()
+    assert held == {(node, direction) for node in (1, 2, 3) for direction in (1, 2, 3)}
+
+
+def test_files_that_include_each_other_twice_end(tmp_path: Path) -> None:
+    for k in range(20):
+        (tmp_path / f"{k}.inp").write_text(f"*INCLUDE, INPUT={k + 1}.inp\n" * 2)
+    (tmp_path / "20.inp").write_text(NODES)
+    with pytest.raises(StudyError, match="over and over"):
+        read_deck(tmp_path / "0.inp")
+
+
+def test_a_row_that_stands_twice_in_an_export(tmp_path: Path) -> None:
+    (tmp_path / "k.sti").write_text("1 1 2.0\n1 2 -1.0\n2 2 2.0\n1 2 -1.0\n")
+    with pytest.raises(StudyError, match="1 entries stand twice"):
+        read_matrix(tmp_path / "k.sti")

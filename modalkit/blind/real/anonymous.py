@@ -43,7 +43,7 @@ def write_anonymous(source: Source, home: Path, folder: Path, number: int) -> Pa
         text = source.text or original.read_text(encoding="utf-8")
         text = without_tables(text, source.drop)
         document = tomllib.loads(text)
-    except (OSError, tomllib.TOMLDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise StudyError(f"{original}: cannot be read ({error})") from error
     for i, name in enumerate(data_files(document)):
         copied = f"test{number}-{i}{Path(name).suffix}"

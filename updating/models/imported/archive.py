@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+import math
+import re
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
-from zipfile import BadZipFile
+from types import MappingProxyType
 
 import numpy as np
 from scipy import sparse
 
+from acquisition.arrays import AnyArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
+from updating.models.imported.numerals import check_order
+from updating.models.imported.packed import allowed, too_much
+
+_HEADER = re.compile(
+    rb"\s*\{\s*'descr':\s*'([<>|=]?)([fiucbSU])(\d{1,4})',\s*'fortran_order':\s*(True|False),"
+    rb"\s*'shape':\s*\(((?:\d{1,18},?\s*)*)\),?\s*\}\s*"
+)
+_LONGEST = 64
+"""Characters that a word among the arrays may have [-]; the names of formats have three."""
+
+Arrays = Mapping[str, AnyArray]
 
 
 def read_archive(path: Path) -> Sparse:
@@ -19,31 +35,160 @@ def read_archive(path: Path) -> Sparse:
     Raises
     ------
     StudyError
-        If the file is no archive, holds none or several matrices, or not real numbers.
+        If the file is no archive, holds none or several matrices, pointers that point nowhere, or not real numbers.
     """
     try:
-        matrix = _read(path)
-    except (ValueError, OSError, EOFError, KeyError, BadZipFile) as error:
+        if path.read_bytes()[:6] == b"\x93NUMPY":
+            return _plain({path.stem: _array(path.read_bytes())}, path)
+        arrays = _members(path)
+        return _sparse(arrays, path) if "format" in arrays else _plain(arrays, path)
+    except (ValueError, KeyError, OSError, EOFError, NotImplementedError, RuntimeError, zlib.error,
+            zipfile.BadZipFile) as error:  # fmt: skip
+        said = " ".join(str(error).split())
         raise StudyError(
-            f"{path}: not an .npz archive of one matrix ({error}); use scipy.sparse.save_npz"
+            f"{path}: not an .npz archive of one matrix ({said}); use scipy.sparse.save_npz"
         ) from error
-    if matrix.dtype.kind not in "fiu":
-        raise StudyError(f"{path}: holds {matrix.dtype} values; stiffness and mass are real")
-    return Sparse(sparse.coo_array(matrix).astype(float).tocsr())
 
 
-def _read(path: Path) -> Any:
-    """Return the sparse or plain matrix of a file."""
-    found = np.load(path, allow_pickle=False)
-    if isinstance(found, np.ndarray):
-        return found
-    with found as archive:
-        names = set(archive.files)
-        if "format" in names:
-            return sparse.coo_array(sparse.load_npz(path))
-        flat = [archive[n] for n in archive.files if archive[n].ndim == 2]
+def _members(path: Path) -> Arrays:
+    """Return the arrays of an archive, unpacked within what its size allows."""
+    packed = path.stat().st_size
+    with zipfile.ZipFile(path) as archive:
+        infos = archive.infolist()
+        if sum(info.file_size for info in infos) > allowed(packed):
+            raise too_much(path, packed)
+        if len({info.filename for info in infos}) < len(infos):
+            raise ValueError("two arrays of one name")
+        return {info.filename.removesuffix(".npy"): _array(archive.read(info)) for info in infos}
+
+
+def _array(raw: bytes) -> AnyArray:
+    """Return the array of an ``.npy``: its header must say what follows it, to the byte."""
+    start = 12 if raw[6:7] == b"\x02" else 10
+    if raw[:6] != b"\x93NUMPY" or raw[6:7] not in (b"\x01", b"\x02"):
+        raise ValueError("no array of numpy in it")
+    body = start + int.from_bytes(raw[8:start], "little")
+    found = _HEADER.fullmatch(raw[start:body])
+    if found is None:
+        raise ValueError("the header of an array cannot be read, or it holds objects")
+    order, kind, size, fortran, numbers = (word.decode("ascii") for word in found.groups())
+    if kind in "SU" and int(size) > _LONGEST:
+        raise ValueError("a word of an array is too long")
+    try:
+        dtype = np.dtype(f"{order}{kind}{size}")
+    except TypeError as error:
+        raise ValueError(f"an array of {kind}{size}, which is no kind of number") from error
+    shape = tuple(int(n) for n in re.findall(r"\d+", numbers))
+    if math.prod(shape) * dtype.itemsize != len(raw) - body:
+        raise ValueError(f"an array of shape {shape} in {len(raw) - body} bytes")
+    flat = np.frombuffer(raw, dtype=dtype, offset=body)
+    return flat.reshape(shape, order="F" if fortran == "True" else "C")
+
+
+def _real(values: AnyArray, path: Path) -> AnyArray:
+    """Return entries in double precision."""
+    if values.dtype.kind not in "fiu":
+        raise StudyError(f"{path}: holds {values.dtype} values; stiffness and mass are real")
+    if not np.isfinite(values).all():
+        raise StudyError(f"{path}: an entry is not finite; write it anew")
+    return np.asarray(values, dtype=np.float64)
+
+
+def _plain(arrays: Arrays, path: Path) -> Sparse:
+    if {"data", "shape"} <= set(arrays):
+        raise ValueError("a sparse matrix without its format")
+    flat = [a for a in arrays.values() if a.ndim == 2]
     if len(flat) != 1:
-        raise StudyError(
-            f"{path}: holds {len(flat)} matrices ({', '.join(sorted(names)) or 'nothing'}); put one into each file"
-        )
-    return flat[0]
+        names = ", ".join(sorted(arrays)) or "nothing"
+        raise StudyError(f"{path}: holds {len(flat)} matrices ({names}); put one into each file")
+    return Sparse(sparse.coo_array(_real(flat[0], path)).tocsr())
+
+
+def _sparse(arrays: Arrays, path: Path) -> Sparse:
+    """Return what ``save_npz`` wrote, every index checked before it is followed."""
+    word = arrays["format"].item() if arrays["format"].size == 1 else ""
+    name = word.decode("latin-1") if isinstance(word, bytes) else str(word)
+    if name not in _BUILDERS:
+        raise ValueError(f"format {name[:20]!r}")
+    shape = [int(n) for n in _whole(arrays["shape"], 2).tolist()]
+    data = _real(arrays["data"], path)
+    if min(shape) < 1:
+        raise ValueError(f"a matrix of {shape[0]} x {shape[1]}")
+    check_order(max(shape), data.size, path)
+    return Sparse(_BUILDERS[name](arrays, data, (shape[0], shape[1])).tocsr())
+
+
+def _whole(values: AnyArray, count: int) -> AnyArray:
+    """Return so many whole numbers in a row."""
+    if values.dtype.kind not in "iu" or values.shape != (count,):
+        raise ValueError(f"{values.shape} {values.dtype} where {count} whole numbers should be")
+    return values.astype(np.int64)
+
+
+def _index(values: AnyArray, count: int, limit: int) -> AnyArray:
+    """Return indices that lie from 0 to below a limit."""
+    found = _whole(values, count)
+    if count and not 0 <= found.min() <= found.max() < limit:
+        raise ValueError(f"an index beyond {limit} rows or columns")
+    return found
+
+
+def _pointers(values: AnyArray, rows: int, entries: int) -> AnyArray:
+    """Return pointers that rise from 0 to the number of entries."""
+    found = _whole(values, rows + 1)
+    if found[0] != 0 or found[-1] != entries or (np.diff(found) < 0).any():
+        raise ValueError(f"pointers that do not rise from 0 to {entries}")
+    return found
+
+
+def _compressed(arrays: Arrays, data: AnyArray, shape: tuple[int, int], *, by_row: bool) -> sparse.coo_array:
+    entries, (lines, limit) = len(data), shape if by_row else shape[::-1]
+    if data.ndim != 1:
+        raise ValueError(f"entries of shape {data.shape}")
+    along = np.repeat(np.arange(lines), np.diff(_pointers(arrays["indptr"], lines, entries)))
+    across = _index(arrays["indices"], entries, limit)
+    return sparse.coo_array((data, (along, across) if by_row else (across, along)), shape)
+
+
+def _blocks(arrays: Arrays, data: AnyArray, shape: tuple[int, int]) -> sparse.coo_array:
+    if data.ndim != 3 or 0 in data.shape or shape[0] % data.shape[1] or shape[1] % data.shape[2]:
+        raise ValueError(f"blocks of shape {data.shape} in {shape[0]} x {shape[1]}")
+    count, height, width = data.shape
+    along = np.repeat(
+        np.arange(shape[0] // height), np.diff(_pointers(arrays["indptr"], shape[0] // height, count))
+    )
+    across = _index(arrays["indices"], count, shape[1] // width)
+    rows = (
+        (along * height)[:, None, None] + np.arange(height)[:, None] + np.zeros((1, 1, width), dtype=np.int64)
+    )
+    columns = (across * width)[:, None, None] + np.arange(width) + np.zeros((1, height, 1), dtype=np.int64)
+    return sparse.coo_array((data.ravel(), (rows.ravel(), columns.ravel())), shape)
+
+
+def _triplets(arrays: Arrays, data: AnyArray, shape: tuple[int, int]) -> sparse.coo_array:
+    if data.ndim != 1:
+        raise ValueError(f"entries of shape {data.shape}")
+    row, column = (_index(arrays[k], len(data), n) for k, n in zip(("row", "col"), shape, strict=True))
+    return sparse.coo_array((data, (row, column)), shape)
+
+
+def _diagonals(arrays: Arrays, data: AnyArray, shape: tuple[int, int]) -> sparse.dia_array:
+    if data.ndim != 2 or data.shape[1] > shape[1]:
+        raise ValueError(f"diagonals of shape {data.shape} in {shape[0]} x {shape[1]}")
+    offsets = _whole(arrays["offsets"], len(data))
+    if len(np.unique(offsets)) < len(offsets) or (offsets <= -shape[0]).any() or (offsets >= shape[1]).any():
+        raise ValueError("a diagonal that stands twice or outside")
+    return sparse.dia_array((data, offsets), shape)
+
+
+_BUILDERS: Mapping[
+    str, Callable[[Arrays, AnyArray, tuple[int, int]], sparse.coo_array | sparse.dia_array]
+] = MappingProxyType(
+    {
+        "csr": lambda arrays, data, shape: _compressed(arrays, data, shape, by_row=True),
+        "csc": lambda arrays, data, shape: _compressed(arrays, data, shape, by_row=False),
+        "bsr": _blocks,
+        "coo": _triplets,
+        "dia": _diagonals,
+    }
+)

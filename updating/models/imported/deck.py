@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import difflib
+import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,9 +12,23 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
+from updating.models.imported.include import deck_lines
+from updating.models.imported.numerals import NUMBER
 
 REFUSED = ("*PART", "*INSTANCE", "*NCOPY", "*NGEN")
 """What moves or makes nodes in ways that are not followed here."""
+
+FOLLOWED = ("*NODE", "*NSET", "*BOUNDARY", "*TRANSFORM", "*INCLUDE")
+"""What is followed."""
+
+ALIKE = ("*BOUNDARYF", "*NODEFILE", "*NODEPRINT", "*NODEOUTPUT", "*INCLUDES")
+"""Cards of other meaning whose names are as close to those that are followed as a slip of the pen."""
+
+OPTIONS = ("NSET", "GENERATE", "SYSTEM", "INPUT")
+"""Options that are followed."""
+
+DIRECTIONS = range(1, 12)
+"""Directions of a support: 1 to 6 are motions, the rest temperatures and pressures, which are passed over."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,25 +39,35 @@ class Deck:
     ----------
     nodes : dict of int to (3,) array
         Coordinates [m].
-    sets : dict of str to list of int
-        Node sets, in capitals.
+    sets : dict of str to list of range
+        Node sets, in capitals; what a set names beyond the nodes is nothing.
     held : set of (node, direction)
         What supports hold; directions 1 to 6.
     """
 
     nodes: dict[int, FloatArray] = field(default_factory=dict)
-    sets: dict[str, list[int]] = field(default_factory=dict)
+    sets: dict[str, list[range]] = field(default_factory=dict)
     held: set[tuple[int, int]] = field(default_factory=set)
 
-    def members(self, name: str, where: str) -> list[int]:
-        """Return the nodes that a number or the name of a set stands for."""
-        if name.lstrip("-").isdigit():
-            return [int(name)]
+    def ranges(self, name: str, where: str) -> list[range]:
+        """Return the numbers that a node's number or the name of a set stands for."""
+        if name.isdigit() and len(name) < 19:
+            return [range(int(name), int(name) + 1)]
         if name.upper() not in self.sets:
             raise StudyError(
                 f"{where}: no *NSET {name}; define it before, or write a node table (CSV) instead"
             )
         return self.sets[name.upper()]
+
+    def members(self, name: str, where: str) -> Iterator[int]:
+        """Yield the nodes among them; as many steps as there are nodes or numbers, whichever are fewer."""
+        for numbers in self.ranges(name, where):
+            if len(numbers) == 1 and numbers[0] not in self.nodes:
+                raise StudyError(f"{where}: node {numbers[0]} stands in no *NODE card before")
+            few, many = (
+                (numbers, self.nodes) if len(numbers) < len(self.nodes) else (self.nodes.keys(), numbers)
+            )
+            yield from (node for node in few if node in many)
 
 
 def read_deck(path: Path) -> Deck:
@@ -50,21 +76,34 @@ def read_deck(path: Path) -> Deck:
     Raises
     ------
     StudyError
-        If there is no node, or a card that moves nodes or makes some.
+        If there is no node, a card that moves nodes or makes some, or a file that includes itself.
     """
     deck, turned = Deck(), set[int]()
-    for card, options, line, where in _lines(path, depth=0):
+    card, options, filled, seen = "", dict[str, str](), True, set[tuple[str, ...]]()
+    for line, where in deck_lines(path):
+        if line.startswith("*"):
+            _check_filled(card, filled, where)
+            card, options = _card(line)
+            _check_card(card, options, line, where)
+            filled = False
+            continue
+        filled = True
+        if card in ("*BOUNDARY", "*TRANSFORM"):  # a line said twice holds nothing more
+            if (once := (card, options.get("NSET", ""), line.upper())) in seen:
+                continue
+            seen.add(once)
         if card == "*NODE":
-            number, place = _node(line, where)
-            deck.nodes[number] = place
+            number = _place(deck, line, where)
             if "NSET" in options:
-                deck.sets.setdefault(options["NSET"], []).append(number)
-        elif card == "*NSET" and "NSET" in options:
+                deck.sets.setdefault(options["NSET"], []).append(range(number, number + 1))
+        elif card == "*NSET":
             deck.sets.setdefault(options["NSET"], []).extend(_listed(line, options, deck, where))
+            seen.clear()
         elif card == "*BOUNDARY":
             deck.held.update(_held(line, deck, where))
         elif card == "*TRANSFORM":
             turned.update(deck.members(options.get("NSET", ""), where))
+    _check_filled(card, filled, str(path))
     if not deck.nodes:
         raise StudyError(f"{path}: no *NODE card; give the deck that holds the mesh, or a node table (CSV)")
     _forget_turned(deck, turned)
@@ -79,59 +118,73 @@ def _forget_turned(deck: Deck, turned: set[int]) -> None:
             deck.held.difference_update(along)
 
 
-def _lines(path: Path, *, depth: int) -> Iterator[tuple[str, dict[str, str], str, str]]:
-    """Yield every data line with its card, the card's options, and where it stands."""
-    card, options = "", dict[str, str]()
-    try:
-        text = path.read_text(encoding="latin-1")
-    except OSError as error:
-        raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
-    for number, raw in enumerate(text.splitlines(), start=1):
-        line, where = raw.strip(), f"{path}, line {number}"
-        if line.startswith("**") or not line:
-            continue
-        if not line.startswith("*"):
-            yield card, options, line, where
-            continue
-        card, options = _card(line)
-        if card in REFUSED or (card == "*NODE" and options.get("SYSTEM", "R") != "R"):
-            raise StudyError(f"{where}: {line} is not followed; write a node table (CSV) instead")
-        if card == "*INCLUDE" and depth < 8:
-            yield from _lines(path.parent / line.partition("=")[2].strip().strip("\"'"), depth=depth + 1)
-
-
 def _card(line: str) -> tuple[str, dict[str, str]]:
     card, *options = (part.strip().upper() for part in line.split(","))
     pairs = (option.partition("=") for option in options)
     return card, {key.strip(): value.strip() for key, _, value in pairs}
 
 
-def _node(line: str, where: str) -> tuple[int, FloatArray]:
-    try:
-        number, *place = (part for part in line.replace(" ", "").split(",") if part)
-        coordinates = [float(p.upper().replace("D", "E")) for p in place[:3]]
-        return int(number), np.array([*coordinates, 0.0, 0.0, 0.0][:3])
-    except ValueError as error:
-        raise StudyError(f"{where}: {line!r} is no node, number and x, y, z") from error
+def _check_filled(card: str, filled: bool, where: str) -> None:
+    """Refuse a card of nodes without a line: what stood under it is lost."""
+    if card in ("*NODE", "*NSET") and not filled:
+        raise StudyError(f"{where}: {card} without a line before this; the deck is damaged or cut short")
 
 
-def _listed(line: str, options: dict[str, str], deck: Deck, where: str) -> list[int]:
-    parts = [part.strip() for part in line.split(",") if part.strip()]
-    if "GENERATE" in options:
-        try:
-            first, last, *step = (int(part) for part in parts)
-        except ValueError as error:
-            raise StudyError(f"{where}: {line!r} is no first, last and step") from error
-        return list(range(first, last + 1, step[0] if step else 1))
-    return [node for part in parts for node in deck.members(part, where)]
+def _check_card(card: str, options: dict[str, str], line: str, where: str) -> None:
+    """Refuse what is not followed, and a card whose name is a slip of the pen away from one that is."""
+    if not card[1:2].isalpha():
+        raise StudyError(f"{where}: {line[:40]!r} is no card; the file is damaged or cut short")
+    if card in REFUSED or (card == "*NODE" and options.get("SYSTEM", "R") != "R"):
+        raise StudyError(f"{where}: {line[:80]} is not followed; write a node table (CSV) instead")
+    for word, known, alike in ((card, FOLLOWED, ALIKE), *((option, OPTIONS, ()) for option in options)):
+        close = difflib.get_close_matches(word[:40], known, n=1, cutoff=0.75)
+        if close and word not in known and word.replace(" ", "") not in alike:
+            raise StudyError(f"{where}: {word[:40]} is nothing known; is {close[0]} meant?")
+    if card == "*NSET" and not options.get("NSET"):
+        raise StudyError(f"{where}: {line[:80]} names no set; write *NSET, NSET=name")
+    if card in FOLLOWED and "" in options:
+        raise StudyError(f"{where}: {line[:80]} ends in a comma; what follows it is missing")
+
+
+def _place(deck: Deck, line: str, where: str) -> int:
+    """Put a node down, once or where it stands, and return its number; coordinates left out are zero."""
+    word, *place = (part.strip() for part in line.rstrip(", ").split(","))
+    right = word.isdigit() and len(word) < 19 and 1 <= len(place) <= 3
+    if not right or not all(NUMBER.fullmatch(p) for p in place):
+        raise StudyError(f"{where}: {line[:80]!r} is no node, number and x, y, z")
+    number, found = int(word), [float(p.upper().replace("D", "E")) for p in place]
+    coordinates = np.array([*found, 0.0, 0.0][:3])
+    if number in deck.nodes and not np.array_equal(deck.nodes[number], coordinates):
+        raise StudyError(f"{where}: node {number} stands at another place before; keep one of the two")
+    deck.nodes[number] = coordinates
+    return number
+
+
+def _listed(line: str, options: dict[str, str], deck: Deck, where: str) -> Iterable[range]:
+    parts = [part.strip() for part in line.rstrip(", ").split(",")]
+    if "GENERATE" not in options:
+        return [numbers for part in parts if part for numbers in deck.ranges(part, where)]
+    if not 2 <= len(parts) <= 3 or not all(part.isdigit() and len(part) < 19 for part in parts):
+        raise StudyError(f"{where}: {line[:80]!r} is no first, last and step")
+    first, last, step = (*(int(part) for part in parts), 1)[:3]
+    if first > last or not step:
+        raise StudyError(f"{where}: {line[:80]!r} runs from {first} to {last} by {step}; no node is in it")
+    return [range(first, last + 1, step)]
 
 
 def _held(line: str, deck: Deck, where: str) -> Iterator[tuple[int, int]]:
     name, *numbers = (part.strip() for part in line.split(","))
-    try:
-        first = int(numbers[0])
-        last = int(numbers[1]) if len(numbers) > 1 and numbers[1] else first
-    except (ValueError, IndexError) as error:
-        raise StudyError(f"{where}: {line!r} is no node or set with its first and last direction") from error
+    ends = numbers[:1] + [number for number in numbers[1:2] if number or len(numbers) == 2]
+    if not ends or not all(end.isdigit() and len(end) < 3 and int(end) in DIRECTIONS for end in ends):
+        raise StudyError(
+            f"{where}: {line[:80]!r} is no node or set with its first and last direction, 1 to 6"
+        )
+    if [
+        value for value in numbers[2:] if value and not re.fullmatch(r"[+-]?0*\.?0*([EeDd][+-]?\d+)?", value)
+    ]:
+        raise StudyError(f"{where}: {line[:80]!r} holds a node elsewhere than at rest; leave the value out")
+    first, last = int(ends[0]), int(ends[-1])
+    if first > last:
+        raise StudyError(f"{where}: {line[:80]!r} holds directions from {first} to {last}; none is in it")
     for node in deck.members(name, where):
         yield from ((node, direction) for direction in range(first, min(last, 6) + 1))

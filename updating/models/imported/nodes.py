@@ -116,7 +116,8 @@ def read_table(path: Path, order: int) -> NodeTable:
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
     except (ValueError, pd.errors.ParserError) as error:
-        raise StudyError(f"{path}: not a CSV table ({error}); columns: {', '.join(COLUMNS)}") from error
+        said = " ".join(str(error).split())
+        raise StudyError(f"{path}: not a CSV table ({said}); columns: {', '.join(COLUMNS)}") from error
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise StudyError(f"{path}: lines have more values than the header has names; name every column")
     table.columns = pd.Index([str(c).strip().lower() for c in table.columns])
@@ -126,7 +127,7 @@ def read_table(path: Path, order: int) -> NodeTable:
         )
     try:
         values = table[list(COLUMNS)].astype(float)
-    except ValueError as error:
+    except (ValueError, OverflowError) as error:
         raise StudyError(f"{path}: {error}; every column holds numbers") from error
     rows = values["row"].to_numpy()
     if np.nanmin(rows, initial=1.0) < 0:

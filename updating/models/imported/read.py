@@ -48,7 +48,12 @@ def read_matrix(path: Path | str) -> Sparse:
         )
     if not path.is_file():
         raise StudyError(f"{path}: no such file; paths of the study are relative to the study file")
-    return reader(path)
+    matrix = reader(path)
+    if matrix.shape[0] != matrix.shape[1]:
+        raise StudyError(
+            f"{path}: the matrix is {matrix.shape[0]} x {matrix.shape[1]}; stiffness and mass are square"
+        )
+    return matrix
 
 
 def read_nodes(path: Path, stiffness: Path, order: int) -> NodeTable:
