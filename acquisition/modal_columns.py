@@ -16,7 +16,7 @@ from acquisition.errors import InputError
 _SHAPE = re.compile(r"(\d{1,18})([+-])(R?[XYZ])(?: (imag|sigma))?$", re.IGNORECASE)
 _AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 PERCENT = 0.01
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = re.compile(r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?")
 
 HEADINGS: dict[str, dict[str, float]] = {
     "frequency": dict.fromkeys(("frequency", "frequency_hz", "frequency [hz]", "f"), 1.0),
@@ -63,7 +63,7 @@ def check_headings(table: pd.DataFrame, path: Path) -> None:
 
 def plain(heading: object) -> str:
     """Return a heading in small letters, units in square brackets."""
-    return re.sub(r"\s*[\[(]\s*", " [", str(heading).strip().lower()).replace(")", "]")
+    return re.sub(r" ?[\[(] ?", " [", " ".join(str(heading).lower().split())).replace(")", "]")
 
 
 def column(table: pd.DataFrame, name: str, path: Path) -> FloatArray | None:
@@ -95,7 +95,8 @@ def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -
     share = text.str.endswith("%") & (plain(name) in {**HEADINGS["damping"], **HEADINGS["damping_sigma"]})
     words = text.where(~share, text.str.rstrip("% "))
     missing = words.str.lower().isin(["nan", ""])
-    wrong = text[~missing & ~words.str.fullmatch(_NUMBER)]
+    whole = words.map(lambda word: _NUMBER.fullmatch(word) is not None)
+    wrong = text[~missing & ~whole]
     if len(wrong):
         raise InputError(
             f"{path}: {wrong.iloc[0][:40]!r} in column {name!r} is no number (use decimal points)"
