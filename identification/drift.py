@@ -19,16 +19,17 @@ from acquisition.frf import FrfSet
 from identification import basis
 from identification.arrangement import arrange
 from identification.disagreement import scatter_beyond_noise
+from identification.fading import inflation
 from identification.grams import Weights
 from identification.refine import Fit, frequency_scores
 from identification.residues import synthesise
-from identification.weighing import left_over
+from identification.weighing import decay_over_record, left_over
 
 _FEW, _FEW_OF_ONE = 3, 6
 """Groups under which no scatter between them is estimated: of shifts that all modes share, and of those of one mode,
 where one FRF in which the model does not hold would pass for a drift of all. Twice as many leave small tests to
 :func:`identification.disagreement.between_frfs`."""
-_CHANCE, _CHANCE_OF_ONE = 0.05, 1e-3
+_CHANCE, _CHANCE_OF_ONE = 0.01, 1e-3
 """Chance by which noise alone passes for a drift of all modes, and for one of a mode by itself: there are as many tests
 as modes, and what is missed is no larger than the noise. Twice as much finds hardly more."""
 _LARGEST = 0.02
@@ -166,7 +167,8 @@ def _believed(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
     left = (weights.full * np.abs(left_over(frfs, fit)) ** 2) @ (
         density / density.sum(axis=1, keepdims=True)
     ).T
-    return np.asarray(1.0 / np.sqrt(np.maximum(left, 1.0)))
+    fading = inflation(weights.fade, decay_over_record(frfs, fit.poles))[2]
+    return np.asarray(1.0 / np.sqrt(np.maximum(left, 1.0) * fading))
 
 
 def _own_shifts(

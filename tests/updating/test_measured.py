@@ -44,10 +44,12 @@ def test_modes_of_a_file_keep_their_shapes_but_not_their_level() -> None:
 
 def test_frequencies_alone_have_no_shapes() -> None:
     data = ModalData(np.array([10.0, 20.0]), np.array([0.1, np.nan]))
-    test = measured_from_modes(data, Axes(), BEAM)
+    test = measured_from_modes(data, Axes(), BEAM, repeatability=1e-3)
     assert not test.has_shapes
     assert test.constants.shape == (0, 2)
     assert test.frequency_sigma == pytest.approx([0.1, 0.0])
+    with pytest.raises(StudyError, match="mode 2 at 20 Hz has no uncertainty"):
+        measured_from_modes(data, Axes(), BEAM)
 
 
 def test_what_is_not_along_z_is_left_out_and_said() -> None:

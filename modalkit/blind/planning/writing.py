@@ -39,6 +39,9 @@ def write_case(case: Case | None, told: Told, folder: Path, *, seed: list[int]) 
     return write_scene(scene, before, told, folder, rngs=(first, second))
 
 
+_OF_RECORDS = ("exponential_window",)
+
+
 def write_scene(
     scene: Scene, before: Scene, told: Told, folder: Path, *, rngs: tuple[np.random.Generator, np.random.Generator]
 ) -> Path:  # fmt: skip
@@ -66,9 +69,16 @@ def write_scene(
         else:
             _write_modes(one, told, folder / f"{name}.csv", rng)
             text = text.replace(f'files = ["{name}.uff"]', f'modes = "{name}.csv"')
+    if not told.shapes:
+        text = _without_records(text)
     study = folder / "study.toml"
     study.write_text(text, encoding="utf-8")
     return study
+
+
+def _without_records(text: str) -> str:
+    """Leave out what is stated of records and FRFs: modes have none."""
+    return "".join(line for line in text.splitlines(keepends=True) if line.split(" =")[0] not in _OF_RECORDS)
 
 
 def _without_damping(text: str) -> str:
