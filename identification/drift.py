@@ -137,7 +137,8 @@ def estimate_drift(
     np.add.at(information, label, 2.0 * normal)
     omega = fit.poles.imag / (2 * np.pi)
     within = (omega >= frfs.frequency[0]) & (omega <= frfs.frequency[-1])
-    common = _common_variance(pulls @ within, within @ information @ within)
+    fading = inflation(weights.fade, decay_over_record(frfs, fit.poles))[2][within].max(initial=1.0)
+    common = _common_variance(pulls @ within / fading, within @ information @ within / fading)
     each = np.zeros(n_modes)
     if (own & within).any():
         each = _own_variances(pulls, information, own & within, common)
@@ -167,8 +168,7 @@ def _believed(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
     left = (weights.full * np.abs(left_over(frfs, fit)) ** 2) @ (
         density / density.sum(axis=1, keepdims=True)
     ).T
-    fading = inflation(weights.fade, decay_over_record(frfs, fit.poles))[2]
-    return np.asarray(1.0 / np.sqrt(np.maximum(left, 1.0) * fading))
+    return np.asarray(1.0 / np.sqrt(np.maximum(left, 1.0)))
 
 
 def _own_shifts(
