@@ -104,6 +104,14 @@ def _split(table: pd.DataFrame, path: Path) -> tuple[pd.DataFrame, pd.DataFrame]
         )
     if there.all():
         raise InputError(f"{path}: holds no mode; give one row per mode beside the coordinates")
+    others = points[[name for name in table.columns if name != heading and dof(name) is None]]
+    filled = others.fillna("").apply(lambda cells: cells.str.strip()) != ""
+    if filled.to_numpy().any():
+        name = others.columns[filled.any(axis=0).to_numpy()][0]
+        raise InputError(
+            f"{path}: the row {points.index[filled[name]][0]} of coordinates has an entry in column {name!r}, which "
+            "modes have; leave it empty, or give the mode its frequency"
+        )
     return table[~there], points
 
 

@@ -15,8 +15,7 @@ from identification import Correlation, ModalModel, mac_table
 from identification import correlate as correlate_modes
 from identification import mac as mac_of_shapes
 from modalkit.existing import Modes
-from modalkit.process import Session, process
-from modalkit.process import modes_of as modes_in_band
+from modalkit.process import Session, modes_in_band, process
 from modalkit.reading import Processed, read
 from modalkit.study import Study, read_study
 

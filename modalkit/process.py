@@ -181,7 +181,7 @@ def _measure(
     }
     axes, spec = study.axes(table), study.spec()
     if table.modes is not None:
-        modes, below, beyond = modes_of(study, table, name)
+        modes, below, beyond = modes_in_band(study, table, name)
         with _naming(study):
             measured = measured_from_modes(modes, axes, spec, **options)
         return replace(measured, warnings=(*measured.warnings, *beyond), below=below), None, None
@@ -193,7 +193,7 @@ def _measure(
     return _with_levels(measured, processed, identified), processed, identified
 
 
-def modes_of(study: Study, table: MeasurementTable, name: str) -> tuple[ModalData, int, tuple[str, ...]]:
+def modes_in_band(study: Study, table: MeasurementTable, name: str) -> tuple[ModalData, int, tuple[str, ...]]:
     """Return the modes of a measurement's table that lie in its band, how many lie below it, and what to say of it.
 
     Raises

@@ -151,6 +151,10 @@ class Block:
         )
 
 
+_CONTROL = bytes({*range(32)} - {*b"\t\n\r\f"})
+"""Characters that no text holds; DOS ends a file with one."""
+
+
 def read_text(path: Path) -> list[str]:
     """Return the lines of a text file in UTF-8, UTF-16 with a mark, or Latin-1.
 
@@ -170,9 +174,9 @@ def read_text(path: Path) -> list[str]:
             raise InputError(
                 f"{path}: marked as UTF-16 and is not ({error.reason}); export it again"
             ) from error
-    if b"\0" in raw[:4096]:
+    if len(raw.rstrip(b"\x1a").translate(None, _CONTROL)) < len(raw.rstrip(b"\x1a")):
         raise InputError(
-            f"{path}: binary, no column text; export it as text, or write a reader (docs/readers.md)"
+            f"{path}: damaged, or binary, no column text; export it as text, or write a reader (docs/readers.md)"
         )
     try:
         return raw.decode("utf-8-sig").splitlines()

@@ -147,8 +147,9 @@ def _text(
     """
     layout = _layout(header, "=", "f8", "f8")
     wanted = header.points * layout.itemsize // 8
-    offset, found, lost, forms = spool.seek(0, 2), 0, False, LineForms()
+    offset, found, lost, forms, strays = spool.seek(0, 2), 0, False, LineForms(), 0
     for text in _pieces(data, *place):
+        strays += _strays(text)
         numbers = numbers_of(text)
         forms.add(text)
         keep = numbers[: max(wanted - found, 0)]
@@ -160,7 +161,14 @@ def _text(
     _enough(found * 8 // layout.itemsize, header.points)
     _in_columns(data, place, line, forms)
     surplus = found - wanted
-    if surplus and forms.uneven(_PER_LINE[header.item_size]):
+    if strays:
+        notes.append(
+            f"{strays} tabs or line ends of another kind among its numbers: a sign may be lost there"
+        )
+    uneven = forms.uneven(_PER_LINE[header.item_size])
+    if uneven and not surplus:
+        notes.append("its lines hold unequal counts of numbers: a line may be broken in two where a sign was")
+    if surplus and uneven:
         raise InputError(
             f"{surplus} numbers more than its {header.points} points need, on lines of unequal length: "
             "one is broken in two or one too many"
@@ -168,6 +176,12 @@ def _text(
     if lost or surplus >= forms.on_last:  # zeros that fill the last line are no numbers
         notes.append(f"{surplus} numbers after its {header.points} points are left out")
     return Stored(spool, offset, layout, header.points)
+
+
+def _strays(text: bytes) -> int:
+    """Count carriage returns within lines, and tabs where most lines have none."""
+    returns, tabs = text.count(b"\r") - text.count(b"\r\n"), text.count(b"\t")
+    return returns + (tabs if tabs < text.count(b"\n") else 0)
 
 
 def _in_columns(data: mmap, place: tuple[int, int], line: int, forms: LineForms) -> None:

@@ -13,7 +13,7 @@ from acquisition.errors import ModalkitError
 from modalkit.diagnosing import diagnose_studies, warnings_of
 from modalkit.fitting import update_studies
 from modalkit.json_update import to_json
-from modalkit.process import Session, modes_of, open_study, process
+from modalkit.process import Session, modes_in_band, open_study, process
 from modalkit.records import diagnosis_record
 from modalkit.study import Study, read_study
 from updating import Measured
@@ -73,7 +73,7 @@ def _updated(session: Session) -> dict[str, Any]:
 
 def _modes_alone(study: Study) -> tuple[list[dict[str, float]], list[str]]:
     if study.test.modes is not None:
-        modes, _, beyond = modes_of(study, study.test, "test")
+        modes, _, beyond = modes_in_band(study, study.test, "test")
         return _modes(modes), [*modes.doubts(), *beyond]
     processed, identified = process(study)
     warnings = dict.fromkeys([*processed.warnings, *identified.warnings])

@@ -9,6 +9,7 @@ import pandas as pd
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from acquisition.display import counted
 from acquisition.errors import EstimationError
 from modalkit.batch import (
     BatchResult,
@@ -19,7 +20,7 @@ from modalkit.batch import (
     tables,
     write_tables,
 )
-from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, several, show_table
+from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, show_table
 from modalkit.outputs import check_outputs, json_of, store_of
 from modalkit.write import write_json
 
@@ -71,7 +72,7 @@ def batch(
         )
     _show(result)
     if not result.worked:
-        raise EstimationError(f"{folder}: none of {several(len(studies), 'study file')} worked")
+        raise EstimationError(f"{folder}: none of {counted(len(studies), 'study file')} worked")
     for path in write_tables(output, tables(result)):
         out.print(f"written: {path}", markup=False)
     if json_dir is not None:
@@ -106,11 +107,11 @@ def _show(result: BatchResult) -> None:
     text = ["verdict", "effects"]
     others = frame["candidates"].where(frame["verdict"] == "class").fillna(1) - 1
     shown["effects"] = [
-        f"{name} or {several(int(n), 'other')}" if n > 0 else name
+        f"{name} or {counted(int(n), 'other')}" if n > 0 else name
         for name, n in zip(frame["effects"], others, strict=True)
     ]
     shown[text] = shown[text].astype("object").where(shown[text].notna(), "-")
     if len(shown):
-        show_table(shown, f"{len(shown)} of {several(len(result.parts), 'study file')}")
+        show_table(shown, f"{len(shown)} of {counted(len(result.parts), 'study file')}")
     for one in result.skipped:
         out.print(f"skipped: {one.name}: {one.failure}", style="yellow", markup=False)

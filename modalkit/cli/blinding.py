@@ -10,9 +10,10 @@ from typing import Annotated
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from acquisition.display import counted
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, Plan, check_store, run_blind, score
-from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, several, show_figures
+from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, show_figures
 from modalkit.cli.options import Figures
 from modalkit.cli.scores import MARKDOWN, score_figures, show_score, write_markdown
 from modalkit.outputs import check_outputs, json_of, store_of
@@ -183,7 +184,7 @@ def _check(store: Path, seed: int | None) -> None:
     """Check the seals of a stored run, and say what is in it."""
     found = check_store(store, seed=seed)
     out.print(
-        f"{store}: {several(len(found.outcomes), 'trial')}, each opened with the commitment published before it; "
+        f"{store}: {counted(len(found.outcomes), 'trial')}, each opened with the commitment published before it; "
         f"modalkit {found.version}",
         markup=False,
     )

@@ -124,11 +124,6 @@ def check_workers(workers: int) -> None:
         raise InputError(f"--workers {workers}: at most {_MOST_WORKERS}, each is a process of 200 MB")
 
 
-def several(count: int, noun: str) -> str:
-    """Return a count with its noun, in the plural where it is one: ``3 modes``."""
-    return f"{count} {noun}" + ("" if count == 1 else "s")
-
-
 def show_table(frame: pd.DataFrame, title: str = "", *, digits: dict[str, int] | None = None) -> None:
     """Print a table; columns of numbers to the right, with as many decimals as told."""
     table = Table(title=title or None, title_justify="left", box=None, pad_edge=False, header_style="bold")

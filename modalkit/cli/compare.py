@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from acquisition.display import counted
 from acquisition.errors import InputError
 from identification import Correlation as Comparison
 from modalkit import comparing
@@ -16,7 +17,6 @@ from modalkit.cli.common import (
     is_study,
     out,
     read_by,
-    several,
     show_figures,
     show_table,
     show_warnings,
@@ -101,7 +101,7 @@ def _correlate_tests(first: Path, second: Path, json: Path | None, figures: Path
     names = {"test": "first", "test [Hz]": "first [Hz]", "model": "second", "model [Hz]": "second [Hz]"}
     table = found.table().rename(columns=names | {"error [%]": "difference [%]"})
     digits = {"first": 0, "second": 0, "first [Hz]": 3, "second [Hz]": 3, "difference [%]": 3, "MAC": 3}
-    show_table(table, f"{first} beside {second}: {several(len(found.pairs), 'pair')}", digits=digits)
+    show_table(table, f"{first} beside {second}: {counted(len(found.pairs), 'pair')}", digits=digits)
     if len(found.dofs) > 1:
         mac = comparing.mac(found.test, found.model)
         numbered = mac.set_axis([str(n) for n in range(1, mac.shape[1] + 1)], axis=1).rename_axis("mode")

@@ -18,13 +18,13 @@ from acquisition import (
     reciprocity,
     write_uff,
 )
+from acquisition.display import counted
 from modalkit.cli.common import (
     check_folder,
     is_study,
     out,
     read_by,
     reading,
-    several,
     show_figures,
     show_table,
     show_warnings,
@@ -122,21 +122,21 @@ def _in_short(content: UffContent) -> pd.DataFrame:
 
 
 def _usable(content: UffContent) -> list[str]:
-    parts = [several(len(content.geometry.nodes), "node")] if content.geometry.nodes else []
+    parts = [counted(len(content.geometry.nodes), "node")] if content.geometry.nodes else []
     for test in content.tests:
         count = sum(p.count for p in test.points)
         hit, seen = [p.reference for p in test.points], [d for p in test.points for d in p.responses]
         parts.append(
-            f"{several(count, 'hit')} at {_places(hit)}, seen at {_places(seen)}, {test.samples} samples at "
+            f"{counted(count, 'hit')} at {_places(hit)}, seen at {_places(seen)}, {test.samples} samples at "
             f"{test.rate:g} Hz"
         )
     if content.frfs is not None:
         f = content.frfs
         span = f"{f.frequency[0]:g} to {f.frequency[-1]:g} Hz in steps of {f.df:g} Hz"
         where = f"hit at {_places(f.references)}, seen at {_places(f.responses)}"
-        parts.append(f"{several(len(f.responses), 'FRF')} ({f.form}), {where}, {span}")
+        parts.append(f"{counted(len(f.responses), 'FRF')} ({f.form}), {where}, {span}")
     if content.modal is not None:
-        parts.append(several(len(content.modal), "mode"))
+        parts.append(counted(len(content.modal), "mode"))
     return parts
 
 
@@ -144,7 +144,7 @@ def _places(dofs: Sequence[Dof]) -> str:
     """Return how many points there are, and which, the first of many."""
     names = list(dict.fromkeys(str(dof) for dof in dofs))
     shown = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
-    return f"{several(len(names), 'point')} ({shown})"
+    return f"{counted(len(names), 'point')} ({shown})"
 
 
 def frf(

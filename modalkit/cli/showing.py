@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from acquisition import HitVerdict, force_range, hits_table
-from modalkit.cli.common import out, several, show_table, show_warnings, working
+from acquisition.display import counted
+from modalkit.cli.common import out, show_table, show_warnings, working
 from modalkit.existing import Modes
 from modalkit.write import write_json
 
@@ -55,12 +56,12 @@ def show_modes(model: ModalModel | Modes) -> None:
     else:
         where = f"between {model.band[0]:g} and {model.band[1]:g} Hz"
         unscaled = "not mass-normalised (no drive point to trust)"
-    show_table(model.table(), f"{several(len(model), 'mode')} {where}", digits=digits)
+    show_table(model.table(), f"{counted(len(model), 'mode')} {where}", digits=digits)
     if model.modal.shapes is None:
         out.print("No shapes.")
         return
     scaled = "mass-normalised" if model.modal.scaled else unscaled
-    out.print(f"Shapes at {several(len(model.modal.dofs), 'degree')} of freedom, {scaled}.")
+    out.print(f"Shapes at {counted(len(model.modal.dofs), 'degree')} of freedom, {scaled}.")
     if not isinstance(model, Modes) and model.frfs.decay:
         out.print(f"Window: {model.frfs.decay:.4g} 1/s of decay was taken out of the damping.")
 
@@ -70,7 +71,7 @@ def show_hits(hits: Sequence[HitVerdict]) -> None:
     if not hits:
         return
     left = [h for h in hits if not h.used]
-    out.print(f"{several(len(hits), 'hit')}, {len(left)} left out" + (":" if left else "."))
+    out.print(f"{counted(len(hits), 'hit')}, {len(left)} left out" + (":" if left else "."))
     table = hits_table(hits)
     noted: pd.DataFrame = table[[bool(h.reasons) for h in hits]]
     if len(noted):

@@ -8,7 +8,8 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 
-from modalkit.cli.common import check_folder, out, read_by, several, show_figures, show_table, working
+from acquisition.display import counted
+from modalkit.cli.common import check_folder, out, read_by, show_figures, show_table, working
 from modalkit.cli.options import Figures
 from modalkit.named_effects import parse_effect
 from modalkit.outputs import check_outputs, uff_of
@@ -81,8 +82,8 @@ def _show(made: SimulatedTest) -> None:
     plan = made.rig.plan
     count = sum(len(test.points) for test in made.tests)
     out.print(
-        f"{several(plan.hits, 'hit')} at each of {several(count, 'point')}, "
-        f"{several(len(dict.fromkeys(made.rig.responses)), 'response')} ({plan.form}); "
+        f"{counted(plan.hits, 'hit')} at each of {counted(count, 'point')}, "
+        f"{counted(len(dict.fromkeys(made.rig.responses)), 'response')} ({plan.form}); "
         f"{plan.samples} samples at {plan.rate:g} Hz, band {made.rig.band[0]:g} to {made.rig.band[1]:g} Hz."
     )
     noise = (
@@ -98,6 +99,6 @@ def _show(made: SimulatedTest) -> None:
         + "."
     )
     table = made.table()
-    show_table(table, f"{several(len(table), 'mode')} in the band", digits=dict.fromkeys(table.columns, 4))
+    show_table(table, f"{counted(len(table), 'mode')} in the band", digits=dict.fromkeys(table.columns, 4))
     for remark in made.remarks:
         out.print(f"note: {remark}", markup=False)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from acquisition import Dof, HammerTest, HitVerdict, verdicts_of
 from acquisition.arrays import AnyArray, BoolArray, FloatArray
+from acquisition.display import counted
 from modalkit.figures.style import (
     BLUE,
     FAINT,
@@ -31,7 +32,6 @@ from modalkit.figures.style import (
     shortened,
     tidy,
 )
-from modalkit.figures.words import counted
 
 REASONS = 10
 """Most rejected hits listed with their reason."""

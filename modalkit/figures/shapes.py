@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from acquisition import ModalData
+from acquisition.display import counted
 from modalkit.figures.shaped import Shapes, from_measured, from_modal
 from modalkit.figures.style import (
     BLUE,
@@ -30,7 +31,7 @@ from modalkit.figures.style import (
     tidy,
 )
 from modalkit.figures.surfaces import grid_values, spans
-from modalkit.figures.words import counted, hertz
+from modalkit.figures.words import hertz
 from updating import Measured, Predictor
 
 

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from acquisition.arrays import BoolArray
+from acquisition.display import counted
 from identification import ModalModel, StabilisationChart
 from modalkit.figures.modes import mark_modes
 from modalkit.figures.style import (
@@ -23,7 +24,7 @@ from modalkit.figures.style import (
     place,
     tidy,
 )
-from modalkit.figures.words import counted, hertz
+from modalkit.figures.words import hertz
 
 NEAR = 0.01
 """Poles of two orders within this relative distance are taken for stable in frequency."""

@@ -57,11 +57,6 @@ def phrase(names: Sequence[str]) -> str:
     return " together with ".join(PHRASES.get(name, name.replace("_", " ")) for name in names)
 
 
-def counted(number: int, name: str) -> str:
-    """Write a number of things: ``1 hit``, ``2 hits``."""
-    return f"{number} {name}{'' if number == 1 else 's'}"
-
-
 def percent(value: float) -> str:
     """Write a percentage with two or three digits that mean something."""
     if not math.isfinite(value):

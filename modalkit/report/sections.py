@@ -6,7 +6,8 @@ import math
 
 import pandas as pd
 
-from modalkit.figures.words import METRICS, chance, counted, gap_size, percent, quantity, share
+from acquisition.display import counted
+from modalkit.figures.words import METRICS, chance, gap_size, percent, quantity, share
 from modalkit.letter import letter, separated
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
 from updating import LIBRARY, Diagnosis

@@ -327,6 +327,13 @@ def test_a_quote_inside_a_number_is_a_fault(tmp_path):
         read_columns(tmp_path / "a.csv", layout_file(tmp_path))
 
 
+@pytest.mark.parametrize("content", [b"hammer,acc 1,acc 2\n1,2,3\n\x041,2,3\n", b"1,2,3\n" * 2000 + b"\0"])
+def test_control_characters_are_no_text(tmp_path, content):
+    (tmp_path / "a.csv").write_bytes(content)
+    with pytest.raises(InputError, match="damaged, or binary"):
+        read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+
+
 def test_damage_where_a_row_has_two_columns(tmp_path):
     text = 'rate = 10.0\n[[column]]\nindex = 0\nquantity = "force"\n[[column]]\nindex = 1\nquantity = "velocity"\n'
     (tmp_path / "a.csv").write_text("Samples,4\n" + "1.0,2.0\n" * 4)

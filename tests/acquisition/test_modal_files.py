@@ -144,6 +144,7 @@ def test_a_table_brings_its_points(tmp_path):
         ("frequency,1+Z\nx,\n10,1\n", "lacks a coordinate"),
         ("frequency,1+Z,1+X\nx,0.1,0.2\n10,1,1\n", "node 1 has two places"),
         ("frequency,1+Z\nx,0.1\n", "holds no mode"),
+        ("frequency,sigma,1+Z\nx,0.1,0.1\n10,0.1,1\n", "row x of coordinates has an entry in column 'sigma'"),
         ("frequency,damping\n10,6\n", "damping_percent"),
         ("frequency,damping\n10,-0.01\n", "from 0 to 1"),
         ("frequency,damping,damping_percent\n10,0.01,1\n", "both give the damping"),

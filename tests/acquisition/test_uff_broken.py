@@ -170,3 +170,23 @@ def test_what_is_no_universal_file_is_refused(tmp_path, content):
 def test_missing_file(tmp_path):
     with pytest.raises(InputError, match="cannot be opened"):
         read_uff(tmp_path / "none.uff")
+
+
+@pytest.mark.parametrize(
+    ("end", "note"),
+    [("\n", "unequal counts of numbers"), ("\r", "a sign may be lost"), ("\t", "a sign may be lost")],
+)
+def test_a_sign_that_became_a_line_end_is_said(tmp_path, rng, end, note):
+    frfs = FrfSet(
+        np.arange(16) * 0.5, -1 - rng.random((1, 16)) + 0j, (Dof(1, 3),), (Dof(2, 3),), "accelerance"
+    )
+    path = tmp_path / "a.uff"
+    write_uff(path, frfs=frfs, form="ascii")
+    assert read_uff(path).warnings == ()
+    text = path.read_text()
+    first = text.index("58\n")
+    place = text.index(" -", text.index("NONE                 NONE", first) + 60)
+    place = text.index(" -", place + 50)
+    path.write_bytes((text[:place] + f" {end}" + text[place + 2 :]).encode())
+    said = [d.message for d in read_uff(path).datasets if d.message]
+    assert any(note in message for message in said)

@@ -132,7 +132,7 @@ def _payloads(content: bytes) -> list[tuple[int, int]]:
 def _uff(name: str, content: bytes) -> Case:
     judge = undetectable.universal(_TITLES, _HEADERS)
     spans = _payloads(content)
-    seen = undetectable.payload(spans, judge) if spans else judge
+    seen = undetectable.payload(spans, len(content), judge) if spans else judge
     return Case(name, {name: content}, len(content) // 4, seen, spans)
 
 

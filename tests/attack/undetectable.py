@@ -170,13 +170,14 @@ def _numbers_of(line: bytes) -> bytes:
     return b" ".join(w for w in line.split() if NUMBER.fullmatch(w))
 
 
-def payload(spans: Sequence[tuple[int, int]], otherwise: Judge) -> Judge:
-    """Return the judge of a format with numbers in binary at the spans given, and text elsewhere."""
+def payload(spans: Sequence[tuple[int, int]], size: int, otherwise: Judge) -> Judge:
+    """Return the judge of a format with numbers in binary at spans of a file of a size, and text elsewhere."""
 
     def judge(original: bytes, mutant: bytes) -> bool:
         if len(original) == len(mutant):
             changed = np.flatnonzero(np.frombuffer(original, "u1") != np.frombuffer(mutant, "u1"))
-            if all(any(a <= place < b for a, b in spans) for place in changed.tolist()):
+            shifts = 0, len(original) - size  # where another damage moved them
+            if any(all(any(a <= at - by < b for a, b in spans) for at in changed.tolist()) for by in shifts):
                 return True
         return otherwise(_without(original, spans, original), _without(mutant, spans, original))
 

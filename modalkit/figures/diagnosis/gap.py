@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
+from acquisition.display import counted
 from modalkit.figures.diagnosis.errors import ModeErrors
 from modalkit.figures.dumbbell import dumbbells
 from modalkit.figures.style import MARGIN, WIDTH, caption, caption_height, new_figure, place
-from modalkit.figures.words import METRICS, counted, gap_size
+from modalkit.figures.words import METRICS, gap_size
 from updating import Diagnosis
 
 ROW, INDENT = 0.3, 1.25

@@ -136,10 +136,13 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
         raise StudyError(f"{where}: {line[:40]!r} is no card; the file is damaged or cut short")
     if card in REFUSED or (card == "*NODE" and options.get("SYSTEM", "R") != "R"):
         raise StudyError(f"{where}: {line[:80]} is not followed; write a node table (CSV) instead")
-    for word, known, alike in ((card, FOLLOWED, ALIKE), *((option, OPTIONS, ()) for option in options)):
-        close = difflib.get_close_matches(word[:40], known, n=1, cutoff=0.75)
-        if close and word not in known and word.replace(" ", "") not in alike:
-            raise StudyError(f"{where}: {word[:40]} is nothing known; is {close[0]} meant?")
+    for word, known in ((card, FOLLOWED), *((option, OPTIONS) for option in options)):
+        plain = " ".join(word.split())[:40]
+        close = [one for one in known if one.startswith(plain)] or difflib.get_close_matches(
+            plain, known, n=1, cutoff=0.75
+        )
+        if plain and close and word not in known and plain.replace(" ", "") not in ALIKE:
+            raise StudyError(f"{where}: {plain} is nothing known; is {close[0]} meant?")
     if card == "*NSET" and not options.get("NSET"):
         raise StudyError(f"{where}: {line[:80]} names no set; write *NSET, NSET=name")
     if card in FOLLOWED and "" in options:
