@@ -348,6 +348,6 @@ def test_a_line_nested_deeper_than_a_stack(tmp_path: Path, content: bytes) -> No
 def test_a_file_of_another_kind_without_a_line_end_is_not_emptied(tmp_path: Path) -> None:
     path = tmp_path / "notes.txt"
     path.write_text("not ours")
-    with pytest.raises(InputError, match="no journal"):
+    with pytest.raises(InputError, match="no store of a run"):
         Journal(path, resume=True)
     assert path.read_text() == "not ours"
