@@ -96,6 +96,8 @@ class LineForms:
     def uneven(self, wanted: int) -> bool:
         """Tell whether a line but the last holds another number of values than most, or the last more.
 
+        Where no number of values is that of most lines, the text is a free one, and none is wrong.
+
         Parameters
         ----------
         wanted : int
@@ -105,7 +107,12 @@ class LineForms:
         last = self.on_last
         values[last] -= 1
         values += Counter()
-        usual = values.most_common(1)[0][0] if values.total() > 1 else wanted
+        if values.total() < 3:
+            usual = wanted
+        else:
+            usual, lines = values.most_common(1)[0]
+            if 2 * lines <= values.total():
+                return False
         return any(one != usual for one in values) or last > usual
 
 
