@@ -32,6 +32,9 @@ _ORDER = 60
 _LEVELS = 25
 _POOR_FIT = 4.0  # power left over that of the noise that is worth a word
 _HIGHEST = 400
+# Standard deviations by which constants of a mode exceed their noise, in r.m.s. over the FRFs, where it is one even
+# if the damping is not resolved, as between lines far apart. Noise fitted by a pole has 1 to 2, such modes above 70.
+_CLEAR = 5.0
 _BEYOND = 2.0  # a band may end beyond the lines, but not at a number that scales their background to nothing
 
 
@@ -104,9 +107,8 @@ def _identified(
     modes = inside(fitted.fit.poles, limits, data.df)
     modes &= ~nearest_modes(fitted.fit.poles, drop, modes, data.df)
     errors = _Errors.of(fitted, modes)
-    known = located(fitted.fit.poles, errors.of_noise, modes) | nearest_modes(
-        fitted.fit.poles, add, modes, data.df
-    )
+    known = located(fitted.fit.poles, errors.of_noise, modes) | errors.clear(fitted)
+    known |= nearest_modes(fitted.fit.poles, add, modes, data.df)
     struck, modes = fitted.fit.poles[modes & ~known], modes & known
     if not modes.any():
         why = "once the modes named are dropped" if drop else "in the band: what was found is a background"
@@ -170,6 +172,12 @@ class _Errors:
         apart = covariance.disagreement(fitted, factors)
         own = covariance.pole_statistics(fitted, factors, replace(apart, mean=np.zeros(apart.mean.shape)))
         return cls(factors, apart, covariance.pole_statistics(fitted, factors, apart), own)
+
+    def clear(self, fitted: Fitted) -> BoolArray:
+        """Tell which poles have constants that no noise makes, (n_poles,), however little is known of their damping."""
+        size = np.abs(fitted.fit.linear.residues * 2.0 * fitted.fit.poles.imag)
+        own = covariance.own_errors(fitted, self.factors, self.apart)
+        return np.asarray(np.mean((size / own) ** 2, axis=0) > _CLEAR**2)
 
 
 def _assemble(

@@ -14,6 +14,7 @@ from identification.grams import Weights
 
 _CHANCE = 1e-4
 _ROUNDS = 3
+_STEP = 1e-3  # a round lowers a variance to this part of what it was at the most; what follows from twice is the same
 _WINDOW = 48  # lines over which a local variance is averaged at the least
 _QUIET = 1e-6  # noise is never taken to be below this part of an FRF's r.m.s.
 _PIECE = 16  # lines over which the scatter is averaged before the median
@@ -162,6 +163,9 @@ def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
 def _levelled(raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], FloatArray]) -> FloatArray:
     """Fit raw = a + b power with a, b >= 0, relative errors weighted alike.
 
+    Scoring starts from lines of usual size. Started from a mean that a peak carries, it leaves a, the noise of the
+    quiet lines beside the peak, ten times too small, and these weigh too much.
+
     Parameters
     ----------
     raw : (n_frf, n_lines) array
@@ -174,8 +178,7 @@ def _levelled(raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], F
     tiny = np.finfo(float).tiny
     size = np.maximum(raw.mean(axis=1, keepdims=True), tiny)
     raw, power = raw / size, power / np.maximum(power.mean(axis=1, keepdims=True), tiny)
-    least = np.maximum(1e-3 * mean(raw), _QUIET**2)
-    guess = np.maximum(mean(raw), least)
+    guess = 0.5 * (_typical(raw, mean) + power * _typical(raw / np.maximum(power, _QUIET**2), mean))
     for _ in range(_ROUNDS):
         w = 1.0 / guess**2
         s0, s1, s2 = (mean(w * m) for m in (np.ones_like(raw), power, power**2))
@@ -185,5 +188,10 @@ def _levelled(raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], F
         b = np.where(safe, (s0 * t1 - s1 * t0) / np.where(safe, determinant, 1.0), 0.0)
         b = np.clip(b, 0.0, t1 / np.maximum(s2, tiny))
         a = np.maximum((t0 - b * s1) / s0, 0.0)
-        guess = np.maximum(a + b * power, least)
+        guess = np.maximum(a + b * power, _STEP * guess)
     return np.asarray(guess * size)
+
+
+def _typical(values: FloatArray, mean: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Return the geometric mean: one peak among the lines does not carry it, as it does the arithmetic one."""
+    return np.asarray(np.exp(mean(np.log(np.maximum(values, _QUIET**2)))))

@@ -88,7 +88,8 @@ def located(poles: ComplexArray, spread: FloatArray, modes: BoolArray) -> BoolAr
     """Tell which modes are somewhere, shape (n_modes,): noise fitted by a pole is not.
 
     The frequency is known to within the half-power half-width and to half the distance of the next mode, the damping
-    ratio to within half of itself: a mode that is barely significant has a fifth of these.
+    ratio to within half of itself: a mode that is barely significant has a fifth of these. A strong mode may miss them
+    too, where lines are too far apart to tell its damping: what this says is of modes that hardly stand out.
 
     Parameters
     ----------
