@@ -35,6 +35,9 @@ _HIGHEST = 400
 # Standard deviations by which constants of a mode exceed their noise, in r.m.s. over the FRFs, where it is one even
 # if the damping is not resolved, as between lines far apart. Noise fitted by a pole has 1 to 2, such modes above 70.
 _CLEAR = 5.0
+_DRIFT = (
+    0.1  # damping ratios that frequencies must differ by for a word: a peak that moves by less looks the same
+)
 _BEYOND = 2.0  # a band may end beyond the lines, but not at a number that scales their background to nothing
 
 
@@ -107,7 +110,7 @@ def _identified(
     modes = inside(fitted.fit.poles, limits, data.df)
     modes &= ~nearest_modes(fitted.fit.poles, drop, modes, data.df)
     errors = _Errors.of(fitted, modes)
-    known = located(fitted.fit.poles, errors.of_noise, modes) | errors.clear(fitted)
+    known = located(fitted.fit.poles, errors.poles, modes) | errors.clear(fitted)
     known |= nearest_modes(fitted.fit.poles, add, modes, data.df)
     struck, modes = fitted.fit.poles[modes & ~known], modes & known
     if not modes.any():
@@ -159,19 +162,17 @@ def order_list(frfs: FrfSet, order: int | None, method: str) -> list[int]:
 
 @dataclass(frozen=True, eq=False)
 class _Errors:
-    """How far the poles of a fit may err: (n_poles, 2, 2) of (ln frequency, damping ratio), all in all and by noise."""
+    """How far the poles of a fit may err: (n_poles, 2, 2) of (ln frequency, damping ratio)."""
 
     factors: NoiseFactors
     apart: Disagreement
     poles: FloatArray
-    of_noise: FloatArray
 
     @classmethod
     def of(cls, fitted: Fitted, modes: BoolArray) -> _Errors:
         factors = covariance.noise_factors(fitted.frfs, fitted, modes)
         apart = covariance.disagreement(fitted, factors)
-        own = covariance.pole_statistics(fitted, factors, replace(apart, mean=np.zeros(apart.mean.shape)))
-        return cls(factors, apart, covariance.pole_statistics(fitted, factors, apart), own)
+        return cls(factors, apart, covariance.pole_statistics(fitted, factors, apart))
 
     def clear(self, fitted: Fitted) -> BoolArray:
         """Tell which poles have constants that no noise makes, (n_poles,), however little is known of their damping."""
@@ -222,7 +223,7 @@ def _assemble(
         band=band,
         frfs=data,
         chart=chart,
-        warnings=shapes.warnings + _warnings(fitted) + said,
+        warnings=shapes.warnings + _warnings(fitted, poles) + said,
         points_rejected=points_rejected,
         carried=None if fitted.frfs is data else fitted.frfs,
     )
@@ -267,12 +268,12 @@ def _struck(poles: ComplexArray) -> tuple[str, ...]:
     )
 
 
-def _warnings(fitted: Fitted) -> tuple[str, ...]:
+def _warnings(fitted: Fitted, poles: ComplexArray) -> tuple[str, ...]:
     notes = []
-    shifted = float(np.sqrt(fitted.drift.variance.max(initial=0.0)))
-    if shifted > 0.0:
+    shift = np.sqrt(fitted.drift.at(poles).variance)
+    if np.any(shift > _DRIFT * -poles.real / np.abs(poles)):
         notes.append(
-            f"the frequencies differ from set-up to set-up by {100 * shifted:.2g} % (one standard deviation): a sensor "
+            f"the frequencies differ from FRF to FRF by {100 * shift.max():.2g} % (one standard deviation): a sensor "
             "or hammer that roves and loads the structure, or temperature; the FRFs are carried over to common poles, "
             "and what that leaves in doubt is in the standard deviations"
         )

@@ -18,6 +18,10 @@ _STEP = 1e-3  # a round lowers a variance to this part of what it was at the mos
 _WINDOW = 48  # lines over which a local variance is averaged at the least
 _QUIET = 1e-6  # noise is never taken to be below this part of an FRF's r.m.s.
 _PIECE = 16  # lines over which the scatter is averaged before the median
+# A variance line by line counts by this factor over the law at the most where a stretch of lines is held against it: a
+# coherence near zero gives millions. Twice as much lets one line raise its whole stretch.
+_SPIKE = 10.0
+_MORE = 1.5  # by which a stretch must exceed the law: two standard deviations where each line has one degree of freedom
 _DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / np.sqrt(70.0)
 
 
@@ -157,7 +161,15 @@ def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
         return None
     window = window_length(raw.shape[1])
     levelled = _levelled(raw, np.abs(model) ** 2, lambda m: local_mean(m, window))
-    return np.maximum(levelled, quiet_floor(frfs.values))
+    return np.maximum(_raised(levelled, raw), quiet_floor(frfs.values))
+
+
+def _raised(law: FloatArray, raw: FloatArray) -> FloatArray:
+    """Return variances by a law, raised where a stretch of lines has more: beside a step, which no window follows."""
+    ratio = local_mean(
+        np.minimum(raw / np.maximum(law, np.finfo(float).tiny), _SPIKE), min(_PIECE, raw.shape[1])
+    )
+    return np.where(ratio > _MORE, ratio * law, law)
 
 
 def _levelled(raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], FloatArray]) -> FloatArray:
