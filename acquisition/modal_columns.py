@@ -91,17 +91,15 @@ def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -
     InputError
         If an entry is no number.
     """
-    text = column.fillna("").str.strip()
-    share = text.str.endswith("%") & (plain(name) in {**HEADINGS["damping"], **HEADINGS["damping_sigma"]})
-    words = text.where(~share, text.str.rstrip("% "))
-    missing = words.str.lower().isin(["nan", ""])
-    whole = words.map(lambda word: _NUMBER.fullmatch(word) is not None)
-    wrong = text[~missing & ~whole]
-    if len(wrong):
-        raise InputError(
-            f"{path}: {wrong.iloc[0][:40]!r} in column {name!r} is no number (use decimal points)"
-        )
-    numbers = np.asarray(words.where(~missing, "nan"), dtype=np.float64)
+    ratios = plain(name) in {**HEADINGS["damping"], **HEADINGS["damping_sigma"]}
+    entries = [entry.strip() if isinstance(entry, str) else "" for entry in column.tolist()]
+    share = [ratios and entry.endswith("%") for entry in entries]
+    words = [e.rstrip("% ") if percent else e for e, percent in zip(entries, share, strict=True)]
+    words = ["nan" if word.lower() in ("nan", "") else word for word in words]
+    for entry, word in zip(entries, words, strict=True):
+        if word != "nan" and _NUMBER.fullmatch(word) is None:
+            raise InputError(f"{path}: {entry[:40]!r} in column {name!r} is no number (use decimal points)")
+    numbers = np.array([float(word) for word in words], dtype=np.float64)
     if np.isinf(numbers).any():
         raise InputError(f"{path}: a number in column {name!r} is beyond all bounds; correct it")
     return numbers * np.where(share, PERCENT, scale)

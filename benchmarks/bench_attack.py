@@ -19,6 +19,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.connection import Connection
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "attack"))
 
@@ -30,9 +31,9 @@ WAIT = 120.0
 CPU time it has, for machines that are busy."""
 
 
-def _judge(pipe: Connection, family: str, seed: int, start: int, stop: int) -> None:
+def _judge(pipe: Connection, family: str, seed: int, start: int, stop: int, folder: str) -> None:
     """Judge mutants of a family, and send each verdict; runs in a process of its own."""
-    judge = Judge(next(f for f in families() if f.name == family), seed)
+    judge = Judge(next(f for f in families() if f.name == family), seed, Path(folder))
     for index in range(start, stop):
         pipe.send(index)
         pipe.send(judge.judge(index))
@@ -44,7 +45,9 @@ def attack(family: str, seed: int, count: int) -> Iterator[Verdict]:
     context, start = multiprocessing.get_context("spawn"), 0
     while start < count:
         ours, theirs = context.Pipe(duplex=False)
-        process = context.Process(target=_judge, args=(theirs, family, seed, start, count), daemon=True)
+        folder = TemporaryDirectory()
+        words = (theirs, family, seed, start, count, folder.name)
+        process = context.Process(target=_judge, args=words, daemon=True)
         process.start()
         theirs.close()
         at, outcome = start, "crash"
@@ -65,6 +68,7 @@ def attack(family: str, seed: int, count: int) -> Iterator[Verdict]:
             pass
         process.kill()
         process.join()
+        folder.cleanup()
         if outcome:
             yield Verdict(family, at, "", "", outcome, f"exit code {process.exitcode}")
         start = at + 1
@@ -89,10 +93,11 @@ def main() -> None:
     options = parser.parse_args()
     chosen = [f for f in families() if not options.family or f.name in options.family]
     if options.only is not None:
-        judge = Judge(chosen[0], options.seed)
-        if options.keep:
-            options.keep.write_bytes(judge.mutant(options.only)[2])
-        print(judge.judge(options.only))
+        with TemporaryDirectory() as folder:
+            judge = Judge(chosen[0], options.seed, Path(folder))
+            if options.keep:
+                options.keep.write_bytes(judge.mutant(options.only)[2])
+            print(judge.judge(options.only))
         return
     each = -(-options.mutants // len(chosen))
     begun, totals = time.perf_counter(), Counter[str]()

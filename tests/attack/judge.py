@@ -11,7 +11,6 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import FrameType
 
 import numpy as np
@@ -53,18 +52,15 @@ class Hang(BaseException):
     """The time is up; no reader catches it."""
 
 
-def original(family: Family, case: Case) -> Reading:
-    """Return what is read of the whole file."""
-    with TemporaryDirectory() as folder:
-        return family.reading(_written(case, case.content, Path(folder)))
-
-
 class Judge:
-    """Makes mutants of a family and judges them; the whole files are read once."""
+    """Makes mutants of a family and judges them; the whole files are read once.
 
-    def __init__(self, family: Family, seed: int) -> None:
-        self.family, self.seed = family, seed
-        self.whole = [original(family, case) for case in family.cases]
+    Every case has a folder of its own in the one given, where each mutant takes the place of the one before.
+    """
+
+    def __init__(self, family: Family, seed: int, folder: Path) -> None:
+        self.family, self.seed, self.folder = family, seed, folder
+        self.whole = [self._reading(case, case.content) for case in family.cases]
 
     def mutant(self, index: int) -> tuple[int, str, bytes]:
         """Return number of the case, damage and content of a mutant: always the same for a seed and an index."""
@@ -94,21 +90,20 @@ class Judge:
         return Verdict(self.family.name, index, case.name, damage, outcome, message)
 
     def _outcome(self, case: Case, content: bytes, whole: Reading) -> tuple[str, str]:
-        with TemporaryDirectory() as folder:
-            path = _written(case, content, Path(folder))
-            try:
-                with limits(len(content)), warnings.catch_warnings():
-                    warnings.simplefilter("error")
-                    found = self.family.reading(path)
-            except ModalkitError as error:
-                said = str(error)
-                return ("long" if "\n" in said.strip() else "refused"), said
-            except Hang:
-                return "hang", ""
-            except MemoryError:
-                return "memory", ""
-            except Exception as error:  # noqa: BLE001 - the very thing that is looked for
-                return "foreign", f"{type(error).__name__}: {error}"
+        path = self._written(case, content)
+        try:
+            with limits(len(content)), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                found = self.family.reading(path)
+        except ModalkitError as error:
+            said = str(error)
+            return ("long" if "\n" in said.strip() else "refused"), said
+        except Hang:
+            return "hang", ""
+        except MemoryError:
+            return "memory", ""
+        except Exception as error:  # noqa: BLE001 - the very thing that is looked for
+            return "foreign", f"{type(error).__name__}: {error}"
         if found.digest == whole.digest:
             return "same", ""
         if set(found.warnings) - set(whole.warnings):
@@ -123,26 +118,27 @@ class Judge:
             return False
         if case.undetectable(steps[0], steps[1]):
             return True
-        with TemporaryDirectory() as folder:
-            before, after = (self.family.reading(_written(case, step, Path(folder))).digest for step in steps)
+        before, after = (self._reading(case, step).digest for step in steps)
         return before == after
 
     def _in_numbers(self, case: Case, content: bytes, whole: Reading) -> bool:
         """Tell whether a mutant says what the whole file says but for its numbers in binary."""
         if not case.spans:
             return False
-        with TemporaryDirectory() as folder:
-            return (
-                self.family.reading(_written(case, case.repaired(content), Path(folder))).digest
-                == whole.digest
-            )
+        return self._reading(case, case.repaired(content)).digest == whole.digest
 
+    def _reading(self, case: Case, content: bytes) -> Reading:
+        return self.family.reading(self._written(case, content))
 
-def _written(case: Case, content: bytes, folder: Path) -> Path:
-    for name, whole in case.files.items():
-        (folder / name).write_bytes(whole)
-    (folder / case.name).write_bytes(content)
-    return folder / case.name
+    def _written(self, case: Case, content: bytes) -> Path:
+        """Write a content in place of the attacked file, the others beside it where they are not yet."""
+        folder = self.folder / str(self.family.cases.index(case))
+        if not folder.exists():
+            folder.mkdir()
+            for name, whole in case.files.items():
+                (folder / name).write_bytes(whole)
+        (folder / case.name).write_bytes(content)
+        return folder / case.name
 
 
 @contextlib.contextmanager

@@ -30,8 +30,11 @@ modes = "modes.csv"
 
 @pytest.fixture
 def fleet(tmp_path: Path) -> Path:
+    return make_fleet(tmp_path / "fleet")
+
+
+def make_fleet(folder: Path) -> Path:
     """Two studies that work, deep in folders, two that do not, and what is no study."""
-    folder = tmp_path / "fleet"
     shutil.copytree(SAMPLES / "beam_dry", folder / "b" / "beam")
     study = folder / "b" / "beam" / "published.toml"
     (folder / "b" / "beam" / "study.toml").unlink()
@@ -110,9 +113,18 @@ def _plain(value: Any) -> Any:
     return plain(value)
 
 
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """The fleet, and the store of a batch that has come to its end."""
+    folder = tmp_path_factory.mktemp("batch")
+    fleet, store = make_fleet(folder / "fleet"), folder / "store.jsonl"
+    run_batch(find_studies(fleet), store=store)
+    return fleet, store
+
+
 @pytest.mark.parametrize("ending", ["parquet", "csv"])
 def test_a_folder_in_tables_out(
-    fleet: Path,
+    stored: tuple[Path, Path],
     tmp_path: Path,
     ending: str,
     monkeypatch: pytest.MonkeyPatch,
@@ -121,7 +133,9 @@ def test_a_folder_in_tables_out(
     table, parts = tmp_path / f"table.{ending}", tmp_path / "parts"
     if ending == "parquet":
         pytest.importorskip("pyarrow")
-    assert modalkit(monkeypatch, "batch", fleet, "-o", table, "--json-dir", parts) == 0
+    fleet, store = stored
+    shutil.copy(store, tmp_path / f"table.{ending}.jsonl")
+    assert modalkit(monkeypatch, "batch", fleet, "-o", table, "--json-dir", parts, "--resume") == 0
     said = capsys.readouterr().out
     assert "skipped: a_broken.toml: not a valid TOML file" in said
     assert "skipped: misspelt.toml: unknown key test.file" in said

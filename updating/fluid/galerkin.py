@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, inv
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import FloatArray, IntArray, frozen_array
 from acquisition.errors import InputError
 
 from .axis import JumpAxis
@@ -15,7 +17,12 @@ from .spectra import spectra
 BLOCK = 2_000_000
 """Pairs of wavenumbers worked on at a time."""
 
+KEPT = 8
+"""Factors kept, of some 2 MB each, for the next that asks with the same plate in the same domain: other theories and
+studies of one specimen do. Twice as many hold twice the memory."""
 
+
+@lru_cache(maxsize=KEPT)
 def energy_factor(along: JumpAxis, across: JumpAxis, domain: FluidDomain, thickness: float) -> FloatArray:
     """Assemble A from the spectra of both axes and factorise its inverse less the plate's own volume.
 
@@ -31,7 +38,7 @@ def energy_factor(along: JumpAxis, across: JumpAxis, domain: FluidDomain, thickn
     Returns
     -------
     FloatArray
-        Lower triangle F with F F^T = A^-1 - t G^-1, shape (n, n).
+        Lower triangle F with F F^T = A^-1 - t G^-1, shape (n, n), not to be written to.
 
     Notes
     -----
@@ -52,7 +59,7 @@ def energy_factor(along: JumpAxis, across: JumpAxis, domain: FluidDomain, thickn
         matrix = inv(_unfold(half, p, q), assume_a="pos")
         if thickness > 0.0:
             matrix = matrix - thickness * np.kron(inv(left.sum(axis=0)), inv(right.sum(axis=0)))
-        return np.asarray(cholesky(0.5 * (matrix + matrix.T), lower=True), dtype=np.float64)
+        return frozen_array(cholesky(0.5 * (matrix + matrix.T), lower=True))
     except LinAlgError as error:
         raise InputError(
             f"added mass: {along.terms} x {across.terms} functions cannot be told apart in this domain; "

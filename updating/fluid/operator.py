@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, frozen_array
+from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 
 from .axis import JumpAxis
@@ -86,7 +86,7 @@ class AddedMassOperator:
                 "positive and the thickness not negative"
             )
         along, across = place(length, width, domain.walls, terms or term_counts(length, width))
-        return cls(along, across, frozen_array(energy_factor(along, across, domain, thickness)))
+        return cls(along, across, energy_factor(along, across, domain, thickness))
 
     def matrix(self, shapes: FloatArray, x: FloatArray, y: FloatArray) -> FloatArray:
         """Added-mass matrix of deflections sampled on a tensor grid.

@@ -7,11 +7,12 @@ centre. In open water the wavenumbers are continuous, between walls they are the
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from scipy.special import jv
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, frozen_array
 
 from .axis import JumpAxis
 
@@ -26,6 +27,10 @@ LINES = 8000
 
 PANEL = 0.5 * math.pi
 """Half a period of the squared Bessel functions: one Gauss panel."""
+
+KEPT = 8
+"""Axes whose transforms are kept, at most 2 MB each: the same plate thin and thick, and under other surfaces and
+bottoms, has the same. Twice as many hold twice the memory."""
 
 
 def spectra(axis: JumpAxis) -> tuple[FloatArray, FloatArray]:
@@ -45,18 +50,24 @@ def spectra(axis: JumpAxis) -> tuple[FloatArray, FloatArray]:
     if axis.spans:
         return _cosine_lines(axis)
     if axis.open_water:
-        k, weight = _open_nodes(axis)
-        transform = _amplitude(axis, k)
+        k, weight, transform = _transforms(axis)
         products = _weighted(transform, weight) * _same_parity(axis)
         end = _cutoff(axis) / axis.half
     else:
-        k, weight = _wall_lines(axis)
+        k, weight, transform = _transforms(axis)
         phase = (k * (axis.centre - axis.low_wall))[:, None]
         even = axis.degrees % 2.0 == 0.0
-        products = _weighted(_amplitude(axis, k) * np.where(even, np.cos(phase), -np.sin(phase)), weight)
+        products = _weighted(transform * np.where(even, np.cos(phase), -np.sin(phase)), weight)
         end = float(k[-1] + 0.5 * k[1])
     tail, mean = _tail(axis, end)
     return np.concatenate([k, tail]), np.concatenate([products, mean])
+
+
+@lru_cache(maxsize=KEPT)
+def _transforms(axis: JumpAxis) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Wavenumbers (nk,), their weights, and the transforms there (nk, terms) but for the phase."""
+    k, weight = _open_nodes(axis) if axis.open_water else _wall_lines(axis)
+    return frozen_array(k), frozen_array(weight), frozen_array(_amplitude(axis, k))
 
 
 def _weighted(transform: FloatArray, weight: FloatArray) -> FloatArray:
