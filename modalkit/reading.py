@@ -29,7 +29,6 @@ from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
 from modalkit.frf_checks import identical, without_constant
 from modalkit.handling import Handling
-from modalkit.informed import informed_band
 from modalkit.joining import together
 from modalkit.mixed import with_read
 from modalkit.remarks import on_hits, on_window
@@ -130,12 +129,14 @@ class Processed(Displayed):
         self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
         """Identify the modes of the part of a band in which the FRFs carry information."""
-        from identification import identify
+        from identification import at_cut_edge, identify, informed_band
 
         within, said = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
         if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
             within, said = band, None
         model = identify(self.frfs, band=within, order=order, add=add, drop=drop)
+        if beyond := at_cut_edge(model.modal.frequency, within, band, self.frfs.df):
+            model = identify(self.frfs, band=within, order=order, add=add, drop=[*drop, *beyond])
         return model if said is None else replace(model, warnings=(*model.warnings, said))
 
     def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
