@@ -30,6 +30,7 @@ from modalkit.files import Progress, read_files
 from modalkit.frf_checks import identical, without_constant
 from modalkit.handling import Handling
 from modalkit.joining import together
+from modalkit.levels import with_level_warning
 from modalkit.mixed import with_read
 from modalkit.remarks import on_hits, on_window
 from modalkit.sensors import without_sensors
@@ -111,6 +112,19 @@ class Processed(Displayed):
         Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
         the part in which the FRFs carry information, and what was done is among the warnings.
         """
+        model = self._identified(band, order, add, drop)
+        if self.handling.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
+            return model
+        windows = Windows(decay=self.handling.window) if self.handling.window else None
+        return with_level_warning(model, [(j.test, j.verdicts) for j in self.judged], windows=windows)
+
+    def _identified(
+        self,
+        band: tuple[float, float] | None,
+        order: int | None,
+        add: Sequence[float],
+        drop: Sequence[float],
+    ) -> ModalModel:
         from identification import identify
 
         reach = self._reach([*add, *drop]) if band is None else None
