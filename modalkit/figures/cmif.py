@@ -50,10 +50,10 @@ def cmif_figure(frfs: FrfSet, *, band: tuple[float, float] | None = None, count:
     table = table[table.index > 0]
     few = table.shape[1] == 1
     title = "Complex mode indicator function" + ("" if few else "s")
-    note = "a peak of the first is a mode" + (
-        "; one reference or response: close modes do not show"
+    note = (
+        "a peak is a mode; with one reference or response two close modes show as one"
         if few
-        else "; one of the second at the same place is another mode beside it"
+        else "a peak of the first is a mode; one of the second at the same place is another mode beside it"
     )
     if left_out := table.attrs["left_out"]:
         note += f". Left out, as FRFs lack: {', '.join(left_out)}"
