@@ -105,11 +105,10 @@ def _cut(text: str, length: int) -> str:
 def _html(rows: pd.DataFrame) -> str:
     """Return a table for a notebook; row numbers that nobody gave a name are no column of it."""
     name = rows.index.name
-    shown = rows.rename_axis(
-        index=None, columns=name
-    )  # the index's name beside the headings, not in a row of its own
     index = name is not None or rows.index.dtype.kind not in "iu"
-    table = shown.to_html(max_rows=ROWS, float_format=_number, border=0, justify="left", index=index)
+    shown = rows.set_axis(rows.index.rename(None), axis=0)
+    shown.columns = shown.columns.rename(name)  # beside the headings, not in a row of its own
+    table: str = shown.to_html(max_rows=ROWS, float_format=_number, border=0, justify="left", index=index)
     return table.replace("<table ", '<table cellpadding="4" ', 1)
 
 
