@@ -70,5 +70,7 @@ def cmif_figure(frfs: FrfSet, *, band: tuple[float, float] | None = None, count:
     floor = float(np.percentile(table.to_numpy()[:, -1], 1)) if (first > 0).any() else 1e-12
     axes.set_ylim(max(floor / 3, float(first.max()) * 1e-12), float(first.max()) * 3)
     if not few:
-        axes.legend(frameon=False, loc="upper right", ncols=table.shape[1])
+        axes.legend(
+            frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncols=table.shape[1]
+        )  # off the peaks
     return figure
