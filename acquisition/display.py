@@ -57,7 +57,7 @@ class Displayed:
         """Return what a notebook shows: the line, the table, and the warnings."""
         line = f"<p><b>{type(self).__name__}</b>: {escape(_cut(self._headline(), LONGEST))}</p>"
         rows = self._frame()
-        table = "" if rows is None or not len(rows) else rows.to_html(max_rows=ROWS, float_format=_number)
+        table = "" if rows is None or not len(rows) else _html(rows)
         return f"<div>{line}{table}{_warnings(getattr(self, 'warnings', ()))}</div>"
 
 
@@ -100,6 +100,16 @@ def _brief(value: Any) -> str:
 def _cut(text: str, length: int) -> str:
     line = " ".join(text.split())
     return line if len(line) <= length else line[: length - 3] + "..."
+
+
+def _html(rows: pd.DataFrame) -> str:
+    """Return a table for a notebook; row numbers that nobody gave a name are no column of it."""
+    name = rows.index.name
+    index = name is not None or rows.index.dtype.kind not in "iu"
+    shown = rows.set_axis(rows.index.rename(None), axis=0)
+    shown.columns = shown.columns.rename(name)  # beside the headings, not in a row of its own
+    table: str = shown.to_html(max_rows=ROWS, float_format=_number, border=0, justify="left", index=index)
+    return table.replace("<table ", '<table cellpadding="4" ', 1)
 
 
 def _number(value: float) -> str:

@@ -86,7 +86,7 @@ def estimate_frfs(
         decay=test.decay + (0.0 if windows is None else windows.decay),
         geometry=test.geometry,
         source=test.source,
-        record=Record(test.duration, float(np.concatenate(places).mean()) / test.rate, test.form),
+        record=Record(test.duration, float(np.concatenate(places).mean()) / test.rate, test.form, test.rate),
         scatter=_scatter(parts) if several and keep_scatter else None,
     )
 

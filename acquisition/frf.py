@@ -32,11 +32,14 @@ class Record:
         Mean time of the hit in it, the centroid of the force [s].
     form : {"receptance", "mobility", "accelerance"}
         What the responses recorded were.
+    rate : float, optional
+        Sampling rate, where it is known [Hz].
     """
 
     duration: float
     trigger: float
     form: Form
+    rate: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

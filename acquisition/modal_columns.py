@@ -36,6 +36,12 @@ HEADINGS: dict[str, dict[str, float]] = {
 PASSED = ("mode", "no", "nr", "number", "name", "note", "comment", "description", "remark", "mpc", "mpc [-]")
 """Headings of what modes may have besides, which is not read."""
 
+ASIDE = "note "
+"""What a heading begins with whose column is passed over on purpose."""
+
+KNOWN = "frequency, sigma, damping, damping_sigma, damping_percent, damping_sigma_percent, scaled"
+"""Headings to choose from, for messages."""
+
 _RESEMBLES = 0.6
 """So much like a known heading is one that may have been misspelt: two letters in five [-]."""
 
@@ -50,14 +56,15 @@ def check_headings(table: pd.DataFrame, path: Path) -> None:
     """
     known = [heading for headings in HEADINGS.values() for heading in headings]
     for name in map(str, table.columns):
-        if plain(name) in (*known, *PASSED) or part_of(name) is not None:
+        if plain(name) in (*known, *PASSED) or part_of(name) is not None or plain(name).startswith(ASIDE):
             continue
         begins = name.strip().lower().startswith(("damping", "zeta"))
         close = difflib.get_close_matches(plain(name)[:40], known, n=1, cutoff=0.0 if begins else _RESEMBLES)
         meant = f", is {close[0]!r} meant" if close else ""
         raise InputError(
-            f"{path}: column {name[:40]!r} is none known here{meant}; known are frequency, sigma, damping, "
-            "damping_sigma and degrees of freedom as 3+Z: rename it or leave it out"
+            f"{path}: column {name[:40]!r} is none known here{meant}; known are {KNOWN}, degrees of freedom as 3+Z, "
+            f"3+Z imag, 3+Z sigma, and, not read, {', '.join(PASSED[:-1])}: correct the heading; to pass "
+            f"its column over, write {ASIDE + name[:40]!r} or delete it"
         )
 
 

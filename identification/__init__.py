@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from identification.cmif import cmif
     from identification.health import frf_health, mode_coherence
     from identification.identify import identify
+    from identification.informed import at_cut_edge, informed_band
     from identification.levels import LevelDependence, level_dependence, why_no_level_dependence
     from identification.mac import (
         auto_mac,
@@ -46,6 +47,7 @@ __all__ = [
     "Shapes",
     "StabilisationChart",
     "Subspace",
+    "at_cut_edge",
     "auto_mac",
     "beside",
     "cmif",
@@ -61,6 +63,7 @@ __all__ = [
     "frf_health",
     "from_sdypy",
     "identify",
+    "informed_band",
     "level_dependence",
     "lsce",
     "lscf",
@@ -88,6 +91,7 @@ load_on_demand(
         ".cmif": "cmif",
         ".health": "frf_health mode_coherence",
         ".identify": "identify",
+        ".informed": "at_cut_edge informed_band",
         ".levels": "LevelDependence level_dependence why_no_level_dependence",
         ".mac": (
             "auto_mac comac common_dofs coordinate_table ecomac fdac frac frac_table mac mac_table macx modes_table "

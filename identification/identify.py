@@ -27,6 +27,7 @@ from identification.residues import Residues
 from identification.scaling import Shapes, mode_shapes
 from identification.selection import candidates
 from identification.stabilisation import StabilisationChart, stabilise
+from identification.uninformed import uninformed_modes
 
 _ORDER = 60
 _LEVELS = 25
@@ -117,7 +118,8 @@ def _identified(
         why = "once the modes named are dropped" if drop else "in the band: what was found is a background"
         raise EstimationError(f"{frfs.source}: no mode is left {why}; widen the band")
     result = _assemble(data, fitted, errors, modes, chart, limits, points_rejected)
-    return replace(result, warnings=result.warnings + _struck(struck)) if len(struck) else result
+    said = (*_struck(struck), *uninformed_modes(frfs, result.modal.frequency))
+    return replace(result, warnings=result.warnings + said) if said else result
 
 
 def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tuple[str, ...]]:
@@ -261,6 +263,8 @@ def _modal_data(data: FrfSet, poles: ComplexArray, spread: np.ndarray, shapes: S
 
 
 def _struck(poles: ComplexArray) -> tuple[str, ...]:
+    if not len(poles):
+        return ()
     named = ", ".join(f"{abs(p) / (2 * np.pi):.5g} Hz" for p in poles)
     return (
         f"what the fit has at {named} was taken for no mode: the data do not tell its frequency or its damping; "

@@ -79,7 +79,7 @@ def hit_name(text: str) -> HitName:
 
 
 def sensor_mass(text: str) -> tuple[str, float]:
-    """Return place and mass [kg] of an accelerometer written ``25+Z=0.0086``.
+    """Return place and mass [kg] of an accelerometer written ``25+Z=0.0086`` or ``25+Z=8.6g``.
 
     Raises
     ------
@@ -90,7 +90,14 @@ def sensor_mass(text: str) -> tuple[str, float]:
     try:
         mass = float(number)
     except ValueError:
-        mass = float("nan")
+        from modalkit.study_units import si_value  # loads a table of units: not for plain numbers
+
+        try:
+            mass = float(si_value(number, "kg"))
+        except ValueError:
+            mass = float("nan")
     if not equals or not mass >= 0 or mass == float("inf"):
-        raise InputError(f"a sensor is written POINT=MASS in kg, as 25+Z=0.0086, not {text!r}")
+        raise InputError(
+            f"a sensor is written POINT=MASS in kg or with its unit, as 25+Z=0.0086 or 25+Z=8.6g, not {text!r}"
+        )
     return place.strip(), mass

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from acquisition.errors import InputError, StudyError
-from modalkit.accepting import SOME, nodes
+from modalkit.accepting import SOME, nodes, unit_of
+from modalkit.study_units import si_value
 from updating import LIBRARY, Predictor
 from updating.effects import check_values
 from updating.models.state import State
@@ -23,8 +24,15 @@ def departure(name: str, values: Mapping[str, Any]) -> Callable[[Predictor], Sta
     return lambda predictor: LIBRARY[name].state(predictor, values)
 
 
-def parse_effect(text: str) -> tuple[str, dict[str, Any]]:
+def parse_effect(text: str, kind: str = "beam") -> tuple[str, dict[str, Any]]:
     """Read an effect written NAME or NAME:PARAM=VALUE,PARAM=VALUE; points are node numbers, as points=3/4.
+
+    Parameters
+    ----------
+    text : str
+        As typed; a value may have its unit, ``lumped_mass:mass=20g,x=100mm``, and is in SI units without.
+    kind : {"beam", "plate", "matrices"}
+        Kind of model, on which the unit of a spring along an edge depends.
 
     Raises
     ------
@@ -45,12 +53,22 @@ def parse_effect(text: str) -> tuple[str, dict[str, Any]]:
             values[parameter] = _points(text, parameter, told)
             continue
         try:
-            values[parameter] = float(told)
-        except ValueError:
+            values[parameter] = _value(told, name, parameter, kind)
+        except ValueError as error:
+            if equals and told[:1].isdigit():
+                raise InputError(f"--effect {text}: {parameter}: {error}") from error
             equals = ""
         if not equals or not np.isfinite(values[parameter]):
             raise InputError(f"--effect {text}: {entry!r} is no PARAM=VALUE; write {name}:PARAM=VALUE,...")
     return name, values
+
+
+def _value(told: str, name: str, parameter: str, kind: str) -> float:
+    """Return a number in SI units."""
+    try:
+        return float(told)
+    except ValueError:
+        return float(si_value(told, unit_of(name, parameter, kind)))
 
 
 def _points(text: str, label: str, told: str) -> Any:

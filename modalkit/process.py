@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from acquisition import ModalData, StudyError, Windows, read_modes
+from acquisition import ModalData, StudyError, Windows, read_mat, read_modes
 from acquisition.display import Displayed
 from identification import ModalModel, frf_health, level_dependence
 from modalkit.files import Progress
@@ -203,7 +203,7 @@ def modes_in_band(study: Study, table: MeasurementTable, name: str) -> tuple[Mod
     """
     assert table.modes is not None
     path = study.file(table.modes)
-    modes = read_modes(path)
+    modes = read_modes(path) if table.layout is None else _modes_of_mat(path, study.file(table.layout))
     if table.band is None:
         return modes, 0, ()
     low, high = table.band
@@ -219,6 +219,15 @@ def modes_in_band(study: Study, table: MeasurementTable, name: str) -> tuple[Mod
         f"{int(np.sum(~inside))} of {len(modes)} modes of {table.modes} lie outside the band and are left out"
     )
     return modes.modes(inside), int(np.sum(modes.frequency < low)), (left,)
+
+
+def _modes_of_mat(path: Path, layout: Path) -> ModalData:
+    modes = read_mat(path, layout)
+    if not isinstance(modes, ModalData):
+        raise StudyError(
+            f"{layout}: its [mat] names FRFs, but modes are asked for; name shapes and dofs, or use files"
+        )
+    return modes
 
 
 def _health(processed: Processed | None, identified: ModalModel | None) -> tuple[str, ...]:

@@ -29,8 +29,8 @@ from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
 from modalkit.frf_checks import identical, without_constant
 from modalkit.handling import Handling
-from modalkit.informed import informed_band
 from modalkit.joining import together
+from modalkit.levels import with_level_warning
 from modalkit.mixed import with_read
 from modalkit.remarks import on_hits, on_window
 from modalkit.sensors import without_sensors
@@ -112,6 +112,19 @@ class Processed(Displayed):
         Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
         the part in which the FRFs carry information, and what was done is among the warnings.
         """
+        model = self._identified(band, order, add, drop)
+        if self.handling.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
+            return model
+        windows = Windows(decay=self.handling.window) if self.handling.window else None
+        return with_level_warning(model, [(j.test, j.verdicts) for j in self.judged], windows=windows)
+
+    def _identified(
+        self,
+        band: tuple[float, float] | None,
+        order: int | None,
+        add: Sequence[float],
+        drop: Sequence[float],
+    ) -> ModalModel:
         from identification import identify
 
         reach = self._reach([*add, *drop]) if band is None else None
@@ -130,12 +143,14 @@ class Processed(Displayed):
         self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
         """Identify the modes of the part of a band in which the FRFs carry information."""
-        from identification import identify
+        from identification import at_cut_edge, identify, informed_band
 
         within, said = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
         if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
             within, said = band, None
         model = identify(self.frfs, band=within, order=order, add=add, drop=drop)
+        if beyond := at_cut_edge(model.modal.frequency, within, band, self.frfs.df):
+            model = identify(self.frfs, band=within, order=order, add=add, drop=[*drop, *beyond])
         return model if said is None else replace(model, warnings=(*model.warnings, said))
 
     def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:

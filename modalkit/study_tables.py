@@ -109,7 +109,14 @@ class MeasurementTable(Strict):
             return self
         if self.files:
             raise ValueError("files and modes are both given; modes stand in place of files: leave one out")
-        told = [key for key in OF_RECORDS if getattr(self, key) != type(self).model_fields[key].default]
+        of_mat = self.modes.lower().endswith(".mat")
+        if of_mat and self.layout is None:
+            raise ValueError(
+                f'modes = {self.modes!r} is a MATLAB file: layout = "layout.toml" has to say which of its variables is '
+                "what (docs/readers.md)"
+            )
+        useless = [key for key in OF_RECORDS if not (of_mat and key == "layout")]
+        told = [key for key in useless if getattr(self, key) != type(self).model_fields[key].default]
         if told:
             raise ValueError(
                 f"{', '.join(told)}: said of records or FRFs, but modes = {self.modes!r} are modes already; leave "

@@ -105,6 +105,7 @@ def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]
     if not baseline.absolute or baseline.calibration > COARSE:
         return 1.0, np.inf
     level = np.linalg.norm(predicted, axis=0) / np.linalg.norm(baseline.constants, axis=0)
+    level = level**2 if baseline.bare else level
     heavier = float(np.median(level))
     return heavier, float(np.hypot(baseline.calibration, np.std(level) / heavier / np.sqrt(len(level))))
 

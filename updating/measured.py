@@ -12,6 +12,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed, counted
 from acquisition.errors import StudyError
 from identification import ModalModel
+from identification.scaling.shapes import turned
 from updating.axes import Axes
 from updating.models import Spec
 from updating.placing import Key, check_among, place
@@ -19,13 +20,17 @@ from updating.placing import Key, check_among, place
 if TYPE_CHECKING:
     import pandas as pd
 
+UNKNOWN_LEVEL = 0.2
+"""A calibration worse than this is found by least squares before anything is linearised [-]."""
+
 
 @dataclass(frozen=True, eq=False)
 class Measured(Displayed):
     """Modes of one test as a model can predict them.
 
     The *constants* are the modal constants phi_response * phi_reference of each FRF: with absolute level for
-    a calibrated FRF, up to a factor per mode where only shapes are known.
+    a calibrated FRF, up to a factor per mode where only shapes are known. Mass-normalised shapes have a level without
+    any FRF: their components phi_response [kg^-1/2], the sign of each mode free, stand in the constants' place.
 
     Parameters
     ----------
@@ -40,7 +45,8 @@ class Measured(Displayed):
     seen, hit : (n_frf,) int arrays
         Point of the response and of the force of each FRF; ``hit`` is -1 where only a shape is known.
     constants, constants_sigma : (n_frf, n_modes) arrays
-        Modal constants and standard deviations, positive along the points' directions [1/kg, or - per mode].
+        Modal constants and standard deviations, positive along the points' directions [1/kg; where ``hit`` is -1,
+        kg^-1/2, or - per mode].
     absolute : bool
         Whether the constants carry absolute level.
     repeated : bool
@@ -119,7 +125,23 @@ class Measured(Displayed):
     @property
     def sensors(self) -> tuple[int, ...]:
         """Points that carry a response transducer; empty where only shapes are known."""
-        return tuple(sorted(set(self.seen.tolist()))) if self.absolute else ()
+        return tuple(sorted(set(self.seen.tolist()))) if self.absolute and not self.bare else ()
+
+    @property
+    def bare(self) -> bool:
+        """Whether the constants are components of shapes, joined to no point of force."""
+        return bool((self.hit < 0).all())
+
+    def same_signs(self, constants: FloatArray) -> FloatArray:
+        """Return by what sign each predicted mode, (n_frf, n_modes), is to be taken; a product's is not free [-]."""
+        if not self.bare:
+            return np.ones(constants.shape[1])
+        return np.where(np.sum(self.constants * constants, axis=0) < 0, -1.0, 1.0)
+
+    @property
+    def level_sigma(self) -> float:
+        """Relative standard deviation of the level of the constants; a shape goes with the root of an FRF [-]."""
+        return self.calibration / 2 if self.bare else self.calibration
 
     def modes(self, keep: BoolArray | IntArray) -> Measured:
         """Return the same test with some of its modes."""
@@ -165,13 +187,17 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
     Returns
     -------
     Measured
-        Shapes are compared up to a factor per mode, even where they are called mass-normalised.
+        Mass-normalised shapes keep their level, whose doubt is the calibration; others are compared up to a factor
+        per mode. Complex shapes are turned to be as real as they can be.
     """
     placed = place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
     rows = placed.rows
     shapes = (
-        np.zeros((0, len(modes))) if modes.shapes is None else modes.shapes.real[rows] * placed.signs[:, None]
+        np.zeros((0, len(modes)))
+        if modes.shapes is None
+        else _straight(modes.shapes)[rows] * placed.signs[:, None]
     )
+    absolute = modes.scaled and len(rows) > 0
     if modes.shape_sigma is None and len(rows) == 0:
         sigma = np.zeros_like(shapes)
     elif modes.shape_sigma is None:
@@ -189,16 +215,33 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
         np.full(len(rows), -1),
         shapes,
         sigma,
-        absolute=False,
+        absolute=absolute,
         repeated=False,
         warnings=(
             *placed.warnings,
             *check_among(placed.points, placed.keys, spec),
             *_without_sigma(modes, float(options.get("repeatability", 0.0))),
             *modes.doubts(),
+            *(_with_level(float(options.get("calibration", Measured.calibration))) if absolute else ()),
         ),
         directions=_directions(placed.keys, spec),
         **options,  # type: ignore[arg-type]
+    )
+
+
+def _straight(shapes: ComplexArray) -> FloatArray:
+    """Return shapes turned to be as real as they can be, in the sense that their real parts had, (n_dofs, n_modes)."""
+    real = turned(shapes)[0].real
+    return np.asarray(real * np.where(np.sum(real * shapes.real, axis=0) < 0, -1.0, 1.0))
+
+
+def _with_level(calibration: float) -> tuple[str, ...]:
+    """Say that the level of mass-normalised shapes is compared, and how to have it left alone."""
+    if calibration > UNKNOWN_LEVEL:
+        return ()
+    return (
+        f"the shapes are stated to be mass-normalised: their level is compared too, with calibration = {calibration:g} "
+        "for the doubt in it; if nobody measured the modal masses (many programs write 1), set calibration = 1",
     )
 
 

@@ -207,7 +207,8 @@ class Predictor(Displayed):
         frequency = (
             shift * slowing * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         )
-        level = read.gain[:, None] * slowing**2  # what a layer carries along is modal mass
+        # what a layer carries along is modal mass
+        level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
         return Prediction(
             frequency,
             self._damping(total, values[chosen], vectors[:, chosen]),

@@ -53,7 +53,7 @@ def reading(measured: Measured, state: State) -> Reading:
     for role, a, b in state.exchanged:
         told = ends[role]
         ends[role] = np.where(told == a, b, np.where(told == b, a, told))
-    gain = np.full(len(measured.seen), state.gain)
+    gain = np.full(len(measured.seen), level_of(state.gain, measured))
     stated = {"seen": measured.seen, "hit": measured.hit}
     for (role, point), factor in state.point_gains.items():
         gain[stated[role] == point] *= factor
@@ -63,6 +63,11 @@ def reading(measured: Measured, state: State) -> Reading:
         points.append((measured.points[point] + np.resize(np.asarray([*away, 0.0, 0.0]), 3)[:dim])[None, :])
         ends[role] = np.where(ends[role] == point, len(measured.points) + i, ends[role])
     return Reading(np.concatenate(points), ends["seen"], ends["hit"], gain)
+
+
+def level_of(gain: float, measured: Measured) -> float:
+    """Return by what factor a gain of the FRFs changes the constants: that of shapes is its root [-]."""
+    return float(np.sqrt(gain)) if measured.bare and len(measured.hit) else gain
 
 
 def roving(measured: Measured) -> Literal["seen", "hit"]:

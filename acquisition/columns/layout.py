@@ -78,6 +78,11 @@ class Column:
         return dof_of(self.reference_node, self.reference_direction)
 
 
+FASTEST = 1e6
+"""The fastest decay that can be meant: a record windowed so is over after ten microseconds. Doubling it would take a
+few more misprints for windows [1/s]."""
+
+
 @dataclass(frozen=True)
 class FileRule:
     """Another point for a column in some of the files: the hammer that roves from file to file.
@@ -211,6 +216,11 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
         _check_rule(rule, columns, f"{source}: [[file]] {n + 1}")
     if layout.rate is not None and layout.rate <= 0:
         raise InputError(f"{source}: rate = {layout.rate:g}; give the sampling rate in Hz")
+    if not 0 <= layout.decay <= FASTEST:
+        raise InputError(
+            f"{source}: decay = {layout.decay:g}; give the decay rate of the exponential window in 1/s, which is not "
+            "negative"
+        )
     return layout
 
 

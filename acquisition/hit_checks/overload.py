@@ -9,6 +9,7 @@ import scipy.ndimage
 
 from acquisition.arrays import BoolArray, FloatArray
 from acquisition.hit_checks.pulse import noise_level, pulse_width
+from acquisition.peaks import find_peaks
 
 FLAT = 0.53  # width at 90 % over width at 50 % of a plateau: clean pulses at most 0.51, cut at 90 % 0.56
 FLAT_WAVE = 0.56  # the same of a wave of a response: a sine has 0.48
@@ -80,11 +81,9 @@ def flat_waves(record: FloatArray) -> bool:
     record : (n_samples,) array
         Response record [any].
     """
-    from scipy.signal import find_peaks  # late: it brings all of scipy.stats along
-
     centred = record - record.mean()
     size = np.abs(centred)
-    tops, _ = find_peaks(size, height=0.85 * size.max(), distance=3)
+    tops = find_peaks(size, height=0.85 * size.max(), distance=3)
     if len(tops) < 4:
         return False
     swings = {start: rest for start, *rest in (_swing(centred, int(top)) for top in tops[:40])}

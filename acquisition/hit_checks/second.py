@@ -8,6 +8,7 @@ import scipy.ndimage
 from acquisition.arrays import FloatArray
 from acquisition.hit_checks.pulse import noise_level, pulse_width
 from acquisition.hit_checks.ringing import ringing_period, without_ringing
+from acquisition.peaks import find_peaks
 
 SECOND_HIT = 0.075  # of the peak; a hit of a tenth is found even if smoothed or sampled beside its peak
 VALLEY = 0.04  # of the peak, between the lobe and the main pulse
@@ -43,16 +44,14 @@ def second_hits(wave: FloatArray) -> list[tuple[int, float]]:
 
 def _lobes(wave: FloatArray, period: float) -> list[tuple[int, float]]:
     """Return the lobes that stand apart from the main pulse."""
-    from scipy.signal import find_peaks  # see flat_waves
-
     top, width = int(wave.argmax()), pulse_width(wave, 1.0)
     peak, quiet = float(wave[top]), noise_level(wave)
     least = max(SECOND_HIT * peak, 6 * quiet)
     padded = np.concatenate([[wave.min()], wave, [wave.min()]])
-    tops, _ = find_peaks(padded, height=least, prominence=max(VALLEY * peak, 5 * quiet))
+    tops = find_peaks(padded, height=least, prominence=max(VALLEY * peak, 5 * quiet))
     reach = int(np.ceil(period))
     found = []
-    for place in (np.asarray(tops, dtype=np.int64) - 1).tolist():
+    for place in (tops - 1).tolist():
         if abs(place - top) <= NEAREST * width:
             continue
         beside = wave[max(0, place - reach) : place + reach + 1]
@@ -80,12 +79,10 @@ def _shoulders(wave: FloatArray, width: float) -> list[tuple[int, float]]:
 
 def _shoulder(flank: FloatArray, peak: float, least: float) -> int | None:
     """Return where a falling flank bulges: its slope relaxes and then steepens by ``least`` or more."""
-    from scipy.signal import find_peaks  # see flat_waves
-
     slope = np.gradient(flank)
     steepest = int(slope.argmin())
-    dips, _ = find_peaks(-slope[steepest:], prominence=least)
-    for dip in (np.asarray(dips, dtype=np.int64) + steepest).tolist():
+    dips = find_peaks(-slope[steepest:], prominence=least)
+    for dip in (dips + steepest).tolist():
         relaxed = steepest + int(slope[steepest : dip + 1].argmax())
         if flank[relaxed] > SHOULDER_LEVEL * peak and slope[relaxed] > 0.5 * slope[dip]:
             return int(relaxed + dip) // 2

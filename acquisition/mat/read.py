@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
 
 from acquisition.arrays import AnyArray, FloatArray
-from acquisition.columns.layout import Layout, read_layout
+from acquisition.columns.layout import Layout, dof_of, read_layout
 from acquisition.columns.units import QUANTITIES, factor_to_si
 from acquisition.dof import Dof
 from acquisition.errors import InputError
@@ -26,7 +28,8 @@ def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalDat
     path : path
         The file, of version 5 to 7.2.
     layout : Layout or path
-        Its ``[mat]`` says which variable is what; ``[nodes]`` and ``decay`` count too. See docs/readers.md.
+        Its ``[mat]`` says which variable is what; ``[nodes]`` and ``decay`` count too, and of FRFs ``[[file]]``, which
+        places their one reference. See docs/readers.md.
 
     Raises
     ------
@@ -39,8 +42,38 @@ def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalDat
             f"{path}: {plan.source} has no table [mat] that names the variables; see docs/readers.md"
         )
     if plan.mat.frfs:
-        return read_mat_frfs(path, plan.mat, geometry=plan.nodes, decay=plan.decay)
+        return read_mat_frfs(path, _placed(plan, Path(path)), geometry=plan.nodes, decay=plan.decay)
+    if plan.files:
+        raise InputError(
+            f"{plan.source}: [[file]] places the FRFs of a file, and [mat] names modes, whose points are dofs; leave "
+            "[[file]] out"
+        )
     return read_mat_modes(path, plan.mat, geometry=plan.nodes)
+
+
+def _placed(plan: Layout, path: Path) -> MatLayout:
+    """Return the layout with the reference that a ``[[file]]`` rule gives this file.
+
+    Raises
+    ------
+    InputError
+        If rules are given and none is for this file, or there are several references to place.
+    """
+    assert plan.mat is not None
+    if not plan.files:
+        return plan.mat
+    rule = next((rule for rule in plan.files if fnmatch(path.name, rule.match)), None)
+    if rule is None or len(plan.mat.references) != 1:
+        why = (
+            f"no [[file]] rule of {plan.source} matches it"
+            if rule is None
+            else f"a [[file]] rule of {plan.source} places one reference, and [mat] has {len(plan.mat.references)}"
+        )
+        raise InputError(f"{path}: {why}; correct the rules, or leave them out")
+    usual = replace(Dof.of(plan.mat.references[0]), node=rule.node)
+    return replace(
+        plan.mat, references=(str(dof_of(rule.node, rule.direction) if rule.direction else usual),)
+    )
 
 
 def read_mat_frfs(path: Path | str, layout: MatLayout, *, geometry: Geometry, decay: float = 0.0) -> FrfSet:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-import scipy.signal
 
 from acquisition.arrays import ComplexArray, FloatArray
 
@@ -62,6 +61,8 @@ def sharp_anti_alias(laplace: ComplexArray, rate: float) -> ComplexArray:
     rate : float
         Sampling rate [Hz].
     """
+    import scipy.signal  # late: it brings all of scipy.stats along
+
     edge = 2 * np.pi * rate / 2.56
     zeros, poles, gain = scipy.signal.ellip(ORDER, RIPPLE, STOP, edge, analog=True, output="zpk")
     unit = laplace[..., None] / edge

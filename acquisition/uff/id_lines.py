@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from difflib import SequenceMatcher
 
 _DECAY = re.compile(
     r"exponential window decay\s*+[:=]?\s*+(-?)\s*+"
@@ -18,6 +19,9 @@ _NUMBERED = re.compile(
     r"\b(?:hit|impact|blow|shot|strike|stroke)\s*+(?:no\.?|nr\.?|number)?\s*+[:=#]?\s*+(\d{1,6})\b",
     re.IGNORECASE,
 )
+_AMOUNT = re.compile(r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?+")
+# So much alike words and a key are one misspelt: four letters in five. Doubled, only the key itself would be.
+_NEARLY = 0.8
 # Characters of an ID line that are searched; the format has 80. Doubling it doubles the time of a search.
 LENGTH = 400
 # The fastest decay that can be meant [1/s]: a record windowed so is over after ten microseconds. Doubling it would
@@ -32,6 +36,8 @@ def decay_of(lines: Sequence[str]) -> tuple[float, str]:
     text = _joined(lines)
     found = _DECAY.search(text)
     if found is None:
+        if near := _misspelt(text, "exponential window decay"):
+            return 0.0, near
         named = _WINDOW.search(text)
         return 0.0, f"its ID lines speak of {named[0]!r} without a rate that can be read" if named else ""
     dash, number, rest = found.groups()
@@ -50,8 +56,10 @@ def decay_of(lines: Sequence[str]) -> tuple[float, str]:
 def averages_of(lines: Sequence[str]) -> tuple[int, str]:
     """Return the number of averages that ID lines state, 0 if none, and what is odd about it."""
     found = _AVERAGES.search(_joined(lines))
-    count = int(found[1][:12]) if found else 0
-    if found is None or count <= _MOST_AVERAGES:
+    if found is None:
+        return 0, _misspelt(_joined(lines), "averages")
+    count = int(found[1][:12])
+    if count <= _MOST_AVERAGES:
         return count, ""
     return 0, f"its ID lines speak of {found[1][:20]} averages: not taken"
 
@@ -60,6 +68,18 @@ def hit_of(lines: Sequence[str]) -> str:
     """Return the number of the hit that ID lines state; empty if they do not."""
     found = _NUMBERED.search(_joined(lines))
     return found[1] if found else ""
+
+
+def _misspelt(text: str, key: str) -> str:
+    """Return what to say of words before a number that are nearly a key; empty where there are none."""
+    words, length = text.split(), len(key.split())
+    for i in range(length, len(words)):
+        number = _AMOUNT.fullmatch(words[i].lstrip("=:"))
+        before = [word for word in words[max(0, i - length - 1) : i] if word not in ("=", ":")][-length:]
+        said = " ".join(before).rstrip("=:").lower()
+        if number and said != key and SequenceMatcher(None, said, key).ratio() >= _NEARLY:
+            return f"its ID lines say {said[:40]!r}: not taken; what is read is '{key} {number[0][:20]}'"
+    return ""
 
 
 def stamp_of(lines: Sequence[str]) -> str:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
-import numpy as np
 import typer
 
 from modalkit.cli.common import (
@@ -27,9 +26,6 @@ from modalkit.study import read_study
 from modalkit.write import write_json
 from updating.frf_update import FrfUpdate
 from updating.update import Update
-
-if TYPE_CHECKING:
-    from modalkit.figures.evolution import Course, Courses
 
 PAIRS = {"test_hz": 3, "before_hz": 3, "after_hz": 3, "mac": 4}
 PAIRS |= dict.fromkeys(("test_damping", "before_damping", "after_damping"), 5)
@@ -80,44 +76,6 @@ def update(
 
 
 def _figures(result: Update) -> dict[str, Any]:
-    from modalkit.figures import evolution_figure, frac_figure, update_figure
+    from modalkit.figures import draw
 
-    pairs = result.pairs
-    test = pairs["test_hz"].to_numpy()
-    errors = [100 * (pairs[name].to_numpy() / test - 1) for name in ("before_hz", "after_hz")]
-    factors = {
-        p.name: (p.factor, p.sigma * p.factor / p.value)
-        for p in result.parameters
-        if p.factor is not None and np.isfinite(p.sigma) and p.value
-    }
-    found = {"update": update_figure(test, errors[0], errors[1], parameters=factors or None)}
-    if len(result.history) > 1:
-        found["evolution"] = evolution_figure("How the parameters moved", _said(result), _courses(result))
-    if isinstance(result, FrfUpdate):
-        points = [f"{r}/{f}" for r, f in zip(result.frac["response"], result.frac["force"], strict=True)]
-        before, after = (result.frac[name].to_numpy() for name in ("before", "after"))
-        title = f"The updated model lifts the mean FRAC from {before.mean():.2f} to {after.mean():.2f}"
-        found["frac"] = frac_figure(title, "response/force", points, {"before": before, "after": after})
-    return found
-
-
-def _said(result: Update) -> str:
-    """Return what stands below the title of the evolution."""
-    again = " · grey: a stage begins or is taken up again" if isinstance(result, FrfUpdate) else ""
-    return f"{result.iterations} iterations{again}"
-
-
-def _courses(result: Update) -> list[Courses]:
-    """Sort the history into panels: all factors together, what is no factor by its unit; six lines at most each."""
-    from modalkit.figures.evolution import Course, Courses
-
-    panels: dict[str, list[Course]] = {}
-    repeats = tuple(np.cumsum(result.stages).tolist()) if isinstance(result, FrfUpdate) else ()
-    for name, p in zip(result.names, result.parameters, strict=True):
-        unit = "-" if p.factor is not None and not p.name.startswith("length") else p.unit
-        panels.setdefault(unit, []).append(Course(name, result.history[name].to_numpy(), repeats=repeats))
-    titles = {"-": "factors"}
-    return [
-        Courses(titles.get(u, lines[0].label.rpartition(".")[2]), u, tuple(lines[:6]))
-        for u, lines in panels.items()
-    ]
+    return dict(draw(result))

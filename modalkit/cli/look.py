@@ -31,7 +31,10 @@ from modalkit.cli.common import (
     working,
 )
 from modalkit.cli.options import (
+    Add,
+    Band,
     Decay,
+    Drop,
     Estimate,
     Figures,
     Files,
@@ -189,10 +192,10 @@ def frf(
 
 def identify(
     files: Annotated[list[Path], typer.Argument(help="file(s) of one test, or a study file")],
-    band: Annotated[tuple[float, float] | None, typer.Option(help="frequency band [Hz]")] = None,
+    band: Band = None,
     order: Annotated[int | None, typer.Option(help="highest model order")] = None,
-    add: Annotated[list[float] | None, typer.Option(help="keep a mode here [Hz]; repeat")] = None,
-    drop: Annotated[list[float] | None, typer.Option(help="this is no mode [Hz]; repeat")] = None,
+    add: Add = None,
+    drop: Drop = None,
     decay: Decay = 0.0,
     window_on: WindowOn = None,
     window: Window = 0.0,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal, cast
 
@@ -10,23 +11,57 @@ import typer
 from acquisition import ESTIMATORS, Estimator, InputError
 from modalkit.handling import Handling, hit_name, sensor_mass
 
+
+def quantity(unit: str) -> Callable[[object], object]:
+    """Return what reads an option as a number, or as one with its unit, ``5kHz`` [``unit`` where it has none]."""
+
+    def number(text: object) -> object:
+        try:
+            return float(text)  # type: ignore[arg-type]
+        except (TypeError, ValueError):
+            from modalkit.study_units import si_value  # loads a table of units: not for plain numbers
+
+            try:
+                return si_value(text, unit)
+            except ValueError as error:
+                raise typer.BadParameter(str(error)) from error
+
+    number.__name__ = "quantity"
+    return number
+
+
 Files = Annotated[list[Path], typer.Argument(help="file(s) of one test: UFF, or column text with --layout")]
 Figures = Annotated[Path | None, typer.Option("--figures", help="folder for figures")]
 Layout = Annotated[Path | None, typer.Option(help="layout of column text (docs/readers.md)")]
 Decay = Annotated[
-    float, typer.Option(help="decay of an exponential window applied before the file was written [1/s]")
+    float,
+    typer.Option(
+        help="decay of an exponential window applied before the file was written [1/s]",
+        parser=quantity("1/s"),
+    ),
 ]
 WindowOn = Annotated[
     str | None,
     typer.Option(help="'both' or 'responses': what that window was applied to; left out: as heard"),
 ]
-Window = Annotated[float, typer.Option(help="decay of a further exponential window, applied here [1/s]")]
+Window = Annotated[
+    float,
+    typer.Option(help="decay of a further exponential window, applied here [1/s]", parser=quantity("1/s")),
+]
+Band = Annotated[
+    tuple[float, float] | None,
+    typer.Option(help="frequency band [Hz], as 5 500 or 5Hz 1.2kHz", parser=quantity("Hz")),
+]
+Add = Annotated[list[float] | None, typer.Option(help="keep a mode here [Hz]; repeat", parser=quantity("Hz"))]
+Drop = Annotated[list[float] | None, typer.Option(help="this is no mode [Hz]; repeat", parser=quantity("Hz"))]
 Estimate = Annotated[str, typer.Option("--estimator", help="H1, H2 or Hv")]
 Use = Annotated[list[str] | None, typer.Option(help="hit to use against the proposal, as 12+Z:3; repeat")]
 Leave = Annotated[list[str] | None, typer.Option(help="hit to leave out, as 12+Z:3; repeat")]
 SensorMass = Annotated[
     list[str] | None,
-    typer.Option("--sensor-mass", help="take an accelerometer's mass [kg] out, as 25+Z=0.0086; repeat"),
+    typer.Option(
+        "--sensor-mass", help="take an accelerometer's mass out, in kg, as 25+Z=0.0086 or 25+Z=8.6g; repeat"
+    ),
 ]
 
 

@@ -28,7 +28,8 @@ def simulate(
     study: Annotated[Path, typer.Argument(help="study file")],
     output: Annotated[Path, typer.Option("--output", "-o", help="UFF file to write")],
     effect: Annotated[
-        list[str] | None, typer.Option(help="NAME or NAME:PARAM=VALUE,PARAM=VALUE; repeat")
+        list[str] | None,
+        typer.Option(help="NAME or NAME:PARAM=VALUE,PARAM=VALUE, as lumped_mass:mass=20g,x=0.1; repeat"),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="seed of all scatter and noise")] = 0,
     frfs: Annotated[bool, typer.Option("--frfs", help="write averaged FRFs instead of raw hits")] = False,
@@ -51,11 +52,12 @@ def simulate(
     figures: Figures = None,
 ) -> None:
     """Make a synthetic hammer test of a study's model, with effects in it."""
-    effects = [parse_effect(text) for text in effect or ()]
     options = Options(hits=hits, samples=samples, rate=rate, noise=noise, points=points, remount=remount)
     check_outputs((output, uff_of("simulated")), reads=read_by([study]))
     check_folder(figures)
     asked = read_study(study)
+    kind = "beam" if asked.model is None else asked.model.type
+    effects = [parse_effect(text, kind) for text in effect or ()]
     with working("hitting the model"):
         made = simulate_test(asked, effects, seed=seed, options=options)
         made.write(output, as_frfs=frfs)

@@ -50,10 +50,10 @@ def cmif_figure(frfs: FrfSet, *, band: tuple[float, float] | None = None, count:
     table = table[table.index > 0]
     few = table.shape[1] == 1
     title = "Complex mode indicator function" + ("" if few else "s")
-    note = "a peak of the first is a mode" + (
-        "; one reference or response: close modes do not show"
+    note = (
+        "a peak is a mode; with one reference or response two close modes show as one"
         if few
-        else "; one of the second at the same place is another mode beside it"
+        else "a peak of the first is a mode; one of the second at the same place is another mode beside it"
     )
     if left_out := table.attrs["left_out"]:
         note += f". Left out, as FRFs lack: {', '.join(left_out)}"
@@ -70,5 +70,7 @@ def cmif_figure(frfs: FrfSet, *, band: tuple[float, float] | None = None, count:
     floor = float(np.percentile(table.to_numpy()[:, -1], 1)) if (first > 0).any() else 1e-12
     axes.set_ylim(max(floor / 3, float(first.max()) * 1e-12), float(first.max()) * 3)
     if not few:
-        axes.legend(frameon=False, loc="upper right", ncols=table.shape[1])
+        axes.legend(
+            frameon=False, loc="lower right", bbox_to_anchor=(1, 1), ncols=table.shape[1]
+        )  # off the peaks
     return figure

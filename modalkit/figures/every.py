@@ -19,9 +19,11 @@ from modalkit.figures.matrix import auto_mac_figure, mac_figure
 from modalkit.figures.save import save_figures
 from modalkit.figures.shapes import shapes_figure
 from modalkit.figures.stabilisation import stabilisation_figure
+from modalkit.figures.updates import update_figures
 from modalkit.figures.words import hertz
 from modalkit.reading import Processed
 from updating import Diagnosis
+from updating.update import Update
 
 Drawings = dict[str, Figure]
 
@@ -31,7 +33,7 @@ def draw(result: Any, *, folder: Path | str | None = None) -> dict[str, Figure]:
 
     Parameters
     ----------
-    result : HammerTest, FrfSet, Processed, ModalModel, ModalData, Modes, identification.Correlation, Diagnosis
+    result : HammerTest, FrfSet, Processed, ModalModel, ModalData, Modes, identification.Correlation, Diagnosis, Update
         What to draw.
     folder : path, optional
         Where the figures are saved as PNG files too; made if it is not there.
@@ -105,4 +107,5 @@ _BY_KIND: dict[type, Callable[[Any], Drawings]] = {
     Modes: lambda modes: _of_modes(modes.modal),
     Correlation: _of_correlation,
     Diagnosis: lambda diagnosis: {"diagnosis": diagnosis_figure(diagnosis)},
+    Update: update_figures,
 }

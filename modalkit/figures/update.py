@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from acquisition import InputError
 from acquisition.arrays import FloatArray
+from acquisition.display import counted
 from modalkit.figures.dumbbell import dumbbells
 from modalkit.figures.style import (
     BLUE,
@@ -68,7 +69,9 @@ def update_figure(
     factors = parameters or {}
     said = f"Updating takes the frequency error from {percent(_rms(b))} to {percent(_rms(a))} r.m.s."
     note = "  ·  ".join(
-        part for part in (title, f"{len(f)} modes", f"{len(factors)} parameters" if factors else "") if part
+        part
+        for part in (title, counted(len(f), "mode"), counted(len(factors), "parameter") if factors else "")
+        if part
     )
     rows = max(len(f), len(factors))
     top = caption_height(said, note) + 0.8
@@ -98,7 +101,14 @@ def _factors(axes: Axes, factors: Mapping[str, tuple[float, float]]) -> None:
     axes.axvline(1.0, color=MUTED, linewidth=0.9, zorder=1.2)
     axes.hlines(rows, np.ones_like(value), value, color=FAINT, linewidth=2.2, zorder=2)
     axes.errorbar(
-        value, rows, xerr=2 * np.nan_to_num(sigma), fmt="o", color=BLUE, markersize=7, capsize=3, zorder=3
+        value,
+        rows,
+        xerr=2 * np.where(np.isfinite(sigma), sigma, 0.0),
+        fmt="o",
+        color=BLUE,
+        markersize=7,
+        capsize=3,
+        zorder=3,
     )
     for row, (v, s) in enumerate(zip(value, sigma, strict=True)):
         text = f"{v:.3f}" + (f" ± {s:.3f}" if np.isfinite(s) else "")

@@ -79,6 +79,22 @@ def test_modes(tmp_path: Path) -> None:
         read_test(tmp_path / "test.mat", layout=layout(MODES))
 
 
+def test_a_rule_places_the_one_reference_of_each_file(tmp_path: Path) -> None:
+    """The hammer roves from file to file: without its rule every file would be hit at the same point."""
+    table = {"frequency": "f", "frfs": "test.H", "axes": ["line", "response"], "responses": ["1+Z", "2-Z"]}
+    test = {"H": H[:, :, 0]}
+    paths = [saved(tmp_path, f"p{n}.mat", f=LINES, test=test) for n in (3, 4)]
+    rules = [{"match": "p3*", "node": 3}, {"match": "p4*", "node": 4, "direction": "-x"}]
+    plan = layout({**table, "references": ["9+Z"]}, file=rules)
+    found = [read_mat(path, plan).references[0] for path in paths]
+    assert found == [Dof(3, 3), Dof(4, -1)]
+    with pytest.raises(InputError, match="no \\[\\[file\\]\\] rule of layout matches it"):
+        read_mat(saved(tmp_path, "q5.mat", f=LINES, test=test), plan)
+    modes = layout({"frequency": "fn", "shapes": "Phi", "dofs": ["1+Z", "2-Z"]}, file=rules)
+    with pytest.raises(InputError, match="places the FRFs of a file"):
+        read_mat(mode_file(tmp_path), modes)
+
+
 def test_a_mat_file_goes_through_the_front_door(tmp_path: Path) -> None:
     import modalkit as mk
 

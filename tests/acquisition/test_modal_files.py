@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -181,3 +183,16 @@ def test_a_damaged_table_of_modes_is_refused_in_one_line(tmp_path, text, said):
     with pytest.raises(InputError, match=said) as error:
         read_modes(tmp_path / "modes.csv")
     assert "\n" not in str(error.value)
+
+
+def test_an_unknown_column_is_named_and_can_be_passed_over(tmp_path: Path) -> None:
+    """A misspelt heading must not lose its column in silence; one that is meant to be none is said so."""
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency,sigma,temperature\n10.5,0.1,21.5\n")
+    with pytest.raises(InputError) as refused:
+        read_modes(path)
+    said = str(refused.value)
+    assert "'temperature'" in said and "damping_sigma" in said and "scaled" in said
+    assert "write 'note temperature' or delete it" in said
+    path.write_text("frequency,sigma,note temperature,Note humidity [%]\n10.5,0.1,21.5,60\n")
+    assert read_modes(path).frequency.tolist() == [10.5]

@@ -45,6 +45,14 @@ def test_the_command_line_takes_them_too() -> None:
     assert parse_effect("position_error:point=3,dx=0.01")[1] == {"point": 3, "dx": 0.01}
 
 
+def test_the_command_line_takes_units() -> None:
+    assert parse_effect("lumped_mass:mass=20g,x=100mm")[1] == {"mass": 0.02, "x": 0.1}
+    assert parse_effect("E:factor=88%")[1] == {"factor": 0.88}
+    assert parse_effect("clamp_rotation:stiffness=4 kN m/rad per m", "plate")[1] == {"stiffness": 4000.0}
+    with pytest.raises(InputError, match="mass: '20 mm' is no quantity in kg"):
+        parse_effect("lumped_mass:mass=20 mm,x=0.1")
+
+
 @pytest.mark.parametrize(
     "text",
     ["polarity:points=a/b", "polarity:points=", "position_error:point=3/4,dx=0", "E:factor=1,factor=2"],

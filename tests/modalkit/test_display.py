@@ -151,3 +151,25 @@ def test_strings_are_taken_as_paths(tmp_path: Any, session: modalkit.Session) ->
     test.write(str(tmp_path / "t.uff"))
     assert modalkit.read(str(tmp_path / "t.uff")).hits
     assert figures.save_figures({}, str(tmp_path / "figures")) == []
+
+
+def test_a_notebook_gets_a_table_without_row_numbers_nobody_named(session: modalkit.Session) -> None:
+    assert session.processed is not None
+    html = session.processed.frfs._repr_html_()
+    assert "<th>0</th>" not in html and "<th>response</th>" in html
+    modes = session.case.measured._repr_html_()
+    assert modes.count("<tr") == 1 + len(session.case.measured.frequency)  # one row of headings
+    assert "<th>mode</th>" in modes
+
+
+def test_an_update_is_drawn_in_one_call(session: modalkit.Session, tmp_path: Any) -> None:
+    result = modalkit.update_studies([session], ["E", "length"])
+    drawn = modalkit.draw(result, folder=str(tmp_path / "figures"))
+    assert set(drawn) == {"update", "evolution"}
+    assert (tmp_path / "figures" / "update.png").is_file()
+    words = " ".join(text.get_text() for text in drawn["update"].texts)
+    assert (
+        "Errors, mode by mode" in words
+        and "length" in words
+        and "Updating takes the frequency error" in words
+    )

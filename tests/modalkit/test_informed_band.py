@@ -9,8 +9,8 @@ import pytest
 
 from acquisition import Dof, FrfSet, HammerTest, UffContent, estimate_frfs, hammer_test, judge_hits
 from acquisition.synthetic import HammerPlan, modal_system
+from identification import informed_band
 from modalkit.handling import Handling
-from modalkit.informed import informed_band
 from modalkit.reading import Judged, Processed
 
 FREQUENCIES = np.array([60.0, 151.0, 288.0, 417.0, 530.0])
@@ -39,6 +39,7 @@ def test_a_band_beyond_the_force_ends_where_the_force_does(hits: int) -> None:
     (low, high), said = informed_band(frfs, [(test, ())], (20.0, 1000.0))
     assert low == 20.0 and 330 < high < 420
     assert said is not None and "to 1000 Hz as asked" in said and "harder tip" in said
+    assert "there is information again" in said  # the first side lobe of the force
 
 
 def test_a_band_that_the_force_reaches_is_left_alone() -> None:
@@ -67,4 +68,34 @@ def test_no_mode_is_found_beyond_the_force_and_the_user_hears_of_it() -> None:
     processed = Processed(UffContent(), frfs, (Judged(test, judge_hits(test)),), Handling(), ())
     model = processed.identify(band=(20.0, 1000.0))
     np.testing.assert_allclose(model.modal.frequency, FREQUENCIES[:3], rtol=1e-3)
+    assert any("as asked" in w for w in model.warnings)
+
+
+def test_a_mode_just_above_a_cut_band_does_not_pass_for_one_at_its_edge() -> None:
+    """The filter passes little of the mode at 870 Hz, and its flank reaches into the band as cut."""
+    frequencies = np.append(FREQUENCIES, 870.0)
+    shapes = np.array([[1.0, 0.8, -0.6, 0.9, 0.7, 0.9], [-0.5, 0.9, 0.8, -0.4, 0.6, 0.5]])
+    system = modal_system(
+        frequency=frequencies,
+        damping=np.full(6, 0.005),
+        response_shapes=shapes[:1],
+        point_shapes=shapes,
+        responses=[Dof(1, 3)],
+        points=[Dof(1, 3), Dof(2, 3)],
+    )
+    plan = HammerPlan(
+        rate=2048.0,
+        samples=2048,
+        hits=1,
+        width=3e-4,
+        anti_alias="sharp",
+        force_noise=0.01,
+        response_noise=1e-3,
+    )
+    test = hammer_test(system, plan, rng=np.random.default_rng(2))
+    processed = Processed(
+        UffContent(), estimate_frfs(test), (Judged(test, judge_hits(test)),), Handling(), ()
+    )
+    model = processed.identify(band=(20.0, 1000.0))
+    np.testing.assert_allclose(model.modal.frequency, FREQUENCIES, rtol=1e-3)
     assert any("as asked" in w for w in model.warnings)

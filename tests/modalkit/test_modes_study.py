@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from acquisition.errors import EstimationError, InputError, StudyError
 from modalkit.batch.part import part_record
@@ -126,3 +127,22 @@ def test_a_diagnosis_without_tolerances_ends(tmp_path: Path) -> None:
     path = written(tmp_path, FIVE, study=STUDY + "[tolerances]\n" + none)
     found = diagnose(open_study(read_study(path)).case, library=[LIBRARY["E"], LIBRARY["lumped_mass"]])
     assert 0 <= found.p_value <= 1
+
+
+def test_modes_of_a_matlab_file_are_data_of_a_study(tmp_path: Path) -> None:
+    x = POINTS / 0.376
+    shapes = np.stack([x**2, x**2 * (x - 0.8), x**2 * (x - 0.5) * (x - 0.9)], axis=1)
+    savemat(tmp_path / "x.mat", {"fn": np.array([28.1, 176.0, 493.0]), "Phi": shapes})
+    nodes = "\n".join(f"{n} = [{c}, 0.0, 0.0]" for n, c in enumerate(POINTS.tolist(), start=1))
+    dofs = ", ".join(f'"{n}+Z"' for n in range(1, 7))
+    (tmp_path / "layout.toml").write_text(
+        f'[mat]\nfrequency = "fn"\nshapes = "Phi"\ndofs = [{dofs}]\n[nodes]\n{nodes}\n'
+    )
+    study = STUDY.replace("modes.csv", "x.mat")
+    test = open_study(read_study(written(tmp_path, "", 'layout = "layout.toml"', study))).case.measured
+    np.testing.assert_allclose(test.constants, shapes)
+    np.testing.assert_allclose(test.points[:, 0], POINTS)
+    with pytest.raises(StudyError, match="has to say which of its variables is what"):
+        read_study(written(tmp_path, "", "", study))
+    with pytest.raises(StudyError, match="layout: said of records"):
+        read_study(written(tmp_path, FIVE, 'layout = "layout.toml"'))

@@ -14,7 +14,7 @@ from acquisition import InputError
 from identification.overrule import nearest_modes
 from modalkit.cli import main
 from modalkit.cli.on_demand import ENTRIES, loaded
-from modalkit.handling import Handling
+from modalkit.handling import Handling, sensor_mass
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_data" / "beam_wet"
 WORDS = {
@@ -102,6 +102,36 @@ def test_what_is_no_finite_number_is_refused(refused, command, option, count, va
 def test_what_is_out_of_range_is_refused(refused, line: str) -> None:
     command, *words = line.split()
     assert len(refused(*WORDS[command], *words).splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "unit"),
+    [("--band 5mm 500", "Hz"), ("--drop 3rad/s", "Hz"), ("--decay 3kg", "1/s"), ("--band 5Hz", "--band")],
+)
+def test_a_unit_of_another_kind_is_refused(refused, words: str, unit: str) -> None:
+    said = refused(*WORDS["identify"], *words.split())
+    assert unit in said and words.split(maxsplit=1)[0] in said and len(said.splitlines()) == 1
+
+
+def test_units_are_understood_as_in_a_study() -> None:
+    """A band in kHz, a decay per millisecond, a sensor in grams."""
+    command = loaded("look")["identify"]
+    words = [
+        "a.uff",
+        "--band",
+        "5Hz",
+        "1.2kHz",
+        "--drop",
+        "0.1 kHz",
+        "--decay",
+        "0.002 1/ms",
+        "--window",
+        "3",
+    ]
+    values = command.make_context("identify", words).params
+    assert (values["band"], list(values["drop"])) == ((5.0, 1200.0), [100.0])
+    assert (values["decay"], values["window"]) == (2.0, 3.0)
+    assert sensor_mass("25+Z=8.6g") == ("25+Z", 0.0086)
 
 
 def test_the_options_are_found() -> None:

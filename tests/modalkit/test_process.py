@@ -11,6 +11,7 @@ from acquisition.dof import Dof
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
 from modalkit.process import open_study, process
 from modalkit.reading import read
+from modalkit.saving import write_modes
 from modalkit.study import read_study
 
 NODES = (1, 2, 3)
@@ -192,6 +193,23 @@ def test_a_study_of_modes_becomes_a_case(folder: Path, name: str) -> None:
     assert (session.processed, session.identified) == (None, None)
     assert session.case.measured.has_shapes == (name == "modes.uff")
     assert not session.case.measured.absolute
+
+
+@pytest.mark.parametrize("ending", ["uff", "csv", "json"])
+def test_modes_that_were_written_have_the_level_that_they_were_identified_with(
+    folder: Path, tmp_path: Path, ending: str
+) -> None:
+    written = tmp_path / f"written.{ending}"
+    direct = open_study(study(folder, 'files = ["frfs.uff"]\nband = [10.0, 250.0]'))
+    assert direct.identified is not None
+    write_modes(written, direct.identified)
+    test = open_study(study(folder, f'modes = "{written}"')).case.measured
+    assert (test.absolute, test.calibration) == (True, 0.02)
+    row = {test.nodes[point]: i for i, point in enumerate(test.seen.tolist())}
+    known = direct.case.measured
+    seen, hit = ([row[known.nodes[p]] for p in ends.tolist()] for ends in (known.seen, known.hit))
+    size = np.abs(known.constants).max()
+    np.testing.assert_allclose(test.constants[seen] * test.constants[hit], known.constants, atol=2e-3 * size)
 
 
 def test_a_baseline_is_read_like_a_test(folder: Path) -> None:

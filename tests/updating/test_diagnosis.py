@@ -181,6 +181,32 @@ def test_frequencies_alone_cannot_tell_factors_apart() -> None:
     assert {("density",), ("thickness",)} <= set(row.equivalents)
 
 
+@pytest.mark.parametrize("gain", [1.0, 1.6])
+def test_the_level_of_mass_normalised_shapes_is_compared(gain: float) -> None:
+    """A gain of the FRFs is its root in the shapes, whose signs are free mode by mode."""
+    told = beam_with()
+    test = told.measured
+    drive = np.flatnonzero(test.seen == test.hit)[0]
+    scale = np.sign(np.arange(test.constants.shape[1]) % 2 - 0.5) * np.sqrt(
+        gain / np.abs(test.constants[drive])
+    )
+    shapes = replace(
+        test,
+        constants=test.constants * scale,
+        constants_sigma=test.constants_sigma * np.abs(scale),
+        seen=test.hit,
+        hit=np.full(len(test.hit), -1),
+    )
+    found = diagnose(replace(told, measured=shapes), library=some("E", "sensor_mass", "calibration_gain"))
+    if gain == 1.0:
+        assert found.verdict == "none"
+        return
+    assert (found.verdict, found.sets) == ("named", (("calibration_gain",),))
+    estimate = found.ranking[0].parameters["calibration_gain.gain"]
+    assert estimate.low95 < gain < estimate.high95
+    assert estimate.high95 / estimate.low95 < 1.3
+
+
 def test_an_effect_put_into_the_model_is_not_found_again() -> None:
     told = replace(TRUTHS["sensor_mass"](), accepted=(("sensor_mass", {"mass": 0.012}),))
     found = diagnose(told, library=some("E", "sensor_mass", "clamp_rotation"))

@@ -30,8 +30,8 @@ def modal(directions: tuple[int, ...] = (3, 3, 3), coordinates: np.ndarray | Non
     )
 
 
-def test_modes_of_a_file_keep_their_shapes_but_not_their_level() -> None:
-    data = modal()
+def test_modes_of_a_file_keep_their_shapes_but_no_level_where_none_is_stated() -> None:
+    data = replace(modal(), scaled=False)
     test = measured_from_modes(data, Axes(), BEAM, repeatability=0.002, title="a")
     np.testing.assert_allclose(test.constants, data.shapes.real)  # type: ignore[union-attr]
     assert (test.absolute, test.repeated, test.has_shapes, test.sensors) == (False, False, True, ())
@@ -40,6 +40,22 @@ def test_modes_of_a_file_keep_their_shapes_but_not_their_level() -> None:
     np.testing.assert_allclose(test.points[:, 0], X)
     assert (test.repeatability, test.title) == (0.002, "a")
     assert np.isnan(test.damping).all()
+
+
+def test_mass_normalised_shapes_keep_their_level_and_say_so() -> None:
+    test = measured_from_modes(modal(), Axes(), BEAM, calibration=0.05)
+    assert (test.absolute, test.sensors, test.calibration, test.level_sigma) == (True, (), 0.05, 0.025)
+    assert any("stated to be mass-normalised" in w and "calibration = 0.05" in w for w in test.warnings)
+    unknown = measured_from_modes(modal(), Axes(), BEAM, calibration=1.0)
+    assert not any("mass-normalised" in w for w in unknown.warnings)
+
+
+def test_complex_shapes_of_any_phase_are_turned_to_the_real_axis() -> None:
+    data = modal()
+    assert data.shapes is not None
+    later = replace(data, shapes=data.shapes * np.exp(1j * np.array([0.5, 1.6, -2.0])))
+    found = measured_from_modes(later, Axes(), BEAM).constants
+    np.testing.assert_allclose(np.abs(found), np.abs(data.shapes.real), rtol=1e-9)
 
 
 def test_frequencies_alone_have_no_shapes() -> None:

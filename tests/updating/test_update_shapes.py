@@ -180,3 +180,45 @@ def test_constants_need_a_level() -> None:
     case = case_of(replace(measured_on(BEAM), absolute=False))
     with pytest.raises(StudyError, match="not their level"):
         update(case, parameters=["root.E"], data=("frequencies", "constants"))
+
+
+def as_shapes(test: Measured) -> Measured:
+    """Return the mass-normalised shapes behind constants whose reference is the last point, with any signs."""
+    shapes = test.constants / np.sqrt(test.constants[-1]) * np.array([1, -1, -1, 1, -1])
+    size = 1e-3 * np.sqrt(np.mean(shapes**2, axis=0)) * np.ones_like(shapes)
+    return replace(
+        test,
+        constants=shapes,
+        constants_sigma=size,
+        seen=np.arange(len(shapes)),
+        hit=np.full(len(shapes), -1),
+    )
+
+
+@pytest.mark.parametrize("extra", [[], ["sensor_mass"]])
+def test_mass_normalised_shapes_tell_modulus_from_density_as_constants_do(extra: list[str]) -> None:
+    calibration = 0.02
+    truth = replace(as_shapes(measured_on(heavier(BEAM, 1.15, 0.8))), calibration=calibration)
+    plain = replace(BEAM, regions=(), masses=(PointMass((0.4,), 0.0),))
+    doubts = Tolerances({"E": 0.3, "density": 0.3})
+    result = update(
+        Case("bar", plain, truth, None, doubts),
+        parameters=["E", "density", *extra],
+        data=("frequencies", "constants"),
+    )
+    assert [p.factor for p in result.parameters[:2]] == pytest.approx([1.15, 0.8], rel=2e-3)
+    assert [p.sigma / p.value for p in result.parameters[:2]] == pytest.approx([calibration] * 2, rel=0.1)
+
+
+def test_the_slopes_of_mass_normalised_shapes_are_those_of_their_residual() -> None:
+    truth = as_shapes(measured_on(turned(root=0.8)))
+    fitted = fit(case_of(truth), parameters=["root.E", "tip.E"], data=("frequencies", "constants"))
+    system, step = fitted.system, 1e-5
+    theta = np.array([-0.1, 0.05])
+    linear = system.linear(theta, system.looks(theta))
+    ends = [
+        [system.cost(theta + s * e, system.looks(theta + s * e)) for s in (-step, step)] for e in np.eye(2)
+    ]
+    slope = np.array([(high - low) / (2 * step) for low, high in ends])
+    expected = -2 * linear.sensitivity.T @ (linear.weight * linear.residual) + 2 * system.prior * theta
+    assert slope == pytest.approx(expected, rel=1e-4)

@@ -20,7 +20,7 @@ from updating.diagnosis.comparison import KNOWN_SCATTER, UNKNOWN_SCATTER, Block,
 from updating.diagnosis.gates import Shortfall
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.matching import match
-from updating.measured import Measured
+from updating.measured import UNKNOWN_LEVEL, Measured
 from updating.models.base import FACTORS
 from updating.models.state import State
 from updating.prediction import Prediction, Predictor
@@ -38,9 +38,6 @@ LEAST_NOISE = 1e-6
 LATE = 0.01
 """Error of a modal constant, relative to the mode's r.m.s., per radian by which a delay turns it: no rational function
 is a delay [1/rad]."""
-
-UNKNOWN_LEVEL = 0.2
-"""A calibration worse than this is found by least squares before anything is linearised."""
 
 HALF = 0.5
 """How much of what a plate's theory leaves out is expected, and in doubt [-]..."""
@@ -408,7 +405,7 @@ class Problem:
             constants, by = constants + missed, by - known
         if signs.ndim == 1:
             signs = np.broadcast_to(signs, constants.shape)
-        level = signs / scale
+        level = signs * test.same_signs(constants) / scale
         if not test.absolute:
             level = level * _projection(test.constants / scale, constants * level, axis=0)
         elif test.calibration > UNKNOWN_LEVEL:
@@ -418,7 +415,7 @@ class Problem:
         louder = np.zeros((predicted.size, 0))
         if fidelity:
             # a change of the modes' levels errs as a whole, what is no mere change of level point by point
-            before = self.nominal.constants / scale
+            before = self.nominal.constants * test.same_signs(self.nominal.constants) / scale
             share = _projection(predicted, before, axis=0)
             variance = variance + (fidelity * (predicted - share * before)) ** 2
             louder = (fidelity * (share - 1) * before).reshape(-1, 1)
@@ -442,7 +439,7 @@ class Problem:
     def _level_columns(self, predicted: FloatArray) -> FloatArray:
         """Return the gain of the whole test, or of each mode where only shapes are known."""
         if self.measured.absolute:
-            return (self.measured.calibration * predicted).reshape(-1, 1)
+            return (self.measured.level_sigma * predicted).reshape(-1, 1)
         n = predicted.shape[1]
         return np.asarray((3.0 * predicted[:, :, None] * np.eye(n)).reshape(-1, n))
 

@@ -198,5 +198,6 @@ def check_data(data: Sequence[str], cases: Sequence[Case], weights: Weights) -> 
     bare = [c.title for c in cases if c.measured.has_shapes and not c.measured.absolute]
     if "constants" in data and bare:
         raise StudyError(
-            f'update: {bare[0]}: shapes are known, but not their level; constants as data need FRFs, use "shapes"'
+            f"update: {bare[0]}: shapes are known, but not their level; constants as data need "
+            'FRFs or mass-normalised shapes, use "shapes"'
         )

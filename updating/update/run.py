@@ -59,9 +59,9 @@ def update(
         weights from the covariance.
     data : sequence of str
         ``frequencies``, and one of ``shapes`` and ``constants``. Shapes are those of the modes up to a factor
-        each; constants have their level, which needs calibrated FRFs. Both are weighted by the inverse of the
-        modal constants' covariance: noise, errors of the poles, places of points and sensors, and for constants
-        the calibration, which all of a test have in common. They need weights from the covariance.
+        each; constants have their level, which needs calibrated FRFs or mass-normalised shapes. Both are weighted by
+        the inverse of the modal constants' covariance: noise, errors of the poles, places of points and sensors, and
+        for constants the calibration, which all of a test have in common. They need weights from the covariance.
 
     Returns
     -------

@@ -47,7 +47,8 @@ def _all_alike(test: Measured, at: Prediction) -> FloatArray:
     make the noise smaller where it makes the constants smaller, and be found where there is none (Peelle's puzzle;
     Fröhner, Nucl. Sci. Eng. 126 (1997) 1-18).
     """
-    return np.asarray(np.median(_level(test, at)) * at.constants.reshape(-1, 1))
+    signs = test.same_signs(at.constants)
+    return np.asarray(np.median(signs * _level(test, at)) * (signs * at.constants).reshape(-1, 1))
 
 
 def _smooth(test: Measured, at: Prediction, shared: FloatArray) -> FloatArray:

@@ -18,7 +18,8 @@ def shape_residual(specimen: Specimen, look: Look) -> FloatArray:
     """Return measured minus computed constants, as shapes with the best factor per mode, whitened (n,) [-]."""
     white, test = specimen.errors, specimen.measured.constants
     if specimen.level:
-        return white((test - look.prediction.constants).ravel())
+        computed = look.prediction.constants
+        return white((test - computed * specimen.measured.same_signs(computed)).ravel())
     span, _ = _factors(specimen, look)
     measured = white(test.ravel())
     return np.asarray(measured - span @ (span.T @ measured))
@@ -31,6 +32,7 @@ def shape_slopes(specimen: Specimen, values: Sequence[float], look: Look) -> Flo
     """
     slopes = specimen.shape_slopes(values, look)
     if specimen.level:
+        slopes = slopes * specimen.measured.same_signs(look.prediction.constants)[:, None]
         return specimen.errors(slopes.reshape(-1, slopes.shape[2]))
     span, factor = _factors(specimen, look)
     scaled = specimen.errors((slopes * factor[None, :, None]).reshape(-1, slopes.shape[2]))

@@ -14,6 +14,7 @@ from updating.measured import Measured
 from updating.models.reduced import Reduced
 from updating.models.structure import FieldStructure
 from updating.prediction import Prediction, Predictor
+from updating.reading import level_of
 from updating.update.affine import Affine, affine, eligible
 from updating.update.basis import WIDE, extended, update_basis
 from updating.update.knobs import Knob, Panel
@@ -101,7 +102,7 @@ class Specimen:
         frequency = np.sqrt(np.maximum(values[self.rigid :], 0.0)) / (2 * np.pi)
         shape = self.shape_rows[:, : len(vectors)] @ vectors
         hit = np.where(self.measured.hit[:, None] < 0, 1.0, shape[self.measured.hit])
-        constants = self.predictor.base.gain * shape[self.measured.seen] * hit
+        constants = self._gain * shape[self.measured.seen] * hit
         nothing = np.zeros((0, *constants.shape))
         return Prediction(
             frequency, np.full(len(frequency), np.nan), constants, nothing, nothing,
@@ -203,7 +204,12 @@ class Specimen:
         seen, hit, bare = self.measured.seen, self.measured.hit, self.measured.hit < 0
         both = change[:, seen] * here[hit] + here[seen] * change[:, hit]
         slopes = np.where(bare[:, None], change[:, seen], both)
-        return np.asarray(np.moveaxis(self.predictor.base.gain * slopes, 0, -1))
+        return np.asarray(np.moveaxis(self._gain * slopes, 0, -1))
+
+    @property
+    def _gain(self) -> float:
+        """Factor by which the measured level is off in what the model has accepted [-]."""
+        return level_of(self.predictor.base.gain, self.measured)
 
     def _signs(self, model: Affine, values: Sequence[float], at: Look) -> FloatArray:
         vectors = model.eigen(np.log(values), model.rank)[1][:, at.partner + self.rigid]
@@ -215,7 +221,7 @@ class Specimen:
         at = self.nominal.prediction if self.near is None else self.near
         turned = any(knob.effect == "calibration_gain" for knob in self.panel.knobs)
         return constant_errors(
-            self.measured, at, self.measured.calibration if self.level and not turned else 0.0
+            self.measured, at, self.measured.level_sigma if self.level and not turned else 0.0
         )
 
     def settled(self, values: Sequence[float], look: Look) -> Specimen:

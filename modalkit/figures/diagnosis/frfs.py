@@ -31,8 +31,8 @@ from modalkit.figures.style import (
     tidy,
 )
 from updating.correlated_frfs import CorrelatedFrfs, correlate_frfs
-from updating.diagnosis.problem import UNKNOWN_LEVEL
 from updating.matching import pair_modes
+from updating.measured import UNKNOWN_LEVEL
 from updating.models.state import State
 from updating.prediction import Predictor
 

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from acquisition import FrfSet, HammerTest, HitVerdict
-from acquisition.arrays import BoolArray, FloatArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.estimators import kept_hits
+from acquisition.frf import FrfSet
+from acquisition.hammer import HammerTest
 from acquisition.hit_checks import noise_level, upright
+from acquisition.verdicts import HitVerdict
 
 WEAK, FILTERED = 1e-2, 1e-4
 """Power of the force: 20 dB under its largest, lines without coherence count as lost; 40 dB under what it is just
@@ -27,6 +29,10 @@ the band ends sooner [-]."""
 
 ABOUT = 17
 """Lines over which force and coherence are averaged: single lines scatter. Doubled, edges are found half as sharply."""
+
+PASSED = 2.56
+"""Sampling rate over the highest frequency that anti-alias filters pass, as analysers have it. Doubled, half of their
+lines count as filtered [-]."""
 
 SOME = 0.02
 """Part of the band that may be lost without a word [-]."""
@@ -49,11 +55,12 @@ def informed_band(
         Band asked for [Hz].
     """
     inside = (frfs.frequency >= band[0]) & (frfs.frequency <= band[1]) & (frfs.frequency > 0)
-    coherent = _coherent(frfs)
+    coherent = best_coherence(frfs)
     lost = _lost_to_force(frfs, tests, coherent) if tests else _lost_at_the_end(coherent, inside)
     if lost is None or (lost & inside).sum() <= max(SOME * inside.sum(), ABOUT):
         return band, None
-    first, last = _longest(inside & ~lost)
+    runs = _runs(inside & ~lost)
+    first, last = runs[0].tolist() if len(runs) else (0, 0)
     if last - first < 2 * ABOUT:
         return band, (
             f"hardly a line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak there; "
@@ -66,13 +73,23 @@ def informed_band(
         if tests
         else "the coherence is lost"
     )
+    again = [
+        f"from {frfs.frequency[a]:.4g} to {frfs.frequency[b]:.4g} Hz"
+        for a, b in runs[1:]
+        if b - a >= 2 * ABOUT
+    ]
     return (low, high), (
         f"modes are sought from {low:.4g} to {high:.4g} Hz only, not from {band[0]:.4g} to {band[1]:.4g} Hz as asked: "
         f"{why} in the rest; hit with a harder tip, sample faster, or name a mode there with add, to go further"
+        + (
+            f"; {', '.join(again)} there is information again: give that as a band of its own"
+            if again
+            else ""
+        )
     )
 
 
-def _coherent(frfs: FrfSet) -> FloatArray | None:
+def best_coherence(frfs: FrfSet) -> FloatArray | None:
     """Return the coherence of the best FRF about each line, without what chance gives, (n_lines,) [-]."""
     if frfs.coherence is None:
         return None
@@ -104,7 +121,7 @@ def _of_test(
     lines = np.fft.rfftfreq(test.samples, 1 / test.rate)[1:]
     level = np.interp(frequency, lines, smooth) / smooth.max()
     weak = level * smooth.max() < (1 + ABOVE_NOISE) * noise if coherent is None else coherent < LOST
-    corner = test.rate / 2.56
+    corner = test.rate / PASSED
     passed = level[(frequency > 0.9 * corner) & (frequency <= corner)].max(initial=0.0)
     return np.asarray(((level < WEAK) & weak) | ((level < FILTERED * passed) & (frequency > corner)))
 
@@ -117,11 +134,30 @@ def _lost_at_the_end(coherent: FloatArray | None, inside: BoolArray) -> BoolArra
     return None if not len(good) else np.asarray(inside & (np.arange(len(inside)) > good[-1]))
 
 
-def _longest(good: BoolArray) -> tuple[int, int]:
-    """Return the first and last line of the longest run of good ones."""
+def _runs(good: BoolArray) -> IntArray:
+    """Return the first and last line of the runs of good ones, the longest first, (n_runs, 2).
+
+    A run beyond a hole is not joined to it: next to a zero of the force modes come out biased, and in it noise does.
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]]).astype(np.int8)))
-    if not len(edges):
-        return 0, 0
-    starts, stops = edges[::2], edges[1::2]
-    best = int((stops - starts).argmax())
-    return int(starts[best]), int(stops[best]) - 1
+    runs = edges.reshape(-1, 2) - [0, 1]
+    return np.asarray(runs[np.argsort(runs[:, 0] - runs[:, 1], kind="stable")])
+
+
+def at_cut_edge(
+    frequency: FloatArray, within: tuple[float, float], band: tuple[float, float], df: float
+) -> list[float]:
+    """Return modes on the edge of a band that was cut: what lies beyond it bends the last lines and passes for one.
+
+    Parameters
+    ----------
+    frequency : (n_modes,) array
+        Frequencies found [Hz].
+    within, band : tuple of float
+        The band as cut, and as asked for [Hz].
+    df : float
+        Spacing of the lines [Hz].
+    """
+    low = within[0] + df if within[0] > band[0] else 0.0
+    high = within[1] - df if within[1] < band[1] else np.inf
+    return [float(f) for f in frequency if not low <= f <= high]
