@@ -16,7 +16,8 @@ from acquisition.uff.units import Units, units_of
 from acquisition.uff.values58 import numbers_of
 
 _FACTORS = 4  # of length, force and temperature, and the offset of temperature
-_NODE_LINES = {15: (7,), 2411: (4, 3)}  # entries on the lines of one node: labels and colour, then coordinates
+_NODE_LINES = {15: (7,), 2411: (4, 3)}
+"""Entries on the lines of one node: four labels, then coordinates."""
 
 
 def read_units(body: bytes) -> tuple[Units, str]:
