@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from corpus_exchanged import exchanged_families
 from corpus_matrices import matrix_families
 from corpus_stores import store_families
 from corpus_text import table_families
@@ -11,4 +12,10 @@ from family import Family
 
 def families() -> list[Family]:
     """Return every family that is attacked."""
-    return [*uff_families(), *table_families(), *matrix_families(), *store_families()]
+    return [
+        *uff_families(),
+        *table_families(),
+        *exchanged_families(),
+        *matrix_families(),
+        *store_families(),
+    ]

@@ -10,7 +10,7 @@ import io
 import json
 import re
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -256,6 +256,27 @@ def json_lines(original: bytes, mutant: bytes) -> bool:
     except (ValueError, RecursionError):
         return False
     return all(any(_leaves(a, b, fewer=False) for a in one) for b in two)
+
+
+def json_document(optional: Collection[str]) -> Judge:
+    """Return the judge of a JSON document: other numbers and words in their places, keys missing that may be."""
+
+    def completed(one: Any, two: Any) -> Any:
+        if isinstance(one, dict) and isinstance(two, dict):
+            missing = {k: v for k, v in one.items() if k in optional and k not in two}
+            return {k: completed(one.get(k), v) for k, v in two.items()} | missing
+        if isinstance(one, list) and isinstance(two, list):
+            return [completed(a, b) for a, b in zip(one, two, strict=False)] + two[len(one) :]
+        return one if two is None else two
+
+    def judge(original: bytes, mutant: bytes) -> bool:
+        try:
+            one, two = (json.loads(c) for c in (original, mutant))
+        except (ValueError, RecursionError):
+            return False
+        return _leaves(one, completed(one, two), fewer=False)
+
+    return judge
 
 
 def archive(original: bytes, mutant: bytes) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import re
+import time
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
@@ -390,6 +391,33 @@ def test_what_would_reach_a_parser_unchecked_is_refused(
         read_matrix(tmp_path / name)
     assert name in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_shape_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
+    np.save(tmp_path / "k.npy", K.toarray())
+    whole = (tmp_path / "k.npy").read_bytes()
+    head = whole[10 : 10 + int.from_bytes(whole[8:10], "little")]
+    longer = re.sub(rb"\((\d+), (\d+)\)", rb"(\1, \2" + b"1" * 6000 + b")", head).strip() + b" (\n"
+    (tmp_path / "k.npy").write_bytes(
+        whole[:8] + len(longer).to_bytes(2, "little") + longer + whole[10 + len(head) :]
+    )
+    begin = time.process_time()
+    with pytest.raises(StudyError, match="header of an array"):
+        read_matrix(tmp_path / "k.npy")
+    assert time.process_time() - begin < 1.0
+
+
+def test_an_archive_that_claims_more_bytes_than_it_has_takes_no_memory_for_them(tmp_path: Path) -> None:
+    np.savez(tmp_path / "k.npz", K=K.toarray())
+    content = bytearray((tmp_path / "k.npz").read_bytes())
+    at = content.rfind(b"PK\x01\x02") + 20
+    content[at : at + 4] = (500_000_000).to_bytes(4, "little")
+    (tmp_path / "k.npz").write_bytes(content)
+    tracemalloc.start()
+    with pytest.raises(StudyError, match="more bytes than the archive has"):
+        read_matrix(tmp_path / "k.npz")
+    assert tracemalloc.get_traced_memory()[1] < 10_000_000
+    tracemalloc.stop()
 
 
 def test_a_bomb_is_not_unpacked(tmp_path: Path) -> None:
