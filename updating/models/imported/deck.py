@@ -138,7 +138,7 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
         raise StudyError(f"{where}: {line[:80]} is not followed; write a node table (CSV) instead")
     for word, known in ((card, FOLLOWED), *((option, OPTIONS) for option in options)):
         plain = " ".join(word.split())[:40]
-        close = [one for one in known if one.startswith(plain)] or difflib.get_close_matches(
+        close = [one for one in known if _lost_a_piece(plain, one)] or difflib.get_close_matches(
             plain, known, n=1, cutoff=0.75
         )
         if plain and close and word not in known and plain.replace(" ", "") not in ALIKE:
@@ -147,6 +147,12 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
         raise StudyError(f"{where}: {line[:80]} names no set; write *NSET, NSET=name")
     if card in FOLLOWED and "" in options:
         raise StudyError(f"{where}: {line[:80]} ends in a comma; what follows it is missing")
+
+
+def _lost_a_piece(word: str, whole: str) -> bool:
+    """Tell whether a word is another without one piece of it."""
+    lost = len(whole) - len(word)
+    return lost > 0 and any(word == whole[:i] + whole[i + lost :] for i in range(1, len(word) + 1))
 
 
 def _place(deck: Deck, line: str, where: str) -> int:
