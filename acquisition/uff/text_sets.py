@@ -11,13 +11,14 @@ import pyuff
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import InputError
+from acquisition.uff.record_lines import check_record_lines
 from acquisition.uff.text_columns import check_columns, check_digits
 from acquisition.uff.units import Units, units_of
 from acquisition.uff.values58 import numbers_of
 
 _FACTORS = 4  # of length, force and temperature, and the offset of temperature
-_NODE_LINES = {15: (7,), 2411: (4, 3)}
-"""Entries on the lines of one node: four labels, then coordinates."""
+_ON_FIRST_LINE = {15: 7, 2411: 4}
+"""Numbers on the first line of a node's record."""
 
 
 def read_units(body: bytes) -> tuple[Units, str]:
@@ -92,7 +93,7 @@ def read_nodes(number: int, body: bytes) -> tuple[IntArray, FloatArray]:
         )
     check_columns(body)
     check_digits(body)
-    _check_node_lines(number, body)
+    check_record_lines(body, columns=7, first=(_ON_FIRST_LINE[number],))
     if len(body.split()) == len(entries):
         labels, coordinates = _nodes_of_pyuff(number, body)
     else:  # columns that touch, which pyuff does not part
@@ -107,19 +108,6 @@ def read_nodes(number: int, body: bytes) -> tuple[IntArray, FloatArray]:
     if np.any(labels % 1) or np.any(np.abs(labels) > 1e15) or np.any(np.abs(coordinates) > 1e15):
         raise InputError(f"data set {number}: node numbers or coordinates that cannot be meant")
     return labels.astype(np.int64), coordinates
-
-
-def _check_node_lines(number: int, body: bytes) -> None:
-    """Check that every line holds the entries its place in a node's record asks for, or an exchange goes unseen."""
-    lines = [line for line in body.split(b"\n") if line.strip()]
-    wanted = _NODE_LINES[number]
-    for i, line in enumerate(lines):
-        count = wanted[i % len(wanted)]
-        if len(line.split()) != count and len(numbers_of(line)) != count:
-            raise InputError(
-                f"data set {number}: its line {line.strip()[:80].decode('latin-1')!r} does not hold the {count} "
-                "entries that are due there: a line is lost, moved or broken"
-            )
 
 
 def _nodes_of_pyuff(number: int, body: bytes) -> tuple[FloatArray, FloatArray]:

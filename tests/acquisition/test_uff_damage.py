@@ -302,6 +302,19 @@ def test_a_copy_of_a_mode_that_lost_a_node_is_not_silent(drawn, reread):
     assert any("frequency and damping are exactly those of" in w for w in content.warnings)
 
 
+def test_exchanged_lines_of_a_shape_are_not_silent(drawn, reread):
+    lines = drawn.split(b"\n")
+    first = lines.index(b"    55")
+    stop = lines.index(b"    -1", first)
+    before = reread(drawn)
+    for a in range(first + 9, stop - 1):
+        for b in range(a + 1, stop):
+            changed = list(lines)
+            changed[a], changed[b] = lines[b], lines[a]
+            if len(lines[a].split()) != len(lines[b].split()):
+                assert not silent(before, reread(b"\n".join(changed))), (a, b)
+
+
 @pytest.mark.parametrize("lines", [4, 5, 9])
 def test_a_line_broken_in_a_number_of_a_short_record_is_said(lines, tmp_path, reread):
     values = np.full((1, 4 * lines // 2), 0.99) + 0j
