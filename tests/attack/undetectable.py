@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 
 NUMBER = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?")
+DOF = re.compile(rb"^\s*\d+[+-]R?[XYZ]\s*$")
+"""A heading that names a point and a direction, each as good as any other where none stands twice."""
 SEPARATORS = re.compile(rb"[\s,;]+")
 Judge = Callable[[bytes, bytes], bool]
 
@@ -37,10 +39,13 @@ def cells(original: bytes, mutant: bytes) -> bool:
             for a, b in zip(one, two, strict=False)
         )
 
-    heading, other = (
-        re.sub(rb"\d+(?=[+-])", b"0", b",".join(rows[0])) if rows else b"" for rows in (first, second)
+    heads = [rows[0] if rows else [] for rows in (first, second)]
+    heading, other = ([DOF.sub(b"1+Z", cell) for cell in head] for head in heads)
+    return (
+        heading == other
+        and len(set(heads[1])) == len(set(heads[0]))
+        and all(any(alike(a, b) for a in first) for b in second[1:])
     )
-    return heading == other and all(any(alike(a, b) for a in first) for b in second[1:])
 
 
 def number_for_number(one: bytes, two: bytes) -> bool:

@@ -378,7 +378,8 @@ DAMAGED = [
     ("k.npy", b"\x93NUMPY\x01\x00\x50\x00" + b"(" * 80, "header of an array cannot be read"),
     ("k.npz", archive(data=np.eye(2), offsets=np.arange(2), shape=np.array([2, 2])), "without its format"),
     ("k.npz", archive(K=np.ones((4, 2))), "is 4 x 2; stiffness and mass are square"),
-    ("k.rsa", boeing().replace(b"2.000000000000E", b"2.000\r0000000E"), "another count of numbers"),
+    ("k.rsa", boeing().replace(b"2.000000000000E", b"2.000\r0000000E"), "a character among"),
+    ("k.rsa", re.sub(rb"E\+0\d", b"E+0\r", boeing(), count=1), "a character among"),
 ]
 
 
