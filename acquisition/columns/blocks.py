@@ -262,7 +262,7 @@ def _check_above(above: Sequence[str], number: int, style: Style, least: int, pa
         row = (whole or last) and len(alike) >= 2 and 2 * len(alike) >= len(fields)
         bare = bool(numbers) and len(numbers) == len(fields) < len(style.split(line)) + (len(fields) > 1)
         mixed = last and whole and bool(numbers) and all(any(c.isdigit() for c in field) for field in fields)
-        touching = last and bool(numbers) and all(_NEARLY.fullmatch(field) for field in fields)
+        touching = last and bool(numbers) and all(_nearly(field) for field in fields)
         joined = last and whole and len(numbers) >= max(2, least - 1)
         broken = last and len(fields) == 1 and not numbers and bool(alike) and "e" in line.lower()
         if row or bare or mixed or touching or joined or broken:
@@ -272,11 +272,14 @@ def _check_above(above: Sequence[str], number: int, style: Style, least: int, pa
             )
 
 
-_LIKE = re.compile(r"[\s\d.,eE+-]*\d[\s\d.,eE+-]*")
+_OF_NUMBERS = frozenset("0123456789.,eE+-")
+_LIKE = re.compile(r"(?=[^\d]*+\d)[\s\d.,eE+-]*+")
 """Words of characters that numbers have."""
 
-_NEARLY = re.compile(r"[\d.,eE+-]*\d[\d.,eE+-]*([^\d.,eE+-]([\d.,eE+-]*\d[\d.,eE+-]*)?)?")
-"""A number, or one with a character behind it that none has, which may part it from a second one."""
+
+def _nearly(field: str) -> bool:
+    """Tell whether a field is a number, or one but for a character that none has, which may part it from a second."""
+    return any(c.isdigit() for c in field) and sum(c not in _OF_NUMBERS for c in field) <= 1
 
 
 def _heading(above: Sequence[str], style: Style, wanted: Collection[str]) -> tuple[str, ...]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
@@ -335,6 +337,14 @@ def test_a_quote_inside_a_number_is_a_fault(tmp_path):
     (tmp_path / "a.csv").write_text("hammer,acc 1,acc 2\n" + rows + '1.0,"2.0,3.0\n')
     with pytest.raises(InputError, match="line 6, column 1"):
         read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+
+
+def test_a_heading_of_very_many_digits_is_judged_at_once(tmp_path):
+    line = "1" * 100_000 + "x" + "1" * 100_000 + "y,1.0"
+    (tmp_path / "a.csv").write_text(f"{line}\nhammer,acc 1,acc 2\n" + "1.0,2.0,3.0\n" * 5)
+    begin = time.process_time()
+    read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+    assert time.process_time() - begin < 1.0
 
 
 @pytest.mark.parametrize("line", ["1.0", "1.0,2.0"])

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-NUMBER = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?")
+NUMBER = re.compile(rb"[+-]?(\d+(?:\.\d*)?|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?")
 DOF = re.compile(rb"^\s*\d+[+-]R?[XYZ]\s*$")
 """A heading that names a point and a direction, each as good as any other where none stands twice."""
 SEPARATORS = re.compile(rb"[\s,;]+")

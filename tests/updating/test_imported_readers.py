@@ -394,6 +394,14 @@ def test_what_would_reach_a_parser_unchecked_is_refused(
     assert "\n" not in str(error.value)
 
 
+def test_a_number_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
+    (tmp_path / "k.sti").write_text("1" * 160_000 + "\x1a" + "1" * 40_000)
+    begin = time.process_time()
+    with pytest.raises(StudyError, match="is no number"):
+        read_matrix(tmp_path / "k.sti")
+    assert time.process_time() - begin < 1.0
+
+
 def test_a_shape_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
     np.save(tmp_path / "k.npy", K.toarray())
     whole = (tmp_path / "k.npy").read_bytes()
@@ -447,6 +455,10 @@ SLIPS = [
     (NODES + "*BOUNDRY\n1, 1, 3\n", "is \\*BOUNDARY meant"),
     (NODES + "*BOU", "is \\*BOUNDARY meant"),
     (NODES + "*DARY\n1, 1, 3\n", "\\*DARY is nothing known; is \\*BOUNDARY meant"),
+    (NODES + "*BOUNDARY,ROOT, 1, 3\n", "is no card"),
+    (NODES + "*NSE 2\n", "is no card"),
+    (NODES + "*NSET, NSET=A\n3\n*END STEP\n", "END STEP without a \\*STEP before it"),
+    (NODES + "*STEP\n*FREQUENCY\n3\n*END STEP\n1, 1, 3\n", "behind the end of a step"),
     (NODES + "*BOY\n1, 1, 3\n", "is \\*BOUNDARY meant"),
     (NODES + "*NSET, NSET=A, GETE\n1, 3\n", "is GENERATE meant"),
     (NODES + "*BOUNDARY" + " " * 90 + "x\n1, 1, 3\n", "is \\*BOUNDARY meant"),
