@@ -32,7 +32,7 @@ from modalkit.handling import Handling
 from modalkit.informed import informed_band
 from modalkit.joining import together
 from modalkit.mixed import with_read
-from modalkit.remarks import on_hits, on_window
+from modalkit.remarks import on_coherence, on_hits, on_window
 from modalkit.sensors import without_sensors
 
 if TYPE_CHECKING:
@@ -251,7 +251,7 @@ def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -
         names = ", ".join(str(p) for p in paths)
         raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
     frfs = without_constant(frfs, warnings)
-    warnings += identical(frfs)
+    warnings += [*identical(frfs), *on_coherence(frfs, [(j.test, j.verdicts) for j in judged])]
     frfs = without_sensors(frfs, handling.sensor_masses, warnings)
     return Processed(content, frfs, judged, handling, tuple(dict.fromkeys(warnings)))
 
@@ -294,14 +294,7 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
         if looks_long(one):
             one, said = split_hits(replace(one, decay=one.decay or handling.decay))
             warnings += said
-        if handling.decay and one.decay:
-            _check_decay(one.source, one.decay, handling.decay)
-        elif handling.decay:
-            one, said = state_window(one, decay=handling.decay, on=handling.window_on)
-            warnings += said
-        else:
-            warnings += on_window(one)
-        split.append(one)
+        split.append(stated(one, handling, warnings))
     proposals = numbered([judge_hits(test) for test in split])
     every = tuple(v for verdicts in proposals for v in verdicts)
     decided = iter(decide(every, use=handling.use, leave=handling.leave) if every else ())
@@ -309,6 +302,33 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
         Judged(test, tuple(next(decided) for _ in verdicts))
         for test, verdicts in zip(split, proposals, strict=True)
     )
+
+
+def stated(test: HammerTest, handling: Handling, warnings: list[str]) -> HammerTest:
+    """Return a test with the window stated that is said to have been applied; one that nobody states is warned of.
+
+    Parameters
+    ----------
+    test : HammerTest
+        Records, one a hit.
+    handling : Handling
+        What the user says of the window.
+    warnings : list of str
+        What was found is added to it.
+
+    Raises
+    ------
+    InputError
+        If the file states another window.
+    """
+    if handling.decay and test.decay:
+        _check_decay(test.source, test.decay, handling.decay)
+    elif handling.decay:
+        test, said = state_window(test, decay=handling.decay, on=handling.window_on)
+        warnings += said
+    else:
+        warnings += on_window(test)
+    return test
 
 
 def numbered(tests: Sequence[tuple[HitVerdict, ...]]) -> list[tuple[HitVerdict, ...]]:

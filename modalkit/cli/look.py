@@ -54,7 +54,7 @@ from modalkit.existing import Modes
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
 from modalkit.outputs import check_outputs, json_of, uff_of
-from modalkit.reading import Processed, numbered, read, read_frfs
+from modalkit.reading import Processed, numbered, read, read_frfs, stated
 from modalkit.saving import modes_kind
 
 if TYPE_CHECKING:
@@ -75,10 +75,12 @@ def add_commands(app: typer.Typer) -> None:
 
 def inspect(
     files: Files,
+    decay: Decay = 0.0,
     layout: Layout = None,
     every: Annotated[bool, typer.Option("--all", help="a row for every data set")] = False,
 ) -> None:
     """List what is in a file, and what is wrong with it."""
+    said = Handling(decay=decay)
     with reading() as progress:
         content = read_files(files, layout=layout, progress=progress)
     out.print(f"{', '.join(map(str, files))}: {content.title or 'no title'}", markup=False)
@@ -88,7 +90,8 @@ def inspect(
     with working("judging the hits"):
         long = [looks_long(test) for test in content.tests]
         single = [test for test, several_hits in zip(content.tests, long, strict=True) if not several_hits]
-        judged = numbered([judge_hits(test) for test in single])
+        warnings: list[str] = []
+        judged = numbered([judge_hits(stated(test, said, warnings)) for test in single])
     if any(long):
         out.print("records hold several hits each; they are split when they are used")
     for verdicts in judged:
@@ -98,7 +101,7 @@ def inspect(
     bad = [d for d in content.datasets if not d.ok]
     all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
     error = f"{bad[0].place}: {bad[0].message}" if all_bad else ""
-    show_warnings([w for w in content.warnings if not error or not w.startswith(error)])
+    show_warnings([w for w in (*content.warnings, *warnings) if not error or not w.startswith(error)])
     if error:
         raise InputError(error)
 
