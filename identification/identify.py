@@ -13,6 +13,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
+from acquisition.warned import Consequential
 from identification import covariance, doubts
 from identification.arrangement import arrange, signs, unsigned
 from identification.disagreement import Disagreement
@@ -277,13 +278,14 @@ def _warnings(fitted: Fitted) -> tuple[str, ...]:
             "and what that leaves in doubt is in the standard deviations"
         )
     if not fitted.fit.converged:
-        notes.append("the refinement of the poles did not come to rest; standard deviations may be too small")
+        notes.append("the refinement of the poles did not converge; standard deviations may be too small")
     left = fitted.excess()
     if fitted.measured and left > _POOR_FIT:
-        notes.append(
+        poor = (
             f"the fit leaves {left:.2g} times the power of the noise: modes are missing in it, or the FRFs do not "
             "belong together; narrow the band or raise the order"
         )
+        notes.append(Consequential(poor))
     if fitted.rank_excess > 1.0:
         notes.append(
             f"the references do not agree on the shapes: holding each mode to one shape raises the misfit to "

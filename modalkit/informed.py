@@ -11,6 +11,7 @@ from acquisition import FrfSet, HammerTest, HitVerdict
 from acquisition.arrays import BoolArray, FloatArray
 from acquisition.estimators import kept_hits
 from acquisition.hit_checks import noise_level, upright
+from acquisition.warned import Consequential
 
 WEAK, FILTERED = 1e-2, 1e-4
 """Power of the force: 20 dB under its largest, lines without coherence count as lost; 40 dB under what it is just
@@ -55,7 +56,7 @@ def informed_band(
         return band, None
     first, last = _longest(inside & ~lost)
     if last - first < 2 * ABOUT:
-        return band, (
+        return band, Consequential(
             f"hardly a line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak there; "
             "do not trust modes of this band"
         )
@@ -66,7 +67,7 @@ def informed_band(
         if tests
         else "the coherence is lost"
     )
-    return (low, high), (
+    return (low, high), Consequential(
         f"modes are sought from {low:.4g} to {high:.4g} Hz only, not from {band[0]:.4g} to {band[1]:.4g} Hz as asked: "
         f"{why} in the rest; hit with a harder tip, sample faster, or name a mode there with add, to go further"
     )

@@ -25,6 +25,7 @@ from acquisition import (
     state_window,
 )
 from acquisition.display import Displayed
+from acquisition.warned import Consequential, in_order
 from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
 from modalkit.frf_checks import identical, without_constant
@@ -110,8 +111,17 @@ class Processed(Displayed):
         """Identify the modes of a band; see :func:`identification.identify`.
 
         Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
-        the part in which the FRFs carry information, and what was done is among the warnings.
+        the part in which the FRFs carry information, and what was done is among the warnings; so is what was found of
+        the hits that changes a number, as a window that nobody stated.
         """
+        model = self._modes(band, order, add, drop)
+        own = [w for w in self.warnings if isinstance(w, Consequential)]
+        warnings = in_order([*own, *model.warnings])
+        return model if warnings == model.warnings else replace(model, warnings=warnings)
+
+    def _modes(
+        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
+    ) -> ModalModel:
         from identification import identify
 
         reach = self._reach([*add, *drop]) if band is None else None
@@ -120,7 +130,7 @@ class Processed(Displayed):
         if reach is None:
             return identify(self.frfs, band=band, order=order, add=add, drop=drop)
         model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
-        said = (
+        said = Consequential(
             f"the force is 20 dB down at {reach[1]:.4g} Hz: modes are looked for below that; give a band to go "
             "further"
         )
@@ -253,7 +263,7 @@ def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -
     frfs = without_constant(frfs, warnings)
     warnings += [*identical(frfs), *on_coherence(frfs, [(j.test, j.verdicts) for j in judged])]
     frfs = without_sensors(frfs, handling.sensor_masses, warnings)
-    return Processed(content, frfs, judged, handling, tuple(dict.fromkeys(warnings)))
+    return Processed(content, frfs, judged, handling, in_order(warnings))
 
 
 def _as_read(frfs: FrfSet, handling: Handling, warnings: list[str]) -> FrfSet:

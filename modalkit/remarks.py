@@ -9,6 +9,7 @@ import numpy as np
 from acquisition import FrfSet, HammerTest, HitVerdict, rejected_points, unstated_window
 from acquisition.estimators import kept_hits
 from acquisition.hit_checks import agreement
+from acquisition.warned import Consequential
 
 NAMED = 8
 """Most points listed in a message."""
@@ -86,7 +87,7 @@ def on_coherence(frfs: FrfSet, judged: Sequence[tuple[HammerTest, Sequence[HitVe
         return []
     mean, count = np.asarray(frfs.coherence).mean(axis=1), np.asarray(frfs.averages)
     lacking = (1 - mean) * count / np.maximum(count - 1, 1)  # few averages make coherence too high
-    remarks = []
+    remarks: list[str] = []
     for row, response in enumerate(frfs.responses):
         rows = [i for i, dof in enumerate(frfs.responses) if dof == response and i != row]
         if len(rows) < OTHERS or lacking[row] < max(
@@ -94,10 +95,11 @@ def on_coherence(frfs: FrfSet, judged: Sequence[tuple[HammerTest, Sequence[HitVe
         ):
             continue
         where = f"{response}/{frfs.references[row]}"
-        remarks.append(
+        text = (
             f"the mean coherence of {where} is {mean[row]:.2f}, of the other FRFs of {response} {mean[rows].min():.2f} "
             f"to {mean[rows].max():.2f}: {_culprit(str(frfs.references[row]), judged)}"
         )
+        remarks.append(Consequential(text))
     return remarks
 
 
@@ -134,11 +136,12 @@ def on_window(test: HammerTest) -> list[str]:
     decay = unstated_window(test)
     if decay is None:
         return []
-    return [
-        f"{test.source}: the noise of the force decays at {decay:.3g} 1/s, or the tops of clipped hits do: an "
+    text = (
+        f"{test.source}: the force decays at {decay:.3g} 1/s (its noise, or the tops of clipped hits): an "
         "exponential window seems to have been applied, which makes every damping too high; state it with --decay or "
         "exponential_window"
-    ]
+    )
+    return [Consequential(text)]
 
 
 def _listed(names: Sequence[str]) -> str:

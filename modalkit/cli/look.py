@@ -19,6 +19,7 @@ from acquisition import (
     write_uff,
 )
 from acquisition.display import counted
+from acquisition.warned import in_order
 from modalkit.cli.common import (
     check_folder,
     is_study,
@@ -236,7 +237,7 @@ def identify(
         show_rejected(processed.hits, model.points_rejected)
         if check:
             show_second_opinion(processed, model)
-    warnings = [*(() if processed is None else processed.warnings), *model.warnings]
+    warnings = in_order([*(() if processed is None else processed.warnings), *model.warnings])
     show_warnings(warnings)
     save_modes(processed, model, warnings, json, output)
     show_figures(figures, lambda: _drawn(*(() if processed is None else (processed,)), model))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, HammerPlan, HammerTest, hammer_test, modal_system, write_uff
+from acquisition.warned import Consequential, in_order, prefixed
 from modalkit import read
 from modalkit.cli import main
 
@@ -76,3 +77,27 @@ def test_an_frf_far_less_coherent_than_its_siblings_is_named_with_the_hit(tmp_pa
     assert "the mean coherence of 5+Z/4+Z is 0." in said and "--leave 4+Z:2" in said
     write_uff(path, tests=test)
     assert not any("mean coherence" in w for w in read(path).warnings)
+
+
+def test_an_unstated_window_is_shown_with_the_test_and_with_its_modes(tmp_path: Path) -> None:
+    """It raises every damping, so it stands before what changes nothing, wherever a result shows itself."""
+    path = tmp_path / "hits.uff"
+    write_uff(path, tests=clipped_and_windowed(part=1.0))
+    found = read(path)
+    modes = found.identify(band=(10.0, 200.0))
+    for shown in (repr(found), repr(modes)):
+        assert "an exponential window seems to have been applied" in shown.split("\n")[1]
+    assert modes.warnings[0].endswith("state it with --decay or exponential_window")
+    stated = read(path, decay=DECAY)
+    assert "window seems" not in repr(stated) + repr(stated.identify(band=(10.0, 200.0)))
+
+
+def test_warnings_that_change_a_number_come_first() -> None:
+    warnings = [
+        "units are assumed",
+        Consequential("the damping is too high"),
+        "units are assumed",
+        "no title",
+    ]
+    assert in_order(warnings) == ("the damping is too high", "units are assumed", "no title")
+    assert in_order([prefixed("baseline: ", w) for w in warnings])[0] == "baseline: the damping is too high"
