@@ -81,6 +81,14 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}" + ("" if count == 1 else "s")
 
 
+def named_files(paths: Sequence[object]) -> str:
+    """Return the names of files for a line: all of a few, of many how many and the first and last."""
+    names = [str(path) for path in paths]
+    if len(names) <= ITEMS:
+        return ", ".join(names)
+    return f"{len(names)} files, {names[0]} to {names[-1]}"
+
+
 def _empty(value: Any) -> bool:
     return isinstance(value, str | tuple | list | Mapping) and not value
 

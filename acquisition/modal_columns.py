@@ -112,7 +112,10 @@ def _fault(entry: str) -> str:
     number = _NUMBER.match(entry)
     if number is not None and _UNIT.fullmatch(entry, number.end()):
         unit = entry[number.end() :].strip()
-        return f"is no number but has a unit; write {number[0]} alone, in the unit of the heading, as in 'frequency [Hz]' (here {unit})"
+        return (
+            f"is no number but has a unit, {unit}; write {number[0]} alone, in the unit of the heading, as in "
+            "'frequency [Hz]'"
+        )
     return "is no number (use decimal points)"
 
 

@@ -157,15 +157,22 @@ def _judge_point(
     _add_outliers(hits, faults, widths, max(band[1] for band in bands) / test.rate)
     notes = _odd_pair(hits, faults, min(band[0] for band in bands) / test.rate)
     return [
-        _verdict(hits, number, wave, fault, notes.get(number, ()), test)
+        _verdict(
+            hits, number, (wave, float(widths[number]), bands[number]), fault, notes.get(number, ()), test
+        )
         for number, (wave, fault) in enumerate(zip(waves, faults, strict=True))
     ]
 
 
 def _verdict(
-    hits: Hits, number: int, wave: FloatArray, faults: list[str], more: tuple[str, ...], test: HammerTest
+    hits: Hits,
+    number: int,
+    pulse: tuple[FloatArray, float, tuple[float, float]],
+    faults: list[str],
+    more: tuple[str, ...],
+    test: HammerTest,
 ) -> HitVerdict:
-    bands = force_bands(wave, test.rate)
+    wave, width, bands = pulse
     notes = [*_notes(hits, number, wave, test), *more]
     return HitVerdict(
         point=hits.reference,
@@ -173,7 +180,7 @@ def _verdict(
         used=not faults,
         reasons=(*faults, *notes),
         peak=float(wave.max()),
-        width=pulse_width(wave, test.rate),
+        width=width,
         band10=bands[0],
         band20=bands[1],
     )

@@ -24,7 +24,7 @@ from acquisition import (
     split_hits,
     state_window,
 )
-from acquisition.display import Displayed
+from acquisition.display import Displayed, named_files
 from acquisition.warned import Consequential, in_order
 from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
@@ -258,7 +258,7 @@ def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -
     elif content.frfs is not None:
         frfs = _as_read(content.frfs, handling, warnings)
     else:
-        names = ", ".join(str(p) for p in paths)
+        names = named_files(paths)
         raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
     frfs = without_constant(frfs, warnings)
     warnings += [*identical(frfs), *on_coherence(frfs, [(j.test, j.verdicts) for j in judged])]

@@ -18,7 +18,7 @@ from acquisition import (
     reciprocity,
     write_uff,
 )
-from acquisition.display import counted
+from acquisition.display import counted, named_files
 from acquisition.warned import in_order
 from modalkit.cli.common import (
     check_folder,
@@ -84,7 +84,7 @@ def inspect(
     said = Handling(decay=decay)
     with reading() as progress:
         content = read_files(files, layout=layout, progress=progress)
-    out.print(f"{', '.join(map(str, files))}: {content.title or 'no title'}", markup=False)
+    out.print(named_files(files) + (f": {content.title}" if content.title else ""), markup=False)
     if content.datasets:
         show_table(content.table() if every else _in_short(content))
     out.print("usable: " + ("; ".join(_usable(content)) or "nothing"))
@@ -98,7 +98,7 @@ def inspect(
     for verdicts in judged:
         show_hits(verdicts)
     if content.modal is not None and len(content.modal):
-        show_modes(Modes(content.modal, ", ".join(map(str, files))))
+        show_modes(Modes(content.modal, named_files(files)))
     bad = [d for d in content.datasets if not d.ok]
     all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
     error = f"{bad[0].place}: {bad[0].message}" if all_bad else ""

@@ -14,7 +14,7 @@ import acquisition
 import identification
 import modalkit
 import updating
-from acquisition.display import Displayed, described
+from acquisition.display import Displayed, described, named_files
 from modalkit import figures
 from modalkit.cli.demonstrate import sample
 from updating import Diagnosis
@@ -151,3 +151,8 @@ def test_strings_are_taken_as_paths(tmp_path: Any, session: modalkit.Session) ->
     test.write(str(tmp_path / "t.uff"))
     assert modalkit.read(str(tmp_path / "t.uff")).hits
     assert figures.save_figures({}, str(tmp_path / "figures")) == []
+
+
+def test_many_files_take_one_short_line() -> None:
+    assert named_files(["a.csv", "b.csv"]) == "a.csv, b.csv"
+    assert named_files([f"h{n}.csv" for n in range(18)]) == "18 files, h0.csv to h17.csv"
