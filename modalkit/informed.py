@@ -57,8 +57,8 @@ def informed_band(
     first, last = _longest(inside & ~lost)
     if last - first < 2 * ABOUT:
         return band, Consequential(
-            f"hardly a line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak there; "
-            "do not trust modes of this band"
+            f"hardly a spectral line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak "
+            "there; do not trust modes of this band"
         )
     low = band[0] if not (lost & inside)[:first].any() else float(frfs.frequency[first])
     high = band[1] if not (lost & inside)[last:].any() else float(frfs.frequency[last])
