@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from html import escape
 from numbers import Number
 from typing import TYPE_CHECKING, Any
+
+from acquisition.warned import in_order
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,8 +49,9 @@ class Displayed:
         return table() if callable(table) else table
 
     def __repr__(self) -> str:
-        """Return one line, and the table below it."""
+        """Return one line, how many warnings there are with the first of them, and the table below."""
         line, rows = f"{type(self).__name__}: {_cut(self._headline(), LONGEST)}", self._frame()
+        line += _warned(getattr(self, "warnings", ()))
         if rows is None or not len(rows):
             return line
         return f"{line}\n{rows.to_string(max_rows=LINES, max_colwidth=WIDTH, float_format=_number)}"
@@ -76,6 +79,14 @@ def described(result: Any) -> str:
 def counted(count: int, noun: str) -> str:
     """Return a count with its noun, in the plural where it is one: ``3 modes``."""
     return f"{count} {noun}" + ("" if count == 1 else "s")
+
+
+def named_files(paths: Sequence[object]) -> str:
+    """Return the names of files for a line: all of a few, of many how many and the first and last."""
+    names = [str(path) for path in paths]
+    if len(names) <= ITEMS:
+        return ", ".join(names)
+    return f"{len(names)} files, {names[0]} to {names[-1]}"
 
 
 def _empty(value: Any) -> bool:
@@ -116,8 +127,18 @@ def _number(value: float) -> str:
     return f"{value:.6g}"
 
 
+def _warned(warnings: Sequence[str]) -> str:
+    """Return a line with the number of warnings and the first of those that matter most; empty where there is none."""
+    if not isinstance(warnings, tuple | list) or not warnings:
+        return ""
+    first = _cut(str(in_order(warnings)[0]), LONGEST)
+    return (
+        f"\n{counted(len(dict.fromkeys(warnings)), 'warning')}{', the first' * (len(warnings) > 1)}: {first}"
+    )
+
+
 def _warnings(warnings: tuple[str, ...]) -> str:
     if not warnings:
         return ""
-    items = "".join(f"<li>{escape(str(w))}</li>" for w in warnings)
+    items = "".join(f"<li>{escape(str(w))}</li>" for w in in_order(warnings))
     return f"<details><summary>{counted(len(warnings), 'warning')}</summary><ul>{items}</ul></details>"

@@ -18,6 +18,8 @@ _AXES = ("X", "Y", "Z", "RX", "RY", "RZ")
 PERCENT = 0.01
 _NUMBER = re.compile(r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?")
 
+_UNIT = re.compile(r"\s*[A-Za-z%°][A-Za-z0-9/^%° -]{0,20}")
+
 HEADINGS: dict[str, dict[str, float]] = {
     "frequency": dict.fromkeys(("frequency", "frequency_hz", "frequency [hz]", "f"), 1.0),
     "sigma": dict.fromkeys(("sigma", "frequency_sigma", "frequency_sigma_hz", "sigma [hz]"), 1.0),
@@ -105,11 +107,23 @@ def numbers(column: pd.Series[str], name: str, path: Path, scale: float = 1.0) -
     words = ["nan" if word.lower() in ("nan", "") else word for word in words]
     for entry, word in zip(entries, words, strict=True):
         if word != "nan" and _NUMBER.fullmatch(word) is None:
-            raise InputError(f"{path}: {entry[:40]!r} in column {name!r} is no number (use decimal points)")
+            raise InputError(f"{path}: {entry[:40]!r} in column {name!r} {_fault(entry)}")
     numbers = np.array([float(word) for word in words], dtype=np.float64)
     if np.isinf(numbers).any():
         raise InputError(f"{path}: a number in column {name!r} is beyond all bounds; correct it")
     return numbers * np.where(share, PERCENT, scale)
+
+
+def _fault(entry: str) -> str:
+    """Return what is wrong with an entry that is no number, and what to do."""
+    number = _NUMBER.match(entry)
+    if number is not None and _UNIT.fullmatch(entry, number.end()):
+        unit = entry[number.end() :].strip()
+        return (
+            f"is no number but has a unit, {unit}; write {number[0]} alone, in the unit of the heading, as in "
+            "'frequency [Hz]'"
+        )
+    return "is no number (use decimal points)"
 
 
 def dof(name: str) -> Dof | None:

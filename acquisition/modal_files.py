@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from acquisition.columns.blocks import Style
 from acquisition.dof import Dof
 from acquisition.encoding import not_utf8
 from acquisition.errors import InputError
@@ -19,7 +20,8 @@ from acquisition.uff import read_uff
 
 TABLES = (".csv", ".txt")
 """Endings of tables of modes."""
-_SEPARATORS = {";": "semicolons", "\t": "tabulators"}
+NAMES = {",": "commas", ";": "semicolons", "\t": "tabulators"}
+"""What may separate the columns of a table of modes, in this order, and how messages call it."""
 
 
 def read_modes(path: Path | str) -> ModalData:
@@ -29,7 +31,8 @@ def read_modes(path: Path | str) -> ModalData:
     ``damping_sigma`` [-] are optional, or ``damping_percent`` and ``damping_sigma_percent``, as are shape columns
     named by degree of freedom, ``3+Z`` (real part), ``3+Z imag`` and ``3+Z sigma``, and ``scaled``, 1 where the
     shapes are mass-normalised. Rows with ``x``, ``y`` or ``z`` in place of a frequency give the
-    coordinates of the shape columns' points [m]. Lines that begin with # are comments.
+    coordinates of the shape columns' points [m]. Columns are separated by commas, or by semicolons or tabulators, and
+    then numbers may have decimal commas. Lines that begin with # are comments.
 
     Parameters
     ----------
@@ -132,8 +135,10 @@ def _geometry(points: pd.DataFrame, dofs: dict[str, Dof], path: Path) -> Geometr
 
 
 def _table(path: Path) -> pd.DataFrame:
+    separator = ","
     try:
-        table = pd.read_csv(path, comment="#", skipinitialspace=True, dtype=str)
+        separator = _separator(path)
+        table = pd.read_csv(path, sep=separator, comment="#", skipinitialspace=True, dtype=str)
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
     except UnicodeDecodeError as error:
@@ -144,22 +149,36 @@ def _table(path: Path) -> pd.DataFrame:
         raise InputError(said) from error
     except (ValueError, pd.errors.ParserError) as error:
         said = " ".join(str(error).split())
-        raise InputError(f"{path}: is no table of comma-separated columns ({said})") from None
+        raise InputError(f"{path}: is no table of columns separated by {NAMES[separator]} ({said})") from None
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise InputError(f"{path}: lines have more values than the header has names; name every column")
     table.columns = [str(name).strip() for name in table.columns]
-    _check_separators(path, list(table.columns))
     if table.empty:
         raise InputError(f"{path}: holds no mode; give a header row and one row per mode")
-    return table
+    return table if separator == "," else _with_points(table, path)
 
 
-def _check_separators(path: Path, names: list[str]) -> None:
-    """See that the columns are separated by commas, or say what to type."""
-    for mark, word in _SEPARATORS.items():
-        if len(names) == 1 and mark in names[0]:
-            header = ",".join(part.strip() for part in names[0].split(mark))
-            raise InputError(
-                f"{path}: its columns are separated by {word}, a table of modes has commas, and points in its "
-                f"numbers: write the header as {header}, and the rows likewise"
-            )
+def _separator(path: Path) -> str:
+    """Return what separates the names of the header: a comma if there is one, else a semicolon or a tabulator."""
+    with path.open(encoding="utf-8") as file:
+        header = next((line for line in file if line.strip() and not line.startswith("#")), "")
+    return next((mark for mark in NAMES if mark in header), ",")
+
+
+def _with_points(table: pd.DataFrame, path: Path) -> pd.DataFrame:
+    """Return a table without commas between its columns with points in its numbers, where it has commas.
+
+    Raises
+    ------
+    InputError
+        If some numbers have a comma and others a point: one of them may part thousands.
+    """
+    style = Style(None, ",")
+    cells = [str(cell).strip().rstrip("% ") for name in table for cell in table[name].dropna()]
+    commas = [cell for cell in cells if "," in cell and style.is_number(cell)]
+    points = [cell for cell in cells if "." in cell and Style(None, ".").is_number(cell)]
+    if commas and points:
+        raise InputError(
+            f"{path}: {points[0]!r} has a point and {commas[0]!r} a comma; write all numbers with one of them"
+        )
+    return table.apply(lambda cells: cells.str.replace(",", ".", regex=False)) if commas else table

@@ -27,6 +27,7 @@ from acquisition.hit_checks import (
     why_broken,
 )
 from acquisition.verdicts import HitVerdict
+from acquisition.windows import unstated_window
 
 TOO_WEAK = 0.2  # of the median peak of the test
 TOO_STRONG = 4.0  # times the median peak of the test
@@ -37,7 +38,7 @@ OFFSET = 0.01  # of the peak
 AGREEING = 0.8  # mean coherence that two hits at a point reach
 
 REGROWTH = 5.0
-"""Most that the decay of an exponential window is taken back in a force record [-]."""
+"""Most that the decay of an exponential window is taken back in a force record, from its pulse on [-]."""
 
 
 def judge_hits(test: HammerTest) -> tuple[HitVerdict, ...]:
@@ -88,12 +89,25 @@ def _judge_sound(whole: HammerTest, points: list[Hits]) -> list[HitVerdict]:
         return []
     test = replace(whole, points=tuple(points))
     usual = _usual_peak(test)
-    limits = _at_limits(test)
+    window = test.decay or unstated_window(whole) or 0.0
+    level = [_without_window(point, window, test.rate) for point in test.points]
+    limits = _at_limits(level)
     return [
         verdict
-        for point, over in zip(test.points, limits, strict=True)
-        for verdict in _judge_point(point, test, usual, over)
+        for point, flat, over in zip(test.points, level, limits, strict=True)
+        for verdict in _judge_point(point, test, usual, flat, over)
     ]
+
+
+def _without_window(hits: Hits, decay: float, rate: float) -> Hits:
+    """Return the records as they were before a window of that decay [1/s], in forces as far as their pulses reach."""
+    if not decay:
+        return hits
+    growth = np.exp(decay * np.arange(hits.force.shape[-1]) / rate)
+    at_pulse = growth[np.abs(hits.force).argmax(axis=-1)][:, None]
+    return replace(
+        hits, force=hits.force * np.minimum(growth, REGROWTH * at_pulse), motion=hits.motion * growth
+    )
 
 
 def _usual_peak(test: HammerTest) -> float:
@@ -104,36 +118,36 @@ def _usual_peak(test: HammerTest) -> float:
     return float(np.median(peaks[clear] if clear.any() else peaks))
 
 
-def _at_limits(test: HammerTest) -> list[tuple[BoolArray, BoolArray]]:
+def _at_limits(points: list[Hits]) -> list[tuple[BoolArray, BoolArray]]:
     """Return for every point which hits end at the limit of the force channel, and of which response's."""
-    force = at_common_limit([wave for p in test.points for wave in p.force])
+    force = at_common_limit([wave for p in points for wave in p.force])
     limits = []
     start = 0
-    for p in test.points:
+    for p in points:
         limits.append((force[start : start + p.count], np.zeros((p.count, len(p.responses)), dtype=np.bool_)))
         start += p.count
-    for dof in dict.fromkeys(d for p in test.points for d in p.responses):
-        rows = [(k, p.responses.index(dof)) for k, p in enumerate(test.points) if dof in p.responses]
-        over = at_common_limit([wave for k, row in rows for wave in test.points[k].motion[:, row]])
+    for dof in dict.fromkeys(d for p in points for d in p.responses):
+        rows = [(k, p.responses.index(dof)) for k, p in enumerate(points) if dof in p.responses]
+        over = at_common_limit([wave for k, row in rows for wave in points[k].motion[:, row]])
         start = 0
         for k, row in rows:
-            limits[k][1][:, row] = over[start : start + test.points[k].count]
-            start += test.points[k].count
+            limits[k][1][:, row] = over[start : start + points[k].count]
+            start += points[k].count
     return limits
 
 
 def _judge_point(
-    hits: Hits, test: HammerTest, usual: float, limits: tuple[BoolArray, BoolArray]
+    hits: Hits, test: HammerTest, usual: float, level: Hits, limits: tuple[BoolArray, BoolArray]
 ) -> list[HitVerdict]:
-    growth = np.exp(test.decay * np.arange(test.samples) / test.rate)
+    """Judge the hits of one entry; ``level`` are their records without any window, stated or not."""
     # whether the force was windowed too is not known: take back enough for a second hit, not so much that noise is one
-    force, motion = hits.force * np.minimum(growth, REGROWTH), hits.motion * growth
+    force, motion = (level if test.decay else hits).force, (level if test.decay else hits).motion
     waves = upright(force)
     widths = np.array([pulse_width(wave, test.rate) for wave in waves])
     faults = [_force_faults(wave, usual, test.rate) for wave in waves]
-    over_force = clipped(force) | limits[0] | np.array([flat_pulse(wave) for wave in waves])
+    over_force = clipped(level.force, least=2) | limits[0] | np.array([flat_pulse(wave) for wave in waves])
     flat = np.array([[flat_waves(record) for record in records] for records in motion])
-    over_motion = clipped(motion) | limits[1] | flat
+    over_motion = clipped(level.motion) | limits[1] | flat
     dead = np.asarray(np.ptp(hits.motion, axis=-1) == 0)
     for number, (over_f, over_m, alive, still) in enumerate(
         zip(over_force, over_motion, dead_from(motion), dropouts(motion), strict=True)
@@ -143,15 +157,22 @@ def _judge_point(
     _add_outliers(hits, faults, widths, max(band[1] for band in bands) / test.rate)
     notes = _odd_pair(hits, faults, min(band[0] for band in bands) / test.rate)
     return [
-        _verdict(hits, number, wave, fault, notes.get(number, ()), test)
+        _verdict(
+            hits, number, (wave, float(widths[number]), bands[number]), fault, notes.get(number, ()), test
+        )
         for number, (wave, fault) in enumerate(zip(waves, faults, strict=True))
     ]
 
 
 def _verdict(
-    hits: Hits, number: int, wave: FloatArray, faults: list[str], more: tuple[str, ...], test: HammerTest
+    hits: Hits,
+    number: int,
+    pulse: tuple[FloatArray, float, tuple[float, float]],
+    faults: list[str],
+    more: tuple[str, ...],
+    test: HammerTest,
 ) -> HitVerdict:
-    bands = force_bands(wave, test.rate)
+    wave, width, bands = pulse
     notes = [*_notes(hits, number, wave, test), *more]
     return HitVerdict(
         point=hits.reference,
@@ -159,7 +180,7 @@ def _verdict(
         used=not faults,
         reasons=(*faults, *notes),
         peak=float(wave.max()),
-        width=pulse_width(wave, test.rate),
+        width=width,
         band10=bands[0],
         band20=bands[1],
     )
@@ -193,12 +214,12 @@ def _channel_faults(
     def named(which: BoolArray) -> str:
         return _named(hits, which)
 
-    faults = ["overload: the force has a flat top"] if over_force else []
+    faults = ["overload: the force is clipped, its top is flat"] if over_force else []
     over_motion = over_motion & ~dead
     if dead.all():
         faults.append(f"no response: {named(dead)} dead, the record is constant")
     if over_motion.any():
-        faults.append(f"overload: flat tops at response {named(over_motion)}")
+        faults.append(f"overload: response {named(over_motion)} is clipped, its tops are flat")
     if (alive < 1).any():
         part = 100 * alive.min()
         faults.append(f"response cut off after {part:.0f} % of the record at {named(alive < 1)}")

@@ -150,7 +150,8 @@ def decide(
             reasons = v.reasons if v.used else (*v.reasons, "used by the user's decision")
             decided.append(replace(v, used=True, reasons=reasons))
         elif name in unwanted:
-            decided.append(replace(v, used=False, reasons=(*v.reasons, "left out by the user")))
+            said = "left out by the user" + ("" if v.used else ", who agrees")
+            decided.append(replace(v, used=False, reasons=(*v.reasons, said)))
         else:
             decided.append(v)
     return tuple(decided)

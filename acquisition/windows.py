@@ -11,7 +11,7 @@ from scipy import special
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from acquisition.hammer import HammerTest, Hits
-from acquisition.hit_checks import pulse_ends, upright
+from acquisition.hit_checks import pulse_ends, top_decay, upright
 
 QUIET = 16  # samples before a hit that tell the offset of a response
 
@@ -190,22 +190,29 @@ def force_noise_decay(test: HammerTest) -> float | None:
 
 
 def unstated_window(test: HammerTest) -> float | None:
-    """Return the decay of an exponential window that nobody stated, as the noise of the force has it [1/s].
+    """Return the decay of an exponential window that nobody stated, as the force records have it [1/s].
 
     None if the test states a decay, or the noise decays no more than chance lets it seem to: the limit is
-    Student's t of probability 1e-5 times the standard error, and 0.5 1/s.
+    Student's t of probability 1e-5 times the standard error, and 0.5 1/s. Where there are tops of clipped pulses that
+    fall at that rate, theirs is the more exact one; where there is no noise, they alone tell.
 
     Parameters
     ----------
     test : HammerTest
         Records as they were stored.
     """
-    heard = None if test.decay else _rates(test)
-    if heard is None:
+    if test.decay:
         return None
-    rate, error, freedom = heard
+    noise = _rates(test)
+    forces = [force for point in test.points for force in point.force]
+    if noise is None:
+        return top_decay(forces, test.rate)
+    rate, error, freedom = noise
     limit = max(3.0, -float(special.stdtrit(freedom, 1e-5))) * error
-    return rate if rate > max(0.5, limit) else None
+    if rate > max(0.5, limit):
+        return top_decay(forces, test.rate, about=(rate - limit, rate + limit)) or rate
+    slanted = top_decay(forces, test.rate)
+    return slanted if slanted is not None and abs(slanted - rate) < limit else None
 
 
 def _rates(test: HammerTest) -> tuple[float, float, int] | None:

@@ -7,6 +7,7 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frf import FrfSet
 from acquisition.reciprocity import reciprocity
+from acquisition.warned import Consequential
 
 _AT_REST = 0.02  # part of a mode left at the end of a record that is worth a word
 _NARROW = 0.1  # half-power bandwidth in lines under which a mode is rather a tone
@@ -93,11 +94,12 @@ def _ringing(frfs: FrfSet, poles: ComplexArray) -> tuple[str, ...]:
     which = np.flatnonzero(left > _AT_REST)
     if not len(which):
         return ()
-    return (
+    text = (
         f"mode(s) {_numbers(which)}: {100 * left.max():.0f} % is left at the end of a record of {1 / frfs.df:.3g} s "
         "(1/df). If the FRFs come from records that long, leakage biases their damping and level: record longer, or "
-        "use an exponential window",
+        "use an exponential window"
     )
+    return (Consequential(text),)
 
 
 def _drifting(poles: ComplexArray, scatter: FloatArray) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet
 from acquisition.modal_data import ModalData
+from acquisition.warned import Consequential
 from identification import covariance, doubts
 from identification.arrangement import arrange, signs, unsigned
 from identification.disagreement import Disagreement
@@ -36,9 +37,8 @@ _HIGHEST = 400
 # Standard deviations by which constants of a mode exceed their noise, in r.m.s. over the FRFs, where it is one even
 # if the damping is not resolved, as between lines far apart. Noise fitted by a pole has 1 to 2, such modes above 70.
 _CLEAR = 5.0
-_DRIFT = (
-    0.1  # damping ratios that frequencies must differ by for a word: a peak that moves by less looks the same
-)
+# Damping ratios by which frequencies must differ for a word: a peak that moves by less looks the same.
+_DRIFT = 0.05
 _BEYOND = 2.0  # a band may end beyond the lines, but not at a number that scales their background to nothing
 
 
@@ -282,13 +282,14 @@ def _warnings(fitted: Fitted, poles: ComplexArray) -> tuple[str, ...]:
             "and what that leaves in doubt is in the standard deviations"
         )
     if not fitted.fit.converged:
-        notes.append("the refinement of the poles did not come to rest; standard deviations may be too small")
+        notes.append("the refinement of the poles did not converge; standard deviations may be too small")
     left = fitted.excess()
     if fitted.measured and left > _POOR_FIT:
-        notes.append(
+        poor = (
             f"the fit leaves {left:.2g} times the power of the noise: modes are missing in it, or the FRFs do not "
             "belong together; narrow the band or raise the order"
         )
+        notes.append(Consequential(poor))
     if fitted.rank_excess > 1.0:
         notes.append(
             f"the references do not agree on the shapes: holding each mode to one shape raises the misfit to "

@@ -13,6 +13,7 @@ from acquisition.frf import FrfSet
 from acquisition.hammer import HammerTest
 from acquisition.hit_checks import noise_level, upright
 from acquisition.verdicts import HitVerdict
+from acquisition.warned import Consequential
 
 WEAK, FILTERED = 1e-2, 1e-4
 """Power of the force: 20 dB under its largest, lines without coherence count as lost; 40 dB under what it is just
@@ -62,9 +63,9 @@ def informed_band(
     runs = _runs(inside & ~lost)
     first, last = runs[0].tolist() if len(runs) else (0, 0)
     if last - first < 2 * ABOUT:
-        return band, (
-            f"hardly a line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak there; "
-            "do not trust modes of this band"
+        return band, Consequential(
+            f"hardly a spectral line from {band[0]:.4g} to {band[1]:.4g} Hz carries information: the force is too weak "
+            "there; do not trust modes of this band"
         )
     low = band[0] if not (lost & inside)[:first].any() else float(frfs.frequency[first])
     high = band[1] if not (lost & inside)[last:].any() else float(frfs.frequency[last])
@@ -78,7 +79,7 @@ def informed_band(
         for a, b in runs[1:]
         if b - a >= 2 * ABOUT
     ]
-    return (low, high), (
+    return (low, high), Consequential(
         f"modes are sought from {low:.4g} to {high:.4g} Hz only, not from {band[0]:.4g} to {band[1]:.4g} Hz as asked: "
         f"{why} in the rest; hit with a harder tip, sample faster, or name a mode there with add, to go further"
         + (

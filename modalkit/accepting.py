@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from acquisition.errors import StudyError
+from acquisition.si_units import si_value
 from modalkit.study_errors import nearest
-from modalkit.study_units import si_value
 from updating import LIBRARY
 
 SOME = "points"

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from acquisition import InputError, ModalData
-from acquisition.display import Displayed
+from acquisition.display import Displayed, named_files
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -74,4 +74,4 @@ def existing(
     """Return the modes that files hold, None where they hold none."""
     if modal is None or not len(modal):
         return None
-    return Modes(modal, ", ".join(str(p) for p in paths), title, (*warnings, *modal.doubts()))
+    return Modes(modal, named_files(paths), title, (*warnings, *modal.doubts()))

@@ -90,7 +90,7 @@ def sensor_mass(text: str) -> tuple[str, float]:
     try:
         mass = float(number)
     except ValueError:
-        from modalkit.study_units import si_value  # loads a table of units: not for plain numbers
+        from acquisition.si_units import si_value  # loads a table of units: not for plain numbers
 
         try:
             mass = float(si_value(number, "kg"))

@@ -164,7 +164,7 @@ def _closes(diagnosis: Diagnosis) -> str:
 
 def _teller(shrink: Shrink) -> Callable[[float], str]:
     if shrink.metric == "combined":
-        return lambda value: f"{value / 100:.2g} sigma"
+        return lambda value: f"{number(float(f'{value / 100:.2g}'))} sigma"
     return lambda value: f"{float(f'{value:.2g}' if value < 10 else f'{value:.3g}'):g} %"
 
 
@@ -175,7 +175,7 @@ def _stretched(shrink: Shrink) -> str:
 
 
 def _sure(diagnosis: Diagnosis) -> str:
-    least = f"p = {diagnosis.p_value:.1g}" if diagnosis.p_value > 0 else "p below 1e-300"
+    least = f"p = {diagnosis.p_value:.1g}" if diagnosis.p_value > 0 else "p < 1e-300"
     chance = f"chance alone makes such a gap with {least}"
     if diagnosis.verdict == "none":
         return chance

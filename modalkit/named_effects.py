@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from acquisition.errors import InputError, StudyError
+from acquisition.si_units import si_value
 from modalkit.accepting import SOME, nodes, unit_of
-from modalkit.study_units import si_value
 from updating import LIBRARY, Predictor
 from updating.effects import check_values
 from updating.models.state import State

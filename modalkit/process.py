@@ -12,6 +12,7 @@ import numpy as np
 
 from acquisition import ModalData, StudyError, Windows, read_mat, read_modes
 from acquisition.display import Displayed
+from acquisition.warned import prefixed
 from identification import ModalModel, frf_health, level_dependence
 from modalkit.files import Progress
 from modalkit.handling import Handling
@@ -85,7 +86,7 @@ def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Sess
     )
     own = [w for part in (processed, identified) if part is not None for w in part.warnings]
     own += _health(processed, identified)
-    own += [f"baseline: {w}" for part in before if part is not None for w in part.warnings]
+    own += [prefixed("baseline: ", w) for part in before if part is not None for w in part.warnings]
     return Session(study, case, processed, identified, tuple(dict.fromkeys(own)))
 
 

@@ -24,7 +24,8 @@ from acquisition import (
     split_hits,
     state_window,
 )
-from acquisition.display import Displayed
+from acquisition.display import Displayed, named_files
+from acquisition.warned import Consequential, in_order
 from modalkit.existing import Modes, existing
 from modalkit.files import Progress, read_files
 from modalkit.frf_checks import identical, without_constant
@@ -32,7 +33,7 @@ from modalkit.handling import Handling
 from modalkit.joining import together
 from modalkit.levels import with_level_warning
 from modalkit.mixed import with_read
-from modalkit.remarks import on_hits, on_window
+from modalkit.remarks import on_coherence, on_hits, on_window
 from modalkit.sensors import without_sensors
 
 if TYPE_CHECKING:
@@ -110,8 +111,18 @@ class Processed(Displayed):
         """Identify the modes of a band; see :func:`identification.identify`.
 
         Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
-        the part in which the FRFs carry information, and what was done is among the warnings.
+        the part in which the FRFs carry information, and what was done is among the warnings; so is what was found of
+        the hits that changes a number, as a window that nobody stated.
         """
+        model = self._modes(band, order, add, drop)
+        own = [w for w in self.warnings if isinstance(w, Consequential)]
+        warnings = in_order([*own, *model.warnings])
+        return model if warnings == model.warnings else replace(model, warnings=warnings)
+
+    def _modes(
+        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
+    ) -> ModalModel:
+        """Identify, and say whether frequencies follow the level of the hits."""
         model = self._identified(band, order, add, drop)
         if self.handling.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
             return model
@@ -119,11 +130,7 @@ class Processed(Displayed):
         return with_level_warning(model, [(j.test, j.verdicts) for j in self.judged], windows=windows)
 
     def _identified(
-        self,
-        band: tuple[float, float] | None,
-        order: int | None,
-        add: Sequence[float],
-        drop: Sequence[float],
+        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
         from identification import identify
 
@@ -133,7 +140,7 @@ class Processed(Displayed):
         if reach is None:
             return identify(self.frfs, band=band, order=order, add=add, drop=drop)
         model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
-        said = (
+        said = Consequential(
             f"the force is 20 dB down at {reach[1]:.4g} Hz: modes are looked for below that; give a band to go "
             "further"
         )
@@ -263,12 +270,12 @@ def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -
     elif content.frfs is not None:
         frfs = _as_read(content.frfs, handling, warnings)
     else:
-        names = ", ".join(str(p) for p in paths)
+        names = named_files(paths)
         raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
     frfs = without_constant(frfs, warnings)
-    warnings += identical(frfs)
+    warnings += [*identical(frfs), *on_coherence(frfs, [(j.test, j.verdicts) for j in judged])]
     frfs = without_sensors(frfs, handling.sensor_masses, warnings)
-    return Processed(content, frfs, judged, handling, tuple(dict.fromkeys(warnings)))
+    return Processed(content, frfs, judged, handling, in_order(warnings))
 
 
 def _as_read(frfs: FrfSet, handling: Handling, warnings: list[str]) -> FrfSet:
@@ -309,14 +316,7 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
         if looks_long(one):
             one, said = split_hits(replace(one, decay=one.decay or handling.decay))
             warnings += said
-        if handling.decay and one.decay:
-            _check_decay(one.source, one.decay, handling.decay)
-        elif handling.decay:
-            one, said = state_window(one, decay=handling.decay, on=handling.window_on)
-            warnings += said
-        else:
-            warnings += on_window(one)
-        split.append(one)
+        split.append(stated(one, handling, warnings))
     proposals = numbered([judge_hits(test) for test in split])
     every = tuple(v for verdicts in proposals for v in verdicts)
     decided = iter(decide(every, use=handling.use, leave=handling.leave) if every else ())
@@ -324,6 +324,33 @@ def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]
         Judged(test, tuple(next(decided) for _ in verdicts))
         for test, verdicts in zip(split, proposals, strict=True)
     )
+
+
+def stated(test: HammerTest, handling: Handling, warnings: list[str]) -> HammerTest:
+    """Return a test with the window stated that is said to have been applied; one that nobody states is warned of.
+
+    Parameters
+    ----------
+    test : HammerTest
+        Records, one a hit.
+    handling : Handling
+        What the user says of the window.
+    warnings : list of str
+        What was found is added to it.
+
+    Raises
+    ------
+    InputError
+        If the file states another window.
+    """
+    if handling.decay and test.decay:
+        _check_decay(test.source, test.decay, handling.decay)
+    elif handling.decay:
+        test, said = state_window(test, decay=handling.decay, on=handling.window_on)
+        warnings += said
+    else:
+        warnings += on_window(test)
+    return test
 
 
 def numbered(tests: Sequence[tuple[HitVerdict, ...]]) -> list[tuple[HitVerdict, ...]]:

@@ -17,8 +17,12 @@ from acquisition.encoding import not_utf8
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
 from acquisition.mat.layout import MatLayout, mat_layout
+from acquisition.si_units import si_value
 
 DIRECTIONS = {"x": 1, "y": 2, "z": 3, "rx": 4, "ry": 5, "rz": 6}
+UNITS = {"rate": "Hz", "decay": "1/s"}
+"""Numbers of a layout that may be written with a unit, and what they are in without one."""
+
 PARTS = ("real", "imag", "magnitude", "phase")
 
 
@@ -196,7 +200,11 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
     InputError
         If a key is unknown or has a value of the wrong kind.
     """
-    top = {k: v for k, v in table.items() if k not in ("column", "file", "nodes", "mat")}
+    top = {
+        k: _in_si(v, UNITS[k], f"{source}: {k}") if k in UNITS else v
+        for k, v in table.items()
+        if k not in ("column", "file", "nodes", "mat")
+    }
     columns = tuple(
         _built(Column, entry, f"{source}: [[column]] {n + 1}")
         for n, entry in enumerate(table.get("column", ()))
@@ -225,10 +233,13 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
 
 
 def _nodes(table: Any, source: str) -> Geometry:
-    """Return the geometry of ``[nodes]``: node number = [x, y, z]."""
+    """Return the geometry of ``[nodes]``: node number = [x, y, z], each in m or with its unit."""
     if not isinstance(table, Mapping):
         raise InputError(f"{source}: nodes = {table!r}; write a table [nodes] with lines 3 = [0.1, 0.0, 0.0]")
-    for name, place in table.items():
+    places = []
+    for name, given in table.items():
+        where = f"{source}: [nodes] {name[:40]}"
+        place = [_in_si(c, "m", where) for c in given] if isinstance(given, list) else given
         numbers = isinstance(place, list) and all(type(c) in (int, float) for c in place)
         if (
             not str(name).isdecimal()
@@ -238,9 +249,24 @@ def _nodes(table: Any, source: str) -> Geometry:
             or not np.all(np.isfinite(place))
         ):
             raise InputError(
-                f"{source}: [nodes] {name[:40]} = {place!r}; give node number = [x, y, z] in m, as 3 = [0.1, 0.0, 0.0]"
+                f'{where} = {given!r}; give node number = [x, y, z] in m or with units, as 3 = [0.1, 0.0, "80 mm"]'
             )
-    return Geometry(tuple(int(n) for n in table), np.array(list(table.values()), dtype=np.float64))
+        places.append(place)
+    return Geometry(tuple(int(n) for n in table), np.array(places, dtype=np.float64))
+
+
+def _in_si(value: Any, unit: str, where: str) -> Any:
+    """Return a number that may be written with its unit, as in a study file.
+
+    Raises
+    ------
+    InputError
+        If a text is no quantity of that kind.
+    """
+    try:
+        return si_value(value, unit)
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
 
 
 def _check_column(column: Column, where: str) -> None:

@@ -14,6 +14,7 @@ from acquisition.columns.blocks import Block, plain_blocks, read_text
 from acquisition.columns.layout import Column, Layout, dof_of, read_layout
 from acquisition.columns.lvm import is_lvm, lvm_blocks
 from acquisition.columns.units import QUANTITIES, factor_to_si
+from acquisition.display import named_files
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frf import Form
@@ -83,7 +84,7 @@ def read_columns(
         form=form,
         decay=plan.decay,
         geometry=plan.nodes if geometry is None else geometry,
-        source=", ".join(str(f) for f in files[:3]) + (", ..." if len(files) > 3 else ""),
+        source=named_files(files),
     )
 
 

@@ -14,6 +14,7 @@ from acquisition.columns.blocks import Block
 from acquisition.columns.layout import Column, Layout, read_layout
 from acquisition.columns.read import blocks_of, check_rules, scaled
 from acquisition.columns.units import QUANTITIES
+from acquisition.display import named_files
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frf import FrfSet
@@ -69,7 +70,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
         form=form,
         decay=plan.decay,
         geometry=plan.nodes,
-        source=", ".join(str(f) for f in files[:3]),
+        source=named_files(files),
     )
 
 

@@ -7,6 +7,7 @@ from acquisition.hit_checks.overload import at_common_limit, clipped, flat_pulse
 from acquisition.hit_checks.pulse import force_bands, noise_level, pulse_ends, pulse_width, upright
 from acquisition.hit_checks.ringing import pushes
 from acquisition.hit_checks.second import second_hits
+from acquisition.hit_checks.slanted import top_decay
 
 __all__ = [
     "agreement",
@@ -24,6 +25,7 @@ __all__ = [
     "pulse_width",
     "pushes",
     "second_hits",
+    "top_decay",
     "unexplained",
     "upright",
     "why_broken",

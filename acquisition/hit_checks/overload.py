@@ -16,40 +16,66 @@ FLAT_WAVE = 0.56  # the same of a wave of a response: a sine has 0.48
 SAME_LEVEL = 0.03  # relative spread of the tops of waves that end at one limit
 DIFFERENT = 0.02  # relative difference of the energies of records that are not copies of each other
 FINE_STEP = 1e-4  # of the limit: with steps as fine, two equal largest values are no accident
+EQUAL = 1e-6  # of the extreme: samples so near to it are at it
+STEEP = 0.1  # of the top: a pair of equal samples is a clipped pulse's if it is so much lower two samples farther out
+
+PAIR_STEP = 3e-6
+"""Steps of a record, relative to its top, from which two equal samples may be a clipped top: two samples of a round
+one that falls steeply agree as well in one hit of 30 000 [-]; with steps ten times as large, in one of 3 000."""
 
 
-def clipped(records: FloatArray) -> BoolArray:
+def clipped(records: FloatArray, *, least: int = 3) -> BoolArray:
     """Tell which records (..., n_samples) have a flat top: three or more samples at their extreme.
 
     The broad top of a long pulse is flat too once it is rounded to the converter's steps; there the next
     samples lie a step below, while a clipped wave leaves its top steeply.
+
+    Parameters
+    ----------
+    records : (..., n_samples) array
+        Forces or responses, any window taken back [any].
+    least : int
+        Samples that make a top: 3, or 2 for a short pulse, which then must be steep and finely resolved.
     """
     answer = np.zeros(records.shape[:-1], dtype=np.bool_)
     largest = np.abs(records).max(axis=-1, keepdims=True)
     for side in (records, -records):
         extreme = side.max(axis=-1, keepdims=True)
-        at_top = (side >= (1 - 1e-6) * extreme) & (extreme > 0.2 * largest)
-        flat = at_top[..., :-2] & at_top[..., 1:-1] & at_top[..., 2:]
+        at_top = (side >= (1 - EQUAL) * extreme) & (extreme > 0.2 * largest)
+        flat = at_top[..., :-1] & at_top[..., 1:]
         for index in map(tuple, np.argwhere(flat.any(axis=-1)).tolist()):
-            answer[index] |= _leaves_steeply(side[index], at_top[index])
+            answer[index] |= _leaves_steeply(side[index], at_top[index], least)
     return answer
 
 
-def _leaves_steeply(wave: FloatArray, at_top: BoolArray) -> bool:
-    """Tell whether some flat top of three samples or more is no rounded parabola.
+def _leaves_steeply(wave: FloatArray, at_top: BoolArray, least: int) -> bool:
+    """Tell whether some flat top of as many samples or more is no rounded parabola.
 
     A parabola that rounding has flattened over r samples is some 8 steps lower r samples farther out.
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], at_top, [False]]).astype(np.int8)))
+    runs = [(i, j) for i, j in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if j - i >= least]
+    if not runs:
+        return False
     top = float(wave.max())
     steps = np.abs(np.diff(wave[wave > 0.5 * top]))
     step = float(steps[steps > 1e-9 * top].min(initial=top))
-    for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for start, stop in runs:
         run = stop - start
         outside = [wave[i] for i in (start - run, stop - 1 + run) if 0 <= i < len(wave)]
-        if run >= 3 and outside and top - max(outside) > max(1e-3 * top, min(20 * step, 0.1 * top)):
+        lower = top - max(outside, default=top)
+        if run == 2 and lower > STEEP * top and _finest_step(wave) < PAIR_STEP * top:
+            return True
+        if run >= 3 and lower > max(1e-3 * top, min(20 * step, 0.1 * top)):
             return True
     return False
+
+
+def _finest_step(wave: FloatArray) -> float:
+    """Return the smallest difference of two values of a record that are not the same [as ``wave``]."""
+    top = float(np.abs(wave).max())
+    steps = np.diff(np.unique(wave))
+    return float(steps[steps > 1e-9 * top].min(initial=top))
 
 
 def flat_pulse(wave: FloatArray) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frf import FrfSet
+from acquisition.warned import Consequential
 from identification.arrangement import Arrangement
 
 _CERTAIN = 5.0
@@ -120,11 +121,11 @@ def _negative(point: str, wrong: IntArray, others: np.bool_) -> str:
     """Say what a negative drive-point constant means: a passive structure has none."""
     said = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
     if others:
-        return (
+        return Consequential(
             f"{said} and a positive one in others: hit and sensor cannot have been at one place, so it gives the mode "
             "shapes no scale; check the node numbers"
         )
-    return f"{said}: check the direction signs of hammer and sensor"
+    return Consequential(f"{said}: check the direction signs of hammer and sensor")
 
 
 def _listed(numbers: IntArray) -> str:

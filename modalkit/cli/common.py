@@ -15,6 +15,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from rich.table import Table
 
 from acquisition.errors import InputError
+from acquisition.warned import in_order
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -151,8 +152,8 @@ def _cell(value: Any, digits: int | None) -> str:
 
 
 def show_warnings(warnings: Sequence[str]) -> None:
-    """Print warnings, each on a line of its own."""
-    for warning in dict.fromkeys(warnings):
+    """Print warnings, each on a line of its own, those that change a number first."""
+    for warning in in_order(warnings):
         out.print(f"warning: {warning}", style="yellow", markup=False)
 
 

@@ -100,6 +100,8 @@ def _correlate_tests(first: Path, second: Path, json: Path | None, figures: Path
         found = comparing.compare(first, second)
     names = {"test": "first", "test [Hz]": "first [Hz]", "model": "second", "model [Hz]": "second [Hz]"}
     table = found.table().rename(columns=names | {"error [%]": "difference [%]"})
+    if not found.subspaces:
+        table = table.drop(columns=["mixed with", "space"])
     digits = {"first": 0, "second": 0, "first [Hz]": 3, "second [Hz]": 3, "difference [%]": 3, "MAC": 3}
     show_table(table, f"{first} beside {second}: {counted(len(found.pairs), 'pair')}", digits=digits)
     if len(found.dofs) > 1:

@@ -18,7 +18,8 @@ from acquisition import (
     reciprocity,
     write_uff,
 )
-from acquisition.display import counted
+from acquisition.display import counted, named_files
+from acquisition.warned import in_order
 from modalkit.cli.common import (
     check_folder,
     is_study,
@@ -57,7 +58,7 @@ from modalkit.existing import Modes
 from modalkit.files import Progress, read_files
 from modalkit.handling import Handling
 from modalkit.outputs import check_outputs, json_of, uff_of
-from modalkit.reading import Processed, numbered, read, read_frfs
+from modalkit.reading import Processed, numbered, read, read_frfs, stated
 from modalkit.saving import modes_kind
 
 if TYPE_CHECKING:
@@ -78,30 +79,33 @@ def add_commands(app: typer.Typer) -> None:
 
 def inspect(
     files: Files,
+    decay: Decay = 0.0,
     layout: Layout = None,
     every: Annotated[bool, typer.Option("--all", help="a row for every data set")] = False,
 ) -> None:
     """List what is in a file, and what is wrong with it."""
+    said = Handling(decay=decay)
     with reading() as progress:
         content = read_files(files, layout=layout, progress=progress)
-    out.print(f"{', '.join(map(str, files))}: {content.title or 'no title'}", markup=False)
+    out.print(named_files(files) + (f": {content.title}" if content.title else ""), markup=False)
     if content.datasets:
         show_table(content.table() if every else _in_short(content))
     out.print("usable: " + ("; ".join(_usable(content)) or "nothing"))
     with working("judging the hits"):
         long = [looks_long(test) for test in content.tests]
         single = [test for test, several_hits in zip(content.tests, long, strict=True) if not several_hits]
-        judged = numbered([judge_hits(test) for test in single])
+        warnings: list[str] = []
+        judged = numbered([judge_hits(stated(test, said, warnings)) for test in single])
     if any(long):
         out.print("records hold several hits each; they are split when they are used")
     for verdicts in judged:
         show_hits(verdicts)
     if content.modal is not None and len(content.modal):
-        show_modes(Modes(content.modal, ", ".join(map(str, files))))
+        show_modes(Modes(content.modal, named_files(files)))
     bad = [d for d in content.datasets if not d.ok]
     all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
     error = f"{bad[0].place}: {bad[0].message}" if all_bad else ""
-    show_warnings([w for w in content.warnings if not error or not w.startswith(error)])
+    show_warnings([w for w in (*content.warnings, *warnings) if not error or not w.startswith(error)])
     if error:
         raise InputError(error)
 
@@ -236,7 +240,7 @@ def identify(
         show_rejected(processed.hits, model.points_rejected)
         if check:
             show_second_opinion(processed, model)
-    warnings = [*(() if processed is None else processed.warnings), *model.warnings]
+    warnings = in_order([*(() if processed is None else processed.warnings), *model.warnings])
     show_warnings(warnings)
     save_modes(processed, model, warnings, json, output)
     show_figures(figures, lambda: _drawn(*(() if processed is None else (processed,)), model))

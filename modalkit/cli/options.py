@@ -19,7 +19,7 @@ def quantity(unit: str) -> Callable[[object], object]:
         try:
             return float(text)  # type: ignore[arg-type]
         except (TypeError, ValueError):
-            from modalkit.study_units import si_value  # loads a table of units: not for plain numbers
+            from acquisition.si_units import si_value  # loads a table of units: not for plain numbers
 
             try:
                 return si_value(text, unit)

@@ -30,6 +30,10 @@ from modalkit.figures.style import (
 BLOCK = 4.45
 """Height of the panels of one FRF [in]."""
 
+MEASURED, FITTED = 2.8, 1.1
+"""Widths of the measured curve and of the fit over it [pt]: the broader one shows on both sides of the other where they
+agree; alike, it is hidden."""
+
 NAMES = {"receptance": "Receptances", "mobility": "Mobilities", "accelerance": "Accelerances"}
 
 
@@ -163,13 +167,18 @@ def _curves(
     size = np.where(np.abs(values) > 0, np.abs(values), np.nan)
     angle = np.degrees(np.angle(values))
     magnitude.plot(
-        frequency, size, color=colour, linewidth=1.0 if points else 1.4, label=label, zorder=2 + (not points)
+        frequency,
+        size,
+        color=colour,
+        linewidth=MEASURED if points else FITTED,
+        label=label,
+        zorder=2 + (not points),
     )
     if points:
         phase.plot(frequency, angle, ".", color=FAINT, markersize=2.2, rasterized=True)
     else:
         jump = np.append(np.abs(np.diff(angle)) > 180, False)
-        phase.plot(frequency, np.where(jump, np.nan, angle), color=colour, linewidth=1.4)
+        phase.plot(frequency, np.where(jump, np.nan, angle), color=colour, linewidth=FITTED)
 
 
 def _limits(magnitude: Axes, values: ComplexArray) -> None:

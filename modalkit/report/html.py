@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
 Cell = str | float | int | None
+
+
+_UNBROKEN = re.compile(r"-&gt;|\d[\d.]{0,20}e-\d{1,4}\b")
+"""Where a browser would end a line behind the minus sign."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +39,9 @@ class Raw:
 
 
 def text(value: object) -> str:
-    """Escape a text; a newline in it ends a line."""
-    return escape(str(value), quote=True).replace("\n", "<br>")
+    """Escape a text; a newline in it ends a line, and no line ends within an arrow or a power of ten."""
+    whole = _UNBROKEN.sub(r'<span class="one">\g<0></span>', escape(str(value), quote=True))
+    return whole.replace("\n", "<br>")
 
 
 def element(tag: str, *inside: str | Raw, **attributes: str) -> Raw:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
+from html import escape
 from importlib.resources import files
 
 from modalkit.diagnosing import warnings_of
 from modalkit.figures.words import answer
 from modalkit.process import Session
 from modalkit.report.drawings import Drawing, drawings
-from modalkit.report.html import Raw, element, joined, text
+from modalkit.report.html import Raw, element, joined
 from modalkit.report.place import BEGIN
 from modalkit.report.provenance import provenance
 from modalkit.report.sections import (
@@ -75,7 +76,7 @@ def _page(title: str, body: Raw) -> str:
             BEGIN,
             '<meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{text(title)}: diagnosis</title>",
+            f"<title>{escape(title)}: diagnosis</title>",
             f"<style>\n{style}</style></head>",
             f"<body><main>\n{body.markup}\n</main></body></html>\n",
         )

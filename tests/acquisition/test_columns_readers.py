@@ -149,3 +149,25 @@ def test_one_frf_in_two_files_is_refused(tmp_path):
 def test_a_rule_that_means_nothing_is_refused(rule, says):
     with pytest.raises(InputError, match=says):
         layout_from({"frequency_column": "f", "column": FRF_COLUMNS, "file": [rule]})
+
+
+def test_a_layout_takes_units_as_a_study_does():
+    column = {"index": 0, "quantity": "force"}
+    nodes = {"1": ["80 mm", 0, 0.0], "2": [0.5, "-2 in", "1 m"]}
+    layout = layout_from({"column": [column], "rate": "51.2 kHz", "decay": "3 1/s", "nodes": nodes})
+    assert (layout.rate, layout.decay) == (51200.0, 3.0)
+    np.testing.assert_allclose(layout.nodes.at([1, 2]), [[0.08, 0, 0], [0.5, -0.0508, 1.0]], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"nodes": {"1": ["80 mn", 0, 0]}}, r"\[nodes\] 1: '80 mn'"),
+        ({"nodes": {"1": ["80 kg", 0, 0]}}, r"\[nodes\] 1: '80 kg' is no quantity in m"),
+        ({"nodes": {"1": ["80 mm", 0]}}, r"\[nodes\] 1 = \['80 mm', 0\]; give node number"),
+        ({"rate": "51.2 m"}, "rate: '51.2 m' is no quantity in Hz"),
+    ],
+)
+def test_a_unit_of_another_kind_in_a_layout_is_refused_by_its_place(more, message):
+    with pytest.raises(InputError, match=message):
+        layout_from({"column": [{"index": 0, "quantity": "force"}], **more})

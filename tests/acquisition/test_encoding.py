@@ -50,12 +50,29 @@ def test_a_table_in_latin_1_is_named(tmp_path: Path) -> None:
         read_modes(path)
 
 
-@pytest.mark.parametrize(("mark", "word"), [(";", "semicolons"), ("\t", "tabulators")])
-def test_a_table_with_other_separators_says_so(tmp_path: Path, mark: str, word: str) -> None:
+@pytest.mark.parametrize("mark", [";", "\t"])
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_a_table_with_other_separators_and_decimal_commas_is_read(
+    tmp_path: Path, mark: str, decimal: str
+) -> None:
     path = tmp_path / "modes.csv"
-    path.write_text(f"frequency{mark} sigma\n10{mark}0.1\n", encoding="utf-8")
-    with pytest.raises(InputError, match=f"separated by {word}.*write the header as frequency,sigma"):
+    rows = ("frequency", "sigma", "damping", "1+Z"), ("10.5", "0.1", "0.4 %", "1e-2"), ("x", "", "", "0.25")
+    path.write_text("\n".join(mark.join(row).replace(".", decimal) for row in rows), encoding="utf-8")
+    modes = read_modes(path)
+    assert modes.frequency[0] == 10.5 and modes.shapes is not None and modes.shapes[0, 0] == 1e-2
+    assert modes.damping is not None and modes.damping[0] == pytest.approx(0.004)
+    assert modes.geometry.at([1])[0, 0] == 0.25
+
+
+def test_a_table_with_points_and_commas_in_its_numbers_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency;sigma\n1,234;0.1\n", encoding="utf-8")
+    with pytest.raises(InputError, match=r"'0\.1' has a point and '1,234' a comma"):
         read_modes(path)
+
+
+def test_a_table_without_a_frequency_names_what_it_has(tmp_path: Path) -> None:
+    path = tmp_path / "modes.csv"
     path.write_text("hertz\n10\n", encoding="utf-8")
     with pytest.raises(InputError, match="no column 'frequency' among hertz; begin the table with"):
         read_modes(path)

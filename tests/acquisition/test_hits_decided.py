@@ -30,7 +30,7 @@ def test_decisions_replace_proposals_and_reasons_stay():
 def test_agreeing_with_the_proposal_changes_only_what_is_said():
     decided = decide(VERDICTS, use=[(Dof(12, 3), 1)], leave=[("12+Z", 2)])
     assert decided[0] == VERDICTS[0]
-    assert not decided[1].used and decided[1].reasons[-1] == "left out by the user"
+    assert not decided[1].used and decided[1].reasons[-1] == "left out by the user, who agrees"
     assert decide(VERDICTS) == VERDICTS
 
 

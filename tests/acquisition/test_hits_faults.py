@@ -11,7 +11,7 @@ import hit_cases as cases
 import numpy as np
 import pytest
 
-from acquisition import Dof, judge_hits
+from acquisition import Dof, HammerTest, Hits, judge_hits, unstated_window
 from acquisition.hit_checks import at_common_limit, dead_from, dropouts, flat_waves, second_hits, upright
 from acquisition.hit_checks.ringing import ringing_period, without_ringing
 
@@ -169,3 +169,66 @@ def test_what_has_died_away_is_neither_dead_nor_dropped():
     beat = np.sin(2 * np.pi * 100 * time) * np.sin(2 * np.pi * 2 * time)
     records = np.stack([wave, coarse, beat])
     assert dead_from(records).tolist() == [1, 1, 1] and dropouts(records).tolist() == [0, 0, 0]
+
+
+def short_hits(rng, *, clip, decay, noise=0.02, rate=4096.0, width=2.4e-3):
+    """Return five hits of which the third is clipped at a part of its peak, windowed after the converter."""
+    time = np.arange(4096) / rate
+    window = np.exp(-decay * time)
+    forces, motions = [], []
+    for number in range(5):
+        start, peak = 0.02 * rng.uniform(0.95, 1.05), rng.uniform(40, 90)
+        near = np.abs(time - start) < width / 2
+        force = np.where(near, peak * np.cos(np.pi * (time - start) / width) ** 2, 0.0)
+        force = force + rng.normal(0, noise, len(time))
+        forces.append(window * (np.minimum(force, clip * peak) if number == 2 else force))
+        ring = np.exp(-3 * (time - start)) * np.sin(2 * np.pi * 81 * (time - start)) * (time > start)
+        motions.append(window * (peak * ring + rng.normal(0, 0.05, len(time))))
+    hits = Hits(Dof(1, 3), (Dof(1, 3),), np.array(forces), np.array(motions)[:, None])
+    return HammerTest(rate=rate, points=(hits,))
+
+
+def clipped_hits(test):
+    return [v.hit for v in judge_hits(test) if any("clipped" in r for r in v.reasons)]
+
+
+@pytest.mark.parametrize("decay", [2.0, 9.0])
+@pytest.mark.parametrize("clip", [0.5, 0.7])
+def test_a_window_nobody_stated_does_not_hide_a_clipped_force(rng, decay, clip):
+    """Its flat top falls by one ratio per sample; the hits beside it are no more suspect than without a window."""
+    for _ in range(10):
+        assert clipped_hits(short_hits(rng, clip=clip, decay=decay)) == [3]
+        assert clipped_hits(short_hits(rng, clip=1.0, decay=decay)) == []
+
+
+def test_a_slanted_top_tells_the_window_where_there_is_no_noise(rng):
+    test = short_hits(rng, clip=0.5, decay=7.0, noise=0.0)
+    assert unstated_window(test) == pytest.approx(7.0, rel=1e-6)
+    assert unstated_window(short_hits(rng, clip=1.0, decay=7.0, noise=0.0)) is None
+    assert clipped_hits(test) == [3]
+
+
+def test_a_top_of_two_samples_is_clipped_where_the_steps_are_fine(rng):
+    """At 2 kHz a pulse of 2.4 ms has five samples, and its clipped top two of them."""
+    found = false = 0
+    for _ in range(20):
+        test = short_hits(rng, clip=0.7, decay=3.0, rate=2048.0)
+        force = test.points[0].force[2] * np.exp(3.0 * np.arange(4096) / 2048.0)
+        if (force > (1 - 1e-9) * force.max()).sum() == 2:
+            found += clipped_hits(replace(test, decay=3.0)) == [3]
+            false += clipped_hits(replace(short_hits(rng, clip=1.0, decay=3.0, rate=2048.0), decay=3.0)) != []
+        else:
+            found += 1
+    assert found == 20 and false == 0
+
+
+def test_windowed_clean_hits_of_any_chain_are_not_clipped(rng):
+    """With the converter's steps of 16 bit and with none."""
+    for number in range(3 * NUMBER):
+        s = cases.setting(rng)
+        test = cases.one_force(rng, s)
+        (point,) = test.points
+        step = np.abs(point.force).max() / 2**15 if number % 2 else 0.0
+        force = np.round(point.force / step) * step if step else point.force
+        window = np.exp(-3.0 * np.arange(s.samples) / s.samples)
+        assert clipped_hits(replace(test, points=(replace(point, force=force * window),))) == []

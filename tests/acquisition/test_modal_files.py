@@ -172,10 +172,14 @@ def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):
         ("frequency,sigmo\n10.5,0.1\n", "column 'sigmo' is none known here, is 'sigma' meant"),
         ("frequency,sigma,x+Z\n10.5,0.1,1\n", "column 'x\\+Z' is none known"),
         ("frequency\n10.5,0.1\n", "more values than the header has names"),
-        ("frequency,sigma\n10.5,0.1\n11,0.1,7\n", "no table of comma-separated columns"),
+        ("frequency,sigma\n10.5,0.1\n11,0.1,7\n", "no table of columns separated by commas"),
         ("frequency,sigma\ninf,0.1\n", "'inf' in column 'frequency' is no number"),
         ("frequency,sigma\n1e999,0.1\n", "beyond all bounds"),
         ("frequency,sigma\n1_0,0.1\n", "is no number"),
+        (
+            "frequency,sigma\n19.06 Hz,0.1\n",
+            "'19.06 Hz' in column 'frequency' is no number but has a unit; write 19.06 alone",
+        ),
     ],
 )
 def test_a_damaged_table_of_modes_is_refused_in_one_line(tmp_path, text, said):

@@ -14,7 +14,7 @@ import acquisition
 import identification
 import modalkit
 import updating
-from acquisition.display import Displayed, described
+from acquisition.display import Displayed, described, named_files
 from modalkit import figures
 from modalkit.cli.demonstrate import sample
 from updating import Diagnosis
@@ -173,3 +173,8 @@ def test_an_update_is_drawn_in_one_call(session: modalkit.Session, tmp_path: Any
         and "length" in words
         and "Updating takes the frequency error" in words
     )
+
+
+def test_many_files_take_one_short_line() -> None:
+    assert named_files(["a.csv", "b.csv"]) == "a.csv, b.csv"
+    assert named_files([f"h{n}.csv" for n in range(18)]) == "18 files, h0.csv to h17.csv"

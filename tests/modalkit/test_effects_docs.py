@@ -80,3 +80,9 @@ def test_the_effect_on_the_page_is_named(library: dict[str, Effect]) -> None:
     assert (found.verdict, found.sets) == ("named", (("ground_spring",),)), found.table()
     estimate = found.ranking[0].parameters["ground_spring.stiffness"]
     assert estimate.low95 < 3000 < estimate.high95
+
+
+def test_bulk_is_explained_where_an_effect_has_it() -> None:
+    """It stands in rankings as ``sensor_mass.bulk``; the report and the list of effects say what it is."""
+    for name in ("sensor_mass", "lumped_mass"):
+        assert "bulk is its rotary inertia over that of a steel cube" in LIBRARY[name].footprint

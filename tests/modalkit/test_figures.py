@@ -407,6 +407,10 @@ def test_the_fit_drawn_passes_through_the_data(one: ModalModel) -> None:
     at = np.asarray(lines["measured"].get_xdata())
     there = np.interp(np.asarray(lines["fit"].get_xdata()), at, measured)
     assert np.abs(fit - there).max() < 0.02 * measured.max()
+    assert (
+        lines["measured"].get_linewidth() > 2 * lines["fit"].get_linewidth()
+    )  # seen on both sides of the fit
+    assert lines["measured"].get_zorder() < lines["fit"].get_zorder()
 
 
 @given(n=st.integers(1, 30), count=st.integers(1, 12), drive=st.integers(0, 29))

@@ -23,7 +23,7 @@ from modalkit.figures.diagnosis.frfs import LINES, thinned
 from modalkit.letter import letter
 from modalkit.process import Session, open_study
 from modalkit.report import Drawing, diagnosis_report, drawings, write_report
-from modalkit.report.html import Column, element, table
+from modalkit.report.html import Column, element, table, text
 from modalkit.report.place import BEGIN
 from modalkit.report.provenance import fingerprint
 from modalkit.report.svg import inline_svg
@@ -305,3 +305,10 @@ def test_the_command_writes_report_and_figures(
     code, _, error = call("--report", tmp_path / "same", "--json", tmp_path / "same")
     assert code == 2
     assert "give each its own file" in error
+
+
+def test_no_line_ends_within_an_arrow_or_a_power_of_ten() -> None:
+    assert text("2 -> 1 with p < 1e-300") == (
+        '2 <span class="one">-&gt;</span> 1 with p &lt; <span class="one">1e-300</span>'
+    )
+    assert text("node-3 at e-9") == "node-3 at e-9"

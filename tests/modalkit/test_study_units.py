@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from acquisition.errors import StudyError
+from acquisition.si_units import si_value
 from modalkit.accepting import unit_of
 from modalkit.library import example
 from modalkit.study import Study, read_study
-from modalkit.study_units import si_value
 from updating import LIBRARY
 from updating.models.spec import PointMass
 

@@ -115,7 +115,7 @@ def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str]) -> st
         which = f"of mode {modes[0] + 1} ({hertz[0]:.4g} Hz)"
     else:
         which = f"of modes {modes[0] + 1} to {modes[-1] + 1} ({hertz[0]:.4g} to {hertz[-1]:.4g} Hz)"
-    return f"The gap is carried most by the {what} {which}: up to {column.max():.3g} sigma."
+    return f"The gap is carried most by the {what} {which}: up to {_plain(column.max())} sigma."
 
 
 def _band(values: FloatArray, bar: float) -> IntArray:
@@ -130,3 +130,8 @@ def _band(values: FloatArray, bar: float) -> IntArray:
 
 
 __all__ = ["Contributions", "contributions"]
+
+
+def _plain(value: float) -> str:
+    """Return a number with three digits and no exponent below a million."""
+    return f"{float(f'{value:.3g}'):.10g}" if value < 1e6 else f"{value:.3g}"

@@ -62,6 +62,7 @@ class SensorMass(Effect):
     summary = "The mounted sensor (each of them) loads the structure and is not in the model."
     footprint = (
         "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
+        " Its bulk is its rotary inertia over that of a steel cube of its mass."
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("lumped_mass",)
@@ -109,6 +110,7 @@ class LumpedMass(Effect):
     summary = "A body is fixed to the structure at one place that the model does not hold."
     footprint = (
         "Frequencies fall in the modes that move there, not in those with a node there; shapes shrink there."
+        " Its bulk is its rotary inertia over that of a steel cube of its mass."
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("sensor_mass",)

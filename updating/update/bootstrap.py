@@ -181,7 +181,7 @@ def _with_intervals(update: Update, system: System, draws: Draws) -> Update:
     warnings = list(update.warnings)
     if draws.converged < len(draws.values):
         lost = len(draws.values) - draws.converged
-        warnings.append(f"bootstrap: {lost} of {len(draws.values)} updates did not come to rest")
+        warnings.append(f"bootstrap: {lost} of {len(draws.values)} updates did not converge")
     return replace(update, parameters=parameters, warnings=tuple(warnings), draws=len(draws.values))
 
 
