@@ -147,6 +147,10 @@ def _table(path: Path) -> pd.DataFrame:
         raise InputError(f"{path}: is no table of comma-separated columns ({said})") from None
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise InputError(f"{path}: lines have more values than the header has names; name every column")
+    nameless = [
+        name for name in table.columns if str(name).startswith("Unnamed: ") and table[name].isna().all()
+    ]
+    table = table.drop(columns=nameless)  # a comma ends every line
     table.columns = [str(name).strip() for name in table.columns]
     _check_separators(path, list(table.columns))
     if table.empty:

@@ -167,6 +167,15 @@ def test_other_versions_are_refused_with_what_to_do(tmp_path: Path) -> None:
         read_test(path)
 
 
+def test_a_variable_that_stands_twice_is_not_chosen_from(tmp_path: Path) -> None:
+    """Nor are a thousand bombs of one name unpacked one after the other."""
+    whole = saved(tmp_path, fn=[10.0, 20.0]).read_bytes()
+    other = saved(tmp_path, fn=[11.0, 21.0]).read_bytes()
+    (tmp_path / "test.mat").write_bytes(whole + other[128:])
+    with pytest.raises(InputError, match="holds 'fn' twice"):
+        read_mat(tmp_path / "test.mat", layout({"frequency": "fn"}))
+
+
 def test_a_bomb_takes_no_more_than_its_share(tmp_path: Path) -> None:
     path = saved(tmp_path, fn=np.zeros(20_000_000), other=np.zeros(20_000_000))
     assert path.stat().st_size < 1_000_000
