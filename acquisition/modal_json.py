@@ -14,9 +14,15 @@ from acquisition.arrays import FloatArray
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
+from acquisition.json_keys import check_keys, check_same_keys, once
 from acquisition.modal_data import ModalData
 
 SCHEMA = "modalkit.modes/1"
+_KEYS = ("schema", "modes", "points_rejected", "hits", "window_decay_removed", "warnings", "nodes")
+_OF_MODE = (
+    "frequency_hz", "frequency_sigma_hz", "damping_ratio", "damping_sigma", "shape", "mpc", "scaled",
+)  # fmt: skip
+_OF_ENTRY = ("node", "direction", "re", "im", "sigma")
 
 
 def read_modes_json(path: Path | str) -> ModalData:
@@ -44,8 +50,11 @@ def _modal(record: Mapping[str, Any], path: Path) -> ModalData:
     modes = [
         _mapping(m, f"{path}: mode {n}") for n, m in enumerate(_list(record, "modes", str(path)), start=1)
     ]
+    check_keys(record, _KEYS, str(path))
+    check_same_keys(modes, f"{path}: modes")
     if not modes:
         raise InputError(f"{path}: holds no mode; identify with a band that has some")
+    check_keys(modes[0], _OF_MODE, f"{path}: mode 1")
     shapes = [_shape(mode, f"{path}: mode {n}") for n, mode in enumerate(modes, start=1)]
     dofs = tuple(shapes[0])
     odd = next((n for n, shape in enumerate(shapes, start=1) if set(shape) != set(dofs)), None)
@@ -70,9 +79,11 @@ def _modal(record: Mapping[str, Any], path: Path) -> ModalData:
 
 def _record(path: Path) -> Mapping[str, Any]:
     try:
-        record = json.loads(path.read_bytes())
+        record = json.loads(path.read_bytes(), object_pairs_hook=once)
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
     except (ValueError, RecursionError) as error:
         raise InputError(
             f"{path}: is no JSON ({type(error).__name__}); write it with identify --json"
@@ -89,8 +100,10 @@ def _record(path: Path) -> Mapping[str, Any]:
 def _shape(mode: Mapping[str, Any], where: str) -> dict[Dof, tuple[float, float, float]]:
     """Return real part, imaginary part and sigma of each component, directions positive."""
     shape: dict[Dof, tuple[float, float, float]] = {}
-    for entry in _list(mode, "shape", where):
-        part = _mapping(entry, f"{where}: shape")
+    entries = [_mapping(entry, f"{where}: shape") for entry in _list(mode, "shape", where)]
+    check_same_keys(entries, f"{where}: shape")
+    for part in entries:
+        check_keys(part, _OF_ENTRY, f"{where}: shape")
         node, direction = (_whole(part, key, where) for key in ("node", "direction"))
         dof, sign = Dof(node, abs(direction)), -1.0 if direction < 0 else 1.0
         if abs(direction) > 6 or dof in shape:

@@ -1,8 +1,9 @@
 """Kill commands with -9 at random times, and when they write: is anything torn, is anything lost on going on?
 
-``uv run python benchmarks/kills.py --kills 200 --seed 1``: some 30 minutes on two cores. Every command that writes is
-run in a folder of its own, half the times over earlier results, and killed: a third of all kills come after the first
-stored result of a batch or a blind run, a third at a random time, a third when a command begins to write. Then
+``uv run python benchmarks/kills.py --kills 200 --seed 1``: some 30 minutes on two idle cores. Every command that writes
+(all but ``inspect``) is run in a folder of its own, half the times over earlier results, and killed: a third of all
+kills come after the first stored result of a batch or a blind run, a third at a random time, a third when a command
+begins to write. Commands of minutes are killed in every sixth round only. Then
 
 * every output is absent, the earlier one, or whole: byte for byte that of a run without a kill, but for a date;
 * a store holds whole lines but for the last, and what it held stands in it after the run was gone on with;
@@ -33,8 +34,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = (sys.executable, "-P", "-m", "modalkit")
-SEALS = re.compile(rb'"[0-9a-f]{32,}"')
+VARYING = re.compile(
+    rb'"[0-9a-f]{32,}"|"seconds": [0-9.]+'
+)  # salts, commitments, and how long something took
 AGAIN = 0.25  # of the commands without a store, which begin from nothing anyway, so many are run again
+SIXTH = 6  # rounds of which one is for commands of minutes; doubling it halves their kills and saves minutes
 LATEST = 30.0  # s in which processes must end whose parent was killed
 LOAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
@@ -49,6 +53,7 @@ class Job:
     earlier: dict[str, bytes] = field(default_factory=dict)
     store: str = ""
     dated: tuple[str, ...] = ()  # outputs that hold the time, and so are never the same twice
+    minutes: bool = False  # whether it takes a minute or more
 
 
 @dataclass
@@ -94,14 +99,37 @@ JOBS = (
         "identify", ("identify", HITS, "--json", "o.json", "-o", "o.uff", "--figures", "f"), sample,
         {"o.uff": UFF_BEFORE, "o.json": json_before("modes")},
     ),
-    Job("simulate", ("simulate", STUDY, "--seed", "3", "-o", "o.uff"), sample, {"o.uff": UFF_BEFORE}),
-    Job("correlate", ("correlate", STUDY, "--json", "o.json"), sample, {"o.json": json_before("correlation")}),
-    Job("update", ("update", STUDY, "--json", "o.json"), sample, {"o.json": json_before("update")}),
+    Job("identify csv", ("identify", HITS, "-o", "o.csv"), sample, {"o.csv": b"frequency,sigma,scaled\n1.0,0.1,1\n"}),
+    Job(
+        "simulate", ("simulate", STUDY, "--seed", "3", "-o", "o.uff", "--figures", "f"), sample,
+        {"o.uff": UFF_BEFORE},
+    ),
+    Job(
+        "correlate", ("correlate", STUDY, "--json", "o.json", "--figures", "f"), sample,
+        {"o.json": json_before("correlation")},
+    ),
+    Job(
+        "update", ("update", STUDY, "--json", "o.json", "--figures", "f"), sample,
+        {"o.json": json_before("update")},
+    ),
     Job(
         "diagnose", ("diagnose", STUDY, "--json", "o.json", "--report", "o.html", "--figures", "f"), sample,
         {"o.json": json_before("diagnosis")}, dated=("o.html",),
     ),
     Job("effects", ("effects", "--json", "o.json"), lambda _: None, {"o.json": json_before("effects")}),
+    Job(
+        "plan", ("blind", STUDY, "--json", "o.json", "--figures", "f"), sample,
+        {"o.json": json_before("plan")},
+    ),
+    Job(
+        "tables", ("tables", "--paper", "B", "-o", "o.md", "--figures", "f"), lambda _: None,
+        {"o.md": b"## Paper B, before\n"}, minutes=True,
+    ),
+    Job("demo", ("demo", "--figures", "f"), lambda _: None, minutes=True),
+    Job(
+        "real", ("blind", "--real", "--json", "o.json"), lambda _: None, {"o.json": json_before("real")},
+        minutes=True,
+    ),
     Job(
         "batch", ("batch", "fleet", "-o", "t.csv", "--json-dir", "parts", "--resume"), fleet,
         {"t.csv": b"study,title\nbefore,before\n"}, store="t.csv.jsonl",
@@ -110,7 +138,7 @@ JOBS = (
         "blind",
         (
             "blind", "--trials", "2", "--seed", "5", "--kinds", "beam", "--effects", "none,E",
-            "--store", "s.jsonl", "--resume", "--json", "o.json", "--markdown", "o.md",
+            "--store", "s.jsonl", "--resume", "--json", "o.json", "--markdown", "o.md", "--figures", "f",
         ),
         lambda _: None, {"o.json": json_before("blind")}, store="s.jsonl",
     ),
@@ -234,11 +262,12 @@ def faults_of(job: Job, now: dict[str, bytes], whole: Whole, before: dict[str, b
 def is_whole(content: bytes, wanted: bytes, *, dated: bool) -> bool:
     """Tell whether an output is that of a run without a kill; one with a date is known by its end.
 
-    The salts and commitments of a blind run are drawn anew in every run, and left out of the comparison.
+    The salts and commitments of a blind run are drawn anew in every run, and left out of the comparison with the
+    seconds that the record of the real structures holds.
     """
     if dated:
         return content.endswith(b"</html>\n")
-    return SEALS.sub(b"", content) == SEALS.sub(b"", wanted)
+    return VARYING.sub(b"", content) == VARYING.sub(b"", wanted)
 
 
 def kill_once(job: Job, when: str, whole: Whole, rng: random.Random) -> tuple[str, list[str]]:
@@ -292,6 +321,8 @@ def orphans(children: set[int]) -> list[str]:
 def schedule(kills: int, jobs: Sequence[Job]) -> list[tuple[Job, str]]:
     """Return what is killed when: a third each after a stored result, at random, and when it writes."""
     stores = [job for job in jobs if job.store]
+    long = [job for job in jobs if job.minutes]
+    short = [job for job in jobs if not job.minutes] or long
     plan = []
     for number in range(kills):
         turn = number // 3
@@ -299,7 +330,8 @@ def schedule(kills: int, jobs: Sequence[Job]) -> list[tuple[Job, str]]:
             quick = stores[0] if turn % 3 else stores[-1]  # two batches to a blind run, which takes longer
             plan.append((quick, "stored"))
         else:
-            plan.append((jobs[turn % len(jobs)], "random" if number % 3 == 1 else "writing"))
+            among, at = (long, turn // SIXTH) if long and turn % SIXTH == 0 else (short, turn)
+            plan.append((among[at % len(among)], "random" if number % 3 == 1 else "writing"))
     return plan
 
 

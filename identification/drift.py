@@ -18,6 +18,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frf import FrfSet
 from identification import basis
 from identification.arrangement import arrange
+from identification.common_spread import common_factors
 from identification.disagreement import scatter_beyond_noise
 from identification.fading import inflation
 from identification.grams import Weights
@@ -122,14 +123,35 @@ def estimate_drift(
     previous : Drift, optional
         Shifts taken out already.
     """
-    n_frf, n_modes = len(frfs.values), len(fit.poles)
-    label = setups(frfs)
-    n_groups = int(label.max()) + 1
+    n_frf = len(frfs.values)
     known = (Drift.none(n_frf, fit.poles) if previous is None else previous).at(fit.poles)
-    if n_groups < _FEW:
+    if int(setups(frfs).max()) + 1 < _FEW:
         return Drift.none(n_frf, fit.poles)
     gradient, normal = frequency_scores(fit)
     believed = _believed(frfs, fit, weights)
+    found = _from_scores(frfs, fit, weights, own, known, gradient, normal, believed)
+    if not found.variance.any():
+        return found
+    residual = left_over(frfs, fit)
+    spread = common_factors(frfs, fit, weights, 1.0 / weights.full, residual)
+    if spread.max() <= 1.0:
+        return found
+    return _from_scores(frfs, fit, weights, own, known, gradient, normal, believed / np.sqrt(spread))
+
+
+def _from_scores(
+    frfs: FrfSet,
+    fit: Fit,
+    weights: Weights,
+    own: BoolArray,
+    known: Drift,
+    gradient: FloatArray,
+    normal: FloatArray,
+    believed: FloatArray,
+) -> Drift:
+    """Estimate the shifts from the scores of the frequencies, each FRF believed as far as is stated."""
+    label, n_modes = setups(frfs), len(fit.poles)
+    n_groups = int(label.max()) + 1
     normal = believed[:, :, None] * normal * believed[:, None, :]
     gradient = believed**2 * gradient + np.einsum("jnm,jm->jn", normal, known.shift)
     pulls, information = np.zeros((n_groups, n_modes)), np.zeros((n_groups, n_modes, n_modes))

@@ -9,6 +9,9 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from identification.refine import Fit
 
 _FALSE_ALARM = 1e-8
+# Standard deviations that half-width and damping of a mode must exceed: those just over the threshold of the strength
+# have six where noise is what the weights say. Twice as much strikes these; half as much lets flanks of noise pass.
+_KNOWN = 3.0
 _UNDAMPED = 1e-7  # damping ratio of nothing that vibrates
 
 
@@ -87,8 +90,8 @@ def plausible(poles: ComplexArray, band: tuple[float, float]) -> BoolArray:
 def located(poles: ComplexArray, spread: FloatArray, modes: BoolArray) -> BoolArray:
     """Tell which modes are somewhere, shape (n_modes,): noise fitted by a pole is not.
 
-    The frequency is known to within the half-power half-width and to half the distance of the next mode, the damping
-    ratio to within half of itself: a mode that is barely significant has a fifth of these. A strong mode may miss them
+    The frequency is known to a third of the half-power half-width and to half the distance of the next mode, the
+    damping ratio to a third of itself: a mode that is barely significant has a sixth. A strong mode may miss them
     too, where lines are too far apart to tell its damping: what this says is of modes that hardly stand out.
 
     Parameters
@@ -103,9 +106,9 @@ def located(poles: ComplexArray, spread: FloatArray, modes: BoolArray) -> BoolAr
     sigma = np.abs(poles) * np.sqrt(spread[:, 0, 0])
     distance = np.abs(poles[:, None] - poles[None, :]) + np.where(modes[None, :], 0.0, np.inf)
     np.fill_diagonal(distance, np.inf)
-    room = np.minimum(-poles.real, 0.5 * distance.min(axis=1, initial=np.inf))
-    damped = -poles.real / np.abs(poles) > 2.0 * np.sqrt(spread[:, 1, 1])
-    return np.asarray((sigma < room) & damped)
+    resolved = (_KNOWN * sigma < -poles.real) & (sigma < 0.5 * distance.min(axis=1, initial=np.inf))
+    damped = -poles.real / np.abs(poles) > _KNOWN * np.sqrt(spread[:, 1, 1])
+    return np.asarray(resolved & damped)
 
 
 def inside(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArray:

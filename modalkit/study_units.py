@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field
 if TYPE_CHECKING:
     from pint import Unit, UnitRegistry
 
-_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+_QUANTITY = re.compile(r"([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 _UNIT = re.compile(r"[A-Za-zµμ°%Å0-9²³⁻¹·*/^() .-]{0,40}")
 _BARE_POWER = re.compile(r"(?<=[A-Za-zµμ])(-?[1-4])(?![0-9])")
 """A power without a sign for it, as in ``kg/m3``."""

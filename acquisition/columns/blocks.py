@@ -24,8 +24,8 @@ class Style:
     decimal: str
 
     def split(self, line: str) -> list[str]:
-        """Return the fields of a line, without quotes and blanks around them."""
-        return [field.strip().strip('"') for field in line.split(self.separator)]
+        """Return the fields of a line, without blanks and pairs of quotes around them."""
+        return [_unquoted(field.strip()) for field in line.split(self.separator)]
 
     def number(self, field: str) -> float:
         """Return the number in a field; ValueError if it is none."""
@@ -38,6 +38,11 @@ class Style:
         except ValueError:
             return False
         return True
+
+
+def _unquoted(field: str) -> str:
+    """Return a field without a pair of quotes; one alone is a fault, and stays."""
+    return field[1:-1] if len(field) > 1 and field[0] == field[-1] == '"' else field
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,7 +236,19 @@ def plain_blocks(
         raise InputError(
             f"{path}: no line of {least} or more numbers in it; check skip, separator and decimal in the layout"
         )
+    _check_below(above, len(lines), blocks[-1].style, path)
     return blocks
+
+
+def _check_below(below: Sequence[str], number: int, style: Style, path: Path) -> None:
+    """Refuse a line of numbers behind the last block that is none of it: a row that was cut."""
+    for line_number, line in enumerate(below, start=number - len(below) + 1):
+        fields = [field for field in style.split(line) if field]
+        if all(style.is_number(field) for field in fields):
+            raise InputError(
+                f"{path}, line {line_number}: {line.strip()[:60]!r} behind the last line of numbers is cut or broken; "
+                "mend or remove it"
+            )
 
 
 def _check_above(above: Sequence[str], number: int, style: Style, least: int, path: Path) -> None:
@@ -245,17 +262,24 @@ def _check_above(above: Sequence[str], number: int, style: Style, least: int, pa
         row = (whole or last) and len(alike) >= 2 and 2 * len(alike) >= len(fields)
         bare = bool(numbers) and len(numbers) == len(fields) < len(style.split(line)) + (len(fields) > 1)
         mixed = last and whole and bool(numbers) and all(any(c.isdigit() for c in field) for field in fields)
+        touching = last and bool(numbers) and all(_nearly(field) for field in fields)
         joined = last and whole and len(numbers) >= max(2, least - 1)
         broken = last and len(fields) == 1 and not numbers and bool(alike) and "e" in line.lower()
-        if row or bare or mixed or joined or broken:
+        if row or bare or mixed or touching or joined or broken:
             raise InputError(
                 f"{path}, line {line_number}: {line.strip()[:60]!r} is nearly a line of numbers; mend it, or leave it "
                 "out with skip in the layout"
             )
 
 
-_LIKE = re.compile(r"[\s\d.,eE+-]*\d[\s\d.,eE+-]*")
+_OF_NUMBERS = frozenset("0123456789.,eE+-")
+_LIKE = re.compile(r"(?=[^\d]*+\d)[\s\d.,eE+-]*+")
 """Words of characters that numbers have."""
+
+
+def _nearly(field: str) -> bool:
+    """Tell whether a field is a number, or one but for a character that none has, which may part it from a second."""
+    return any(c.isdigit() for c in field) and sum(c not in _OF_NUMBERS for c in field) <= 1
 
 
 def _heading(above: Sequence[str], style: Style, wanted: Collection[str]) -> tuple[str, ...]:

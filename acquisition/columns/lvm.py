@@ -45,6 +45,7 @@ def lvm_blocks(path: Path, lines: Sequence[str]) -> list[Block]:
 def _segments(path: Path, lines: Sequence[str], ends: Sequence[int], starts: Sequence[int]) -> list[Block]:
     """Return the segments, whose headers all state the same."""
     separator = "\t" if "\t" in lines[1] else next((s for s in ",;" if s in lines[1]), "\t")
+    _check_blank(path, lines, ends[0] + 1, starts[0], "before the first segment")
     header = _fields(lines[: ends[0]], separator)
     separator = _SEPARATORS.get(header.get("Separator", ["tab"])[0].lower(), separator)
     style = Style(separator, header.get("Decimal_Separator", ["."])[0] or ".")
@@ -58,13 +59,16 @@ def _segments(path: Path, lines: Sequence[str], ends: Sequence[int], starts: Seq
             )
         stated = keys
         body = _body(lines, end + 2, stop)
-        for number in range(end + 2 + len(body), stop):
-            if lines[number].strip() and not lines[number].startswith("***"):
-                raise InputError(
-                    f"{path}, line {number + 1}: {lines[number][:40]!r} behind the end of a segment; export it again"
-                )
+        _check_blank(path, lines, end + 2 + len(body), stop, "behind the end of a segment")
         blocks.append(_block(path, lines, (begin, end), body, style))
     return blocks
+
+
+def _check_blank(path: Path, lines: Sequence[str], start: int, stop: int, where: str) -> None:
+    """Refuse what stands between segments, but for marks."""
+    for number in range(start, stop):
+        if lines[number].strip() and not lines[number].startswith("***"):
+            raise InputError(f"{path}, line {number + 1}: {lines[number][:40]!r} {where}; export it again")
 
 
 def _fields(lines: Sequence[str], separator: str) -> dict[str, list[str]]:

@@ -236,12 +236,20 @@ def _read_mode(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
         f"complex mode, {mode.eigenvalue:.6g}" if mode.is_complex else f"normal mode, {mode.frequency:.6g} Hz"
     )
     info = replace(info, kind="modes", description=f"{text}, {len(mode.nodes)} nodes")
-    twin = next((known for known in finds.seen_modes.get(mode.key, ()) if same_shape(mode, known)), None)
+    known = finds.seen_modes.setdefault(mode.key, [])
+    twin = next((one for one in known if same_shape(mode, one)), None)
     if twin is not None:
         return replace(info, message=f"the same mode stands in {twin.place}; it counts once")
-    finds.seen_modes.setdefault(mode.key, []).append(mode)
+    known.append(mode)
     finds.modes.append(mode)
-    return info
+    if len(known) == 1:
+        return info
+    where = known[0].place
+    return replace(
+        info,
+        message=f"frequency and damping are exactly those of {where}, with another shape: a damaged copy, or an exact "
+        "pair; both are kept, take the wrong one out",
+    )
 
 
 def _read_58(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:

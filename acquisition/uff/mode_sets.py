@@ -10,6 +10,7 @@ import numpy as np
 from acquisition.arrays import AnyArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import InputError
 from acquisition.uff.id_lines import LENGTH
+from acquisition.uff.record_lines import check_record_lines
 from acquisition.uff.text_columns import check_columns, check_digits
 from acquisition.uff.units import Units
 from acquisition.uff.values58 import numbers_of
@@ -231,6 +232,7 @@ def _shape(text: bytes, width: int, *, is_complex: bool) -> tuple[IntArray, Comp
         )
     check_columns(text)
     check_digits(text)
+    check_record_lines(text, columns=columns, first=(1, columns))
     table = numbers.reshape(-1, columns)
     labels = table[:, 0]
     if not np.isfinite(table).all() or np.any(labels % 1) or np.any(np.abs(labels) > 1e15):

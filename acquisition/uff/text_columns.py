@@ -28,6 +28,9 @@ _MODELS = 8
 # Share of lines that may break the columns before they count as none. Printed with trailing zeros dropped, half
 # the lines of a text differ; doubling it would refuse some of those.
 _BROKEN_SHARE = 0.1
+# Lines that a line end in the wrong place makes of one; a text of so few more than usual ones is no free one.
+# Doubling it would take a free text of six lines for a damaged one.
+_OF_ONE_BREAK = 2
 
 
 @dataclass
@@ -96,7 +99,8 @@ class LineForms:
     def uneven(self, wanted: int) -> bool:
         """Tell whether a line but the last holds another number of values than most, or the last more.
 
-        Where no number of values is that of most lines, the text is a free one, and none is wrong.
+        Where no number of values is that of most lines, nor of all but those that one break makes, the text is a
+        free one, and none is wrong.
 
         Parameters
         ----------
@@ -107,11 +111,10 @@ class LineForms:
         last = self.on_last
         values[last] -= 1
         values += Counter()
-        if values.total() < 3:
-            usual = wanted
-        else:
+        usual, lines = wanted, values[wanted]
+        if values.total() >= 3 and values.total() - lines > _OF_ONE_BREAK:
             usual, lines = values.most_common(1)[0]
-            if 2 * lines <= values.total():
+            if 2 * lines <= values.total() and values.total() - lines > _OF_ONE_BREAK:
                 return False
         return any(one != usual for one in values) or last > usual
 

@@ -11,12 +11,15 @@ import pyuff
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import InputError
+from acquisition.uff.record_lines import check_record_lines
 from acquisition.uff.text_columns import check_columns, check_digits
 from acquisition.uff.units import Units, units_of
 from acquisition.uff.values58 import numbers_of
 
 _FACTORS = 4  # of length, force and temperature, and the offset of temperature
 _NEEDED = 3  # the factors: the offset, which is not used, often has other digits (2.7315E+02 beside 1.0E+00)
+_ON_FIRST_LINE = {15: 7, 2411: 4}
+"""Numbers on the first line of a node's record."""
 
 
 def read_units(body: bytes) -> tuple[Units, str]:
@@ -91,6 +94,7 @@ def read_nodes(number: int, body: bytes) -> tuple[IntArray, FloatArray]:
         )
     check_columns(body)
     check_digits(body)
+    check_record_lines(body, columns=7, first=(_ON_FIRST_LINE[number],))
     if len(body.split()) == len(entries):
         labels, coordinates = _nodes_of_pyuff(number, body)
     else:  # columns that touch, which pyuff does not part

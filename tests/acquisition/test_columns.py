@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
@@ -308,7 +310,14 @@ def test_segments_of_an_lvm_file_are_hits(tmp_path):
         read_columns(path, layout_from({"rate": 2000.0, "column": columns}))
 
 
-FIRST_ROWS = ["1.0,2.0 1,3.0", "1.0,2.0", "1.0,2.0,3.0e", "t,f,a1.0,2.0,3.0"]
+FIRST_ROWS = [
+    "1.0,2.0 1,3.0",
+    "1.0,2.0",
+    "1.0,2.0,3.0e",
+    "t,f,a1.0,2.0,3.0",
+    "1.0e+00\xac2.0,3.0",
+    "1.0l2.0,3.0",
+]
 
 
 @pytest.mark.parametrize("line", FIRST_ROWS)
@@ -325,6 +334,26 @@ def test_a_quote_inside_a_number_is_a_fault(tmp_path):
     (tmp_path / "a.csv").write_text("hammer,acc 1,acc 2\n" + rows + '1.0,2"0,3.0\n')
     with pytest.raises(InputError, match="line 6, column 1"):
         read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+    (tmp_path / "a.csv").write_text("hammer,acc 1,acc 2\n" + rows + '1.0,"2.0,3.0\n')
+    with pytest.raises(InputError, match="line 6, column 1"):
+        read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+
+
+def test_a_heading_of_very_many_digits_is_judged_at_once(tmp_path):
+    line = "1" * 100_000 + "x" + "1" * 100_000 + "y,1.0"
+    (tmp_path / "a.csv").write_text(f"{line}\nhammer,acc 1,acc 2\n" + "1.0,2.0,3.0\n" * 5)
+    begin = time.process_time()
+    read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+    assert time.process_time() - begin < 1.0
+
+
+@pytest.mark.parametrize("line", ["1.0", "1.0,2.0"])
+def test_a_cut_row_behind_a_blank_one_is_a_fault(tmp_path, line):
+    (tmp_path / "a.csv").write_text("hammer,acc 1,acc 2\n" + "1.0,2.0,3.0\n" * 5 + f"\n{line}")
+    with pytest.raises(InputError, match=r"line 8: .*behind the last line of numbers"):
+        read_columns(tmp_path / "a.csv", layout_file(tmp_path))
+    (tmp_path / "a.csv").write_text("hammer,acc 1,acc 2\n" + "1.0,2.0,3.0\n" * 5 + "\nend of data\n")
+    assert read_columns(tmp_path / "a.csv", layout_file(tmp_path)).points[0].force.shape == (1, 5)
 
 
 @pytest.mark.parametrize("content", [b"hammer,acc 1,acc 2\n1,2,3\n\x041,2,3\n", b"1,2,3\n" * 2000 + b"\0"])
@@ -349,6 +378,7 @@ LVM_DAMAGE = [
     (LVM.replace("0,002\t1,25\t4,5\n", "0,002\t1,25\t4,5\n" * 2), "3 samples announced and 4 there"),
     (LVM.replace("0,001\t1,5\t3,5", "0,\t01\t1,5\t3,5"), "stands beyond the 3 columns"),
     (LVM.replace("Decimal_Separator\t,\n", ""), "a header cannot be read"),
+    (LVM[: LVM.index("***End")] + "***End_of_" + LVM[LVM.index("Delta_X") :], "before the first segment"),
 ]
 
 

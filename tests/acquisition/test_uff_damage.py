@@ -293,6 +293,47 @@ def test_one_mode_twice_in_a_file_counts_once(tmp_path, drawn, reread):
     assert len(reread(drawn + other).modal) == 3
 
 
+def test_a_copy_of_a_mode_that_lost_a_node_is_not_silent(drawn, reread):
+    modes = drawn[drawn.index(b"    -1\n    55") :]
+    lines = modes[: modes.index(b"    -1\n    55", 8)].split(b"\n")
+    cut = b"\n".join(lines[:-4] + lines[-2:])  # without its last node
+    content = reread(drawn + cut)
+    assert len(content.modal) == 3
+    assert any("frequency and damping are exactly those of" in w for w in content.warnings)
+
+
+def test_exchanged_lines_of_a_shape_are_not_silent(tmp_path, reread, rng):
+    shapes = rng.standard_normal((3, 1)) + 0j
+    one = np.array([0.01])
+    modal = ModalData(
+        np.array([12.5]), one, one, one, tuple(Dof(n, 3) for n in (1, 2, 3)), shapes, None, scaled=True
+    )
+    write_uff(tmp_path / "x.uff", modal=modal)
+    lines = (tmp_path / "x.uff").read_bytes().split(b"\n")
+    before = reread(b"\n".join(lines))
+    assert before.warnings == () and len(before.modal) == 1
+    first = lines.index(b"    55") + 9
+    for a in range(first, first + 5):
+        for b in range(a + 1, first + 6):
+            changed = list(lines)
+            changed[a], changed[b] = lines[b], lines[a]
+            if (b - a) % 2:  # a node's number and another line of values
+                assert not silent(before, reread(b"\n".join(changed))), (a, b)
+
+
+@pytest.mark.parametrize("lines", [4, 5, 9])
+def test_a_line_broken_in_a_number_of_a_short_record_is_said(lines, tmp_path, reread):
+    values = np.full((1, 4 * lines // 2), 0.99) + 0j
+    frfs = FrfSet(np.arange(2.0 * lines), values, (Dof(2, 3),), (Dof(1, 3),))
+    write_uff(tmp_path / "x.uff", frfs=frfs, form="ascii", precision="double")
+    whole = (tmp_path / "x.uff").read_bytes()
+    assert reread(whole).warnings == ()
+    number = b"  9.900000000000e-01"
+    at = whole.index(number, whole.index(number) + 1) + 2
+    broken = whole[:at] + b"\n" + whole[at + 1 :]
+    assert not silent(reread(whole), reread(broken))
+
+
 def test_what_is_not_used_is_said_in_one_line(drawn, reread):
     content = reread(drawn + table(161, "x") + table(161, "y") + table(17, "z"))
     assert content.warnings == ("x.uff: not used: 2 data sets 161; 1 data sets 17",)

@@ -323,3 +323,17 @@ def test_pyuff_reads_modes(tmp_path):
     assert one["modal_a"] == pytest.approx(2j * pole.imag, rel=1e-5)
     assert one["node_nums"].tolist() == [1, 7]
     assert one["r3"].tolist() == [1.25, 0] and one["r2"].tolist() == [0, 0.5 - 0.25j]
+
+
+def test_lines_of_nodes_that_changed_places_are_no_nodes(tmp_path):
+    first, second = node2411(1, 0, 0, 0, 0, 0), node2411(2, 0, 0, 0.25, 0.5, 0)
+    content = read(tmp_path / "a.uff", block(2411, first[0], second[0], first[1], second[1]))
+    assert content.geometry is None or len(content.geometry.nodes) == 0
+    assert any("moved" in d.message for d in content.datasets)
+
+
+def test_nodes_whose_columns_touch_keep_to_their_lines(tmp_path):
+    rows = [node15(n, 0, 0, 0.25 * n, -0.5, 0.125) for n in range(1, 8)]
+    touching = [row.replace(" -5.00000e-01", "-5.000000e-01") for row in rows]
+    content = read(tmp_path / "a.uff", block(15, *touching))
+    assert len(content.geometry.nodes) == 7 and content.warnings == ()

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -73,6 +74,14 @@ class Family:
         """Read a file as a user would."""
         values, warnings = self.read(path)
         return Reading(digest(values), tuple(warnings))
+
+
+def written(name: str, write: Callable[[Path], object]) -> bytes:
+    """Return what a writer writes."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / name
+        write(path)
+        return path.read_bytes()
 
 
 def digest(value: Any) -> str:

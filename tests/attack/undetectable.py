@@ -10,12 +10,14 @@ import io
 import json
 import re
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-NUMBER = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?")
+NUMBER = re.compile(rb"[+-]?(\d+(?:\.\d*)?|\.\d+)([eEdD][+-]?\d+|[+-]\d+)?")
+DOF = re.compile(rb"^\s*\d+[+-]R?[XYZ]\s*$")
+"""A heading that names a point and a direction, each as good as any other where none stands twice."""
 SEPARATORS = re.compile(rb"[\s,;]+")
 Judge = Callable[[bytes, bytes], bool]
 
@@ -37,10 +39,13 @@ def cells(original: bytes, mutant: bytes) -> bool:
             for a, b in zip(one, two, strict=False)
         )
 
-    heading, other = (
-        re.sub(rb"\d+(?=[+-])", b"0", b",".join(rows[0])) if rows else b"" for rows in (first, second)
+    heads = [rows[0] if rows else [] for rows in (first, second)]
+    heading, other = ([DOF.sub(b"1+Z", cell) for cell in head] for head in heads)
+    return (
+        heading == other
+        and len(set(heads[1])) == len(set(heads[0]))
+        and all(any(alike(a, b) for a in first) for b in second[1:])
     )
-    return heading == other and all(any(alike(a, b) for a in first) for b in second[1:])
 
 
 def number_for_number(one: bytes, two: bytes) -> bool:
@@ -269,6 +274,27 @@ def json_lines(original: bytes, mutant: bytes) -> bool:
     except (ValueError, RecursionError):
         return False
     return all(any(_leaves(a, b, fewer=False) for a in one) for b in two)
+
+
+def json_document(optional: Collection[str]) -> Judge:
+    """Return the judge of a JSON document: other numbers and words in their places, keys missing that may be."""
+
+    def completed(one: Any, two: Any) -> Any:
+        if isinstance(one, dict) and isinstance(two, dict):
+            missing = {k: v for k, v in one.items() if k in optional and k not in two}
+            return {k: completed(one.get(k), v) for k, v in two.items()} | missing
+        if isinstance(one, list) and isinstance(two, list):
+            return [completed(a, b) for a, b in zip(one, two, strict=False)] + two[len(one) :]
+        return one if two is None else two
+
+    def judge(original: bytes, mutant: bytes) -> bool:
+        try:
+            one, two = (json.loads(c) for c in (original, mutant))
+        except (ValueError, RecursionError):
+            return False
+        return _leaves(one, completed(one, two), fewer=False)
+
+    return judge
 
 
 def archive(original: bytes, mutant: bytes) -> bool:

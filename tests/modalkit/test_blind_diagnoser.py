@@ -91,7 +91,7 @@ def test_a_diagnosis_that_takes_too_long_is_ended(
 
 
 def children(pid: int) -> list[int]:
-    return [int(n) for n in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    return [int(n) for of in Path(f"/proc/{pid}/task").glob("*/children") for n in of.read_text().split()]
 
 
 @pytest.mark.skipif(not PROC, reason="looks for the children of a process in /proc")
@@ -135,6 +135,22 @@ def test_it_ends_when_the_one_who_asks_is_killed(study: Path) -> None:
     while any(running(pid) for pid in (server, *at_work)) and time.monotonic() < end:
         time.sleep(0.05)
     assert not any(running(pid) for pid in (server, *at_work))
+
+
+@pytest.mark.skipif(not PROC, reason="looks for the processes in /proc")
+def test_diagnoses_of_real_structures_end_when_the_one_who_asks_is_killed() -> None:
+    body = f"from modalkit.blind.real import *; run_real(CASES, __import__('pathlib').Path({str(SAMPLES)!r}), None)"
+    asks = subprocess.Popen([sys.executable, "-c", body])
+    while not (at_work := children(asks.pid)):
+        assert asks.poll() is None
+        time.sleep(0.01)
+    time.sleep(0.5)
+    asks.kill()
+    asks.wait()
+    end = time.monotonic() + 10
+    while any(running(pid) for pid in at_work) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not any(running(pid) for pid in at_work)
 
 
 def running(pid: int) -> bool:

@@ -170,6 +170,23 @@ def test_text_that_is_no_table_of_modes_still_asks_for_its_layout(tmp_path: Path
             {"modes": [{"frequency_hz": 3.0, "shape": [{"node": 1, "direction": 3, "re": 1, "im": 0}] * 2}]},
             "twice",
         ),
+        ({"modes": [{"frequency_hz": 3.0, "dampingratio": 0.01}]}, "'damping_ratio' is probably meant"),
+        ({"modes": [{"frequency_hz": 3.0, "mpc": 1.0}, {"frequency_hz": 4.0}]}, "'mpc' stands not in all"),
+        (
+            {
+                "modes": [
+                    {
+                        "frequency_hz": 3.0,
+                        "shape": [
+                            {"node": 1, "direction": 3, "re": 1, "im": 0, "sigma": 0.1},
+                            {"node": 2, "direction": 3, "re": 1, "im": 0},
+                        ],
+                    }
+                ]
+            },
+            "'sigma' stands not in all",
+        ),
+        ({"nods": [{"node": 1, "x": 0.0, "y": 0.0, "z": 0.0}]}, "'nodes' is probably meant"),
         ({"nodes": [{"node": 1, "x": 0.0, "y": 0.0}]}, "z = None"),
         ({"nodes": [{"node": 1, "x": 0, "y": 0, "z": 0}] * 2}, "more than once"),
     ],
@@ -184,7 +201,16 @@ def test_damaged_json_is_refused_in_one_line(tmp_path: Path, change: dict[str, o
 
 
 @pytest.mark.parametrize(
-    "text", ["", "{", "[" * 100_000, "3", "[]", '{"schema": "modalkit.modes/1", "modes": NaN}']
+    "text",
+    [
+        "",
+        "{",
+        "[" * 100_000,
+        "3",
+        "[]",
+        '{"schema": "modalkit.modes/1", "modes": NaN}',
+        '{"schema": "modalkit.modes/1", "modes": [{"frequency_hz": 3.0, "frequency_hz": 4.0}]}',
+    ],
 )
 def test_what_is_no_record_is_refused(tmp_path: Path, text: str) -> None:
     path = tmp_path / "modes.json"

@@ -13,8 +13,9 @@ import pytest
 
 from acquisition import EstimationError
 from modalkit.blind.bodies.solid_deck import program
-from modalkit.blind.real.running import diagnose_together
+from modalkit.blind.real.running import diagnose_together_by
 from modalkit.serving import WarmProcess
+from modalkit.serving.pool import warm_pool
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = [str(Path(sys.executable).parent / "modalkit")]
@@ -87,8 +88,8 @@ def test_a_warm_process_runs_nothing_of_the_current_folder(
 
 
 def test_the_diagnosis_of_a_real_structure_runs_nothing_beside_its_study(folder: Path) -> None:
-    with pytest.raises(EstimationError, match=r"no\.toml: cannot be read"):
-        diagnose_together([folder / "no.toml"], (), ())
+    with warm_pool(1) as ask, pytest.raises(EstimationError, match=r"no\.toml: cannot be read"):
+        diagnose_together_by(ask)([folder / "no.toml"], (), ())
     assert not (folder / MARK).exists()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import io
 import re
+import time
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
@@ -377,7 +378,8 @@ DAMAGED = [
     ("k.npy", b"\x93NUMPY\x01\x00\x50\x00" + b"(" * 80, "header of an array cannot be read"),
     ("k.npz", archive(data=np.eye(2), offsets=np.arange(2), shape=np.array([2, 2])), "without its format"),
     ("k.npz", archive(K=np.ones((4, 2))), "is 4 x 2; stiffness and mass are square"),
-    ("k.rsa", boeing().replace(b"2.000000000000E", b"2.000\r0000000E"), "another count of numbers"),
+    ("k.rsa", boeing().replace(b"2.000000000000E", b"2.000\r0000000E"), "a character among"),
+    ("k.rsa", re.sub(rb"E\+0\d", b"E+0\r", boeing(), count=1), "a character among"),
 ]
 
 
@@ -390,6 +392,41 @@ def test_what_would_reach_a_parser_unchecked_is_refused(
         read_matrix(tmp_path / name)
     assert name in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_number_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
+    (tmp_path / "k.sti").write_text("1" * 160_000 + "\x1a" + "1" * 40_000)
+    begin = time.process_time()
+    with pytest.raises(StudyError, match="is no number"):
+        read_matrix(tmp_path / "k.sti")
+    assert time.process_time() - begin < 1.0
+
+
+def test_a_shape_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
+    np.save(tmp_path / "k.npy", K.toarray())
+    whole = (tmp_path / "k.npy").read_bytes()
+    head = whole[10 : 10 + int.from_bytes(whole[8:10], "little")]
+    longer = re.sub(rb"\((\d+), (\d+)\)", rb"(\1, \2" + b"1" * 6000 + b")", head).strip() + b" (\n"
+    (tmp_path / "k.npy").write_bytes(
+        whole[:8] + len(longer).to_bytes(2, "little") + longer + whole[10 + len(head) :]
+    )
+    begin = time.process_time()
+    with pytest.raises(StudyError, match="header of an array"):
+        read_matrix(tmp_path / "k.npy")
+    assert time.process_time() - begin < 1.0
+
+
+def test_an_archive_that_claims_more_bytes_than_it_has_takes_no_memory_for_them(tmp_path: Path) -> None:
+    np.savez(tmp_path / "k.npz", K=K.toarray())
+    content = bytearray((tmp_path / "k.npz").read_bytes())
+    at = content.rfind(b"PK\x01\x02") + 20
+    content[at : at + 4] = (500_000_000).to_bytes(4, "little")
+    (tmp_path / "k.npz").write_bytes(content)
+    tracemalloc.start()
+    with pytest.raises(StudyError, match="more bytes than the archive has"):
+        read_matrix(tmp_path / "k.npz")
+    assert tracemalloc.get_traced_memory()[1] < 10_000_000
+    tracemalloc.stop()
 
 
 def test_a_bomb_is_not_unpacked(tmp_path: Path) -> None:
@@ -417,6 +454,13 @@ SLIPS = [
     (NODES + "*NSET, NSET=A, GEMERATE\n1, 3\n", "is GENERATE meant"),
     (NODES + "*BOUNDRY\n1, 1, 3\n", "is \\*BOUNDARY meant"),
     (NODES + "*BOU", "is \\*BOUNDARY meant"),
+    (NODES + "*DARY\n1, 1, 3\n", "\\*DARY is nothing known; is \\*BOUNDARY meant"),
+    (NODES + "*BOUNDARY,ROOT, 1, 3\n", "is no card"),
+    (NODES + "*NSE 2\n", "is no card"),
+    (NODES + "*NSET, NSET=A\n3\n*END STEP\n", "END STEP without a \\*STEP before it"),
+    (NODES + "*STEP\n*FREQUENCY\n3\n*END STEP\n1, 1, 3\n", "behind the end of a step"),
+    (NODES + "*BOY\n1, 1, 3\n", "is \\*BOUNDARY meant"),
+    (NODES + "*NSET, NSET=A, GETE\n1, 3\n", "is GENERATE meant"),
     (NODES + "*BOUNDARY" + " " * 90 + "x\n1, 1, 3\n", "is \\*BOUNDARY meant"),
     (NODES + "*\n", "is no card"),
     (NODES + "*NSET, NSET=A\n*STEP\n", "\\*NSET without a line"),

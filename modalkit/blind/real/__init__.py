@@ -4,7 +4,7 @@ from modalkit.blind.real.case import Case, Fact, Source
 from modalkit.blind.real.cases import CASES
 from modalkit.blind.real.judging import RULES, Judgement, judge
 from modalkit.blind.real.record import counts, put_between_markers, real_markdown, real_record
-from modalkit.blind.real.running import RealOutcome, diagnose_together, run_real
+from modalkit.blind.real.running import RealOutcome, diagnose_together_by, run_real
 from modalkit.blind.real.table import real_table
 
 __all__ = [
@@ -16,7 +16,7 @@ __all__ = [
     "RealOutcome",
     "Source",
     "counts",
-    "diagnose_together",
+    "diagnose_together_by",
     "judge",
     "put_between_markers",
     "real_markdown",

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from acquisition.errors import EstimationError, ModalkitError, StudyError
+from acquisition.errors import ModalkitError, StudyError
 from modalkit.blind.answer import Answer, read_answer
+from modalkit.blind.diagnoser import DIAGNOSIS, read_diagnosis
 from modalkit.blind.real.anonymous import write_anonymous
 from modalkit.blind.real.case import Case
 from modalkit.blind.real.judging import Judgement, judge
-from modalkit.module_path import child_environment
+from modalkit.serving.pool import RunCommand, warm_pool
 
 DiagnoseTogether = Callable[[Sequence[Path], tuple[str, ...], tuple[str, ...]], Mapping[str, Any]]
-TIMEOUT = 900.0
-_HIDDEN_VARIABLES = ("PYTEST_CURRENT_TEST", "PYTEST_VERSION")
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,10 +88,12 @@ def run_real(
     """
     if workers < 1:
         raise StudyError(f"{workers} workers; there must be at least 1")
-    with ThreadPoolExecutor(max_workers=workers) as pool:
+    with ExitStack() as stack:
+        ask = diagnose or diagnose_together_by(stack.enter_context(warm_pool(workers)))
+        pool = stack.enter_context(ThreadPoolExecutor(max_workers=workers))
 
         def run(case: Case) -> RealOutcome:
-            outcome = _run_case(case, samples, data, diagnose or diagnose_together)
+            outcome = _run_case(case, samples, data, ask)
             if progress is not None:
                 progress(outcome)
             return outcome
@@ -127,63 +125,22 @@ def _missing(case: Case, why: str) -> RealOutcome:
     return RealOutcome(case, None, None, None, why, 0.0)
 
 
-def diagnose_together(
-    studies: Sequence[Path], shared: tuple[str, ...], without: tuple[str, ...], *, timeout: float = TIMEOUT
-) -> dict[str, Any]:
-    """Run ``modalkit diagnose`` on one or more studies in a process of its own.
+def diagnose_together_by(run: RunCommand) -> DiagnoseTogether:
+    """Return a diagnosis of one or more studies that runs where the command is run.
 
     Parameters
     ----------
-    studies : sequence of Path
-        Study files in one folder; the process starts there and is given nothing else.
-    shared, without : tuple of str
-        Effects of one size in all studies, and effects left out of the library.
-    timeout : float
-        Longest time allowed [s].
-
-    Returns
-    -------
-    dict
-        The diagnosis as JSON.
-
-    Raises
-    ------
-    EstimationError
-        If the process fails, does not end, or writes no JSON.
+    run : callable
+        As :func:`modalkit.serving.pool.warm_pool` yields it; its processes end with the one that asks.
     """
-    folder = studies[0].parent
-    out = folder / "diagnosis.json"
-    command = [
-        sys.executable,
-        "-P",
-        "-m",
-        "modalkit",
-        "diagnose",
-        *(s.name for s in studies),
-        "--json",
-        out.name,
-    ]
-    command += ["--shared", ",".join(shared)] if shared else []
-    command += ["--without", ",".join(without)] if without else []
-    environment = {k: v for k, v in os.environ.items() if k not in _HIDDEN_VARIABLES} | child_environment()
-    environment.setdefault("OPENBLAS_NUM_THREADS", "1")
-    try:
-        done = subprocess.run(
-            command,
-            cwd=folder,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=timeout,
-            stdin=subprocess.DEVNULL,
-            check=False,
-        )
-        if done.returncode != 0:
-            last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-            raise EstimationError(f"the diagnosis ended with code {done.returncode}: {last}")
-        document: dict[str, Any] = json.loads(out.read_text(encoding="utf-8"))
-    except subprocess.TimeoutExpired as error:
-        raise EstimationError(f"the diagnosis did not end within {timeout:g} s") from error
-    except (OSError, ValueError) as error:
-        raise EstimationError(f"the diagnosis wrote no readable JSON: {error}") from error
-    return document
+
+    def diagnose(
+        studies: Sequence[Path], shared: tuple[str, ...], without: tuple[str, ...]
+    ) -> Mapping[str, Any]:
+        options = [("--shared", shared), ("--without", without)]
+        words = [word for name, values in options if values for word in (name, ",".join(values))]
+        folder = studies[0].parent
+        run(folder, ["diagnose", *(s.name for s in studies), "--json", DIAGNOSIS, *words])
+        return read_diagnosis(folder / DIAGNOSIS)
+
+    return diagnose

@@ -21,7 +21,7 @@ from updating.models.imported.packed import allowed, too_much
 
 _HEADER = re.compile(
     rb"\s*\{\s*'descr':\s*'([<>|=]?)([fiucbSU])(\d{1,4})',\s*'fortran_order':\s*(True|False),"
-    rb"\s*'shape':\s*\(((?:\d{1,18},?\s*)*)\),?\s*\}\s*"
+    rb"\s*'shape':\s*\(((?:\d{1,18},\s*)*(?:\d{1,18}\s*)?)\),?\s*\}\s*"
 )
 _LONGEST = 64
 """Characters that a word among the arrays may have [-]; the names of formats have three."""
@@ -57,6 +57,8 @@ def _members(path: Path) -> Arrays:
         infos = archive.infolist()
         if sum(info.file_size for info in infos) > allowed(packed):
             raise too_much(path, packed)
+        if any(info.compress_size > packed for info in infos):  # zipfile would make room for them
+            raise ValueError("an array of more bytes than the archive has")
         if len({info.filename for info in infos}) < len(infos):
             raise ValueError("two arrays of one name")
         return {info.filename.removesuffix(".npy"): _array(archive.read(info)) for info in infos}

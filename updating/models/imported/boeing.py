@@ -12,7 +12,9 @@ from scipy import sparse
 from acquisition.arrays import AnyArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
-from updating.models.imported.numerals import NUMERALS
+
+_OF_VALUES, _OF_COUNTS = b"0123456789+-.eEdD ", b"0123456789 "
+"""What may stand on cards: of all blanks the one of Fortran, or another in the place of a digit is passed over."""
 
 _FORMAT = re.compile(
     r"\(\s*(?:-?\d+P\s*,?\s*)?(\d{0,9})\s*([IEDFG])(\d{1,9})(?:\.\d+)?(?:E\d+)?\s*\)", re.IGNORECASE
@@ -104,7 +106,7 @@ def _numbers(cards: list[bytes], block: _Block) -> AnyArray:
     if block.cards != full + (rest > 0):
         raise ValueError(f"{block.cards} cards of {each} {block.name} where {block.count} should be")
     wanted = [*[each] * full, *([rest] if rest else [])]
-    if b"".join(cards).translate(None, NUMERALS if block.name == "values" else NUMERALS[:10] + b" "):
+    if b"".join(cards).translate(None, _OF_VALUES if block.name == "values" else _OF_COUNTS):
         raise ValueError(f"a character among the {block.name} that no number has")
     try:
         values = _cut(cards, wanted, width)

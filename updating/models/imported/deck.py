@@ -24,6 +24,9 @@ FOLLOWED = ("*NODE", "*NSET", "*BOUNDARY", "*TRANSFORM", "*INCLUDE")
 ALIKE = ("*BOUNDARYF", "*NODEFILE", "*NODEPRINT", "*NODEOUTPUT", "*INCLUDES")
 """Cards of other meaning whose names are as close to those that are followed as a slip of the pen."""
 
+_NAME = re.compile(r"\*[^\W\d_][^\d]*")
+"""Names of cards: words, without a digit."""
+
 OPTIONS = ("NSET", "GENERATE", "SYSTEM", "INPUT")
 """Options that are followed."""
 
@@ -80,13 +83,17 @@ def read_deck(path: Path) -> Deck:
     """
     deck, turned = Deck(), set[int]()
     card, options, filled, seen = "", dict[str, str](), True, set[tuple[str, ...]]()
+    in_step = False
     for line, where in deck_lines(path):
         if line.startswith("*"):
             _check_filled(card, filled, where)
             card, options = _card(line)
             _check_card(card, options, line, where)
+            in_step = _step(card, where, in_step=in_step)
             filled = False
             continue
+        if card == "*END STEP":
+            raise StudyError(f"{where}: {line[:40]!r} stands behind the end of a step, without a card")
         filled = True
         if card in ("*BOUNDARY", "*TRANSFORM"):  # a line said twice holds nothing more
             if (once := (card, options.get("NSET", ""), line.upper())) in seen:
@@ -130,15 +137,24 @@ def _check_filled(card: str, filled: bool, where: str) -> None:
         raise StudyError(f"{where}: {card} without a line before this; the deck is damaged or cut short")
 
 
+def _step(card: str, where: str, *, in_step: bool) -> bool:
+    """Tell whether a step is open behind a card, and refuse the end of one that never began."""
+    if card == "*END STEP" and not in_step:
+        raise StudyError(
+            f"{where}: {card} without a *STEP before it; the deck is damaged, lines of it are lost"
+        )
+    return card == "*STEP" or (in_step and card != "*END STEP")
+
+
 def _check_card(card: str, options: dict[str, str], line: str, where: str) -> None:
     """Refuse what is not followed, and a card whose name is a slip of the pen away from one that is."""
-    if not card[1:2].isalpha():
+    if not _NAME.fullmatch(card) or any(option.isdigit() for option in options):
         raise StudyError(f"{where}: {line[:40]!r} is no card; the file is damaged or cut short")
     if card in REFUSED or (card == "*NODE" and options.get("SYSTEM", "R") != "R"):
         raise StudyError(f"{where}: {line[:80]} is not followed; write a node table (CSV) instead")
     for word, known in ((card, FOLLOWED), *((option, OPTIONS) for option in options)):
         plain = " ".join(word.split())[:40]
-        close = [one for one in known if one.startswith(plain)] or difflib.get_close_matches(
+        close = [one for one in known if _lost_a_piece(plain, one)] or difflib.get_close_matches(
             plain, known, n=1, cutoff=0.75
         )
         if plain and close and word not in known and plain.replace(" ", "") not in ALIKE:
@@ -147,6 +163,12 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
         raise StudyError(f"{where}: {line[:80]} names no set; write *NSET, NSET=name")
     if card in FOLLOWED and "" in options:
         raise StudyError(f"{where}: {line[:80]} ends in a comma; what follows it is missing")
+
+
+def _lost_a_piece(word: str, whole: str) -> bool:
+    """Tell whether a word is another without one piece of it."""
+    lost = len(whole) - len(word)
+    return lost > 0 and any(word == whole[:i] + whole[i + lost :] for i in range(1, len(word) + 1))
 
 
 def _place(deck: Deck, line: str, where: str) -> int:

@@ -16,7 +16,7 @@ from acquisition.errors import StudyError
 NUMERALS = b"0123456789+-.eEdD \t\r\n"
 """Characters that numbers are written with, and what stands between them; Fortran's D is an exponent too."""
 
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
+NUMBER = re.compile(r"[+-]?(\d+(?:\.\d*)?|\.\d+)([eEdD][+-]?\d+)?")
 """A whole number word."""
 
 SPARSEST = 100
