@@ -17,8 +17,17 @@ LARGEST = 1e50
 """Components of shapes whose powers are still numbers [-]."""
 
 
-def checked(modal: ModalData, path: Path) -> ModalData:
+def checked(modal: ModalData, path: Path, *, percent: str = "the column damping_percent") -> ModalData:
     """Return the modes of a file, if each has a frequency and what it has besides can be.
+
+    Parameters
+    ----------
+    modal : ModalData
+        The modes.
+    path : Path
+        The file, for messages.
+    percent : str
+        How a file of this kind says that damping is in per cent, for messages.
 
     Raises
     ------
@@ -27,7 +36,7 @@ def checked(modal: ModalData, path: Path) -> ModalData:
     """
     check_frequencies(modal.frequency, path)
     _sigmas(modal, path)
-    _ratios(modal, path)
+    _ratios(modal, path, percent)
     _shapes(modal, path)
     _once(modal, path)
     return modal
@@ -57,16 +66,12 @@ def _sigmas(modal: ModalData, path: Path) -> None:
         )
 
 
-def _ratios(modal: ModalData, path: Path) -> None:
+def _ratios(modal: ModalData, path: Path, percent: str) -> None:
     damping = np.zeros(0) if modal.damping is None else modal.damping
     wrong = np.flatnonzero((damping < 0) | (damping >= 1))
     if len(wrong):
         worst = float(damping[wrong[0]])
-        advice = (
-            "give it a value, or leave it empty"
-            if worst < 0
-            else "if it is in %, name the column damping_percent"
-        )
+        advice = "give it a value, or leave it empty" if worst < 0 else f"if it is in %, write {percent}"
         raise InputError(
             f"{path}: damping ratio {worst:g} of mode {wrong[0] + 1}: it lies from 0 to 1; {advice}"
         )

@@ -58,6 +58,9 @@ def check_headings(table: pd.DataFrame, path: Path) -> None:
     """
     known = [heading for headings in HEADINGS.values() for heading in headings]
     for name in map(str, table.columns):
+        first, _, copy = name.rpartition(".")
+        if copy.isdigit() and first in table.columns:  # as pandas names a heading that was there before
+            raise InputError(f"{path}: column {first[:40]!r} stands there twice; leave one out")
         if plain(name) in (*known, *PASSED) or part_of(name) is not None or plain(name).startswith(ASIDE):
             continue
         begins = name.strip().lower().startswith(("damping", "zeta"))

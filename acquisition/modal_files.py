@@ -152,6 +152,10 @@ def _table(path: Path) -> pd.DataFrame:
         raise InputError(f"{path}: is no table of columns separated by {NAMES[separator]} ({said})") from None
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise InputError(f"{path}: lines have more values than the header has names; name every column")
+    nameless = [
+        name for name in table.columns if str(name).startswith("Unnamed: ") and table[name].isna().all()
+    ]
+    table = table.drop(columns=nameless)  # a comma ends every line
     table.columns = [str(name).strip() for name in table.columns]
     if table.empty:
         raise InputError(f"{path}: holds no mode; give a header row and one row per mode")

@@ -24,10 +24,15 @@ def find_peaks(
         Least fall on both sides before the curve is higher than the peak, or ends [as ``wave``].
     """
     tops = _tops(wave)
-    tops = _apart(tops[wave[tops] >= height], wave, distance)
-    if prominence <= 0:
-        return tops
-    return np.array([top for top in tops.tolist() if _fall(wave, top) >= prominence], dtype=np.int64)
+    tops = tops[wave[tops] >= height]
+    if prominence > 0:
+        falls = np.minimum(
+            _falls_before(wave, tops), _falls_before(wave[::-1], len(wave) - 1 - tops[::-1])[::-1]
+        )
+        prominent = tops[falls >= prominence]
+    else:
+        prominent = tops
+    return prominent[np.isin(prominent, _apart(tops, wave, distance))]
 
 
 def _tops(wave: FloatArray) -> IntArray:
@@ -51,10 +56,22 @@ def _apart(tops: IntArray, wave: FloatArray, distance: int) -> IntArray:
     return tops[keep]
 
 
-def _fall(wave: FloatArray, top: int) -> float:
-    """Return the smaller of the falls on either side of a peak."""
-    higher = np.flatnonzero(wave > wave[top])
-    after = int(np.searchsorted(higher, top))
-    low = higher[after - 1] if after else 0
-    high = higher[after] if after < len(higher) else len(wave)
-    return float(wave[top] - max(wave[low : top + 1].min(), wave[top:high].min()))
+def _falls_before(wave: FloatArray, tops: IntArray) -> FloatArray:
+    """Return how far a curve lies below each peak at the least since it was higher, or began, (n_tops,) [as ``wave``].
+
+    ``tops`` are all peaks above some height, so that a higher sample before one is beside one of them or at the begin.
+    """
+    if not len(tops):
+        return np.zeros(0)
+    valleys = np.minimum.reduceat(wave[: tops[-1] + 1], np.append(0, tops[:-1])).tolist()
+    higher: list[tuple[float, float]] = [
+        (float(wave[0]), float(wave[0]))
+    ]  # peaks, and the lowest before each
+    falls = []
+    for peak, valley in zip(wave[tops].tolist(), valleys, strict=True):
+        low = valley
+        while higher and higher[-1][0] <= peak:
+            low = min(low, higher.pop()[1])
+        higher.append((peak, low))
+        falls.append(peak - low)
+    return np.array(falls)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -44,3 +45,20 @@ def shared_data() -> Callable[[str], Path]:
 @pytest.fixture
 def rng() -> np.random.Generator:
     return np.random.default_rng(20260101)
+
+
+@pytest.fixture
+def run(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
+    """Return a function that runs a command and returns its exit code, what it prints, and its messages."""
+    from modalkit.cli import main
+
+    def call(*arguments: str | Path) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["modalkit", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        text = capfd.readouterr()
+        return int(ended.value.code or 0), text.out, text.err
+
+    return call

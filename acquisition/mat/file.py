@@ -33,12 +33,15 @@ def variables(path: Path, names: list[str]) -> dict[str, AnyArray]:
     Raises
     ------
     InputError
-        If the file cannot be read, is of version 7.3 or 4, is damaged, or a variable is not in it or holds no numbers.
+        If the file cannot be read, is of version 7.3 or 4, is damaged, or a variable is not in it, stands in it twice
+        or holds no numbers.
     """
     raw = _bytes(path)
     found: dict[str, Array] = {}
     there: list[str] = []
     for array in _arrays(raw, {name.partition(".")[0] for name in names}):
+        if array.name in there:
+            raise raw.broken(f"holds {array.name!r} twice")
         there.append(array.name)
         found |= {name: array for name in names if name.partition(".")[0] == array.name}
     answer = {}

@@ -17,6 +17,7 @@ from acquisition.frf import FrfSet
 from acquisition.geometry import Geometry
 from acquisition.mat.file import variables
 from acquisition.mat.layout import AXES, MatLayout
+from acquisition.modal_checks import check_frequencies, checked
 from acquisition.modal_data import ModalData
 
 
@@ -117,10 +118,7 @@ def read_mat_modes(path: Path | str, layout: MatLayout, *, geometry: Geometry) -
     names = [name for name in (layout.frequency, layout.damping, layout.shapes) if name]
     held = variables(Path(path), names)
     frequency = _vector(held[layout.frequency], layout.frequency, path)
-    if not np.all(frequency > 0):
-        raise InputError(
-            f"{path}: {layout.frequency!r} holds a frequency that is not positive; leave such modes out"
-        )
+    check_frequencies(frequency, Path(path))
     damping = _vector(held[layout.damping], layout.damping, path) if layout.damping else None
     dofs = [Dof.of(d) for d in layout.dofs]
     shapes = held[layout.shapes] if layout.shapes else None
@@ -134,7 +132,7 @@ def read_mat_modes(path: Path | str, layout: MatLayout, *, geometry: Geometry) -
             f"{path}: {len(frequency)} frequencies but {len(damping)} of {layout.damping!r}; name others"
         )
     sign = np.array([dof.sign for dof in dofs], dtype=np.float64)
-    return ModalData(
+    modal = ModalData(
         frequency=frequency,
         frequency_sigma=np.full(len(frequency), np.nan),
         damping=damping if damping is None else damping * (0.01 if layout.damping_unit == "percent" else 1.0),
@@ -143,6 +141,7 @@ def read_mat_modes(path: Path | str, layout: MatLayout, *, geometry: Geometry) -
         scaled=layout.scaled,
         geometry=geometry,
     )
+    return checked(modal, Path(path), percent='damping_unit = "percent" in [mat]')
 
 
 def _vector(values: AnyArray, name: str, path: Path | str) -> FloatArray:

@@ -17,6 +17,7 @@ from acquisition.uff.units import Units, units_of
 from acquisition.uff.values58 import numbers_of
 
 _FACTORS = 4  # of length, force and temperature, and the offset of temperature
+_NEEDED = 3  # the factors: the offset, which is not used, often has other digits (2.7315E+02 beside 1.0E+00)
 _ON_FIRST_LINE = {15: 7, 2411: 4}
 """Numbers on the first line of a node's record."""
 
@@ -40,7 +41,7 @@ def read_units(body: bytes) -> tuple[Units, str]:
         raise InputError(
             f"data set 164 holds {len(factors)} factors, {_FACTORS} at most are meant: one is broken in two"
         )
-    check_digits("\n".join(lines[1:]).encode())
+    check_digits("\n".join(words[:_NEEDED]).encode())
     length, force = (*factors, 0.0, 0.0)[:2]
     return units_of(code, length, force)
 

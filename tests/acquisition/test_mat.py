@@ -68,6 +68,22 @@ def test_axes_in_any_order_and_left_out(tmp_path: Path) -> None:
         read_mat(one, layout(table | {"axes": ["response", "line"]}))
 
 
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"fn": [10.0, 20.0], "zeta": [1.2, 0.8]}, 'if it is in %, write damping_unit = "percent"'),
+        ({"fn": [10.0, 20.0], "zeta": [0.01, -0.5]}, "damping ratio -0.5 of mode 2"),
+        ({"fn": [10.0, 10.0], "zeta": [0.01, 0.01]}, "modes 1 and 2 are the same mode"),
+        ({"fn": [0.0, 10.0], "zeta": [0.01, 0.01]}, "not positive"),
+    ],
+)
+def test_modes_that_cannot_be_are_refused_as_in_a_table(
+    tmp_path: Path, values: dict[str, list[float]], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        read_mat(saved(tmp_path, **values), layout({"frequency": "fn", "damping": "zeta"}))
+
+
 def test_modes(tmp_path: Path) -> None:
     modal = read_mat(mode_file(tmp_path), layout(MODES))
     assert isinstance(modal, ModalData)
@@ -149,6 +165,15 @@ def test_other_versions_are_refused_with_what_to_do(tmp_path: Path) -> None:
         read_mat(tmp_path / "none.mat", layout(MODES))
     with pytest.raises(InputError, match=r"\[mat\]"):
         read_test(path)
+
+
+def test_a_variable_that_stands_twice_is_not_chosen_from(tmp_path: Path) -> None:
+    """Nor are a thousand bombs of one name unpacked one after the other."""
+    whole = saved(tmp_path, fn=[10.0, 20.0]).read_bytes()
+    other = saved(tmp_path, fn=[11.0, 21.0]).read_bytes()
+    (tmp_path / "test.mat").write_bytes(whole + other[128:])
+    with pytest.raises(InputError, match="holds 'fn' twice"):
+        read_mat(tmp_path / "test.mat", layout({"frequency": "fn"}))
 
 
 def test_a_bomb_takes_no_more_than_its_share(tmp_path: Path) -> None:

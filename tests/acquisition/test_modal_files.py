@@ -200,3 +200,20 @@ def test_an_unknown_column_is_named_and_can_be_passed_over(tmp_path: Path) -> No
     assert "write 'note temperature' or delete it" in said
     path.write_text("frequency,sigma,note temperature,Note humidity [%]\n10.5,0.1,21.5,60\n")
     assert read_modes(path).frequency.tolist() == [10.5]
+
+
+def test_a_comma_that_ends_every_line_makes_no_column(tmp_path: Path) -> None:
+    """Spreadsheets write it; a column that holds something has to say what."""
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency,sigma,\n10.5,0.1,\n20,0.1,\n")
+    assert read_modes(path).frequency.tolist() == [10.5, 20.0]
+    path.write_text("frequency,sigma,\n10.5,0.1,\n20,0.1,3\n")
+    with pytest.raises(InputError, match="'Unnamed: 2' is none known here"):
+        read_modes(path)
+
+
+def test_a_heading_that_stands_twice_is_called_so(tmp_path: Path) -> None:
+    path = tmp_path / "modes.csv"
+    path.write_text("frequency,sigma,sigma\n10.5,0.1,0.2\n")
+    with pytest.raises(InputError, match="column 'sigma' stands there twice"):
+        read_modes(path)

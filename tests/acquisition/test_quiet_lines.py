@@ -105,6 +105,16 @@ def test_si_units_are_called_so(tmp_path, rng):
     assert units.description == "SI"
 
 
+def test_units_whose_unused_offset_has_more_digits_are_read(tmp_path):
+    """Else a file in mm would be taken for one in m, as nothing said its units."""
+    units = f"{5:10d}{'mm':20s}{2:10d}\n  1.0E+03  1.0E+00  1.0E+00\n  2.7315E+02\n"
+    node = "1".rjust(10) + 3 * "0".rjust(10) + 3 * f"{250.0:13.5E}" + "\n"
+    sets = (("164", units), ("15", node))
+    (tmp_path / "a.uff").write_text("".join(f"    -1\n{n:>6}\n{body}    -1\n" for n, body in sets), "ascii")
+    content = read_uff(tmp_path / "a.uff")
+    assert content.geometry.coordinates.tolist() == [[0.25, 0.25, 0.25]]
+
+
 def test_text_that_begins_with_a_negative_number_is_text(tmp_path):
     table = np.stack([-1.0 - np.arange(50.0), np.arange(50.0)], axis=1)
     np.savetxt(tmp_path / "a.csv", table, delimiter=",")

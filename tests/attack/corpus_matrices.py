@@ -99,7 +99,9 @@ def _matrix_family(name: str, cases: dict[str, bytes], judge: undetectable.Judge
     def read(path: Path) -> tuple[Any, Sequence[str]]:
         return read_matrix(path), ()
 
-    return Family(name, [Case(file, {file: content}, head, judge) for file, content in cases.items()], read)
+    plainly = undetectable.without_exponents if name == "MatrixMarket" else None
+    found = [Case(file, {file: content}, head, judge, plainly=plainly) for file, content in cases.items()]
+    return Family(name, found, read)
 
 
 def _market_judge(original: bytes, mutant: bytes) -> bool:
@@ -135,7 +137,14 @@ def matrix_families() -> list[Family]:
         return [found.stiffness, found.mass, found.nodes], ()
 
     calculix = [
-        Case(name, job, 80, undetectable.text(free=_comment(name), rows=True, ends=True)) for name in job
+        Case(
+            name,
+            job,
+            80,
+            undetectable.text(free=_comment(name), rows=True, ends=True),
+            plainly=undetectable.without_exponents,
+        )
+        for name in job
     ]
     return [
         _matrix_family("MatrixMarket", markets, _market_judge, 80),

@@ -37,6 +37,9 @@ class Case:
         Whether a change from the first bytes to the second leaves a valid file that says something else.
     spans : sequence of (int, int)
         Where numbers stand in binary, each of which may be any other.
+    plainly : callable, optional
+        From a content to one that says the same in other digits, where a format leaves these free: a mutant may hold
+        another number than the whole file, but whoever reads it must read that number, not a part of it.
     """
 
     name: str
@@ -44,6 +47,7 @@ class Case:
     head: int
     undetectable: Callable[[bytes, bytes], bool]
     spans: Sequence[tuple[int, int]] = ()
+    plainly: Callable[[bytes], bytes] | None = None
 
     def repaired(self, content: bytes) -> bytes:
         """Return a mutant of the same length with the whole file's numbers where they stand in binary."""

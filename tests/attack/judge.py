@@ -109,7 +109,15 @@ class Judge:
         if set(found.warnings) - set(whole.warnings):
             return "warned", next(iter(set(found.warnings) - set(whole.warnings)))
         hidden = case.undetectable(case.content, content) or self._in_numbers(case, content, whole)
-        return ("undetectable" if hidden else "changed"), ""
+        return ("undetectable" if hidden and self._as_written(case, content, found) else "changed"), ""
+
+    def _as_written(self, case: Case, content: bytes, found: Reading) -> bool:
+        """Tell whether what was made of a mutant is what is made of the same numbers in other digits."""
+        other = content if case.plainly is None else case.plainly(content)
+        try:
+            return other == content or self._reading(case, other).digest == found.digest
+        except ModalkitError:
+            return False
 
     def _each(self, case: Case, steps: list[bytes], whole: Reading) -> bool:
         """Tell whether each of two damages alone changes nothing, or what no reader could see."""

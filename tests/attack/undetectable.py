@@ -175,6 +175,19 @@ def _numbers_of(line: bytes) -> bytes:
     return b" ".join(w for w in line.split() if NUMBER.fullmatch(w))
 
 
+_EXPONENT = re.compile(rb"(?<![\w.+-])[+-]?(\d+\.?\d*|\.\d+)[eEdD][+-]?\d+(?![\w.+-])")
+
+
+def without_exponents(content: bytes) -> bytes:
+    """Return a text of free columns with every number that has an exponent written without one, to the last bit."""
+
+    def plain(found: re.Match[bytes]) -> bytes:
+        number = float(found[0].upper().replace(b"D", b"E"))
+        return found[0] if not np.isfinite(number) else np.format_float_positional(number).encode()
+
+    return content if content[:2] == b"\x1f\x8b" else _EXPONENT.sub(plain, content)
+
+
 def payload(spans: Sequence[tuple[int, int]], size: int, otherwise: Judge) -> Judge:
     """Return the judge of a format with numbers in binary at spans of a file of a size, and text elsewhere."""
 

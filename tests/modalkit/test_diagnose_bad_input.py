@@ -1,31 +1,16 @@
 """Tests that hold too little, or something else: the command says so and concludes no more than it can."""
 
 import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from modalkit.cli import main
-
 Run = Callable[..., tuple[int, str, str]]
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 PLATE = (16.76, 70.69, 104.91, 229.96, 296.64, 425.51, 446.90, 574.19, 591.14, 731.06)
 BEAM = (24.47, 153.96, 429.15)
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str | Path) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["modalkit", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        text = capfd.readouterr()
-        return int(ended.value.code or 0), text.out, text.err
-
-    return call
 
 
 @pytest.fixture

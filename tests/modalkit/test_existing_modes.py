@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +14,6 @@ import pytest
 
 import modalkit as mk
 from acquisition import Dof, FrfSet, Geometry, InputError, ModalData, read_modes
-from modalkit.cli import main
 from modalkit.cli.demonstrate import sample
 
 Run = Callable[..., tuple[int, str, str]]
@@ -32,18 +30,6 @@ MODAL = ModalData(
     scaled=True,
     geometry=PLACES,
 )
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str | Path) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["modalkit", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        text = capfd.readouterr()
-        return int(ended.value.code or 0), text.out, text.err
-
-    return call
 
 
 def written(folder: Path, ending: str, modal: ModalData = MODAL) -> Path:

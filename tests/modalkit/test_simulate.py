@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +12,6 @@ import pytest
 
 from acquisition import Dof, read_uff, write_uff
 from acquisition.errors import InputError, StudyError
-from modalkit.cli import main
 from modalkit.cli.demonstrate import sample
 from modalkit.named_effects import parse_effect
 from modalkit.process import process
@@ -51,18 +49,6 @@ def blank(places: np.ndarray) -> Measured:
 STEEL = Material(210e9, 7850.0, 0.3)
 BEAM = Spec("beam", 0.4, 0.03, 0.005, (40,), ("x0",), "euler-bernoulli", STEEL, damping=Damping(alpha=1e-3))
 MODEL = Predictor(BEAM, blank(np.linspace(0.08, 0.4, 5)))
-
-
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str | Path) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["modalkit", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        text = capfd.readouterr()
-        return int(ended.value.code or 0), text.out, text.err
-
-    return call
 
 
 def study_of(folder: Path, test: str, *, kind: str = "beam", clamped: str = '["x0"]') -> Path:

@@ -9,7 +9,7 @@ from scipy.stats import chi2, norm
 
 from updating.diagnosis.comparison import CHANNELS, SCALES, SHAPES, Comparison
 from updating.diagnosis.fit import Point
-from updating.diagnosis.gaussian import gaussian, marginal, whiten
+from updating.diagnosis.gaussian import gaussian, whiten
 
 SCATTER = "scatter of shapes"
 
@@ -87,15 +87,3 @@ def _of_point(point: Point) -> dict[str, float]:
     if len(named):
         values["doubts"] = float(min(1.0, len(named) * 2 * norm.sf(np.abs(named).max())))
     return values
-
-
-def carrier(point: Point) -> str:
-    """Return the channel that carries the gap: the one whose chi-squared is the least likely."""
-    channel = point.comparison.channel
-    surprise = {}
-    for i, name in enumerate(CHANNELS):
-        keep = channel == i
-        if keep.any():
-            part = marginal(point.comparison, keep)
-            surprise[name] = float(chi2.logsf(part.chi2, part.count))
-    return min(surprise, key=lambda n: surprise[n]) if surprise else "frequency"

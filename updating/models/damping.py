@@ -200,9 +200,3 @@ def region_matrices(reduced: Reduced, state: State) -> tuple[FloatArray, FloatAr
             scale[region] *= value ** term.powers.get(factor, 0.0)
         total[term.kind] += scale[:, None, None] * parts[:, :n, :n]
     return total["stiffness"], total["mass"]
-
-
-def all_matrices(reduced: Reduced, damping: Damping, state: State) -> Matrices:
-    """Return K, M, C and D of a state [SI]."""
-    stiffness, mass = reduced.matrices(state)
-    return Matrices(stiffness, mass, *damping_matrices(reduced, damping, state))

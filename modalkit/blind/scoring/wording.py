@@ -52,8 +52,3 @@ def value_text(
         return "-"
     middle, low, high = (f"{v:.{digits}g}" if abs(v) >= LEAST else "0" for v in values)
     return f"{middle} ({low} to {high})" if math.isfinite(values[1]) else middle
-
-
-def plain_name(name: str) -> str:
-    """Return a name of the contract with spaces."""
-    return name.replace("_", " ")
