@@ -11,6 +11,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.errors import EstimationError, InputError
 from acquisition.frf import FrfSet, Record
 from acquisition.hammer import HammerTest, Hits
+from acquisition.impulse import impulse_places
 from acquisition.scatter import HitGroup, HitScatter
 from acquisition.spectra import ESTIMATORS, Estimator, Spectra, coherence_of, combine, deviations, squared
 from acquisition.verdicts import HitVerdict, verdicts_of
@@ -72,7 +73,7 @@ def estimate_frfs(
     parts, places = [], []
     for raw, keep in kept:
         hits = windowed(raw, windows, test.rate)
-        places.append(_places(hits, keep))
+        places.append(impulse_places(hits.force[keep]))
         parts.append(_average(Spectra.of(hits, keep, test, lines), estimator, several, keep_scatter))
     return FrfSet(
         frequency=frequency[lines],
@@ -89,14 +90,6 @@ def estimate_frfs(
         record=Record(test.duration, float(np.concatenate(places).mean()) / test.rate, test.form, test.rate),
         scatter=_scatter(parts) if several and keep_scatter else None,
     )
-
-
-def _places(hits: Hits, keep: BoolArray) -> FloatArray:
-    """Return where in their records the hits are, shape (n_kept,) [samples]."""
-    force = np.asarray(hits.force[keep], dtype=np.float64)
-    power = (force - np.median(force, axis=-1, keepdims=True)) ** 2
-    total = np.maximum(power.sum(axis=-1), np.finfo(float).tiny)
-    return np.asarray(power @ np.arange(power.shape[-1]) / total, dtype=np.float64)
 
 
 def random_error(frfs: FrfSet) -> FloatArray:

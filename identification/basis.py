@@ -106,8 +106,9 @@ def build(axis: Axis, poles: ComplexArray, terms: tuple[int, ...]) -> Basis:
     -----
     A record of length T with the hit at t0 ends before a mode does. On the lines of its transform, which are
     multiples of 1/T, what is cut off is a term of its own: with q the power of s of what was recorded, the
-    mode's s^q / (s - p) becomes (s^q - p^q exp((p - d) T) exp((s - p) t0)) / (s - p). So FRFs of records
-    that were not at rest, with no window or a weak one, are fitted without bias.
+    mode's s^q / (s - p) becomes s^q / (s - p) - p^q exp((p - d) T) exp((s - p) t0) h / (1 - exp((p - s) h)), where h is
+    the distance of samples: the record is cut behind the converter. So FRFs of records that were not at rest, with
+    no window or a weak one, are fitted without bias.
     """
     s, power = axis.laplace, FORMS.index(axis.form)
     front = (s**power)[:, None]
@@ -136,4 +137,19 @@ def _column(axis: Axis, front: ComplexArray, poles: ComplexArray) -> tuple[Compl
     phase = np.exp((axis.laplace - axis.decay) * axis.record.trigger)
     turned = phase * axis.laplace ** (FORMS.index(axis.form) - q)
     lost = turned[:, None] * (left * poles**q)[None, :]
-    return column - lost * inverse, (front - lost) * inverse**2 - lost * (rest + q / poles) * inverse
+    tail, tail_slope = _tail(axis, poles, inverse)
+    return column - lost * tail, column * inverse - lost * (tail_slope + (rest + q / poles) * tail)
+
+
+def _tail(axis: Axis, poles: ComplexArray, inverse: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return the transform of what rings on behind the end of a record, and its derivative by the pole.
+
+    The sum over the samples that are not there, h / (1 - exp((p - s) h)) with h their distance; the integral
+    1 / (s - p) where that is not known.
+    """
+    rate = None if axis.record is None else axis.record.rate
+    if rate is None:
+        return inverse, inverse**2
+    step = np.exp((poles[None, :] - axis.laplace[:, None]) / rate)
+    tail = np.asarray(1.0 / (rate * (1.0 - step)), dtype=np.complex128)
+    return tail, np.asarray(step * tail**2)

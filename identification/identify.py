@@ -293,6 +293,7 @@ def _warnings(fitted: Fitted, poles: ComplexArray) -> tuple[str, ...]:
     if fitted.rank_excess > 1.0:
         notes.append(
             f"the references do not agree on the shapes: holding each mode to one shape raises the misfit to "
-            f"{fitted.rank_excess:.2g} times what noise allows; check that nothing was moved between them"
+            f"{fitted.rank_excess:.2g} times what noise allows; check that nothing was moved between them, and "
+            "whether the structure is symmetric: two modes at the very same frequency look like this too"
         )
     return tuple(notes)

@@ -118,10 +118,10 @@ def _of_test(
         waves = upright(np.asarray(hits.force[keep], dtype=np.float64))
         power += (np.abs(np.fft.rfft(waves, axis=-1)) ** 2).sum(axis=0)
         noise += sum(noise_level(wave) ** 2 for wave in waves) * test.samples
-    smooth = uniform_filter1d(power[1:], ABOUT, mode="nearest")
+    smooth = np.maximum(uniform_filter1d(power[1:], ABOUT, mode="nearest") - noise, 0.0)
     lines = np.fft.rfftfreq(test.samples, 1 / test.rate)[1:]
     level = np.interp(frequency, lines, smooth) / smooth.max()
-    weak = level * smooth.max() < (1 + ABOVE_NOISE) * noise if coherent is None else coherent < LOST
+    weak = level * smooth.max() < ABOVE_NOISE * noise if coherent is None else coherent < LOST
     corner = test.rate / PASSED
     passed = level[(frequency > 0.9 * corner) & (frequency <= corner)].max(initial=0.0)
     return np.asarray(((level < WEAK) & weak) | ((level < FILTERED * passed) & (frequency > corner)))

@@ -43,16 +43,25 @@ def anti_alias(frequency: FloatArray, rate: float) -> FloatArray:
     """
     low, high = rate / 2.56, rate / 2
     x = np.clip((frequency - low) / (high - low), 0.0, 1.0)
+    return _falling(x)
+
+
+def _falling(x: FloatArray) -> FloatArray:
+    """Return a fall from 1 at 0 to 0 at 1 with three derivatives that vanish at both [-]."""
     return np.asarray(1 - x**4 * (35 - 84 * x + 70 * x**2 - 20 * x**3), dtype=np.float64)
 
 
 ORDER, RIPPLE, STOP = 8, 0.1, 80.0  # an eighth-order elliptic filter: order [-], ripple and stop band [dB]
+LOW = 0.88  # where it is 20 dB down [Nyquist frequency]
 
 
 def sharp_anti_alias(laplace: ComplexArray, rate: float) -> ComplexArray:
     """Return the transfer function of an elliptic filter with its edge at rate / 2.56, shape as ``laplace`` [-].
 
     Being causal it delays force and responses alike and rings after a pulse that is shorter than its own response.
+    Where it is 20 dB down it is led on to 0 at the Nyquist frequency: what is left of it, cut there, would ring at that
+    frequency, and the way back from the Laplace plane would make the ringing grow along the record, to the size of
+    the pulse itself.
 
     Parameters
     ----------
@@ -67,4 +76,5 @@ def sharp_anti_alias(laplace: ComplexArray, rate: float) -> ComplexArray:
     zeros, poles, gain = scipy.signal.ellip(ORDER, RIPPLE, STOP, edge, analog=True, output="zpk")
     unit = laplace[..., None] / edge
     ratio = np.prod((unit - zeros / edge) / (unit - poles[: len(zeros)] / edge), axis=-1)
-    return np.asarray(gain * ratio, dtype=np.complex128)
+    x = np.clip((np.abs(laplace.imag) / (np.pi * rate) - LOW) / (1.0 - LOW), 0.0, 1.0)
+    return np.asarray(gain * ratio * _falling(x), dtype=np.complex128)
