@@ -47,6 +47,11 @@ def letter(diagnosis: Diagnosis) -> list[str]:
 def _cause(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "no gap beyond tolerances and noise; there is nothing to explain"
+    if diagnosis.verdict == "unknown" and not diagnosis.comparable:
+        return (
+            "unknown: most measured modes have no partner in the model, and the few that have one name no cause; check "
+            "axes, points, signs and boundary conditions first"
+        )
     if diagnosis.verdict == "unknown":
         return (
             "unknown: the gap is real, and nothing in the library explains it, alone or in the pairs weighed"

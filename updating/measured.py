@@ -74,6 +74,8 @@ class Measured(Displayed):
         Mean peak force of the hits [N].
     below : int
         How many modes are known to lie below the lowest of these: left out by a band [-].
+    trusted : (n_frf,) bool array, optional
+        Rows by whose shapes modes are paired, where the others spoil them; left out, all.
     """
 
     frequency: FloatArray
@@ -105,6 +107,7 @@ class Measured(Displayed):
     slope_sigma: FloatArray | None = None
     level: float | None = None
     below: int = 0
+    trusted: BoolArray | None = None
 
     @property
     def own_sigma(self) -> FloatArray:

@@ -262,6 +262,8 @@ class Diagnosis(Displayed):
         What the reader ought to know.
     not_examined : dict of str to str
         Effects that could not be examined, and why.
+    comparable : bool
+        Whether most measured modes have a partner in the model; if not, no cause is named.
     """
 
     title: str
@@ -276,6 +278,7 @@ class Diagnosis(Displayed):
     next_test: tuple[NextTest, ...]
     warnings: tuple[str, ...]
     not_examined: dict[str, str]
+    comparable: bool = True
 
     @property
     def effects(self) -> tuple[str, ...]:

@@ -62,7 +62,9 @@ def _by_chance(found: Search) -> float:
     return float(min(1.0, FORMS * len(singles) * min(chances, default=1.0)))
 
 
-def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
+def decide(
+    found: Search, *, significant: bool, comparable: bool = True
+) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
     """Return the verdict and the sets of effects it rests on.
 
     Parameters
@@ -71,6 +73,8 @@ def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[st
         What was weighed, most probable first.
     significant : bool
         Whether there is a gap.
+    comparable : bool
+        Whether most measured modes have a partner: the rest alone names no cause.
     """
     if not significant:
         return "none", ()
@@ -82,7 +86,9 @@ def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[st
     if not better:
         return "unknown", ()
     sets = _credible(better)
-    return ("named" if len(sets) == 1 else "class"), sets
+    if len(sets) > 1:
+        return "class", sets
+    return ("named", sets) if comparable else ("unknown", ())
 
 
 def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:

@@ -49,7 +49,7 @@ def locate(problem: Problem, found: Search, *, significant: bool, whole: Search 
     leader = next((row for row in found.weighed if row.names), None)
     seats = () if leader is None else clusters(problem, leader.explanation, top)
     places = tuple(_place(cluster.place) for cluster in seats)
-    unknown = decide(found, significant=True)[0] == "unknown"
+    unknown = decide(found, significant=True, comparable=not problem.mostly_alone)[0] == "unknown"
     probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
     return Where(
         top,

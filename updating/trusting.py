@@ -1,0 +1,147 @@
+"""By which FRFs modes are paired: without the few points or fixed sensors that spoil the shapes of all modes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import BoolArray, FloatArray, IntArray
+from updating.assigning import mac_of_constants, match
+from updating.measured import Measured
+from updating.prediction import Prediction
+from updating.reading import roving
+
+SPOILT = 0.8
+"""Mean MAC of the pairs under which points and sensors are looked for that spoil it..."""
+
+MENDED = 0.05
+"""...and by how much leaving one out must raise it [-]."""
+
+SPOILS = 2
+"""Fewest modes whose MAC rises by as much where points are bad: a bad point spoils most shapes, while a mode that is
+none, or one that the model lacks, spoils its own MAC alone. Doubled, a bad point in a test of few modes goes unseen."""
+
+LOST = 0.4
+"""A MAC under which a mode has no partner, however near: where `SPOILS` modes lie under it, a channel is looked for
+whatever the mean. Doubled, it would be looked for in most tests, in vain."""
+
+OPPOSITE = 0.02
+"""By how much the mean MAC may be lower without a channel that reads with the opposite sign and still speak against
+it, not its neighbour: of two sensors, either without the other agrees. Doubled, a bad point beside it may be spared
+for it [-]."""
+
+FEWEST = 3
+"""Points that have to be left for shapes to be compared: fewer resemble everything."""
+
+KEPT = 0.6
+"""Share of the points, and half of the fixed sensors, that have to be left: a test is not judged by its minority."""
+
+
+@dataclass(frozen=True)
+class _Channel:
+    """A point of the end that roved, or of the one that stayed, and its rows."""
+
+    moved: bool
+    point: int
+    rows: BoolArray
+
+
+def trusted_rows(measured: Measured, prediction: Prediction) -> BoolArray | None:
+    """Return the rows left when the few points and fixed sensors that spoil all shapes are out, None where none does.
+
+    A sensor mounted upside down, or a point hit from the other side, turns the sign of its rows alike in all modes, so
+    that modes are strangers to their own partners by MAC; without those rows they are not.
+
+    Parameters
+    ----------
+    measured, prediction
+        Test and model.
+
+    Returns
+    -------
+    (n_frf,) bool array or None
+    """
+    rows = np.ones(len(measured.seen), dtype=bool)
+    all_rows = _macs(measured, prediction, rows)
+    reached = float(all_rows.mean())
+    if reached >= SPOILT and (all_rows < LOST).sum() < SPOILS:
+        return None
+    channels = _channels(measured)
+    while found := _next(measured, prediction, rows, reached, channels):
+        rows, reached = found
+    mended = int((_macs(measured, prediction, rows) - all_rows > MENDED).sum())
+    return None if rows.all() or reached < SPOILT or mended < SPOILS else rows
+
+
+def _next(
+    measured: Measured, prediction: Prediction, rows: BoolArray, reached: float, channels: tuple[_Channel, ...]
+) -> tuple[BoolArray, float] | None:
+    """Return the rows without the channel that spoils the shapes most, and their mean MAC; None where none does."""
+    trials = [(c, rows & ~c.rows) for c in channels if (rows & c.rows).any()]
+    trials = [(c, t) for c, t in trials if _enough(measured, t)]
+    means = [float(_macs(measured, prediction, t).mean()) for _, t in trials]
+    best = max(means, default=0.0)
+    if best < reached + MENDED:
+        return None
+    alike = [i for i, mean in enumerate(means) if mean >= best - OPPOSITE]
+    agreements = [_agreement(measured, prediction, trials[i][1], rows & trials[i][0].rows) for i in alike]
+    reverse = [i for i, sign in zip(alike, agreements, strict=True) if sign < 0]
+    chosen = max(reverse or alike, key=lambda i: means[i])
+    return trials[chosen][1], means[chosen]
+
+
+def _macs(measured: Measured, prediction: Prediction, rows: BoolArray) -> FloatArray:
+    """Return the MAC of every measured mode with its partner by some rows, (n_modes,) [-]."""
+    order = _partners(measured, prediction, rows)
+    return np.asarray(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order])
+
+
+def _partners(measured: Measured, prediction: Prediction, rows: BoolArray) -> IntArray:
+    return match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
+
+
+def _agreement(measured: Measured, prediction: Prediction, kept: BoolArray, out: BoolArray) -> float:
+    """Return the mean cosine over modes between test and model in rows left out: -1 of opposite sign.
+
+    The sign of a mode is that of its kept rows where only shapes are known.
+    """
+    a, b = measured.constants, prediction.constants[:, _partners(measured, prediction, kept)]
+    cosine = np.sum(a[out] * b[out], axis=0) / np.maximum(
+        np.linalg.norm(a[out], axis=0) * np.linalg.norm(b[out], axis=0), 1e-300
+    )
+    if not measured.absolute:
+        cosine = cosine * np.sign(np.sum(a[kept] * b[kept], axis=0))
+    return float(cosine.mean())
+
+
+def _ends(measured: Measured) -> tuple[IntArray, IntArray]:
+    """Return the point that roved and the one that stayed of every row, (n_frf,) each."""
+    return (measured.hit, measured.seen) if roving(measured) == "hit" else (measured.seen, measured.hit)
+
+
+def _channels(measured: Measured) -> tuple[_Channel, ...]:
+    return tuple(
+        _Channel(moved, int(point), end == point)
+        for moved, end in zip((True, False), _ends(measured), strict=True)
+        for point in np.unique(end[end >= 0])
+    )
+
+
+def _enough(measured: Measured, rows: BoolArray) -> bool:
+    """Tell whether enough points, and half of the fixed sensors, are left to compare shapes by."""
+    moved, stayed = _ends(measured)
+    points, sensors = len(np.unique(moved)), len(np.unique(stayed))
+    left = len(np.unique(moved[rows]))
+    return left >= max(FEWEST, math.ceil(KEPT * points)) and 2 * len(np.unique(stayed[rows])) >= sensors
+
+
+def left_out(measured: Measured, trusted: BoolArray) -> str:
+    """Name the points and the fixed sensors whose rows are not trusted."""
+    words = ("hits at point", "sensor at point") if roving(measured) == "hit" else ("point", "hits at point")
+    parts = []
+    for word, end in zip(words, _ends(measured), strict=True):
+        lost = sorted({str(measured.nodes[p]) for p in set(end.tolist()) - set(end[trusted].tolist()) if p >= 0})
+        parts += [f"{word}{'s' * (len(lost) > 1)} {', '.join(lost)}"] if lost else []
+    return " and ".join(parts)
