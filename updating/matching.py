@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, IntArray
 from acquisition.errors import EstimationError
 from identification import pair
 from updating.assigning import mac_of_constants, match
@@ -109,7 +109,8 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
 
 
 MOSTLY_ALONE = (
-    "most measured modes have no partner: test and model may not be the same structure, or points and signs are mistaken"
+    "most measured modes have no partner: test and model may not be the same structure, or points and signs are "
+    "mistaken"
 )
 """What is said then."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,9 +28,9 @@ LOST = 0.4
 whatever the mean. Doubled, it would be looked for in most tests, in vain."""
 
 OPPOSITE = 0.02
-"""By how much the mean MAC may be lower without a channel that reads with the opposite sign and still speak against
-it, not its neighbour: of two sensors, either without the other agrees. Doubled, a bad point beside it may be spared
-for it [-]."""
+"""By how much the mean MAC may be lower with the other sign of a channel that disagrees with the model's and still
+speak against it, not its neighbour: of two sensors, either with the other's sign agrees. Doubled, a point hit from
+behind beside it may be taken for it [-]."""
 
 FEWEST = 3
 """Points that have to be left for shapes to be compared: fewer resemble everything."""
@@ -44,7 +44,6 @@ class _Channel:
     """A point of the end that roved, or of the one that stayed, and its rows."""
 
     moved: bool
-    point: int
     rows: BoolArray
 
 
@@ -52,7 +51,8 @@ def trusted_rows(measured: Measured, prediction: Prediction) -> BoolArray | None
     """Return the rows left when the few points and fixed sensors that spoil all shapes are out, None where none does.
 
     A sensor mounted upside down, or a point hit from the other side, turns the sign of its rows alike in all modes, so
-    that modes are strangers to their own partners by MAC; without those rows they are not.
+    that modes are strangers to their own partners by MAC; with the other sign they are not. What is wrong with a point
+    in another way is found by leaving it out.
 
     Parameters
     ----------
@@ -64,55 +64,73 @@ def trusted_rows(measured: Measured, prediction: Prediction) -> BoolArray | None
     (n_frf,) bool array or None
     """
     rows = np.ones(len(measured.seen), dtype=bool)
-    all_rows = _macs(measured, prediction, rows)
-    reached = float(all_rows.mean())
-    if reached >= SPOILT and (all_rows < LOST).sum() < SPOILS:
+    before = _macs(measured, prediction, rows)
+    if before.mean() >= SPOILT and (before < LOST).sum() < SPOILS:
         return None
     channels = _channels(measured)
-    while found := _next(measured, prediction, rows, reached, channels):
-        rows, reached = found
-    mended = int((_macs(measured, prediction, rows) - all_rows > MENDED).sum())
-    return None if rows.all() or reached < SPOILT or mended < SPOILS else rows
+    while (found := _reversed(measured, prediction, rows, channels)) is not None:
+        measured, rows = _turned(measured, found), rows & ~found
+    every = np.ones(len(rows), dtype=bool)
+    while (found := _spoiling(measured, prediction, every, rows, channels)) is not None:
+        every, rows = every & ~found, rows & ~found
+    after = _macs(measured, prediction, every)
+    mended = int((after - before > MENDED).sum())
+    return None if rows.all() or after.mean() < SPOILT or mended < SPOILS else rows
 
 
-def _next(
-    measured: Measured, prediction: Prediction, rows: BoolArray, reached: float, channels: tuple[_Channel, ...]
-) -> tuple[BoolArray, float] | None:
-    """Return the rows without the channel that spoils the shapes most, and their mean MAC; None where none does."""
-    trials = [(c, rows & ~c.rows) for c in channels if (rows & c.rows).any()]
-    trials = [(c, t) for c, t in trials if _enough(measured, t)]
-    means = [float(_macs(measured, prediction, t).mean()) for _, t in trials]
+def _reversed(
+    measured: Measured, prediction: Prediction, rows: BoolArray, channels: tuple[_Channel, ...]
+) -> BoolArray | None:
+    """Return the rows of the channel whose other sign raises the mean MAC most, None where none does by much."""
+    every = np.ones(len(rows), dtype=bool)
+    reached = float(_macs(measured, prediction, every).mean())
+    trials = [c.rows for c in channels if (rows & c.rows).any() and _enough(measured, rows & ~c.rows)]
+    means = [float(_macs(_turned(measured, t), prediction, every).mean()) for t in trials]
     best = max(means, default=0.0)
     if best < reached + MENDED:
         return None
     alike = [i for i, mean in enumerate(means) if mean >= best - OPPOSITE]
-    agreements = [_agreement(measured, prediction, trials[i][1], rows & trials[i][0].rows) for i in alike]
-    reverse = [i for i, sign in zip(alike, agreements, strict=True) if sign < 0]
-    chosen = max(reverse or alike, key=lambda i: means[i])
-    return trials[chosen][1], means[chosen]
+    against = [i for i in alike if _agreement(measured, prediction, trials[i]) < 0]
+    return trials[max(against or alike, key=lambda i: means[i])]
+
+
+def _spoiling(
+    measured: Measured,
+    prediction: Prediction,
+    compared: BoolArray,
+    rows: BoolArray,
+    channels: tuple[_Channel, ...],
+) -> BoolArray | None:
+    """Return the rows of the point without which the mean MAC rises most, None where none does by much."""
+    reached = float(_macs(measured, prediction, compared).mean())
+    trials = [c.rows for c in channels if c.moved and _enough(measured, rows & ~c.rows)]
+    means = [float(_macs(measured, prediction, compared & ~t).mean()) for t in trials]
+    best = max(means, default=0.0)
+    return None if best < reached + MENDED or reached >= SPOILT else trials[means.index(best)]
+
+
+def _turned(measured: Measured, rows: BoolArray) -> Measured:
+    """Return a test with the other sign in some rows."""
+    return replace(measured, constants=np.where(rows[:, None], -1.0, 1.0) * measured.constants)
 
 
 def _macs(measured: Measured, prediction: Prediction, rows: BoolArray) -> FloatArray:
     """Return the MAC of every measured mode with its partner by some rows, (n_modes,) [-]."""
-    order = _partners(measured, prediction, rows)
+    order = match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
     return np.asarray(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order])
 
 
-def _partners(measured: Measured, prediction: Prediction, rows: BoolArray) -> IntArray:
-    return match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
+def _agreement(measured: Measured, prediction: Prediction, rows: BoolArray) -> float:
+    """Return the mean cosine over modes between test and model in some rows, paired with these turned [-].
 
-
-def _agreement(measured: Measured, prediction: Prediction, kept: BoolArray, out: BoolArray) -> float:
-    """Return the mean cosine over modes between test and model in rows left out: -1 of opposite sign.
-
-    The sign of a mode is that of its kept rows where only shapes are known.
+    The sign of a mode is that of its other rows where only shapes are known.
     """
-    a, b = measured.constants, prediction.constants[:, _partners(measured, prediction, kept)]
-    cosine = np.sum(a[out] * b[out], axis=0) / np.maximum(
-        np.linalg.norm(a[out], axis=0) * np.linalg.norm(b[out], axis=0), 1e-300
-    )
+    order = match(_turned(measured, rows), prediction, np.zeros(0, dtype=np.int64), np.ones_like(rows))
+    a, b = measured.constants, prediction.constants[:, order]
+    size = np.linalg.norm(a[rows], axis=0) * np.linalg.norm(b[rows], axis=0)
+    cosine = np.sum(a[rows] * b[rows], axis=0) / np.maximum(size, 1e-300)
     if not measured.absolute:
-        cosine = cosine * np.sign(np.sum(a[kept] * b[kept], axis=0))
+        cosine = cosine * np.sign(np.sum(a[~rows] * b[~rows], axis=0))
     return float(cosine.mean())
 
 
@@ -123,7 +141,7 @@ def _ends(measured: Measured) -> tuple[IntArray, IntArray]:
 
 def _channels(measured: Measured) -> tuple[_Channel, ...]:
     return tuple(
-        _Channel(moved, int(point), end == point)
+        _Channel(moved, end == point)
         for moved, end in zip((True, False), _ends(measured), strict=True)
         for point in np.unique(end[end >= 0])
     )
@@ -142,6 +160,8 @@ def left_out(measured: Measured, trusted: BoolArray) -> str:
     words = ("hits at point", "sensor at point") if roving(measured) == "hit" else ("point", "hits at point")
     parts = []
     for word, end in zip(words, _ends(measured), strict=True):
-        lost = sorted({str(measured.nodes[p]) for p in set(end.tolist()) - set(end[trusted].tolist()) if p >= 0})
+        lost = sorted(
+            {str(measured.nodes[p]) for p in set(end.tolist()) - set(end[trusted].tolist()) if p >= 0}
+        )
         parts += [f"{word}{'s' * (len(lost) > 1)} {', '.join(lost)}"] if lost else []
     return " and ".join(parts)

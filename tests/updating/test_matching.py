@@ -208,6 +208,7 @@ def test_a_point_hit_from_behind_and_a_sensor_upside_down_cost_no_pair() -> None
     assert paired.order.tolist() == [0, 1, 2, 3, 4]
     assert paired.trusted is not None
     assert not paired.trusted[look.measured.seen == 4].any()
+    assert not paired.trusted[look.measured.hit == 6].any()
 
 
 def test_sensors_that_agree_are_all_kept() -> None:
