@@ -27,6 +27,7 @@ from modalkit.study import read_study
 from modalkit.write import write_json
 from updating.frf_update import FrfUpdate
 from updating.update import Update
+from updating.update.doubts import untested
 
 if TYPE_CHECKING:
     from modalkit.figures.evolution import Course, Courses
@@ -67,6 +68,8 @@ def update(
         f"{state} after {result.iterations} iterations",
         style="bold",
     )
+    if result.dof <= 0:
+        out.print(untested(result.data, len(result.parameters)), style="bold", markup=False)
     out.print(result.report(), markup=False)
     out.print()
     show_table(result.pairs, "Pairs", digits=PAIRS)

@@ -120,6 +120,7 @@ def rank(problem: Posed, found: Search) -> tuple[Ranked, ...]:
             estimates(problem, row.explanation, row.extreme, most=HEAVY if row.probability > FAINT else FEW),
             not row.extreme,
             row.p_value,
+            tuple(form.values for form in row.explanation.candidate.forms),
         )
         for row in rows
     )
@@ -145,9 +146,11 @@ def estimates(
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
         aside = parameter.default is not None
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
-    labels = {f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels}
-    for name in labels & drawn[0].keys():
-        result[name] = ParameterEstimate(drawn[0][name], "node", None, None, False)
+    labels = [f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels]
+    sensors = [f"{effect.name}.channel" for effect in candidate.effects if effect.of_sensor]
+    for name, unit in [*((label, "node") for label in labels), *((sensor, "channel") for sensor in sensors)]:
+        if name in drawn[0]:
+            result[name] = ParameterEstimate(drawn[0][name], unit, None, None, False)
     derived = [problem.derived(candidate, u) for u in samples]
     for name, (_, unit) in derived[0].items():
         low, middle, high = _quantiles(np.array([d[name][0] for d in derived]), weights)
