@@ -38,7 +38,7 @@ def test_the_mirror_image_of_a_place_is_said() -> None:
 def test_a_pair_of_poor_mac_is_said() -> None:
     test = two_sensors(upside_down=None)
     constants = test.constants.copy()
-    constants[test.hit == 6, 1] *= -1
+    constants[test.hit == 2, 1] *= -1
     test = replace(test, constants=constants)
     result = update(case_of(test, LIGHT), parameters=["E"], weights="relative")
     poor = next(w for w in result.warnings if "shape is not that of test mode" in w)
