@@ -68,14 +68,18 @@ def trusted_rows(measured: Measured, prediction: Prediction) -> BoolArray | None
     if before.mean() >= SPOILT and (before < LOST).sum() < SPOILS:
         return None
     channels = _channels(measured)
-    while (found := _reversed(measured, prediction, rows, channels)) is not None:
-        measured, rows = _turned(measured, found), rows & ~found
-    every = np.ones(len(rows), dtype=bool)
-    while (found := _spoiling(measured, prediction, every, rows, channels)) is not None:
-        every, rows = every & ~found, rows & ~found
-    after = _macs(measured, prediction, every)
-    mended = int((after - before > MENDED).sum())
-    return None if rows.all() or after.mean() < SPOILT or mended < SPOILS else rows
+    turned, kept = measured, rows
+    while (found := _reversed(turned, prediction, kept, channels)) is not None:
+        turned, kept = _turned(turned, found), kept & ~found
+    # signs alone, points left out alone, and both: what asks for the least is taken
+    for test, start, spoil in ((turned, kept, False), (measured, rows, True), (turned, kept, True)):
+        compared, left = rows, start
+        while spoil and (found := _spoiling(test, prediction, compared, left, channels)) is not None:
+            compared, left = compared & ~found, left & ~found
+        after = _macs(test, prediction, compared)
+        if not left.all() and after.mean() >= SPOILT and (after - before > MENDED).sum() >= SPOILS:
+            return left
+    return None
 
 
 def _reversed(
