@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -69,14 +70,39 @@ def accepted_values(entry: Mapping[str, Any], kind: str = "beam") -> tuple[str, 
     if not isinstance(name, str) or name not in LIBRARY:
         meant = nearest(str(name), tuple(LIBRARY))
         raise StudyError(f"[[model.effect]] knows no effect {name!r}{meant}; `modalkit effects` lists them")
-    labels = LIBRARY[name].labels
     try:
-        return name, {
-            k: nodes(k, v) if k in labels else _number(k, v, unit_of(name, k, kind))
-            for k, v in values.items()
-        }
+        return name, {k: _value(name, k, v, kind) for k, v in values.items()}
     except StudyError as error:
         raise StudyError(f"[[model.effect]] {name}: {error}") from error
+
+
+def _value(effect: str, name: str, value: Any, kind: str) -> Any:
+    """Return the value of a label or a parameter of an effect."""
+    if name in LIBRARY[effect].labels:
+        return nodes(name, value)
+    if name == "channel" and LIBRARY[effect].of_sensor:
+        return sensor(value)
+    return _number(name, value, unit_of(effect, name, kind))
+
+
+def sensor(value: Any) -> str:
+    """Return the fixed sensor that ``channel`` speaks of: its node and direction, or its node.
+
+    Raises
+    ------
+    StudyError
+        If the value is something else.
+    """
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, str | int)
+        or not _SENSOR.fullmatch(str(value).strip())
+    ):
+        raise StudyError(f'channel = {value!r} is no fixed sensor; write its node and direction, as "5+Z"')
+    return str(value).strip()
+
+
+_SENSOR = re.compile(r"\d{1,9}([+-]R?[XYZxyz])?")
 
 
 def nodes(label: str, value: Any) -> int | tuple[int, ...]:

@@ -47,17 +47,29 @@ def letter(diagnosis: Diagnosis) -> list[str]:
 def _cause(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "no gap beyond tolerances and noise; there is nothing to explain"
+    if diagnosis.verdict == "unknown" and not diagnosis.comparable:
+        return (
+            "unknown: most measured modes have no partner in the model, and the few that have one name no cause; check "
+            "axes, points, signs and boundary conditions first"
+        )
     if diagnosis.verdict == "unknown":
         return (
             "unknown: the gap is real, and nothing in the library explains it, alone or in the pairs weighed"
         )
     if diagnosis.verdict == "named":
         names = diagnosis.sets[0]
-        summary = " ".join(LIBRARY[n].summary for n in names if n in LIBRARY)
+        summary = " ".join(LIBRARY[n].sentence(_stated(diagnosis, n)) for n in names if n in LIBRARY)
         return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
     said = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     exact = _equal(diagnosis)
     return f"{said}; {exact.partition(':')[0]}" if exact else said
+
+
+def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
+    """Return the values of one effect of the first set, by their own names."""
+    row = _row(diagnosis, diagnosis.sets[0])
+    found = {} if row is None else row.parameters
+    return {n.removeprefix(f"{effect}."): e.value for n, e in found.items() if n.startswith(f"{effect}.")}
 
 
 def _equal(diagnosis: Diagnosis) -> str:
@@ -125,14 +137,20 @@ def _where(diagnosis: Diagnosis) -> str:
     nearest = min(where.zones, key=lambda z: math.dist(z.center, where.location or z.center), default=None)
     if zone is not None and zone is nearest and zone.probability >= LIKELY and len(places) < 2:
         text += f", region {zone.name}"
-    near = "s" if len(where.points) > 1 else ""
-    return text + (f" (nearest test point{near} {', '.join(map(str, where.points))})" if where.points else "")
+    if where.nearest:
+        text += f" (nearest test point{_listed(where.nearest)})"
+    beside = tuple(node for node in where.points if node not in where.nearest)
+    return f"{text}; in the measurement, point{_listed(beside)}" if beside else text
 
 
 def _points(points: tuple[int, ...]) -> str:
     if not points:
         return ""
-    return f", point{'s' if len(points) > 1 else ''} {', '.join(map(str, points))}"
+    return f", point{_listed(points)}"
+
+
+def _listed(points: tuple[int, ...]) -> str:
+    return f"{'s' if len(points) > 1 else ''} {', '.join(map(str, points))}"
 
 
 def _closes(diagnosis: Diagnosis) -> str:

@@ -58,6 +58,7 @@ def effect_record(effect: Effect) -> dict[str, Any]:
             for p in (named[name] for name in dict.fromkeys(order))
         ],
         "labels": list(effect.labels),
+        "of_sensor": effect.of_sensor,
     }
 
 
@@ -91,6 +92,7 @@ def effects_table(record: dict[str, Any]) -> str:
     for effect in record["effects"]:
         numbers = [_prior(parameter) for parameter in effect["parameters"]]
         numbers += [f"`{label}`: node numbers" for label in effect["labels"]]
+        numbers += ['`channel`: or a fixed sensor, as "5+Z"'] if effect["of_sensor"] else []
         cells = (
             f"`{effect['name']}`",
             effect["channel"],

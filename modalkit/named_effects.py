@@ -11,9 +11,9 @@ import numpy as np
 
 from acquisition.errors import InputError, StudyError
 from acquisition.si_units import si_value
-from modalkit.accepting import SOME, nodes, unit_of
+from modalkit.accepting import SOME, nodes, sensor, unit_of
 from updating import LIBRARY, Predictor
-from updating.effects import check_values
+from updating.effects import check_values, labels_of
 from updating.models.state import State
 
 EffectValues = tuple[str, Mapping[str, Any]]
@@ -52,6 +52,9 @@ def parse_effect(text: str, kind: str = "beam") -> tuple[str, dict[str, Any]]:
         if parameter in LIBRARY[name].labels:
             values[parameter] = _points(text, parameter, told)
             continue
+        if parameter == "channel" and LIBRARY[name].of_sensor:
+            values[parameter] = _sensor(text, told)
+            continue
         try:
             values[parameter] = _value(told, name, parameter, kind)
         except ValueError as error:
@@ -81,6 +84,13 @@ def _points(text: str, label: str, told: str) -> Any:
         raise InputError(f"--effect {text}: {told!r} are no node numbers; write {wanted}") from error
 
 
+def _sensor(text: str, told: str) -> str:
+    try:
+        return sensor(told)
+    except StudyError as error:
+        raise InputError(f"--effect {text}: {error}") from error
+
+
 def check_effect(
     predictor: Predictor, name: str, values: Mapping[str, Any], *, where: str = "--effect"
 ) -> None:
@@ -93,12 +103,13 @@ def check_effect(
     if obstacle is not None:
         raise StudyError(f"{where} {name}: {obstacle}")
     takes = {p.name: p for p in effect.parameters(tested)}
-    needed = {*effect.labels, *(p.name for p in takes.values() if p.default is None)}
-    if not needed <= set(values) <= {*takes, *effect.labels}:
+    labels = labels_of(effect, values)
+    needed = {*labels, *(p.name for p in takes.values() if p.default is None)}
+    if not needed <= set(values) <= {*takes, *labels}:
         told = [f"{label} (node numbers)" for label in effect.labels]
         wanted = ", ".join([*told, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"
         raise StudyError(f"{where} {name}: it takes {wanted}, found {', '.join(sorted(values)) or 'none'}")
-    for label in effect.labels:
+    for label in labels - {"channel"}:
         given = values[label] if isinstance(values[label], tuple) else (values[label],)
         if missing := [node for node in given if node not in predictor.measured.nodes]:
             there = ", ".join(map(str, predictor.measured.nodes[:12]))
@@ -117,6 +128,8 @@ def written(value: Any) -> str:
     """Return a value as it is written on the command line."""
     if isinstance(value, tuple):
         return "/".join(map(str, value))
+    if isinstance(value, str):
+        return value
     return f"{value:g}"
 
 

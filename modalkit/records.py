@@ -166,8 +166,8 @@ def _gap_record(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _ranked_record(row: Ranked, *, named: bool) -> dict[str, Any]:
-    """Return a row of the ranking; lists of points stand in the rows of the answer alone, numbers in all."""
-    told = {n: e for n, e in row.parameters.items() if named or not isinstance(e.value, tuple)}
+    """Return a row of the ranking; points and sensors stand in the rows of the answer alone, numbers in all."""
+    told = {n: e for n, e in row.parameters.items() if named or not isinstance(e.value, tuple | str)}
     return {
         "effects": row.effects,
         "probability": row.probability,

@@ -1,69 +1,18 @@
-"""Which of a model's predicted modes belongs to each measured mode, fast enough for every evaluation."""
+"""Which measured modes have a partner in the model, and which."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
-from acquisition.arrays import BoolArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, IntArray
 from acquisition.errors import EstimationError
 from identification import pair
+from updating.assigning import mac_of_constants, match
 from updating.measured import Measured
 from updating.prediction import Prediction
-
-FREQUENCY_WEIGHT = 0.5
-"""How much a frequency ratio of e counts against a MAC of zero."""
-
-
-def mac_of_constants(
-    measured: Measured, prediction: Prediction, trusted: BoolArray | None = None
-) -> FloatArray:
-    """Return the MAC between measured and predicted modal constants, (n_measured, n_predicted) [-].
-
-    Parameters
-    ----------
-    measured, prediction
-        Test and model.
-    trusted : (n_frf,) bool array, optional
-        Rows to use; left out, all.
-    """
-    rows = slice(None) if trusted is None else trusted
-    a, b = measured.constants[rows], prediction.constants[rows]
-    power = np.outer(np.sum(a**2, axis=0), np.sum(b**2, axis=0))
-    return np.asarray((a.T @ b) ** 2 / np.maximum(power, 1e-300))
-
-
-def match(
-    measured: Measured, prediction: Prediction, order: IntArray, trusted: BoolArray | None = None
-) -> IntArray:
-    """Assign a predicted mode to every measured mode.
-
-    Parameters
-    ----------
-    measured : Measured
-        The test.
-    prediction : Prediction
-        The model's modes.
-    order : (n_measured,) int array
-        Rank of the model mode that belongs to each measured one where shapes cannot tell: the i-th entry
-        counts model modes from the lowest.
-    trusted : (n_frf,) bool array, optional
-        Rows whose shapes are compared; left out, all.
-
-    Returns
-    -------
-    (n_measured,) int array
-        Index of the predicted mode of each measured mode.
-    """
-    if not measured.has_shapes:
-        return np.asarray(np.argsort(prediction.frequency)[order])
-    ratio = np.abs(np.log(measured.frequency[:, None] / prediction.frequency[None, :]))
-    ratio = np.nan_to_num(ratio, nan=3.0)
-    cost = 1 - mac_of_constants(measured, prediction, trusted) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
-    return np.asarray(linear_sum_assignment(cost)[1])
-
+from updating.trusting import left_out, trusted_rows
 
 WILD = 0.25
 """Standard deviation of the logarithms of the frequency ratios beyond which ranks are doubted."""
@@ -92,19 +41,24 @@ class Paired:
     Parameters
     ----------
     measured : Measured
-        The test with these modes only.
+        The test with these modes only, and the rows by which they were paired where some channel spoils the shapes.
     order : (n_modes,) int array
         Rank of each one's partner among the model's modes.
     warnings : tuple of str
         Which modes have none.
-    trusted : (n_frf,) bool array, optional
-        Rows by which they were paired, where some points spoil the shapes of all modes.
+    mostly_alone : bool
+        Whether most of the measured modes have none.
     """
 
     measured: Measured
     order: IntArray
     warnings: tuple[str, ...]
-    trusted: BoolArray | None = None
+    mostly_alone: bool = False
+
+    @property
+    def trusted(self) -> BoolArray | None:
+        """Rows by which they were paired, where some points or sensors spoil the shapes of all modes."""
+        return self.measured.trusted
 
 
 def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
@@ -124,13 +78,13 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     """
     if not measured.has_shapes:
         return _pair_by_order(measured, prediction)
-    measured, lost = _without_faint(measured)
+    measured, lost = _without_faint(replace(measured, trusted=None))
     if len(measured.frequency) > len(prediction.frequency):
         raise EstimationError(
             f"the test has {len(measured.frequency)} modes and the model {len(prediction.frequency)} in its band; "
             "narrow the band of the test"
         )
-    trusted = _trusted(measured, prediction)
+    trusted = trusted_rows(measured, prediction)
     order = match(measured, prediction, np.arange(len(measured.frequency)), trusted)
     mac = mac_of_constants(measured, prediction, trusted)[np.arange(len(order)), order]
     ratio = np.log(measured.frequency / prediction.frequency[order])
@@ -146,54 +100,19 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
         "and is left out"
         for f, m, r in zip(measured.frequency[~keep], mac[~keep], ratio[~keep], strict=True)
     ]
-    if keep.sum() < len(keep) / 2:
-        lost.append("most measured modes have no partner: test and model may not be the same structure")
+    alone = bool(keep.sum() < len(keep) / 2)
+    if alone:
+        lost.append(MOSTLY_ALONE)
     if trusted is not None:
-        left_out = _moved(measured, ~trusted)
-        lost.append(f"modes are paired without point {', '.join(left_out)}, which spoils their shapes")
-    return Paired(measured.modes(keep), order[keep], tuple(lost), trusted)
+        lost.append(f"modes are paired without {left_out(measured, trusted)}, which spoils their shapes")
+    return Paired(replace(measured.modes(keep), trusted=trusted), order[keep], tuple(lost), alone)
 
 
-SPOILT = 0.8
-"""Mean MAC of the pairs under which points are looked for that spoil it..."""
-
-MENDED = 0.05
-"""...and by how much leaving one out must raise it [-]."""
-
-SPOILS = 2
-"""Fewest modes whose MAC rises by as much where points are bad: a bad point spoils most shapes, while a mode that is
-none, or one that the model lacks, spoils its own MAC alone. Doubled, a bad point in a test of few modes goes unseen."""
-
-
-def _trusted(measured: Measured, prediction: Prediction) -> BoolArray | None:
-    """Return the rows left when the few points that spoil the shapes of all modes are out, None where none does."""
-
-    def macs(rows: BoolArray) -> FloatArray:
-        order = match(measured, prediction, np.zeros(0, dtype=np.int64), rows)
-        return np.asarray(mac_of_constants(measured, prediction, rows)[np.arange(len(order)), order])
-
-    rows = np.ones(len(measured.seen), dtype=bool)
-    all_points = macs(rows)
-    reached = float(all_points.mean())
-    if reached >= SPOILT:
-        return None
-    moved = measured.hit if len(np.unique(measured.hit)) >= len(np.unique(measured.seen)) else measured.seen
-    points = np.unique(moved)
-    for _ in range(len(points) * 2 // 5):
-        trials = [rows & (moved != point) for point in points]
-        found = [float(macs(t).mean()) if len(np.unique(moved[t])) >= 3 else 0.0 for t in trials]
-        best = int(np.argmax(found))
-        if found[best] < reached + MENDED:
-            break
-        rows, reached = trials[best], found[best]
-    mended = int((macs(rows) - all_points > MENDED).sum())
-    return None if rows.all() or reached < SPOILT or mended < SPOILS else rows
-
-
-def _moved(measured: Measured, rows: BoolArray) -> list[str]:
-    kept = set(measured.hit[~rows].tolist())
-    roving = measured.hit if set(measured.hit[rows].tolist()) - kept else measured.seen
-    return sorted({str(measured.nodes[p]) for p in roving[rows].tolist() if p >= 0})
+MOSTLY_ALONE = (
+    "most measured modes have no partner: test and model may not be the same structure, or points and signs are "
+    "mistaken"
+)
+"""What is said then."""
 
 
 def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
@@ -268,3 +187,6 @@ def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
         )
     far = max(ratio, 1 / ratio) > DISTANT
     return (f"{times}, and only their order pairs them: they may be other modes",) if far else ()
+
+
+__all__ = ["Paired", "mac_of_constants", "match", "pair_modes"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from acquisition import ModalData
+from acquisition import Dof, ModalData
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed, counted
 from acquisition.errors import StudyError
@@ -80,6 +80,10 @@ class Measured(Displayed):
         Mean peak force of the hits [N].
     below : int
         How many modes are known to lie below the lowest of these: left out by a band [-].
+    written : tuple of str, optional
+        Each point as the test writes its degree of freedom, ``5+Z``; left out, by its node alone.
+    trusted : (n_frf,) bool array, optional
+        Rows by whose shapes modes are paired, where the others spoil them; left out, all.
     """
 
     frequency: FloatArray
@@ -111,6 +115,8 @@ class Measured(Displayed):
     slope_sigma: FloatArray | None = None
     level: float | None = None
     below: int = 0
+    written: tuple[str, ...] = ()
+    trusted: BoolArray | None = None
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -309,6 +315,13 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         rows=both,
         signs=signs,
         directions=_directions(keys, spec),
+        written=_written(
+            (
+                *(where[references.keys[i]] for i in hit.tolist()),
+                *(where[responses.keys[i]] for i in seen.tolist()),
+            ),
+            (*(model.references[i] for i in both.tolist()), *(model.responses[i] for i in both.tolist())),
+        ),
         noise=constants.widened(
             model.constant_noise[both],
             _across(constants.real * signs[:, None], model.constant_shared[both]),
@@ -319,6 +332,12 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         chain=constants.chain,
         **options,  # type: ignore[arg-type]
     )
+
+
+def _written(points: tuple[int, ...], dofs: tuple[Dof, ...]) -> tuple[str, ...]:
+    """Return every point as the test writes the last of its degrees of freedom."""
+    last = dict(zip(points, dofs, strict=True))
+    return tuple(str(last[point]) for point in range(len(last)))
 
 
 def _across(constants: FloatArray, shared: FloatArray) -> FloatArray:

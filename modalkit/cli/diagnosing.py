@@ -171,6 +171,8 @@ def show_effect(effect: dict[str, Any]) -> None:
         out.print(text, markup=False)
     if effect["labels"]:
         out.print(f"  {', '.join(effect['labels'])}: node numbers of the test", markup=False)
+    if effect["of_sensor"]:
+        out.print('  channel: or one fixed sensor of the test, as "5+Z"', markup=False)
     if effect["not_for"]:
         out.print(f"  not for: {', '.join(effect['not_for'])}", markup=False)
     if effect["equivalent_to"]:

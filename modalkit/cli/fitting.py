@@ -26,6 +26,7 @@ from modalkit.study import read_study
 from modalkit.write import write_json
 from updating.frf_update import FrfUpdate
 from updating.update import Update
+from updating.update.doubts import untested
 
 PAIRS = {"test_hz": 3, "before_hz": 3, "after_hz": 3, "mac": 4}
 PAIRS |= dict.fromkeys(("test_damping", "before_damping", "after_damping"), 5)
@@ -63,6 +64,8 @@ def update(
         f"{state} after {result.iterations} iterations",
         style="bold",
     )
+    if result.dof <= 0:
+        out.print(untested(result.data, len(result.parameters)), style="bold", markup=False)
     out.print(result.report(), markup=False)
     out.print()
     show_table(result.pairs, "Pairs", digits=PAIRS)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
-from modalkit.figures.diagnosis.where import Frame, draw_where, outline
+from modalkit.figures.diagnosis.where import Frame, draw_where, outline, spans
 from modalkit.figures.style import (
     BLUE,
     GRID,
@@ -102,6 +102,12 @@ def _title(diagnosis: Diagnosis) -> str:
     top = max(where.zones, key=lambda z: z.probability, default=None)
     if diagnosis.verdict == "unknown" and top is not None:
         return f"Nothing explains the gap; a change of {top.name} alone would come nearest"
+    if spans(diagnosis):
+        points = f" of point{'s' * (len(where.points) > 1)} {', '.join(map(str, where.points))}"
+        inside = (
+            f", {located(diagnosis)}" if where.location is not None and where.channel != "measurement" else ""
+        )
+        return f"The gap sits in the measurement{points if where.points else ''} and in the structure{inside}"
     if where.channel == "measurement" and (where.points or where.location is None):
         named = f" of point{'s' * (len(where.points) > 1)} {', '.join(map(str, where.points))}"
         return f"The gap sits in the measurement{named if where.points else ''}, not in the structure"

@@ -137,6 +137,10 @@ def answer(diagnosis: Diagnosis) -> str:
     """Say the answer in one sentence."""
     if diagnosis.verdict == "none":
         return f"No gap to explain: tolerances and noise account for every difference ({chance(diagnosis.p_value)})"
+    if diagnosis.verdict == "unknown" and not diagnosis.comparable:
+        return (
+            "Most measured modes have no partner in the model: nothing can be named by the few that have one"
+        )
     if diagnosis.verdict == "unknown":
         return f"A real gap ({chance(diagnosis.p_value)}), and nothing in the library of effects explains it"
     if diagnosis.verdict == "named":

@@ -115,6 +115,16 @@ def test_the_ranking_prints_its_probability_at_any_width(diagnosis: Diagnosis) -
     assert "e-" not in table["probability"].to_string()
 
 
+def test_a_diagnosis_prints_every_size_whole(diagnosis: Diagnosis) -> None:
+    said = str(diagnosis)
+    assert "[...]" not in said and "..." not in said
+    first = diagnosis.ranking[0]
+    assert first.parameters
+    for name, estimate in first.parameters.items():
+        assert name in said and str(estimate) in said
+        assert str(estimate) in diagnosis.sizes().to_string()
+
+
 def _printed(table: Any, width: int) -> str:
     import pandas as pd
 

@@ -14,7 +14,9 @@ HEADS = ["Cause:", "Where:", "Closes:", "Sure:", "Next:"]
 MASS = ParameterEstimate(0.0123, "kg", 0.0119, 0.0127, False)
 SENSOR = Ranked(("sensor_mass",), 0.97, (), {"sensor_mass.mass": MASS}, True, 0.4)
 E = Ranked(("E",), 0.02, (), {"E.factor": ParameterEstimate(0.9, "-", 0.89, 0.91, False)}, True, 0.001)
-TIP = Where("mass", {"mass": 0.97, "stiffness": 0.03}, (0.376, 0.0, 0.0), ((0.376, 0.0, 0.0),), (5,), ())
+TIP = Where(
+    "mass", {"mass": 0.97, "stiffness": 0.03}, (0.376, 0.0, 0.0), ((0.376, 0.0, 0.0),), (5,), (), nearest=(5,)
+)
 NAMED = Diagnosis(
     "beam",
     True,
@@ -63,6 +65,32 @@ def lines(diagnosis: Diagnosis) -> dict[str, str]:
 def test_five_lines_for_every_verdict(diagnosis: Diagnosis) -> None:
     lines(diagnosis)
     lines(replace(diagnosis, ranking=()) if diagnosis.verdict in ("unknown", "none") else diagnosis)
+
+
+def test_points_of_the_measurement_are_not_called_nearest_to_a_place_in_the_structure() -> None:
+    place = (0.31, 0.0, 0.0)
+    where = replace(TIP, location=place, locations=(place,), points=(5,), nearest=(3,))
+    said = lines(replace(NAMED, where=where))["Where"]
+    assert said.endswith("at x = 310 mm (nearest test point 3); in the measurement, point 5")
+
+
+def test_a_sensor_is_named_in_the_sentence_on_the_cause() -> None:
+    channel = ParameterEstimate("5+Z", "channel", None, None, False)
+    gain = ParameterEstimate(0.9, "-", 0.89, 0.91, False)
+    row = replace(
+        SENSOR,
+        effects=("calibration_gain",),
+        parameters={"calibration_gain.gain": gain, "calibration_gain.channel": channel},
+    )
+    said = lines(replace(NAMED, sets=(row.effects,), ranking=(row, E)))["Cause"]
+    assert "The calibration of the sensor 5+Z is off: its FRFs" in said
+    assert "every FRF" not in said
+
+
+def test_where_most_modes_have_no_partner_that_is_what_is_said() -> None:
+    said = lines(replace(UNKNOWN, comparable=False))["Cause"]
+    assert "most measured modes have no partner" in said
+    assert "nothing in the library" not in said
 
 
 def test_a_named_cause_says_its_size_its_place_and_its_test() -> None:
@@ -144,10 +172,10 @@ def test_a_fault_of_the_measurement_has_no_place_on_the_structure() -> None:
 
 def test_a_place_on_a_plate_has_two_coordinates_and_its_mirror_images() -> None:
     corner = (0.3, 0.15, 0.0)
-    found = replace(TIP, location=corner, locations=(corner,), points=(7, 9))
+    found = replace(TIP, location=corner, locations=(corner,), points=(7, 9), nearest=(7, 9))
     said = lines(replace(NAMED, where=found))["Where"]
     assert said.endswith("at x = 300, y = 150 mm (nearest test points 7, 9)")
-    both = replace(TIP, location=corner, locations=(corner, (0.3, 0.05, 0.0)), points=())
+    both = replace(TIP, location=corner, locations=(corner, (0.3, 0.05, 0.0)), points=(), nearest=())
     said = lines(replace(NAMED, where=both))["Where"]
     assert said.endswith("at x = 300, y = 150 mm and x = 300, y = 50 mm")
 

@@ -57,6 +57,21 @@ def test_a_measurement_is_not_in_the_structure() -> None:
     assert "in the measurement of point 3, not in the structure" in words(localisation_figure(reversed_point))
 
 
+@pytest.mark.parametrize("channel", ["measurement", "mass"])
+def test_a_pair_in_measurement_and_structure_is_said_to_be_in_both(channel: str) -> None:
+    plain = diagnosis_with("beam", "named")
+    pair = replace(plain.ranking[0], effects=("polarity", "lumped_mass"))
+    both = replace(
+        plain,
+        sets=(pair.effects,),
+        ranking=(pair, *plain.ranking[1:]),
+        where=replace(plain.where, channel=channel, points=(3,)),
+    )
+    said = words(localisation_figure(both))
+    assert "in the measurement of point 3 and in the structure" in said
+    assert "not in the structure" not in said
+
+
 def test_without_a_table_of_modes_the_structure_stands_alone() -> None:
     figure = localisation_figure(diagnosis_of("plate"))
     assert "modes" not in panels(figure)

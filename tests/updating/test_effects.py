@@ -79,7 +79,8 @@ def test_forms_have_shares_and_fix_what_is_known(name: str, place: str) -> None:
         return
     forms = effect.variants(predictor)
     assert 0 < sum(f.weight for f in forms) <= 1 + 1e-9
-    known = {p.name for p in effect.parameters(predictor)} | {*effect.labels, "points", "role"}
+    known = {p.name for p in effect.parameters(predictor)} | {*effect.labels}
+    known |= {"channel"} if effect.of_sensor else set()
     assert all(set(f.values) <= known and f.weight > 0 for f in forms)
 
 

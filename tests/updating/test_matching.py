@@ -157,3 +157,61 @@ def test_a_false_mode_between_true_ones_gets_no_partner_and_costs_no_point(seed:
     assert paired.trusted is None
     assert false not in paired.measured.frequency and paired.order.tolist() == [0, 1, 2]
     assert any(f"{false:.2f} Hz has no partner" in w for w in paired.warnings)
+
+
+def two_sensors() -> Predictor:
+    """Seven points hit, sensors at the first and at one in the middle."""
+    places = np.linspace(0.05, 0.376, 7)
+    base = blank(places)
+    hit, seen = np.tile(np.arange(7), 2), np.repeat([0, 4], 7)
+    zero = np.zeros((14, len(base.frequency)))
+    test = replace(base, seen=seen, hit=hit, constants=zero, constants_sigma=zero + 1)
+    return Predictor(replace(BEAM, clamped=()), test)
+
+
+def reversed_at(look: Predictor, rows: np.ndarray, *, noise: float = 0.02) -> tuple[Measured, Prediction]:
+    """A test whose rows are of opposite sign, and the model's modes."""
+    model = look.predict(count=8)
+    modes = model.select(np.arange(5))
+    rng = np.random.default_rng(2)
+    scatter = 1 + noise * rng.normal(size=modes.constants.shape)
+    constants = np.where(rows[:, None], -1.0, 1.0) * modes.constants * scatter
+    test = replace(
+        look.measured,
+        frequency=0.99 * modes.frequency,
+        frequency_sigma=1e-4 * modes.frequency,
+        damping=np.full(5, 0.01),
+        damping_sigma=np.full(5, 1e-3),
+        constants=constants,
+        constants_sigma=0.02 * np.abs(constants) + 1e-6,
+    )
+    return test, model
+
+
+@pytest.mark.parametrize("sensor", [0, 4])
+def test_a_fixed_sensor_upside_down_costs_no_pair(sensor: int) -> None:
+    look = two_sensors()
+    upside_down = look.measured.seen == sensor
+    test, model = reversed_at(look, upside_down)
+    paired = pair_modes(test, model)
+    assert paired.order.tolist() == [0, 1, 2, 3, 4]
+    assert not paired.mostly_alone
+    assert paired.trusted is not None and (paired.trusted == ~upside_down).all()
+    assert any(f"without sensor at point {test.nodes[sensor]}" in w for w in paired.warnings)
+    assert match(paired.measured, model, paired.order).tolist() == [0, 1, 2, 3, 4]
+
+
+def test_a_point_hit_from_behind_and_a_sensor_upside_down_cost_no_pair() -> None:
+    look = two_sensors()
+    wrong = (look.measured.seen == 4) ^ (look.measured.hit == 6)
+    paired = pair_modes(*reversed_at(look, wrong))
+    assert paired.order.tolist() == [0, 1, 2, 3, 4]
+    assert paired.trusted is not None
+    assert not paired.trusted[look.measured.seen == 4].any()
+    assert not paired.trusted[look.measured.hit == 6].any()
+
+
+def test_sensors_that_agree_are_all_kept() -> None:
+    look = two_sensors()
+    paired = pair_modes(*reversed_at(look, np.zeros(14, dtype=bool)))
+    assert paired.trusted is None and paired.warnings == ()

@@ -114,7 +114,8 @@ def _diagnose(
     found = search(problem, [effect for effect in effects if effect.name not in accepted])
     chance = p_value(found.nothing.best)
     significant = is_significant(found, chance)
-    verdict, sets = decide(found, significant=significant)
+    comparable = not any(one.mostly_alone for one in problem.specimens)
+    verdict, sets = decide(found, significant=significant, comparable=comparable)
     return Diagnosis(
         " and ".join(titles),
         significant,
@@ -128,6 +129,7 @@ def _diagnose(
         propose(problem, found, sets, verdict),
         tuple(dict.fromkeys((*warnings, *_remarks(problem, found)))),
         found.not_examined,
+        comparable,
     )
 
 
@@ -159,8 +161,8 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
         baseline,
         baseline_order,
         accepted,
-        paired.trusted,
         shortfall(predictor, paired.order),
+        paired.mostly_alone,
     )
     return problem, warnings
 

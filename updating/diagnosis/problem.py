@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, FloatArray, IntArray
+from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.before import Before
 from updating.diagnosis.candidate import Candidate, Doubt
 from updating.diagnosis.comparison import KNOWN_SCATTER, UNKNOWN_SCATTER, Block, Comparison, assemble
@@ -87,10 +87,10 @@ class Problem:
         Rank of the model mode of each of them, for data without shapes.
     accepted : tuple of Effect
         Effects put into the model beforehand, the first of the predictor's additions.
-    trusted : (n_frf,) bool array, optional
-        Rows by whose shapes modes are paired; left out, all.
     shortfall : Shortfall, optional
         How far the mesh, and a plate's theory, leave each mode's frequency off.
+    mostly_alone : bool
+        Whether most of the measured modes have no partner, and are left out.
     """
 
     predictor: Predictor
@@ -100,8 +100,8 @@ class Problem:
     baseline: Measured | None = None
     baseline_order: IntArray | None = None
     accepted: tuple[Effect, ...] = ()
-    trusted: BoolArray | None = None
     shortfall: Shortfall | None = None
+    mostly_alone: bool = False
 
     @property
     def specimens(self) -> tuple[Problem, ...]:
@@ -209,7 +209,7 @@ class Problem:
         return prediction.select(self._match(prediction))
 
     def _match(self, prediction: Prediction) -> IntArray:
-        return match(self.measured, prediction, self.order, self.trusted)
+        return match(self.measured, prediction, self.order)
 
     @property
     def wide(self) -> bool:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import pandas as pd
 
@@ -13,6 +14,10 @@ from acquisition.display import Displayed, counted
 Verdict = Literal["named", "class", "unknown", "none"]
 Metric = Literal["frequency", "damping", "frf", "combined"]
 Place = tuple[float, float, float]
+
+
+SETS = 10
+"""So many sets of effects are printed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +76,7 @@ class ParameterEstimate:
 
 @dataclass(frozen=True, eq=False)
 class Ranked(Displayed):
-    """One set of effects with its probability."""
+    """One set of effects with its probability, and what the form of each fixes: the points, which parameters act."""
 
     effects: tuple[str, ...]
     probability: float
@@ -79,6 +84,7 @@ class Ranked(Displayed):
     parameters: dict[str, ParameterEstimate]
     plausible: bool
     p_value: float
+    forms: tuple[Mapping[str, Any], ...] = ()
 
     def _headline(self) -> str:
         sizes = "; ".join(f"{n} = {e}" for n, e in self.parameters.items())
@@ -140,6 +146,8 @@ class Where(Displayed):
         What each mode adds to the gap, in standard deviations; see :mod:`updating.diagnosis.contributions`.
     band : str
         One sentence on the modes and the kind of data that carry the gap.
+    nearest : tuple of int
+        Test nodes nearest to the places, where any are near.
     """
 
     channel: str
@@ -152,6 +160,7 @@ class Where(Displayed):
     seats: tuple[Seat, ...] = ()
     modes: pd.DataFrame | None = None
     band: str = ""
+    nearest: tuple[int, ...] = ()
 
     def _headline(self) -> str:
         share = 100 * self.channels.get(self.channel, 0.0)
@@ -262,6 +271,8 @@ class Diagnosis(Displayed):
         What the reader ought to know.
     not_examined : dict of str to str
         Effects that could not be examined, and why.
+    comparable : bool
+        Whether most measured modes have a partner in the model; if not, no cause is named.
     """
 
     title: str
@@ -276,6 +287,7 @@ class Diagnosis(Displayed):
     next_test: tuple[NextTest, ...]
     warnings: tuple[str, ...]
     not_examined: dict[str, str]
+    comparable: bool = True
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -294,6 +306,45 @@ class Diagnosis(Displayed):
         }
         names = [" + ".join(r.effects) or "(tolerances alone)" for r in self.ranking]
         return pd.DataFrame(columns, index=pd.Index(names, name="effects"))
+
+    def sizes(self, *, count: int = SETS) -> pd.DataFrame:
+        """Return one row per parameter of the most probable sets, in short columns that print whole.
+
+        Parameters
+        ----------
+        count : int
+            Number of sets.
+
+        Returns
+        -------
+        DataFrame
+            Probability and fit of the set [-]; value and 95 % interval of the parameter [unit]. Effects and parameter
+            are the index.
+        """
+        rows = [
+            {
+                "effects": " + ".join(r.effects) or "(tolerances alone)",
+                "parameter": name,
+                "probability": f"{r.probability:.4f}",
+                "fits (p)": f"{r.p_value:.3g}",
+                "size": "" if estimate is None else str(estimate),
+            }
+            for r in self.ranking[:count]
+            for name, estimate in r.parameters.items() or [("", None)]
+        ]
+        columns = ["effects", "parameter", "probability", "fits (p)", "size"]
+        return pd.DataFrame(rows, columns=columns).set_index(["effects", "parameter"])
+
+    def __str__(self) -> str:
+        """Return one line, and the sizes below it, nothing cut."""
+        if not self.ranking:
+            return self._headline()
+        rows = self.sizes().reset_index()
+        again = rows["effects"].duplicated()
+        rows[["effects", "probability", "fits (p)"]] = rows[["effects", "probability", "fits (p)"]].mask(
+            again, ""
+        )
+        return f"{self._headline()}\n{rows.to_string(index=False, justify='left', max_colwidth=None)}"
 
     def _headline(self) -> str:
         which = " | ".join(" + ".join(names) for names in self.sets)

@@ -15,7 +15,7 @@ from scipy.special import logsumexp
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.candidate import Candidate
-from updating.diagnosis.evidence import Explanation, explain, finish
+from updating.diagnosis.evidence import CLIMBS, Explanation, explain, finish
 from updating.diagnosis.fit import sensitivities
 from updating.diagnosis.gaussian import whiten
 from updating.diagnosis.posed import Posed
@@ -37,7 +37,10 @@ LOOKS = 3
 """How often what is within reach is sought."""
 
 PAIRS = 8
-"""How many pairs are weighed, those a linear look finds the most promising."""
+"""How many pairs are weighed, those a linear look finds the most promising..."""
+
+ANEW = 3
+"""...and how many of these, the best, from all starts of either effect; doubled, pairs take half as long again."""
 
 FORM_SHARE = 0.02
 """Forms of an effect with less than this share of the most probable one do not speak for its fit [-]."""
@@ -233,6 +236,8 @@ def _single(problem: Posed, effect: Effect, form: Variant, *, twin: bool, bar: f
 def _pairs(problem: Posed, singles: list[Explanation]) -> list[Explanation]:
     """Weigh the pairs that a linear look at every pair finds the most promising."""
     possible = [e for e in singles if e.best.possible]
+    if len(possible) < 2:
+        return []
     reached = _linear_looks(problem, possible)
     data = len(problem.at(Candidate(), np.zeros(0)).residual)
     looks = []
@@ -252,17 +257,84 @@ def _pairs(problem: Posed, singles: list[Explanation]) -> list[Explanation]:
     found: list[Explanation] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
     for first, second in list(chosen.values())[:PAIRS]:
-        middle = [np.full(len(e.best.coordinates), 0.5) for e in (first, second)]
-        a, b = first.best.coordinates, second.best.coordinates
-        starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
-        found.append(explain(problem, _joined(first, second), starts=starts, draft=True, climbs=1, bar=bar))
+        halves = [(e.candidate, e.best.coordinates) for e in (first, second)]
+        found.append(_pair(problem, halves[0], halves[1], bar))
         bar = max(bar, found[-1].best.marginal.log_likelihood)
+    found.sort(key=lambda e: -e.log_evidence)
+    for i, pair in enumerate(found[:ANEW]):
+        again = _pair(problem, *_halves(problem, pair), bar, anew=True)
+        found[i] = max(pair, again, key=lambda e: e.log_evidence)
+        bar = max(bar, found[i].best.marginal.log_likelihood)
+    return found + _alike(problem, possible, found, bar)
+
+
+Half = tuple[Candidate, FloatArray]
+"""One of the two effects of a pair, and prior quantiles to start from."""
+
+
+def _pair(problem: Posed, first: Half, second: Half, bar: float, *, anew: bool = False) -> Explanation:
+    """Draft a pair, from the best that each of the two has alone, and where asked from all its own starts anew.
+
+    An effect that explains as much as it can alone bends to what the other does, so that its place alone may be far
+    from that in the pair.
+    """
+    (one, a), (two, b) = first, second
+    middle = [np.full(len(u), 0.5) for u in (a, b)]
+    starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
+    if anew:
+        starts += [np.concatenate([a, own]) for own in problem.starts(two)]
+        starts += [np.concatenate([own, b]) for own in problem.starts(one)]
+    both = Candidate(one.effects + two.effects, theory=one.theory or two.theory, chosen=one.forms + two.forms)
+    unlike = list(
+        {tuple(u.tolist()): u for u in starts}.values()
+    )  # of an effect without parameters all are alike
+    return explain(problem, both, starts=unlike, draft=True, climbs=CLIMBS if anew else 1, bar=bar)
+
+
+def _alike(
+    problem: Posed, singles: list[Explanation], pairs: list[Explanation], bar: float
+) -> list[Explanation]:
+    """Draft what some data cannot tell from the best pair: one of the two in the place of an effect like it.
+
+    Such a rival may fit as well where it alone, at another place, fits too badly for the linear look to choose it.
+    """
+    best = max(pairs, key=lambda e: e.log_evidence, default=None)
+    if best is None:
+        return []
+    known, found = {frozenset(e.names) for e in pairs}, []
+    data = len(best.best.comparison.residual)
+    halves = _halves(problem, best)
+    for (kept, place), (other, _) in (halves, halves[::-1]):
+        for rival in _like(other.effects[0], singles):
+            names = frozenset(kept.names + rival.names)
+            if len(names) == 2 and names not in known and len(place) + len(rival.best.coordinates) < data:
+                known.add(names)
+                found.append(
+                    _pair(problem, (kept, place), (rival.candidate, rival.best.coordinates), bar, anew=True)
+                )
     return found
 
 
-def _joined(first: Explanation, second: Explanation) -> Candidate:
-    a, b = first.candidate, second.candidate
-    return Candidate(a.effects + b.effects, theory=a.theory or b.theory, chosen=a.forms + b.forms)
+def _halves(problem: Posed, pair: Explanation) -> tuple[Half, Half]:
+    """Take a pair apart."""
+    whole = pair.candidate
+    first, second = (
+        Candidate((effect,), theory=whole.theory, chosen=(form,))
+        for effect, form in zip(whole.effects, whole.forms, strict=True)
+    )
+    count = len(problem.parameters(first))
+    return (first, pair.best.coordinates[:count]), (second, pair.best.coordinates[count:])
+
+
+def _like(effect: Effect, singles: list[Explanation]) -> list[Explanation]:
+    """Return the best form of every single that is declared to resemble an effect, or that the effect declares."""
+    best: dict[str, Explanation] = {}
+    for single in singles:
+        for other in single.candidate.effects:
+            alike = other.name in effect.equivalent_to or effect.name in other.equivalent_to
+            if alike and (other.name not in best or best[other.name].log_evidence < single.log_evidence):
+                best[other.name] = single
+    return list(best.values())
 
 
 def _linear_looks(problem: Posed, singles: list[Explanation]) -> FloatArray:

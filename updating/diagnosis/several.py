@@ -87,7 +87,10 @@ class Several:
 
     def forms(self, effect: Effect) -> tuple[Variant, ...]:
         """Return the forms in which an effect may come: those of the first specimen it applies to."""
-        return self.specimens[self._where(effect)[0]].forms(effect)
+        found = self.specimens[self._where(effect)[0]].forms(effect)
+        return tuple(
+            form for form in found if "channel" not in form.values
+        )  # a sensor of that specimen alone
 
     def _where(self, effect: Effect) -> list[int]:
         """Return the specimens an effect applies to."""

@@ -62,7 +62,9 @@ def _by_chance(found: Search) -> float:
     return float(min(1.0, FORMS * len(singles) * min(chances, default=1.0)))
 
 
-def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
+def decide(
+    found: Search, *, significant: bool, comparable: bool = True
+) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
     """Return the verdict and the sets of effects it rests on.
 
     Parameters
@@ -71,6 +73,8 @@ def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[st
         What was weighed, most probable first.
     significant : bool
         Whether there is a gap.
+    comparable : bool
+        Whether most measured modes have a partner: the rest alone names no cause.
     """
     if not significant:
         return "none", ()
@@ -82,7 +86,9 @@ def decide(found: Search, *, significant: bool) -> tuple[Verdict, tuple[tuple[st
     if not better:
         return "unknown", ()
     sets = _credible(better)
-    return ("named" if len(sets) == 1 else "class"), sets
+    if len(sets) > 1:
+        return "class", sets
+    return ("named", sets) if comparable else ("unknown", ())
 
 
 def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:
@@ -114,6 +120,7 @@ def rank(problem: Posed, found: Search) -> tuple[Ranked, ...]:
             estimates(problem, row.explanation, row.extreme, most=HEAVY if row.probability > FAINT else FEW),
             not row.extreme,
             row.p_value,
+            tuple(form.values for form in row.explanation.candidate.forms),
         )
         for row in rows
     )
@@ -139,9 +146,11 @@ def estimates(
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
         aside = parameter.default is not None
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
-    labels = {f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels}
-    for name in labels & drawn[0].keys():
-        result[name] = ParameterEstimate(drawn[0][name], "node", None, None, False)
+    labels = [f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels]
+    sensors = [f"{effect.name}.channel" for effect in candidate.effects if effect.of_sensor]
+    for name, unit in [*((label, "node") for label in labels), *((sensor, "channel") for sensor in sensors)]:
+        if name in drawn[0]:
+            result[name] = ParameterEstimate(drawn[0][name], unit, None, None, False)
     derived = [problem.derived(candidate, u) for u in samples]
     for name, (_, unit) in derived[0].items():
         low, middle, high = _quantiles(np.array([d[name][0] for d in derived]), weights)

@@ -11,6 +11,8 @@ from updating.diagnosis.problem import Problem
 from updating.diagnosis.result import Place, Seat, Where, Zone
 from updating.diagnosis.search import Search, Weighed
 from updating.diagnosis.verdict import decide
+from updating.effects.base import Values
+from updating.effects.points import channel_point
 from updating.localisation import areas, centres, regions_at, weigh_regions
 
 CHANNELS = ("stiffness", "mass", "damping", "measurement")
@@ -18,11 +20,14 @@ CHANNELS = ("stiffness", "mass", "damping", "measurement")
 REACH = 0.05
 """A test point within this share of the span of a place is concerned [-]."""
 
+ALIKE = 0.02
+"""Channels whose probabilities differ by less act together: halves of one pair [-]."""
+
 NEGLIGIBLE = 1e-4
 """An explanation less probable than this has no say in the regions [-]."""
 
-LABELS = (".point", ".points")
-"""How parameters that hold nodes of the test end."""
+LABELS = (".point", ".points", ".channel")
+"""How parameters that speak of points of the test end."""
 
 
 def locate(problem: Problem, found: Search, *, significant: bool, whole: Search | None = None) -> Where:
@@ -45,24 +50,34 @@ def locate(problem: Problem, found: Search, *, significant: bool, whole: Search 
         zones = _zones(problem, _by_explanations(problem, found))
         told = {**shares, "none": nothing}
         return Where("none", told, None, (), (), zones, modes=seen.modes, band=seen.summary)
-    top = max(shares, key=lambda n: shares[n])
+    top = _leading(shares)
     leader = next((row for row in found.weighed if row.names), None)
     seats = () if leader is None else clusters(problem, leader.explanation, top)
     places = tuple(_place(cluster.place) for cluster in seats)
-    unknown = decide(found, significant=True)[0] == "unknown"
+    unknown = decide(found, significant=True, comparable=not problem.mostly_alone)[0] == "unknown"
     probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
     return Where(
         top,
         {**shares, "none": nothing},
         places[0] if places else None,
         places,
-        _points(problem, leader, seats),
+        _points(problem, leader) or _nearest(problem, seats),
         _zones(problem, probability),
         "regions" if unknown else "explanations",
         tuple(Seat(_place(c.place), _place(c.spread), c.weight) for c in seats),
         seen.modes,
         seen.summary,
+        _nearest(problem, seats),
     )
+
+
+def _leading(shares: dict[str, float]) -> str:
+    """Return the most probable channel; of a pair that acts on measurement and structure alike, the structure's."""
+    top = max(shares, key=lambda n: shares[n])
+    if top != "measurement":
+        return top
+    structural = max((n for n in shares if n != top), key=lambda n: shares[n])
+    return structural if shares[structural] > shares[top] - ALIKE else top
 
 
 def _channels(found: Search) -> tuple[dict[str, float], float]:
@@ -81,15 +96,20 @@ def _place(place: FloatArray) -> Place:
     return float(place[0]), float(place[1]), float(place[2])
 
 
-def _points(problem: Problem, leader: Weighed | None, seats: tuple[Cluster, ...]) -> tuple[int, ...]:
-    """Return the test nodes an effect speaks of, else those at the places."""
+def _points(problem: Problem, leader: Weighed | None) -> tuple[int, ...]:
+    """Return the test nodes of which an effect of the measurement speaks."""
     if leader is None:
         return ()
-    explanation = leader.explanation
-    values = problem.values(explanation.candidate, explanation.best.coordinates)
+    explanation, test = leader.explanation, problem.measured
+    values: Values = problem.values(explanation.candidate, explanation.best.coordinates)
     named = [v for name, v in values.items() if name.endswith(LABELS)]
-    if named:
-        return tuple(dict.fromkeys(int(n) for v in named for n in np.atleast_1d(np.asarray(v)).tolist()))
+    sensors = [test.nodes[channel_point(test, v)[1]] for v in named if isinstance(v, str)]
+    nodes = [n for v in named if not isinstance(v, str) for n in np.atleast_1d(np.asarray(v)).tolist()]
+    return tuple(dict.fromkeys(map(int, nodes + sensors)))
+
+
+def _nearest(problem: Problem, seats: tuple[Cluster, ...]) -> tuple[int, ...]:
+    """Return the test nodes at the places."""
     test, spec = problem.measured, problem.predictor.spec
     if not seats or not len(test.points):
         return ()

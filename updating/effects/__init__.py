@@ -69,6 +69,11 @@ def register(effect: Effect) -> None:
     LIBRARY[effect.name] = effect
 
 
+def labels_of(effect: Effect, values: Mapping[str, Any]) -> set[str]:
+    """Return the labels that an effect takes beside its parameters: its own, or ``channel`` where that is stated."""
+    return {"channel"} if effect.of_sensor and "channel" in values else set(effect.labels)
+
+
 def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -> State:
     """Return the departure that an accepted effect makes at stated values.
 
@@ -86,11 +91,13 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
     if not there_already and (obstacle := effect.why_not(predictor)) is not None:
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
     parameters = effect.parameters(predictor)
-    takes = {parameter.name for parameter in parameters} | set(effect.labels)
-    needed = takes - {parameter.name for parameter in parameters if parameter.default is not None}
-    if not needed <= set(values) <= takes:
+    takes = {parameter.name for parameter in parameters} | labels_of(effect, values)
+    optional = {parameter.name for parameter in parameters if parameter.default is not None}
+    if not takes - optional <= set(values) <= takes:
+        wanted = ", ".join(sorted({p.name for p in parameters} | set(effect.labels))) or "no parameters"
+        instead = f' (or channel = "5+Z", a sensor that stayed{", in place of points" * bool(effect.labels)})'
         raise StudyError(
-            f"[[model.effect]] {name}: it takes {', '.join(sorted(takes)) or 'no parameters'}, "
+            f"[[model.effect]] {name}: it takes {wanted}{instead * effect.of_sensor}, "
             f"found {', '.join(sorted(values)) or 'none'}"
         )
     check_values(parameters, values, f"[[model.effect]] {name}")
@@ -105,5 +112,6 @@ __all__ = [
     "Variant",
     "accepted_state",
     "check_values",
+    "labels_of",
     "register",
 ]

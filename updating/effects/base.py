@@ -116,6 +116,9 @@ class Effect(ABC):
     """Effects that some data cannot tell from it."""
     labels: ClassVar[tuple[str, ...]] = ()
     """Values beside the parameters that say which points are meant, by their node numbers."""
+    of_sensor: ClassVar[bool] = False
+    """Whether ``channel`` may be stated in place of the labels: one of several sensors (or forces) that stayed, by node
+    and direction as ``5+Z``."""
     separated_by: ClassVar[str]
     """The test that would separate it from these."""
     fidelity: ClassVar[float] = 0.0
@@ -135,6 +138,10 @@ class Effect(ABC):
         """Take prior quantiles, one per parameter, to values of the parameters."""
         parameters = self.parameters(predictor)
         return {p.name: p.value(u) for p, u in zip(parameters, coordinates, strict=True)}
+
+    def sentence(self, values: Values) -> str:
+        """Return the summary of the form with these values."""
+        return self.summary
 
     def settled(self, predictor: Predictor, values: Values) -> Values:
         """Return the values, what a form fixes among them, brought to what is possible together."""

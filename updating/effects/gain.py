@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from updating.effects.base import Effect, Parameter, Values, Variant
-from updating.effects.points import indices
+from updating.effects.points import channel_of, channel_point
 from updating.models.state import State
 from updating.prediction import Predictor
 from updating.reading import fixed_sensors
@@ -20,6 +20,7 @@ class CalibrationGain(Effect):
     footprint = "Modal constants by one factor; frequencies, damping and shapes unchanged."
     models = ("beam", "plate", "matrices")
     equivalent_to = ("section_scale",)
+    of_sensor = True
     separated_by = "a calibration with a known free mass"
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -36,13 +37,19 @@ class CalibrationGain(Effect):
         sensors = fixed_sensors(predictor.measured)
         if len(sensors) < 2:
             return (Variant(),)
-        each = tuple(Variant({"points": (predictor.measured.nodes[s],)}, 0.5 / len(sensors)) for s in sensors)
+        names = [channel_of(predictor.measured, s) for s in sensors.tolist()]
+        each = tuple(Variant({"channel": name}, 0.5 / len(sensors)) for name in names)
         return (Variant(weight=0.5), *each)
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the gain."""
-        if "points" not in values:
+        if "channel" not in values:
             return State(gain=values["gain"])
-        return State(
-            point_gains={("seen", p): values["gain"] for p in indices(predictor.measured, values["points"])}
-        )
+        return State(point_gains={channel_point(predictor.measured, values["channel"]): values["gain"]})
+
+    def sentence(self, values: Values) -> str:
+        """Say which sensor it is."""
+        if "channel" not in values:
+            return self.summary
+        sensor = values["channel"]
+        return f"The calibration of the sensor {sensor} is off: its FRFs are too large or too small by one factor."

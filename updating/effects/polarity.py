@@ -6,8 +6,9 @@ import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import shape_obstacle
-from updating.effects.points import indices, places, points_of
+from updating.effects.points import channel_of, channel_point, indices, places, points_of
 from updating.effects.shape_look import PROMISING, look_at
+from updating.measured import Measured
 from updating.models.state import Role, State
 from updating.prediction import Predictor
 from updating.reading import roving
@@ -28,11 +29,14 @@ class Polarity(Effect):
     name = "polarity"
     channel = "measurement"
     summary = "Some points are reversed in sign: hit from the other side, or a sensor mounted upside down."
-    footprint = "The points' constants change sign in all modes; frequencies and damping unchanged."
+    footprint = (
+        "The constants of the points, or of a fixed sensor, change sign in all modes; nothing else changes."
+    )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("swapped_points",)
     separated_by = "look at the sign of the drive point FRF and of the points' hits again"
     labels = ("points",)
+    of_sensor = True
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return nothing to search: which points it is, the variant says."""
@@ -56,26 +60,40 @@ class Polarity(Effect):
             order = np.argsort(misfits)
             share *= FEWER * count / len(left)  # one of the sets of so many points
             near = order[: PROMISING if count == 1 else 1]
-            variants += [self._variant(predictor, role, [*chosen, left[i]], share) for i in near]
+            variants += [self._variant(predictor, [*chosen, left[i]], share) for i in near]
             chosen.append(left[order[0]])
         return (*variants, *self._fixed(predictor, "seen" if role == "hit" else "hit"))
 
     def _fixed(self, predictor: Predictor, role: str) -> list[Variant]:
         """Return each of several points of the end that stayed."""
-        points = points_of(predictor.measured, role)
+        test = predictor.measured
+        points = points_of(test, role)
         if len(points) < 2:
             return []
-        return [self._variant(predictor, role, [p], OTHER_END / len(points)) for p in points]
+        return [Variant({"channel": channel_of(test, p)}, OTHER_END / len(points)) for p in points]
 
-    def _variant(self, predictor: Predictor, role: str, points: list[int], weight: float) -> Variant:
-        return Variant({"points": tuple(predictor.measured.nodes[p] for p in points), "role": role}, weight)
+    def _variant(self, predictor: Predictor, points: list[int], weight: float) -> Variant:
+        return Variant({"points": tuple(predictor.measured.nodes[p] for p in points)}, weight)
 
     def state(self, predictor: Predictor, values: Values) -> State:
-        """Return the points reversed."""
-        role = values.get("role") or roving(predictor.measured)
-        roles: list[Role] = [(role, p) for p in indices(predictor.measured, values["points"])]
-        return State(point_gains=dict.fromkeys(roles, -1.0))
+        """Return the points of the end that roved reversed, or the sensor that stayed."""
+        return State(point_gains=dict.fromkeys(self._reversed(predictor.measured, values), -1.0))
+
+    def _reversed(self, test: Measured, values: Values) -> list[Role]:
+        if "channel" in values:
+            return [channel_point(test, values["channel"])]
+        return [(roving(test), p) for p in indices(test, values["points"])]
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
-        """Return the points."""
-        return places(predictor.measured, values["points"])
+        """Return the points, or where the sensor sits."""
+        test = predictor.measured
+        return places(test, tuple(test.nodes[p] for _, p in self._reversed(test, values)))
+
+    def sentence(self, values: Values) -> str:
+        """Say whether it is a fixed sensor or points of the end that roved."""
+        if "channel" in values:
+            return (
+                f"The sensor {values['channel']} is reversed in sign, whichever point is hit: mounted upside down, or "
+                "its sign set wrongly."
+            )
+        return "Some points are reversed in sign: hit from the other side, or where the sensor roved, upside down."

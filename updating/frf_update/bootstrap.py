@@ -145,8 +145,9 @@ def _repeat(last: Sequence[Step], frfs: MeasuredFrfs, draw: MeasuredFrfs) -> lis
             kept = set(step.stage.frfs.pairs())
             rows = np.array([k for k, pair in enumerate(draw.pairs()) if pair in kept])
             stage: Stage = replace(step.stage, frfs=draw.select(rows).lines(chosen), earlier=earlier)
+            size, at = step.solved.discrepancy, stage.look(theta[i])
             theta[i] = descend(
-                stage, theta[i], stage.look(theta[i]), step.solved.discrepancy, share=CONVERGED, steps=STEPS
+                stage, theta[i], at, size, share=CONVERGED, steps=STEPS, variance=stage.variance(at, size)
             )[0]
             own[i] = stage.panel.state(stage.predictor, stage.values(theta[i]))
     return [v for step, t in zip(last, theta, strict=True) for v in step.stage.values(t)]

@@ -33,7 +33,8 @@ PASSES = 2
 """How often a stage chooses its lines: on the nominal model, and again where that has brought it."""
 
 CHOICES = 2
-"""How often each stage chooses its lines before it keeps them."""
+"""How often each stage chooses its lines and weights before it keeps them: doubled, stages that a model cannot follow
+go round among solutions some tenths of a standard deviation apart, each right by its own weights."""
 
 LEAST = 0.02
 """Discrepancy with which lines are chosen anew where a stage had come to rest on less [-]."""
@@ -274,9 +275,10 @@ def _solve(
     theta, size, passes = nominal(panel.knobs), BEGIN, PASSES
     if number in latest:
         theta, size, passes = latest[number].solved.theta, max(latest[number].solved.discrepancy, FRESH), 1
+    variance = None
     if sum(step.number == number for step in done) >= CHOICES:  # what chooses anew each time never rests
-        lines = latest[number].stage.frfs.frequency.tolist()
-    stage, solved, visited = _rested(whole, theta, size, lines, passes)
+        lines, variance = latest[number].stage.frfs.frequency.tolist(), latest[number].solved.variance
+    stage, solved, visited = _rested(whole, theta, size, lines, passes, variance)
     if solved.discrepancy > APART and number not in latest and not stage.damps_alone:
         near = from_frequencies(specimen, whole, theta)
         other = _rested(whole, near, size, lines, passes)
@@ -288,13 +290,18 @@ def _solve(
 
 
 def _rested(
-    whole: Stage, theta: FloatArray, size: float, lines: int | Sequence[float] | None, passes: int
+    whole: Stage,
+    theta: FloatArray,
+    size: float,
+    lines: int | Sequence[float] | None,
+    passes: int,
+    variance: FloatArray | None = None,
 ) -> tuple[Stage, Solved, list[FloatArray]]:
     """Return the stage on the lines it compared last, where it came to rest, and all coordinates on the way."""
     visited = [theta]
     for _ in range(passes):
         stage = whole.lines(choose_lines(whole, theta, size, lines))
-        solved = solve(stage, theta, begin=size)
+        solved = solve(stage, theta, begin=size, variance=variance)
         theta, size = solved.theta, max(solved.discrepancy, LEAST)
         visited += list(solved.history[1:])
     return stage, solved, visited

@@ -51,6 +51,8 @@ class Solved:
         Coordinates of every iteration, the start included.
     converged : bool
         Whether the increments died out.
+    variance : (n_frf, n_lines) array
+        Of noise and discrepancy, by which the last increments were weighted [m^2/N^2].
     """
 
     theta: FloatArray
@@ -58,9 +60,17 @@ class Solved:
     discrepancy: float
     history: FloatArray
     converged: bool
+    variance: FloatArray
 
 
-def solve(stage: Stage, start: FloatArray, *, begin: float = BEGIN, rounds: int = 12) -> Solved:
+def solve(
+    stage: Stage,
+    start: FloatArray,
+    *,
+    begin: float = BEGIN,
+    rounds: int = 12,
+    variance: FloatArray | None = None,
+) -> Solved:
     """Turn the parameters until they rest, and the discrepancy with them.
 
     Parameters
@@ -73,9 +83,15 @@ def solve(stage: Stage, start: FloatArray, *, begin: float = BEGIN, rounds: int 
         Discrepancy to begin with [-].
     rounds : int
         Largest number of discrepancies tried.
+    variance : (n_frf, n_lines) array, optional
+        Weights to keep; left out, they follow the discrepancy and the model [m^2/N^2].
     """
     theta, size, history = start, begin, [start]
     at = stage.look(theta)
+    if variance is not None:
+        theta, at, visited, converged = descend(stage, theta, at, size, share=CONVERGED, variance=variance)
+        found = stage.discrepancy(at)
+        return Solved(theta, at, found, np.array([start, *visited]), converged, variance)
     for _ in range(rounds):
         theta, at, visited, _ = descend(stage, theta, at, size, share=ROUGHLY)
         history += visited
@@ -85,13 +101,21 @@ def solve(stage: Stage, start: FloatArray, *, begin: float = BEGIN, rounds: int 
             size = found if found == 0.0 else new
             break
         size = new
-    theta, at, visited, converged = descend(stage, theta, at, size, share=CONVERGED)
+    variance = stage.variance(at, size)
+    theta, at, visited, converged = descend(stage, theta, at, size, share=CONVERGED, variance=variance)
     history += visited
-    return Solved(theta, at, size, np.array(history), converged)
+    return Solved(theta, at, size, np.array(history), converged, variance)
 
 
 def descend(
-    stage: Stage, theta: FloatArray, at: Look, size: float, *, share: float, steps: int = 30
+    stage: Stage,
+    theta: FloatArray,
+    at: Look,
+    size: float,
+    *,
+    share: float,
+    steps: int = 30,
+    variance: FloatArray | None = None,
 ) -> tuple[FloatArray, Look, list[FloatArray], bool]:
     """Iterate under one discrepancy; of Eq. 9 with the measured and with the model's column the better is taken.
 
@@ -99,8 +123,7 @@ def descend(
     where it is large they follow the model, so that a peak on its way cannot outweigh all else.
     """
     visited: list[FloatArray] = []
-    last = share == CONVERGED
-    kept = stage.variance(at, size) if size < OVERLAP or last else None
+    kept = stage.variance(at, size) if variance is None and size < OVERLAP else variance
     for _ in range(steps):
         best = None
         before = stage.misfit(at, stage.variance(at, size) if kept is None else kept)

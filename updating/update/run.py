@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray
 from updating.case import Case
 from updating.update.building import BEYOND, build_specimen, build_system, check_data, per_case
 from updating.update.determine import Statistics, assess, correlations
+from updating.update.doubts import doubts
 from updating.update.exact import full_modes
 from updating.update.knobs import Knob
 from updating.update.mixture import Mixture
@@ -276,7 +277,7 @@ def _pairs(system: System, solution: Solution) -> pd.DataFrame:
 
 
 def _warnings(system: System, solution: Solution, statistics: Statistics, exact: bool) -> list[str]:
-    found = [w for s in system.specimens for w in s.warnings]
+    found = [*doubts(system, solution, statistics.dof), *(w for s in system.specimens for w in s.warnings)]
     if not solution.converged:
         found.append(f"the parameters still move after {solution.iterations} iterations")
     if statistics.inflation > 1:

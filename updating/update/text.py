@@ -42,8 +42,8 @@ def _statistics(update: Update) -> Iterator[str]:
         ("quantity", {"frequency": "relative frequency"}.get(update.quantity, update.quantity)),
         ("weights", update.weights),
         ("chi-square", f"{update.chi2:.4g}"),
-        ("degrees of freedom", str(update.dof)),
-        ("reduced chi-square", f"{update.reduced_chi2:.4g}"),
+        ("degrees of freedom", f"{update.dof}{'' if update.dof > 0 else ': NOTHING IS TESTED'}"),
+        ("reduced chi-square", f"{update.reduced_chi2:.4g}" if update.dof > 0 else ""),
         ("sigmas raised by", f"{update.inflation:.3g}"),
         ("r.m.s. error", f"{update.rms_percent('before'):.4g} % -> {update.rms_percent():.4g} %"),
     ]

@@ -74,7 +74,8 @@ def fitted(diagnosis: Diagnosis, case: Case, *, alone: bool = True) -> Fitted:
     for theory in theories:
         told = _told(leader.parameters, case.title)
         applying = [n for n in leader.effects if problem.applies(LIBRARY[n]) is None]
-        forms = tuple(_form(n, told) for n in applying)
+        stated = dict(zip(leader.effects, leader.forms, strict=False))
+        forms = tuple(Variant(stated[n]) if n in stated else _form(n, told) for n in applying)
         candidate = Candidate(tuple(LIBRARY[n] for n in applying), theory, forms)  # type: ignore[arg-type]
         start = _start(problem, candidate, told)
         point = (

@@ -24,7 +24,7 @@ from modalkit.figures.style import (
     text_width,
 )
 from modalkit.figures.words import located, share
-from updating import Case, Diagnosis, Measured
+from updating import LIBRARY, Case, Diagnosis, Measured
 from updating.models.imported import Imported
 
 
@@ -123,6 +123,13 @@ def _edges(centres: list[float]) -> dict[float, tuple[float, float]]:
     low = np.r_[2 * values[0] - middle[0], middle]
     high = np.r_[middle, 2 * values[-1] - middle[-1]]
     return {float(v): (float(a), float(b)) for v, a, b in zip(values, low, high, strict=True)}
+
+
+def spans(diagnosis: Diagnosis) -> bool:
+    """Tell whether the first explanation has a cause in the measurement and one in the structure."""
+    leader = diagnosis.ranking[0].effects if diagnosis.ranking else ()
+    acting = {LIBRARY[name].channel for name in leader if name in LIBRARY}
+    return diagnosis.verdict in ("named", "class") and "measurement" in acting and len(acting) > 1
 
 
 def draw_where(axes: Axes, diagnosis: Diagnosis, case: Case | None, *, width: float, height: float) -> None:
@@ -262,6 +269,8 @@ def _cause(axes: Axes, diagnosis: Diagnosis, body: Outline, frame: Frame, width:
             "none": "no gap, so no place",
             "measurement": "in the measurement, not in the structure",
         }
+        if spans(diagnosis):
+            texts[where.channel] = "in the measurement and in the structure"
         text = texts.get(where.channel, "no single place: it acts on all of it")
         if diagnosis.verdict == "unknown":
             text = "no place is known: nothing explains the gap"

@@ -25,7 +25,7 @@ class FreeFree(Repeat):
         """Return the problem without clamps."""
         problem = site.problem
         free = replace(problem.predictor, spec=replace(problem.predictor.spec, clamped=()))
-        return replace(problem, predictor=free, shortfall=None, trusted=None)
+        return replace(problem, predictor=free, shortfall=None)
 
     def keeps(self, effect: Effect) -> bool:
         """Leave out what the clamp does."""

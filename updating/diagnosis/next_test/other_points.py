@@ -58,6 +58,7 @@ def _one_more(test: Measured, place: FloatArray) -> Measured:
         chain=None if test.chain is None else np.append(test.chain, test.chain[0]),
         noise=None,
         shared=None,
+        trusted=None,
         rows=None,
         signs=None,
     )
@@ -94,12 +95,13 @@ class Shapes(Repeat):
             constants_sigma=np.full((count, modes), SHAPES_KNOWN),
             absolute=True,
             repeated=True,
+            trusted=None,
         )
         return _with(problem, data)
 
 
 def _with(problem: Problem, data: Measured) -> Problem:
-    return replace(problem, measured=data, predictor=problem.predictor.looking(data), trusted=None)
+    return replace(problem, measured=data, predictor=problem.predictor.looking(data))
 
 
 class OtherPoints(Maker):

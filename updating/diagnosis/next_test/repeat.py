@@ -44,7 +44,7 @@ class Repeat(Trial):
         blank = self.problem(site)
         lead = self._state(blank, site, rivals[0], rivals[0].explanation.best.coordinates)
         data = imagined(blank.measured, blank.predictor, lead, blank.order)
-        then = replace(blank, measured=data, predictor=looking(blank.predictor, data), trusted=None)
+        then = replace(blank, measured=data, predictor=looking(blank.predictor, data))
         return tuple(self._outcome(then, site, rival) for rival in rivals)
 
     def _state(self, then: Problem, site: Site, rival: Rival, coordinates: FloatArray) -> State:
@@ -114,6 +114,7 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
         constants_sigma=_shape_noise(measured) * size * np.ones_like(modes.constants),
         phase=None,
         phase_sigma=None,
+        trusted=None,
         slope=None,
         slope_sigma=None,
         noise=None,

@@ -1,0 +1,93 @@
+"""Two causes at once: a sensor upside down beside a body that was forgotten, and rivals of a pair."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from updating_cases import BEAM, blank, case_of, specimen, struck
+
+from updating import LIBRARY, Case, Diagnosis, Measured, diagnose
+
+FREE = replace(BEAM, length=0.5, clamped=()).with_elements(20)
+PLACES = np.linspace(0.0, 0.5, 7)
+SENSORS = (0, 4)
+BODY, AT = 0.03, 0.19
+
+
+def two_sensors(*, upside_down: int | None, seed: int = 3) -> Measured:
+    """A free beam with a body, hit at seven points, seen by two sensors of which one may be upside down."""
+    rng = np.random.default_rng(seed)
+    beam = specimen(rng)
+    beam = replace(beam, length=FREE.length, clamped=False, masses=((AT, BODY),))
+    frequency = beam.frequencies(5)
+    shape = beam.shapes(frequency, PLACES)
+    rows = [(seen, hit) for seen in SENSORS for hit in range(7)]
+    exact = np.array([shape[s] * shape[h] * (-1.0 if s == upside_down else 1.0) for s, h in rows])
+    sigma = 0.01 * np.sqrt(np.mean(exact**2, axis=0)) * np.ones_like(exact)
+    return replace(
+        blank(PLACES),
+        frequency=frequency * (1 + 5e-4 * rng.standard_normal(5)),
+        frequency_sigma=1e-4 * frequency,
+        damping=np.full(5, 0.002),
+        damping_sigma=np.full(5, 1e-4),
+        seen=np.array([s for s, _ in rows]),
+        hit=np.array([h for _, h in rows]),
+        constants=exact + sigma * rng.standard_normal(exact.shape),
+        constants_sigma=sigma,
+    )
+
+
+def some(*names: str) -> list:
+    return [LIBRARY[n] for n in names]
+
+
+@cache
+def answer() -> Diagnosis:
+    library = some("polarity", "lumped_mass", "local_stiffness", "E", "calibration_gain")
+    return diagnose(case_of(two_sensors(upside_down=4), FREE), library=library)
+
+
+def test_a_sensor_upside_down_hides_no_mode_and_no_other_cause() -> None:
+    found = answer()
+    assert len(found.gap.modes) == 5
+    assert (found.verdict, {frozenset(s) for s in found.sets}) == (
+        "named",
+        {frozenset({"polarity", "lumped_mass"})},
+    )
+    row = found.ranking[0]
+    assert row.p_value > 0.01
+    assert row.parameters["lumped_mass.x"].value == pytest.approx(AT, abs=0.01)
+    assert row.parameters["lumped_mass.mass"].value == pytest.approx(BODY, rel=0.05)
+
+
+def tip_and_length() -> Case:
+    rng = np.random.default_rng(11)
+    beam = specimen(rng)
+    longer = replace(beam, length=beam.length + 0.012, masses=((beam.length + 0.012, 0.012),))
+    return case_of(struck(longer, rng), BEAM.with_elements(20))
+
+
+def test_what_resembles_a_part_of_the_best_pair_is_weighed_in_its_place() -> None:
+    """A body at the sensor is as good as the sensor, wherever a body alone would fit best."""
+    library = some("length", "sensor_mass", "lumped_mass", "E", "density", "thickness", "clamp_rotation")
+    found = diagnose(tip_and_length(), library=library)
+    pairs = {frozenset(row.effects): row for row in found.ranking}
+    assert set(found.ranking[0].effects) == {"length", "sensor_mass"}
+    rival = pairs[frozenset({"length", "lumped_mass"})]
+    assert found.ranking[0].effects in rival.equivalents
+
+
+def test_few_pairs_of_many_modes_name_no_cause() -> None:
+    """Most of a test's modes are strangers to the model: whatever the others fit, nothing is named."""
+    test = two_sensors(upside_down=None)
+    strange = np.linalg.svd(test.constants)[0][:, 5:8] * np.linalg.norm(test.constants[:, 2:], axis=0)
+    constants = np.hstack([test.constants[:, :2], strange])
+    case = case_of(replace(test, constants=constants, constants_sigma=test.constants_sigma), FREE)
+    found = diagnose(case, library=some("lumped_mass", "calibration_gain"))
+    assert len(found.gap.modes) == 2
+    assert found.significant and found.verdict in ("unknown", "class")
+    assert not found.comparable
+    assert any("most measured modes have no partner" in w for w in found.warnings)
