@@ -204,7 +204,7 @@ def unstated_window(test: HammerTest) -> float | None:
     if test.decay:
         return None
     noise = _rates(test)
-    forces = [force for point in test.points for force in point.force]
+    forces = [force for point in test.points for force in point.force if np.isfinite(force).all()]
     if noise is None:
         return top_decay(forces, test.rate)
     rate, error, freedom = noise
@@ -234,7 +234,7 @@ def _rate(wave: FloatArray, rate: float) -> tuple[float, float, float, int] | No
     """Return the decay of the noise of one force [1/s], its weight, squared error and degrees of freedom."""
     first, last = pulse_ends(wave)
     rest = wave[last + 12 * (last - first + 1) :]
-    if len(rest) < 200:
+    if len(rest) < 200 or not np.isfinite(rest).all():
         return None
     parts = rest[: len(rest) // 10 * 10].reshape(10, -1)
     level = np.sqrt(np.mean((parts - parts.mean(axis=1, keepdims=True)) ** 2, axis=1))

@@ -178,7 +178,7 @@ def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):
         ("frequency,sigma\n1_0,0.1\n", "is no number"),
         (
             "frequency,sigma\n19.06 Hz,0.1\n",
-            "'19.06 Hz' in column 'frequency' is no number but has a unit; write 19.06 alone",
+            "'19.06 Hz' in column 'frequency' is no number but has a unit, Hz; write 19.06 alone",
         ),
     ],
 )
