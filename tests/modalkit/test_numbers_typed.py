@@ -19,6 +19,7 @@ from modalkit.handling import Handling, sensor_mass
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_data" / "beam_wet"
 WORDS = {
     "frf": ("frf", str(SAMPLE / "beam_wet.uff"), "-o", "out.uff"),
+    "inspect": ("inspect", str(SAMPLE / "beam_wet.uff")),
     "identify": ("identify", str(SAMPLE / "beam_wet.uff")),
     "simulate": ("simulate", str(SAMPLE / "published.toml"), "-o", "out.uff"),
     "update": ("update", str(SAMPLE / "study.toml")),

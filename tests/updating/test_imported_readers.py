@@ -457,6 +457,7 @@ SLIPS = [
     (NODES + "*DARY\n1, 1, 3\n", "\\*DARY is nothing known; is \\*BOUNDARY meant"),
     (NODES + "*BOUNDARY,ROOT, 1, 3\n", "is no card"),
     (NODES + "*NSE 2\n", "is no card"),
+    (NODES + "*BOUNDARY\n*STEP\n*FREQUENCY\n3\n", "BOUNDARY without a line before this"),
     (NODES + "*NSET, NSET=A\n3\n*END STEP\n", "END STEP without a \\*STEP before it"),
     (NODES + "*STEP\n*FREQUENCY\n3\n*END STEP\n1, 1, 3\n", "behind the end of a step"),
     (NODES + "*BOY\n1, 1, 3\n", "is \\*BOUNDARY meant"),

@@ -70,5 +70,5 @@ def read_dofs(path: Path) -> tuple[IntArray, IntArray]:
             f"{path}: cannot be read ({error.strerror}); keep it beside the .sti file"
         ) from error
     except (ValueError, OverflowError) as error:
-        raise StudyError(f"{path}: not a list of node.direction ({error})") from error
+        raise StudyError(f"{path}: not a list of node.direction, one to a line; export it again") from error
     return table[:, 0], table[:, 1]

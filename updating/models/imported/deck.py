@@ -86,7 +86,7 @@ def read_deck(path: Path) -> Deck:
     in_step = False
     for line, where in deck_lines(path):
         if line.startswith("*"):
-            _check_filled(card, filled, where)
+            _check_filled(card, options, filled, where)
             card, options = _card(line)
             _check_card(card, options, line, where)
             in_step = _step(card, where, in_step=in_step)
@@ -110,7 +110,7 @@ def read_deck(path: Path) -> Deck:
             deck.held.update(_held(line, deck, where))
         elif card == "*TRANSFORM":
             turned.update(deck.members(options.get("NSET", ""), where))
-    _check_filled(card, filled, str(path))
+    _check_filled(card, options, filled, str(path))
     if not deck.nodes:
         raise StudyError(f"{path}: no *NODE card; give the deck that holds the mesh, or a node table (CSV)")
     _forget_turned(deck, turned)
@@ -131,9 +131,10 @@ def _card(line: str) -> tuple[str, dict[str, str]]:
     return card, {key.strip(): value.strip() for key, _, value in pairs}
 
 
-def _check_filled(card: str, filled: bool, where: str) -> None:
-    """Refuse a card of nodes without a line: what stood under it is lost."""
-    if card in ("*NODE", "*NSET") and not filled:
+def _check_filled(card: str, options: dict[str, str], filled: bool, where: str) -> None:
+    """Refuse a card of nodes or supports without a line: what stood under it is lost."""
+    needed = card in ("*NODE", "*NSET") or (card == "*BOUNDARY" and "OP" not in options)
+    if needed and not filled:
         raise StudyError(f"{where}: {card} without a line before this; the deck is damaged or cut short")
 
 
