@@ -390,7 +390,7 @@ def _array_changed(member: bytes, rng: Rng) -> bytes:
         flat.flat[at] = [-1, worst, 0, worst // 2 if flat.dtype.kind in "iu" else np.nan][way]
     elif way == 4:
         flat = flat[:at]
-    elif way == 5:
+    elif way == 5 and flat.dtype.kind in "fiub":
         with np.errstate(all="ignore"):
             flat = flat.astype(
                 [object, np.complex128, np.int8, np.float16, ">f8", "U8", bool][int(rng.integers(7))]

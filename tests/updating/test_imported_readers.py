@@ -449,6 +449,7 @@ NODES = "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 2, 0, 0\n"
 SLIPS = [
     (NODES + "*BOUNDARY\n1,-2000000000,3\n", "first and last direction, 1 to 6"),
     (NODES + "*BOUNDARY\n1, 3, 1\n", "none is in it"),
+    (NODES + "*BOUNDARY\n1, \u00b2, 3\n", "first and last direction, 1 to 6"),
     (NODES + "*BOUNDARY\n7, 1, 3\n", "node 7 stands in no"),
     (NODES + "*NSET, NSET=A, GENERATE\n1, 3, 0\n", "no node is in it"),
     (NODES + "*NSET, NSET=A, GEMERATE\n1, 3\n", "is GENERATE meant"),

@@ -54,7 +54,7 @@ class Deck:
 
     def ranges(self, name: str, where: str) -> list[range]:
         """Return the numbers that a node's number or the name of a set stands for."""
-        if name.isdigit() and len(name) < 19:
+        if name.isdecimal() and len(name) < 19:
             return [range(int(name), int(name) + 1)]
         if name.upper() not in self.sets:
             raise StudyError(
@@ -149,7 +149,7 @@ def _step(card: str, where: str, *, in_step: bool) -> bool:
 
 def _check_card(card: str, options: dict[str, str], line: str, where: str) -> None:
     """Refuse what is not followed, and a card whose name is a slip of the pen away from one that is."""
-    if not _NAME.fullmatch(card) or any(option.isdigit() for option in options):
+    if not _NAME.fullmatch(card) or any(option.isdecimal() for option in options):
         raise StudyError(f"{where}: {line[:40]!r} is no card; the file is damaged or cut short")
     if card in REFUSED or (card == "*NODE" and options.get("SYSTEM", "R") != "R"):
         raise StudyError(f"{where}: {line[:80]} is not followed; write a node table (CSV) instead")
@@ -175,7 +175,7 @@ def _lost_a_piece(word: str, whole: str) -> bool:
 def _place(deck: Deck, line: str, where: str) -> int:
     """Put a node down, once or where it stands, and return its number; coordinates left out are zero."""
     word, *place = (part.strip() for part in line.rstrip(", ").split(","))
-    right = word.isdigit() and len(word) < 19 and 1 <= len(place) <= 3
+    right = word.isdecimal() and len(word) < 19 and 1 <= len(place) <= 3
     if not right or not all(NUMBER.fullmatch(p) for p in place):
         raise StudyError(f"{where}: {line[:80]!r} is no node, number and x, y, z")
     number, found = int(word), [float(p.upper().replace("D", "E")) for p in place]
@@ -190,7 +190,7 @@ def _listed(line: str, options: dict[str, str], deck: Deck, where: str) -> Itera
     parts = [part.strip() for part in line.rstrip(", ").split(",")]
     if "GENERATE" not in options:
         return [numbers for part in parts if part for numbers in deck.ranges(part, where)]
-    if not 2 <= len(parts) <= 3 or not all(part.isdigit() and len(part) < 19 for part in parts):
+    if not 2 <= len(parts) <= 3 or not all(part.isdecimal() and len(part) < 19 for part in parts):
         raise StudyError(f"{where}: {line[:80]!r} is no first, last and step")
     first, last, step = (*(int(part) for part in parts), 1)[:3]
     if first > last or not step:
@@ -201,7 +201,7 @@ def _listed(line: str, options: dict[str, str], deck: Deck, where: str) -> Itera
 def _held(line: str, deck: Deck, where: str) -> Iterator[tuple[int, int]]:
     name, *numbers = (part.strip() for part in line.split(","))
     ends = numbers[:1] + [number for number in numbers[1:2] if number or len(numbers) == 2]
-    if not ends or not all(end.isdigit() and len(end) < 3 and int(end) in DIRECTIONS for end in ends):
+    if not ends or not all(end.isdecimal() and len(end) < 3 and int(end) in DIRECTIONS for end in ends):
         raise StudyError(
             f"{where}: {line[:80]!r} is no node or set with its first and last direction, 1 to 6"
         )
