@@ -32,7 +32,7 @@ def find_peaks(
         prominent = tops[falls >= prominence]
     else:
         prominent = tops
-    return prominent[np.isin(prominent, _apart(tops, wave, distance))]
+    return prominent[np.isin(prominent, _separated(tops, wave, distance))]
 
 
 def _tops(wave: FloatArray) -> IntArray:
@@ -47,7 +47,7 @@ def _tops(wave: FloatArray) -> IntArray:
     return np.asarray((first[inner] + last[inner]) // 2, dtype=np.int64)
 
 
-def _apart(tops: IntArray, wave: FloatArray, distance: int) -> IntArray:
+def _separated(tops: IntArray, wave: FloatArray, distance: int) -> IntArray:
     keep = np.ones(len(tops), dtype=bool)
     for i in np.argsort(wave[tops])[::-1].tolist() if distance > 1 else ():
         if keep[i]:

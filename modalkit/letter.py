@@ -133,9 +133,8 @@ def _where(diagnosis: Diagnosis) -> str:
         )
     places = list(dict.fromkeys(place(at) for at in where.locations[:3]))
     text += ", at " + (" and ".join(places) if places else place(where.location))
-    zone = max(where.zones, key=lambda z: z.probability, default=None)
-    nearest = min(where.zones, key=lambda z: math.dist(z.center, where.location or z.center), default=None)
-    if zone is not None and zone is nearest and zone.probability >= LIKELY and len(places) < 2:
+    zone = min(where.zones, key=lambda z: math.dist(z.center, where.location or z.center), default=None)
+    if zone is not None and round(zone.probability, 2) >= LIKELY and len(places) < 2:
         text += f", region {zone.name}"
     if where.nearest:
         text += f" (nearest test point{_listed(where.nearest)})"

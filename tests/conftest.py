@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 os.environ.setdefault(
@@ -62,3 +63,21 @@ def run(
         return int(ended.value.code or 0), text.out, text.err
 
     return call
+
+
+HANG = 60.0
+"""CPU time after which what takes milliseconds hangs [s]: work that grows as the square of the input takes minutes."""
+
+
+@pytest.fixture
+def no_hang() -> Iterator[None]:
+    """End a test that hangs; it is no measure of speed."""
+
+    def stop(_signal: int, _frame: object) -> None:
+        raise AssertionError(f"it still runs after {HANG:g} s of CPU time")
+
+    before = signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, HANG)
+    yield
+    signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+    signal.signal(signal.SIGVTALRM, before)

@@ -51,6 +51,7 @@ def _segments(path: Path, lines: Sequence[str], ends: Sequence[int], starts: Seq
     style = Style(separator, header.get("Decimal_Separator", ["."])[0] or ".")
     blocks, stated = [], set[str]()
     for begin, end, stop in zip(starts, ends[1:], [*starts[1:], len(lines)], strict=True):
+        _check_no_samples(path, lines, (begin, end), style)
         header = _fields(lines[begin:end], separator)
         keys = {*header, f"Y_Unit_Label {header.get('Y_Unit_Label', [])}"}
         if odd := sorted(keys ^ (stated or keys)):
@@ -69,6 +70,16 @@ def _check_blank(path: Path, lines: Sequence[str], start: int, stop: int, where:
     for number in range(start, stop):
         if lines[number].strip() and not lines[number].startswith("***"):
             raise InputError(f"{path}, line {number + 1}: {lines[number][:40]!r} {where}; export it again")
+
+
+def _check_no_samples(path: Path, lines: Sequence[str], span: tuple[int, int], style: Style) -> None:
+    """Refuse a header with samples in it: it has lost its end, and would take those of its segment for words."""
+    for number in range(*span):
+        if style.is_number(style.split(lines[number])[0]):
+            raise InputError(
+                f"{path}, line {number + 1}: {lines[number].strip()[:40]!r} stands in the header that begins at line "
+                f"{span[0] + 1}; the file is damaged, export it again"
+            )
 
 
 def _fields(lines: Sequence[str], separator: str) -> dict[str, list[str]]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 
@@ -339,12 +337,11 @@ def test_a_quote_inside_a_number_is_a_fault(tmp_path):
         read_columns(tmp_path / "a.csv", layout_file(tmp_path))
 
 
+@pytest.mark.usefixtures("no_hang")
 def test_a_heading_of_very_many_digits_is_judged_at_once(tmp_path):
     line = "1" * 100_000 + "x" + "1" * 100_000 + "y,1.0"
     (tmp_path / "a.csv").write_text(f"{line}\nhammer,acc 1,acc 2\n" + "1.0,2.0,3.0\n" * 5)
-    begin = time.process_time()
-    read_columns(tmp_path / "a.csv", layout_file(tmp_path))
-    assert time.process_time() - begin < 1.0
+    assert read_columns(tmp_path / "a.csv", layout_file(tmp_path)).points[0].force.shape == (1, 5)
 
 
 @pytest.mark.parametrize("line", ["1.0", "1.0,2.0"])
@@ -372,6 +369,8 @@ def test_damage_where_a_row_has_two_columns(tmp_path):
         read_columns(tmp_path / "a.csv", layout_file(tmp_path, text))
 
 
+JOINED = "C".join(LVM.replace("***End_of_Header***\n", "", 1).rsplit("Channels", 1))
+"""The first segment's header without its end, the second's without its beginning."""
 LVM_DAMAGE = [
     (LVM.replace("***End_of_Header***\nX_Value", "***End_of_He\nX_Value", 1), "the headers do not end"),
     (LVM.replace("Y_Unit_Label\tg\tNewtons\n", "", 1), "'Y_Unit_Label"),
@@ -379,6 +378,7 @@ LVM_DAMAGE = [
     (LVM.replace("0,001\t1,5\t3,5", "0,\t01\t1,5\t3,5"), "stands beyond the 3 columns"),
     (LVM.replace("Decimal_Separator\t,\n", ""), "a header cannot be read"),
     (LVM[: LVM.index("***End")] + "***End_of_" + LVM[LVM.index("Delta_X") :], "before the first segment"),
+    (JOINED, "stands in the header that begins at line"),
 ]
 
 

@@ -42,7 +42,7 @@ def test_frequency_alone(tmp_path):
         ("frequency\n10\n11,12,13\n", "table"),
     ],
 )
-def test_what_is_wrong_is_said(tmp_path, text, word):
+def test_the_error_names_what_is_wrong(tmp_path, text, word):
     path = tmp_path / "modes.csv"
     path.write_text(text)
     with pytest.raises(InputError, match=word):

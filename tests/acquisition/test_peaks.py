@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -34,16 +33,13 @@ def test_short_and_flat_curves_have_the_peaks_they_have(wave: list[float]) -> No
     assert find_peaks(curve).tolist() == scipy.signal.find_peaks(curve)[0].tolist()
 
 
+@pytest.mark.usefixtures("no_hang")
 def test_the_peaks_of_a_long_tone_take_no_square_of_their_number() -> None:
-    """A sweep of a shaker, read as a force, is looked at too: beside scipy it took 400 times as long, now three."""
-    wave = np.sin(0.5 * np.arange(300_000)) * np.linspace(1.0, 2.0, 300_000)
-    start = time.process_time()
+    """A sweep of a shaker, read as a force, is looked at too: by each peak's whole record it took minutes."""
+    wave = np.sin(0.5 * np.arange(2_000_000)) * np.linspace(1.0, 2.0, 2_000_000)
     found = find_peaks(wave, height=0.1, prominence=0.1)
-    between = time.process_time()
     expected, _ = scipy.signal.find_peaks(wave, height=0.1, prominence=0.1)
-    end = time.process_time()
-    assert found.tolist() == expected.tolist() and len(found) > 20_000
-    assert between - start < 50 * (end - between)
+    assert found.tolist() == expected.tolist() and len(found) > 100_000
 
 
 def test_looking_into_a_file_loads_no_statistics() -> None:

@@ -176,7 +176,7 @@ def test_missing_file(tmp_path):
     ("end", "note"),
     [("\n", "unequal counts of numbers"), ("\r", "a sign may be lost"), ("\t", "a sign may be lost")],
 )
-def test_a_sign_that_became_a_line_end_is_said(tmp_path, rng, end, note):
+def test_a_sign_that_became_a_line_end_is_warned_of(tmp_path, rng, end, note):
     frfs = FrfSet(
         np.arange(16) * 0.5, -1 - rng.random((1, 16)) + 0j, (Dof(1, 3),), (Dof(2, 3),), "accelerance"
     )

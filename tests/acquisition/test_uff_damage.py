@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 
@@ -322,7 +320,7 @@ def test_exchanged_lines_of_a_shape_are_not_silent(tmp_path, reread, rng):
 
 
 @pytest.mark.parametrize("lines", [4, 5, 9])
-def test_a_line_broken_in_a_number_of_a_short_record_is_said(lines, tmp_path, reread):
+def test_a_line_broken_in_a_number_of_a_short_record_is_warned_of(lines, tmp_path, reread):
     values = np.full((1, 4 * lines // 2), 0.99) + 0j
     frfs = FrfSet(np.arange(2.0 * lines), values, (Dof(2, 3),), (Dof(1, 3),))
     write_uff(tmp_path / "x.uff", frfs=frfs, form="ascii", precision="double")
@@ -395,13 +393,12 @@ def chained(count: int, first: int = 0) -> bytes:
     return table(18, *lines) + table(15, *nodes)
 
 
+@pytest.mark.usefixtures("no_hang")  # each system is placed once; through all others it was minutes
 def test_chain_of_3000_coordinate_systems(reread):
-    start = time.process_time()
     content = reread(chained(3000))
     assert np.allclose(content.geometry.coordinates[-1], [3.0, 0, 0])
     content = reread(chained(3000, first=7777))
     assert any("coordinate system 7777 is not defined" in w for w in content.warnings)
-    assert time.process_time() - start < 60  # each system is placed once; through all others it was minutes
 
 
 def test_texts_of_200_000_blanks_take_no_time(tmp_path, reread, rng):

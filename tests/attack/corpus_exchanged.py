@@ -74,7 +74,7 @@ def exchanged_families() -> list[Family]:
         Case(name, {name: content}, 192, judges[name])
         for name, content in (("packed.mat", packed), ("plain.mat", plain))
     ]
-    modes = Case("modes.json", {"modes.json": _modes()}, 200, undetectable.json_document(_OPTIONAL))
+    modes = Case("modes.json", {"modes.json": _modes()}, 200, undetectable.json_document(_OPTIONAL, "modes"))
     return [
         Family("MATLAB", mats, _read_mat),
         Family("modes as JSON", [modes], lambda path: (read_modes(path), ())),

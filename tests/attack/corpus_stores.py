@@ -21,30 +21,7 @@ from modalkit.blind.trial import Truth
 from modalkit.study import read_study
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
-NOTHING: dict[str, Any] = {
-    "schema": "modalkit.diagnosis/1",
-    "significant": False,
-    "p_value": 0.5,
-    "gap": {"frequency_rms_percent": 0.1, "noise_floor_percent": 0.1},
-    "where": {
-        "channel": "none",
-        "channels": {},
-        "location": None,
-        "locations": [],
-        "points": [],
-        "zones": [],
-    },
-    "cause": {"verdict": "none", "effects": [], "sets": [], "ranking": []},
-    "shrink": {
-        "metric": "frequency",
-        "before_percent": 0.1,
-        "after_percent": 0.1,
-        "held_out": {"before_percent": None, "after_percent": None, "noise_floor_percent": 0.1},
-        "closed_percent": None,
-    },
-    "next_test": [],
-    "warnings": [],
-}
+NOTHING: dict[str, Any] = json.loads((Path(__file__).resolve().parents[1] / "no_gap.json").read_text())
 """A diagnosis that finds no gap."""
 
 STUDY = """title = "a beam"

@@ -18,7 +18,7 @@ MUTANTS = int(os.environ.get("ATTACK_MUTANTS", "2000"))
 
 
 @pytest.mark.parametrize("name", FAMILIES)
-def test_damage_is_refused_said_or_beyond_any_reader(name: str, tmp_path: Path) -> None:
+def test_damage_is_refused_warned_of_or_beyond_any_reader(name: str, tmp_path: Path) -> None:
     judge = Judge(FAMILIES[name], 20, tmp_path)
     verdicts = [judge.judge(index) for index in range(MUTANTS)]
     assert [v for v in verdicts if v.outcome in BAD] == []

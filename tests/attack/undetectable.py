@@ -276,8 +276,11 @@ def json_lines(original: bytes, mutant: bytes) -> bool:
     return all(any(_leaves(a, b, fewer=False) for a in one) for b in two)
 
 
-def json_document(optional: Collection[str]) -> Judge:
-    """Return the judge of a JSON document: other numbers and words in their places, keys missing that may be."""
+def json_document(optional: Collection[str], uncounted: str) -> Judge:
+    """Return the judge of a JSON document: other numbers and words in their places, keys missing that may be.
+
+    Of the list of the key ``uncounted``, whose entries nothing counts or numbers, entries may be missing too.
+    """
 
     def completed(one: Any, two: Any) -> Any:
         if isinstance(one, dict) and isinstance(two, dict):
@@ -292,6 +295,8 @@ def json_document(optional: Collection[str]) -> Judge:
             one, two = (json.loads(c) for c in (original, mutant))
         except (ValueError, RecursionError):
             return False
+        if isinstance(one, dict) and isinstance(two, dict) and isinstance(two.get(uncounted), list):
+            one = {**one, uncounted: one[uncounted][: len(two[uncounted])]}
         return _leaves(one, completed(one, two), fewer=False)
 
     return judge

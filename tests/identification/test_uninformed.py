@@ -53,7 +53,7 @@ def test_what_is_found_beyond_the_force_or_the_filter_is_named(case: Case) -> No
     ("case", "frequency", "word"),
     [(SMOOTH, 990.5, "folded back"), (LONG, 701.0, "coherence"), (SHARP, 406.6, "coherence")],
 )
-def test_why_a_mode_is_doubted_is_said(case: Case, frequency: float, word: str) -> None:
+def test_the_warning_names_why_a_mode_is_doubted(case: Case, frequency: float, word: str) -> None:
     beyond, plan, band = case
     frfs = hit(beyond, **plan)
     warnings = uninformed_modes(frfs.band(*band) if band else frfs, np.array([frequency]))

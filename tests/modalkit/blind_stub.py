@@ -12,36 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-NONE: dict[str, Any] = {
-    "schema": "modalkit.diagnosis/1",
-    "significant": False,
-    "p_value": 0.5,
-    "gap": {"frequency_rms_percent": 0.1, "noise_floor_percent": 0.1, "modes": [], "frac": []},
-    "where": {
-        "channel": "none",
-        "channels": {},
-        "location": None,
-        "locations": [],
-        "points": [],
-        "zones": [],
-    },
-    "cause": {"verdict": "none", "effects": [], "sets": [], "ranking": []},
-    "shrink": {
-        "metric": "frequency",
-        "before_percent": 0.1,
-        "after_percent": 0.1,
-        "held_out": {
-            "before_percent": None,
-            "after_percent": None,
-            "runner_up_percent": None,
-            "nuisance_only_percent": None,
-            "noise_floor_percent": 0.1,
-        },
-        "closed_percent": None,
-    },
-    "next_test": [],
-    "warnings": [],
-}
+NONE: dict[str, Any] = json.loads((Path(__file__).resolve().parents[1] / "no_gap.json").read_text())
 
 
 def command(*words: object) -> list[str]:

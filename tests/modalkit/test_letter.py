@@ -87,7 +87,7 @@ def test_a_sensor_is_named_in_the_sentence_on_the_cause() -> None:
     assert "every FRF" not in said
 
 
-def test_where_most_modes_have_no_partner_that_is_what_is_said() -> None:
+def test_the_summary_states_that_most_modes_have_no_partner() -> None:
     said = lines(replace(UNKNOWN, comparable=False))["Cause"]
     assert "most measured modes have no partner" in said
     assert "nothing in the library" not in said

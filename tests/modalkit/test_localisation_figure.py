@@ -58,7 +58,7 @@ def test_a_measurement_is_not_in_the_structure() -> None:
 
 
 @pytest.mark.parametrize("channel", ["measurement", "mass"])
-def test_a_pair_in_measurement_and_structure_is_said_to_be_in_both(channel: str) -> None:
+def test_the_title_places_a_pair_in_measurement_and_structure(channel: str) -> None:
     plain = diagnosis_with("beam", "named")
     pair = replace(plain.ranking[0], effects=("polarity", "lumped_mass"))
     both = replace(

@@ -105,7 +105,7 @@ def test_a_mode_of_another_shape_between_true_ones_has_no_partner() -> None:
     assert any("has no partner in the model (best: MAC 0." in w for w in paired.warnings)
 
 
-def test_frequencies_that_follow_the_level_are_said_to() -> None:
+def test_frequencies_that_follow_the_level_are_warned_of() -> None:
     soft = identified(3e-4, 0.5, 1)
     said = [w for w in soft.warnings if "follow the force of the hits" in w]
     assert len(said) == 1

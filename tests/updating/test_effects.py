@@ -222,11 +222,17 @@ def test_at_its_harmless_end_an_effect_hardly_shows(name: str, place: str) -> No
     assert found == pytest.approx(predictor.predict(count=4).frequency, rel=3e-3)
 
 
-@every
-@pytest.mark.parametrize("place", ["beam", "plate"])
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        (name, place)
+        for name in LIBRARY
+        if name in RISES
+        for place in ("beam", "plate")
+        if admits(name, place)
+    ],
+)
 def test_frequencies_move_the_way_they_must(name: str, place: str) -> None:
-    if name not in RISES or not admits(name, place):
-        pytest.skip("needs nothing of the kind, or a sign is not its business")
     effect, predictor = LIBRARY[name], LOOK[place]
     size = SIZE.get(name) or effect.parameters(predictor)[0].name
     low, high = (

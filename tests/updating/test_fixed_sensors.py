@@ -48,7 +48,7 @@ def test_the_forms_of_an_effect_can_be_stated_as_they_are_reported() -> None:
             assert (state.point_gains, state.gain) == (again.point_gains, again.gain)
 
 
-def test_what_is_wrong_is_said() -> None:
+def test_the_error_names_what_is_wrong() -> None:
     look = looking()
     with pytest.raises(StudyError, match=r"no sensor that stayed; the test has 1\+Z, 5\+Z"):
         accepted_state(look, "polarity", {"channel": "3+Z"})

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import io
 import re
-import time
 import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
@@ -394,14 +393,14 @@ def test_what_would_reach_a_parser_unchecked_is_refused(
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.usefixtures("no_hang")
 def test_a_number_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
     (tmp_path / "k.sti").write_text("1" * 160_000 + "\x1a" + "1" * 40_000)
-    begin = time.process_time()
     with pytest.raises(StudyError, match="is no number"):
         read_matrix(tmp_path / "k.sti")
-    assert time.process_time() - begin < 1.0
 
 
+@pytest.mark.usefixtures("no_hang")
 def test_a_shape_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
     np.save(tmp_path / "k.npy", K.toarray())
     whole = (tmp_path / "k.npy").read_bytes()
@@ -410,10 +409,8 @@ def test_a_shape_of_very_many_digits_is_refused_at_once(tmp_path: Path) -> None:
     (tmp_path / "k.npy").write_bytes(
         whole[:8] + len(longer).to_bytes(2, "little") + longer + whole[10 + len(head) :]
     )
-    begin = time.process_time()
     with pytest.raises(StudyError, match="header of an array"):
         read_matrix(tmp_path / "k.npy")
-    assert time.process_time() - begin < 1.0
 
 
 def test_an_archive_that_claims_more_bytes_than_it_has_takes_no_memory_for_them(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ def test_without_a_degree_of_freedom_nothing_is_tested() -> None:
     assert "NOTHING IS TESTED" in result.report() and "nan" not in result.report()
 
 
-def test_the_mirror_image_of_a_place_is_said() -> None:
+def test_the_mirror_image_of_a_place_is_warned_of() -> None:
     """Two frequencies put the body at a wrong place, and its mirror image would do as well."""
     result = of_body([0, 1])
     place = next(p.value for p in result.parameters if p.name == "lumped_mass.x")
@@ -35,7 +35,7 @@ def test_the_mirror_image_of_a_place_is_said() -> None:
     assert any(f"mirror image at x = {FREE.length - place:.4g} m" in w for w in result.warnings)
 
 
-def test_a_pair_of_poor_mac_is_said() -> None:
+def test_a_pair_of_poor_mac_is_warned_of() -> None:
     test = two_sensors(upside_down=None)
     constants = test.constants.copy()
     constants[test.hit == 2, 1] *= -1
