@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import gzip
 import io
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -141,7 +142,7 @@ def matrix_families() -> list[Family]:
             name,
             job,
             80,
-            undetectable.text(free=_comment(name), rows=True, ends=True),
+            _without_unused(undetectable.text(free=_comment(name), rows=True, ends=True)),
             plainly=undetectable.without_exponents,
         )
         for name in job
@@ -157,6 +158,18 @@ def matrix_families() -> list[Family]:
         _matrix_family("numpy matrices", _archives(), undetectable.archive, 200),
         Family("CalculiX", calculix, read_job),
     ]
+
+
+_SET = re.compile(rb"^\*NSET,.*NSET=([^,\n]+).*$", re.MULTILINE)
+
+
+def _without_unused(judge: undetectable.Judge) -> undetectable.Judge:
+    """Return a judge of decks to whom the name of a set is free where nothing else in the deck has it."""
+
+    def unnamed(found: re.Match[bytes]) -> bytes:
+        return b"" if found.string.count(found[1]) == 1 else found[0]
+
+    return lambda original, mutant: judge(original, _SET.sub(unnamed, mutant))
 
 
 def _comment(name: str) -> Callable[[int, bytes], bool]:
