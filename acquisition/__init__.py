@@ -5,27 +5,21 @@ from typing import TYPE_CHECKING
 from acquisition.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from acquisition.bootstrap import bootstrap_frfs
     from acquisition.columns import Layout, layout_from, read_columns, read_frf_columns, read_layout
     from acquisition.dof import Dof
     from acquisition.errors import EstimationError, InputError, ModalkitError, StudyError
-    from acquisition.estimators import estimate_frfs, random_error
-    from acquisition.frf import FORMS, FrfSet
+    from acquisition.frfs.bootstrap import bootstrap_frfs
+    from acquisition.frfs.estimators import estimate_frfs, random_error
+    from acquisition.frfs.frf import FORMS, FrfSet
+    from acquisition.frfs.reciprocity import reciprocity
+    from acquisition.frfs.scatter import HitGroup, HitScatter, variance_of_groups
+    from acquisition.frfs.sensor_mass import remove_sensor_mass
+    from acquisition.frfs.spectra import ESTIMATORS, Estimator
     from acquisition.geometry import Geometry
-    from acquisition.hammer import HammerTest, Hits
-    from acquisition.mat.read import read_mat
-    from acquisition.modal_data import ModalData
-    from acquisition.modal_files import read_modes
-    from acquisition.quality import judge_hits
-    from acquisition.readers import installed_readers, read_test, written_as_uff
-    from acquisition.reciprocity import reciprocity
-    from acquisition.scatter import HitGroup, HitScatter, variance_of_groups
-    from acquisition.sensor_mass import remove_sensor_mass
-    from acquisition.spectra import ESTIMATORS, Estimator
-    from acquisition.splitting import looks_long, propose_trigger, split_hits
-    from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
-    from acquisition.uff import DatasetInfo, UffContent, read_functions, read_uff, write_uff
-    from acquisition.verdicts import (
+    from acquisition.hits.hammer import HammerTest, Hits
+    from acquisition.hits.quality import judge_hits
+    from acquisition.hits.splitting import looks_long, propose_trigger, split_hits
+    from acquisition.hits.verdicts import (
         ForceRange,
         HitVerdict,
         decide,
@@ -34,7 +28,19 @@ if TYPE_CHECKING:
         rejected_points,
         verdicts_of,
     )
-    from acquisition.windows import Windows, apply_windows, force_noise_decay, state_window, unstated_window
+    from acquisition.hits.windows import (
+        Windows,
+        apply_windows,
+        force_noise_decay,
+        state_window,
+        unstated_window,
+    )
+    from acquisition.mat.read import read_mat
+    from acquisition.modal_data import ModalData
+    from acquisition.modes.read import read_modes
+    from acquisition.readers import installed_readers, read_test, written_as_uff
+    from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
+    from acquisition.uff import DatasetInfo, UffContent, read_functions, read_uff, write_uff
 
 __all__ = [
     "ESTIMATORS",
@@ -98,27 +104,27 @@ __all__ = [
 load_on_demand(
     __name__,
     {
-        ".bootstrap": "bootstrap_frfs",
+        ".frfs.bootstrap": "bootstrap_frfs",
         ".columns": "Layout layout_from read_columns read_frf_columns read_layout",
         ".dof": "Dof",
         ".errors": "EstimationError InputError ModalkitError StudyError",
-        ".estimators": "estimate_frfs random_error",
-        ".frf": "FORMS FrfSet",
+        ".frfs.estimators": "estimate_frfs random_error",
+        ".frfs.frf": "FORMS FrfSet",
         ".geometry": "Geometry",
-        ".hammer": "HammerTest Hits",
+        ".hits.hammer": "HammerTest Hits",
         ".mat.read": "read_mat",
         ".modal_data": "ModalData",
-        ".modal_files": "read_modes",
-        ".quality": "judge_hits",
+        ".modes.read": "read_modes",
+        ".hits.quality": "judge_hits",
         ".readers": "installed_readers read_test written_as_uff",
-        ".reciprocity": "reciprocity",
-        ".scatter": "HitGroup HitScatter variance_of_groups",
-        ".sensor_mass": "remove_sensor_mass",
-        ".spectra": "ESTIMATORS Estimator",
-        ".splitting": "looks_long propose_trigger split_hits",
+        ".frfs.reciprocity": "reciprocity",
+        ".frfs.scatter": "HitGroup HitScatter variance_of_groups",
+        ".frfs.sensor_mass": "remove_sensor_mass",
+        ".frfs.spectra": "ESTIMATORS Estimator",
+        ".hits.splitting": "looks_long propose_trigger split_hits",
         ".synthetic": "HammerPlan ModalSystem hammer_test modal_system",
         ".uff": "DatasetInfo UffContent read_functions read_uff write_uff",
-        ".verdicts": "ForceRange HitVerdict decide force_range hits_table rejected_points verdicts_of",
-        ".windows": "Windows apply_windows force_noise_decay state_window unstated_window",
+        ".hits.verdicts": "ForceRange HitVerdict decide force_range hits_table rejected_points verdicts_of",
+        ".hits.windows": "Windows apply_windows force_noise_decay state_window unstated_window",
     },
 )

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from acquisition.columns import Layout, read_columns, read_frf_columns, read_layout
 from acquisition.errors import InputError
-from acquisition.frf import FrfSet
-from acquisition.hammer import HammerTest
+from acquisition.frfs.frf import FrfSet
+from acquisition.hits.hammer import HammerTest
 from acquisition.mat.read import read_mat
 from acquisition.modal_data import ModalData
 from acquisition.uff import UffContent, read_uff

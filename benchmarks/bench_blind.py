@@ -27,7 +27,7 @@ from typing import Any
 from modalkit.blind import Plan, diagnosers, draw_trial, run_blind, write_trial
 from modalkit.blind.answer import read_answer
 from modalkit.blind.shrunk import true_shrinkage
-from modalkit.serving.cluster import Ended, connected
+from modalkit.workers.cluster import Ended, connected
 
 CORES = (2, 16, 64, 256, 1024, 4096)
 

@@ -41,9 +41,9 @@ from updating import (
     measured_from_identified,
 )
 from updating.frf_update import FrfUpdate, update_frfs
-from updating.measured_frfs import MeasuredFrfs, measured_frfs
 from updating.models.response import answers
 from updating.simulation import modal_system, simulated
+from updating.test_data.measured_frfs import MeasuredFrfs, measured_frfs
 
 TOLERANCE = 0.3
 REMOUNTING = 5e-4

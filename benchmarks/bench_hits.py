@@ -15,7 +15,7 @@ from scipy.stats import binomtest
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "acquisition"))
 import hit_cases as cases
 
-from acquisition.quality import judge_hits
+from acquisition.hits.quality import judge_hits
 
 FORCES = {
     "clean": ({}, ""),

@@ -15,7 +15,7 @@ from sdypy import EMA
 
 from acquisition import FrfSet
 from identification import fit_residues, lscf, stabilise
-from identification.selection import candidates
+from identification.poles.selection import candidates
 
 LINES = 1001
 

@@ -26,7 +26,7 @@ from scipy.sparse import linalg as sparse_linalg
 from acquisition import ModalData, read_modes
 from updating import Axes, Case, Material, Region, Spec, Tolerances, build_structure, measured_from_modes
 from updating.update import bootstrap, update
-from updating.update.affine import Affine
+from updating.update.parameters.affine import Affine
 
 STEEL = Material(210e9, 7850.0, 0.3)
 ALONG, ACROSS = 5, 3

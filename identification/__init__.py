@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 from acquisition.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from identification.cmif import cmif
-    from identification.health import frf_health, mode_coherence
+    from identification.band.health import frf_health, mode_coherence
+    from identification.band.informed import at_cut_edge, informed_band
+    from identification.fit.equations.residues import Residues, fit_residues
     from identification.identify import identify
-    from identification.informed import at_cut_edge, informed_band
-    from identification.levels import LevelDependence, level_dependence, why_no_level_dependence
+    from identification.levels.slopes import LevelDependence, level_dependence, why_no_level_dependence
     from identification.mac import (
         auto_mac,
         comac,
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from identification.model import ModalModel
     from identification.pairing import Correlation, Pair, Subspace, correlate, pair
     from identification.poles import ESTIMATORS, PoleEstimator, PoleSets, lsce, lscf
-    from identification.residues import Residues, fit_residues
+    from identification.poles.cmif import cmif
+    from identification.poles.stabilisation import StabilisationChart, stabilise
     from identification.scaling import Shapes, modal_constants, mode_shapes, real_modes
     from identification.sdypy_bridge import beside, from_sdypy, second_opinion, to_sdypy
-    from identification.stabilisation import StabilisationChart, stabilise
 
 __all__ = [
     "ESTIMATORS",
@@ -88,11 +88,11 @@ __all__ = [
 load_on_demand(
     __name__,
     {
-        ".cmif": "cmif",
-        ".health": "frf_health mode_coherence",
+        ".poles.cmif": "cmif",
+        ".band.health": "frf_health mode_coherence",
         ".identify": "identify",
-        ".informed": "at_cut_edge informed_band",
-        ".levels": "LevelDependence level_dependence why_no_level_dependence",
+        ".band.informed": "at_cut_edge informed_band",
+        ".levels.slopes": "LevelDependence level_dependence why_no_level_dependence",
         ".mac": (
             "auto_mac comac common_dofs coordinate_table ecomac fdac frac frac_table mac mac_table macx modes_table "
             "mpc msf subspace_mac"
@@ -100,9 +100,9 @@ load_on_demand(
         ".model": "ModalModel",
         ".pairing": "Correlation Pair Subspace correlate pair",
         ".poles": "ESTIMATORS PoleEstimator PoleSets lsce lscf",
-        ".residues": "Residues fit_residues",
+        ".fit.equations.residues": "Residues fit_residues",
         ".scaling": "Shapes modal_constants mode_shapes real_modes",
         ".sdypy_bridge": "beside from_sdypy second_opinion to_sdypy",
-        ".stabilisation": "StabilisationChart stabilise",
+        ".poles.stabilisation": "StabilisationChart stabilise",
     },
 )

@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.dof import Dof
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 
 
 @dataclass(frozen=True, eq=False)

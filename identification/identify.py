@@ -11,24 +11,24 @@ from threadpoolctl import threadpool_limits
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError, InputError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
 from acquisition.warned import Consequential
-from identification import covariance, doubts
 from identification.arrangement import arrange, signs, unsigned
-from identification.disagreement import Disagreement
-from identification.fitting import Fitted, fit_modes
-from identification.hit_scatter import NoiseFactors
+from identification.band.uninformed import uninformed_modes
+from identification.fit.equations.pruning import inside, located
+from identification.fit.equations.residues import Residues
+from identification.fit.fit import Fitted, fit_modes
+from identification.fit.noise.disagreement import Disagreement
+from identification.fit.poly_reference import sorted_frfs
+from identification.fit.search.manual_selection import nearest_modes
 from identification.model import ModalModel
-from identification.overrule import nearest_modes
 from identification.poles import ESTIMATORS
-from identification.poly_reference import sorted_frfs
-from identification.pruning import inside, located
-from identification.residues import Residues
+from identification.poles.selection import candidates
+from identification.poles.stabilisation import StabilisationChart, stabilise
 from identification.scaling import Shapes, mode_shapes
-from identification.selection import candidates
-from identification.stabilisation import StabilisationChart, stabilise
-from identification.uninformed import uninformed_modes
+from identification.uncertainty import covariance, doubts
+from identification.uncertainty.hit_scatter import NoiseFactors
 
 _ORDER = 60
 _LEVELS = 25

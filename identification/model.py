@@ -10,12 +10,12 @@ import pandas as pd
 from acquisition.arrays import ComplexArray, FloatArray, frozen_array
 from acquisition.display import Displayed
 from acquisition.dof import Dof
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
-from identification import basis
 from identification.arrangement import signs
-from identification.residues import Residues, synthesise
-from identification.stabilisation import StabilisationChart
+from identification.fit.equations import basis
+from identification.fit.equations.residues import Residues, synthesise
+from identification.poles.stabilisation import StabilisationChart
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ import pandas as pd
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from acquisition.geometry import Geometry
 from acquisition.modal_data import ModalData
 from identification.arrangement import signs

@@ -52,19 +52,19 @@ if TYPE_CHECKING:
     )
     from identification import ModalModel, cmif, identify
     from modalkit import figures
-    from modalkit.comparing import compare, mac, modes_of
-    from modalkit.diagnosing import diagnose_studies
-    from modalkit.existing import Modes
     from modalkit.figures import draw
-    from modalkit.fitting import update_studies
-    from modalkit.handling import Handling
-    from modalkit.process import Session, open_study
-    from modalkit.reading import Processed, read
-    from modalkit.saving import write_modes
-    from modalkit.simulate import simulate_test
-    from modalkit.study import Study, read_study
+    from modalkit.output.modes import write_modes
+    from modalkit.simulation.simulate import simulate_test
+    from modalkit.study.read import Study, read_study
+    from modalkit.workflow.case import Session, open_study
+    from modalkit.workflow.comparison import compare, mac, modes_of
+    from modalkit.workflow.diagnosis import diagnose_studies
+    from modalkit.workflow.existing import Modes
+    from modalkit.workflow.identification import Processed, read
+    from modalkit.workflow.processing_options import Handling
+    from modalkit.workflow.update import update_studies
     from updating import Case, Diagnosis, diagnose, register
-    from updating.correlation import correlate
+    from updating.correlation.correlate import correlate
 
 __version__ = "0.1.0"
 
@@ -123,18 +123,18 @@ load_on_demand(
         ),
         "identification": "ModalModel cmif identify",
         "modalkit": "figures",
-        ".comparing": "compare mac modes_of",
-        ".diagnosing": "diagnose_studies",
-        ".existing": "Modes",
+        ".workflow.comparison": "compare mac modes_of",
+        ".workflow.diagnosis": "diagnose_studies",
+        ".workflow.existing": "Modes",
         ".figures": "draw",
-        ".fitting": "update_studies",
-        ".handling": "Handling",
-        ".process": "Session open_study",
-        ".reading": "Processed read",
-        ".saving": "write_modes",
-        ".simulate": "simulate_test",
-        ".study": "Study read_study",
+        ".workflow.update": "update_studies",
+        ".workflow.processing_options": "Handling",
+        ".workflow.case": "Session open_study",
+        ".workflow.identification": "Processed read",
+        ".output.modes": "write_modes",
+        ".simulation.simulate": "simulate_test",
+        ".study.read": "Study read_study",
         "updating": "Case Diagnosis diagnose register",
-        "updating.correlation": "correlate",
+        "updating.correlation.correlate": "correlate",
     },
 )

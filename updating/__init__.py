@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 from acquisition.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from updating.axes import Axes
     from updating.case import Case
+    from updating.diagnosis.answer.result import Diagnosis
     from updating.diagnosis.diagnose import diagnose, diagnose_together
-    from updating.diagnosis.result import Diagnosis
     from updating.effects import LIBRARY, Effect, Parameter, register
     from updating.environment import Environment
-    from updating.measured import Measured, measured_from_identified, measured_from_modes
     from updating.models import Damping, Material, PointMass, Region, Spec, Structure, build_structure
-    from updating.prediction import Prediction, Predictor
+    from updating.prediction.predict import Prediction, Predictor
+    from updating.test_data.axes import Axes
+    from updating.test_data.measured import Measured, measured_from_identified, measured_from_modes
     from updating.tolerances import Tolerances
 
 __all__ = [
@@ -45,15 +45,15 @@ __all__ = [
 load_on_demand(
     __name__,
     {
-        ".axes": "Axes",
+        ".test_data.axes": "Axes",
         ".case": "Case",
         ".diagnosis.diagnose": "diagnose diagnose_together",
-        ".diagnosis.result": "Diagnosis",
+        ".diagnosis.answer.result": "Diagnosis",
         ".effects": "LIBRARY Effect Parameter register",
         ".environment": "Environment",
-        ".measured": "Measured measured_from_identified measured_from_modes",
+        ".test_data.measured": "Measured measured_from_identified measured_from_modes",
         ".models": "Damping Material PointMass Region Spec Structure build_structure",
-        ".prediction": "Prediction Predictor",
+        ".prediction.predict": "Prediction Predictor",
         ".tolerances": "Tolerances",
     },
 )

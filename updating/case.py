@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 from acquisition.display import Displayed
 from updating.environment import Environment
-from updating.measured import Measured
 from updating.models import Spec
+from updating.test_data.measured import Measured
 from updating.tolerances import Tolerances
 
 

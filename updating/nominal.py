@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from updating.case import Case
 from updating.effects import accepted_state
 from updating.models.state import State
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
 
 
 def predictor_of(case: Case) -> Predictor:

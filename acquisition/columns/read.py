@@ -17,9 +17,9 @@ from acquisition.columns.units import QUANTITIES, factor_to_si
 from acquisition.display import named_files
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from acquisition.frf import Form
+from acquisition.frfs.frf import Form
 from acquisition.geometry import Geometry
-from acquisition.hammer import HammerTest, Hits
+from acquisition.hits.hammer import HammerTest, Hits
 
 UNEVEN = 0.5  # of the usual step: times that miss their place by more are uneven
 SAME_RATE = 1e-4  # relative difference of rates that are the same
@@ -43,7 +43,7 @@ def read_columns(
     """Read column text files as one hammer test.
 
     Every file, and every block or segment in it, is one hit (or one long record: see
-    `acquisition.splitting.split_hits`); hits at the same point are put together.
+    `acquisition.hits.splitting.split_hits`); hits at the same point are put together.
 
     Parameters
     ----------

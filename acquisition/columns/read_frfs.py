@@ -17,7 +17,7 @@ from acquisition.columns.units import QUANTITIES
 from acquisition.display import named_files
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 
 SAME_AXIS = 1e-6  # of the highest frequency
 

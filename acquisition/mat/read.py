@@ -13,12 +13,12 @@ from acquisition.columns.layout import Layout, dof_of, read_layout
 from acquisition.columns.units import QUANTITIES, factor_to_si
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from acquisition.geometry import Geometry
 from acquisition.mat.file import variables
 from acquisition.mat.layout import AXES, MatLayout
-from acquisition.modal_checks import check_frequencies, checked
 from acquisition.modal_data import ModalData
+from acquisition.modes.checks import check_frequencies, checked
 
 
 def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalData:

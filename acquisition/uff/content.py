@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import pandas as pd
 
 from acquisition.display import Displayed
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from acquisition.geometry import Geometry
-from acquisition.hammer import HammerTest
+from acquisition.hits.hammer import HammerTest
 from acquisition.modal_data import ModalData
 
 

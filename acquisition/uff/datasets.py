@@ -9,18 +9,18 @@ from typing import IO
 
 from acquisition.arrays import IntArray
 from acquisition.errors import InputError
-from acquisition.uff.blocks import Block, header_end, split_blocks
 from acquisition.uff.content import DatasetInfo
-from acquisition.uff.header58 import parse_header
-from acquisition.uff.lines import read_lines
-from acquisition.uff.measurements import FUNCTION_TYPES, Measurement, described, measure
-from acquisition.uff.mode_sets import ModeSet, SigmaSet, read_mode, read_sigma, same_shape
-from acquisition.uff.nodes import NodeSet
-from acquisition.uff.source import Source
-from acquisition.uff.systems import System, read_systems
-from acquisition.uff.text_sets import read_nodes, read_units
-from acquisition.uff.units import Units
-from acquisition.uff.values58 import locate
+from acquisition.uff.functions.header58 import parse_header
+from acquisition.uff.functions.measurements import FUNCTION_TYPES, Measurement, described, measure
+from acquisition.uff.functions.units import Units
+from acquisition.uff.functions.values58 import locate
+from acquisition.uff.geometry.lines import read_lines
+from acquisition.uff.geometry.nodes import NodeSet
+from acquisition.uff.geometry.systems import System, read_systems
+from acquisition.uff.geometry.text_sets import read_nodes, read_units
+from acquisition.uff.modes.data_sets import ModeSet, SigmaSet, read_mode, read_sigma, same_shape
+from acquisition.uff.text.blocks import Block, header_end, split_blocks
+from acquisition.uff.text.source import Source
 
 KINDS = {
     15: "nodes",

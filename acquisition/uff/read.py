@@ -10,16 +10,16 @@ from pathlib import Path
 
 from acquisition.arrays import AnyArray
 from acquisition.errors import InputError
-from acquisition.uff.blocks import split_blocks
 from acquisition.uff.content import DatasetInfo, UffContent
 from acquisition.uff.datasets import Finds, read_file, without_copies
-from acquisition.uff.hits import assemble_tests
-from acquisition.uff.measurements import Measurement
-from acquisition.uff.modes_in import describe, join_modes, solve_modes
-from acquisition.uff.nodes import merge_nodes, turned
-from acquisition.uff.responses import assemble_frfs
-from acquisition.uff.source import opened
-from acquisition.uff.values58 import Function58, read_function
+from acquisition.uff.functions.hits import assemble_tests
+from acquisition.uff.functions.measurements import Measurement
+from acquisition.uff.functions.responses import assemble_frfs
+from acquisition.uff.functions.values58 import Function58, read_function
+from acquisition.uff.geometry.nodes import merge_nodes, turned
+from acquisition.uff.modes.read import describe, join_modes, solve_modes
+from acquisition.uff.text.blocks import split_blocks
+from acquisition.uff.text.source import opened
 
 _SPOOL = 1 << 26  # bytes of numbers from text kept in memory before they go to a temporary file
 _FIRST_PASS = 0.6  # of the progress

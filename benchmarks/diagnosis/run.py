@@ -13,8 +13,8 @@ from acquisition.errors import ModalkitError
 from diagnosis.hidden import CAUSES
 from diagnosis.shrunk import overheard, truly_closed
 from diagnosis.trial import Trial, draw_trial
+from updating.diagnosis.answer.result import Diagnosis
 from updating.diagnosis.diagnose import diagnose
-from updating.diagnosis.result import Diagnosis
 from updating.effects import LIBRARY, Effect
 
 PLACED = ("lumped_mass", "local_stiffness", "damping_patch", "position_error")

@@ -13,9 +13,9 @@ import numpy as np
 from diagnosis.mesh import Floats
 from updating import Case, Measured
 from updating.diagnosis import diagnose as engine
-from updating.diagnosis.candidate import Candidate
-from updating.diagnosis.comparison import CHANNELS
-from updating.diagnosis.search import search
+from updating.diagnosis.search.search import search
+from updating.likelihood.comparison import CHANNELS
+from updating.problem.candidate import Candidate
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from acquisition.arrays import ComplexArray
 from acquisition.display import Displayed
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
 from identification.mac.coordinates import comac, ecomac
 from identification.mac.frfs import frac

@@ -8,9 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from acquisition import errors, frf
+from acquisition import errors
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.display import Displayed
+from acquisition.frfs import frf
 
 
 @dataclass(frozen=True, eq=False)

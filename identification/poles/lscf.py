@@ -9,7 +9,7 @@ from scipy import fft
 
 from acquisition.arrays import ComplexArray
 from acquisition.errors import EstimationError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from identification.arrangement import matrix_form
 from identification.poles import nested
 from identification.poles.base import Baseband, PoleSets, row_scale

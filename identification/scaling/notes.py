@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from acquisition.warned import Consequential
 from identification.arrangement import Arrangement
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from identification.arrangement import Arrangement, arrange
 from identification.scaling import notes
 from identification.scaling.factors import Factors, rank_one, symmetric

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from acquisition.errors import InputError, ModalkitError
-from modalkit.study import read_study
+from modalkit.study.read import read_study
 
 
 @dataclass(frozen=True)

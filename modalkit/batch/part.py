@@ -10,12 +10,12 @@ import numpy as np
 
 from acquisition import ModalData
 from acquisition.errors import ModalkitError
-from modalkit.diagnosing import diagnose_studies, warnings_of
-from modalkit.fitting import update_studies
-from modalkit.json_update import to_json
-from modalkit.process import Session, modes_in_band, open_study, process
-from modalkit.records import diagnosis_record
-from modalkit.study import Study, read_study
+from modalkit.output.records import diagnosis_record
+from modalkit.output.update import to_json
+from modalkit.study.read import Study, read_study
+from modalkit.workflow.case import Session, modes_in_band, open_study, process
+from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
+from modalkit.workflow.update import update_studies
 from updating import Measured
 
 SCHEMA = "modalkit.part/1"

@@ -16,8 +16,8 @@ from acquisition.display import Displayed
 from acquisition.errors import EstimationError, InputError
 from modalkit import __version__
 from modalkit.batch.find import Found
-from modalkit.serving.journal import Journal, is_store, read_journal
-from modalkit.serving.pool import RunCommand, in_flight, warm_pool
+from modalkit.workers.journal import Journal, is_store, read_journal
+from modalkit.workers.pool import RunCommand, in_flight, warm_pool
 
 SCHEMA = "modalkit.batchrun/1"
 _OUT = "part.json"
@@ -106,7 +106,7 @@ def run_batch(
     if workers < 1:
         raise InputError(f"--workers {workers}: at least 1 is needed")
     if scheduler is not None:
-        from modalkit.serving.cluster import check_scheduler
+        from modalkit.workers.cluster import check_scheduler
 
         check_scheduler(scheduler)
     parts: dict[str, Part] = {}
@@ -182,7 +182,7 @@ def _running(studies: Sequence[Found], workers: int, scheduler: str | None) -> G
     if not studies:
         return
     if scheduler is not None:
-        from modalkit.serving.cluster import Ended, connected
+        from modalkit.workers.cluster import Ended, connected
 
         with connected(scheduler) as cluster:
             tasks = [(found.name, str(found.path.resolve()), found.digest) for found in studies]
@@ -205,7 +205,7 @@ def run_part(found: Found, run: RunCommand) -> Part:
     found : Found
         The study.
     run : callable
-        As :func:`modalkit.serving.pool.warm_pool` yields it.
+        As :func:`modalkit.workers.pool.warm_pool` yields it.
     """
     with tempfile.TemporaryDirectory(prefix="batch-", ignore_cleanup_errors=True) as folder:
         out = Path(folder) / _OUT
@@ -222,6 +222,6 @@ def run_part(found: Found, run: RunCommand) -> Part:
 
 def _task(name: str, study: str, path: str, digest: str) -> dict[str, Any]:
     """Run a study on a worker machine; runs there."""
-    from modalkit.serving.cluster import keeper
+    from modalkit.workers.cluster import keeper
 
     return asdict(run_part(Found(study, Path(path), digest), keeper(name).run))

@@ -11,7 +11,7 @@ import pandas as pd
 
 from acquisition.errors import InputError
 from modalkit.batch.tables import COLUMNS
-from modalkit.outputs import Kind, check_output, table_of
+from modalkit.output.destinations import Kind, check_output, table_of
 
 FORMATS = (".csv", ".parquet")
 

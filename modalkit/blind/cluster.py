@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from acquisition.errors import EstimationError
 from modalkit.blind.diagnoser import Diagnose, diagnose_by
 from modalkit.blind.outcome import Outcome
-from modalkit.blind.plan import Plan
 from modalkit.blind.run import Announce, run_trial
-from modalkit.serving.cluster import Ended, connected, keeper, tell
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.workers.cluster import Ended, connected, keeper, tell
 
 
 def cluster_outcomes(

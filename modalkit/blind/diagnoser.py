@@ -10,8 +10,8 @@ from types import TracebackType
 from typing import Any, Self
 
 from acquisition.errors import EstimationError
-from modalkit.serving import ATTEMPTS, COMMAND, TIMEOUT, WarmProcess
-from modalkit.serving.pool import RunCommand, warm_pool
+from modalkit.workers import ATTEMPTS, COMMAND, TIMEOUT, WarmProcess
+from modalkit.workers.pool import RunCommand, warm_pool
 
 Diagnose = Callable[[Path, tuple[str, ...]], Mapping[str, Any]]
 """Study file, and effects to leave out of the library, to the diagnosis as JSON."""
@@ -25,7 +25,7 @@ class Diagnoser:
     Parameters
     ----------
     command : sequence of str
-        What is started; see :class:`modalkit.serving.WarmProcess`.
+        What is started; see :class:`modalkit.workers.WarmProcess`.
     timeout : float
         Longest time a diagnosis may take [s].
     attempts : int
@@ -94,7 +94,7 @@ def diagnose_by(run: RunCommand) -> Diagnose:
     Parameters
     ----------
     run : callable
-        As :func:`modalkit.serving.pool.warm_pool` yields it.
+        As :func:`modalkit.workers.pool.warm_pool` yields it.
     """
 
     def diagnose(study: Path, without: tuple[str, ...] = ()) -> dict[str, Any]:

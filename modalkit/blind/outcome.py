@@ -11,7 +11,7 @@ from modalkit.blind.answer import Answer, read_answer
 from modalkit.blind.seal import Seal
 from modalkit.blind.shrunk import Shrinkage
 from modalkit.blind.trial import Truth
-from modalkit.write import plain
+from modalkit.output.whole import plain
 
 
 @dataclass(frozen=True, eq=False)

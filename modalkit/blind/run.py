@@ -14,12 +14,12 @@ from acquisition.errors import ModalkitError, StudyError
 from modalkit.blind.answer import read_answer
 from modalkit.blind.diagnoser import Diagnose, diagnosers
 from modalkit.blind.outcome import Outcome, slim
-from modalkit.blind.plan import Plan
 from modalkit.blind.seal import open_seal, seal
 from modalkit.blind.shrunk import true_shrinkage
 from modalkit.blind.store import Store
 from modalkit.blind.trial import Truth, draw_trial, write_trial
-from modalkit.serving.pool import in_flight
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.workers.pool import in_flight
 
 Announce = Callable[[int, str], None]
 """Called with a trial's number and its commitment before its diagnosis begins."""
@@ -140,7 +140,7 @@ def run_blind(
     if trials < 1 or workers < 1:
         raise StudyError(f"{trials} trials with {workers} workers; both must be at least 1")
     if scheduler is not None:
-        from modalkit.serving.cluster import check_scheduler
+        from modalkit.workers.cluster import check_scheduler
 
         check_scheduler(scheduler)
     plan = plan or Plan()

@@ -10,12 +10,12 @@ import scipy.optimize
 
 from acquisition.arrays import FloatArray
 from modalkit.blind.answer import Answer, Row
-from modalkit.blind.bodies.complex_modes import ComplexModes
-from modalkit.blind.matching import match
-from modalkit.blind.scene import Scene, nominal_scene
-from modalkit.blind.secrets import SECRETS
-from modalkit.blind.setup import Setup
 from modalkit.blind.trial import Trial
+from modalkit.simulator.bodies.complex_modes import ComplexModes
+from modalkit.simulator.hidden import SECRETS
+from modalkit.simulator.matching import match
+from modalkit.simulator.scene import Scene, nominal_scene
+from modalkit.simulator.setup import Setup
 
 _TOLERANCES = ("E", "density", "thickness", "length", "width")
 _STEP = 1e-3

@@ -15,9 +15,9 @@ from typing import Any, Self
 from acquisition.errors import InputError, ModalkitError
 from modalkit import __version__
 from modalkit.blind.outcome import Outcome
-from modalkit.blind.plan import Plan
 from modalkit.blind.seal import SALT_BYTES, open_seal
-from modalkit.serving.journal import Journal, read_journal
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.workers.journal import Journal, read_journal
 
 SCHEMA = "modalkit.blindrun/1"
 _ROUNDS = 200_000  # of the hash of the seed, so that guessing many takes long

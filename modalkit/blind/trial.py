@@ -10,22 +10,22 @@ from typing import Any, Self
 import numpy as np
 
 from acquisition.errors import StudyError
-from modalkit.blind.draw import draw_setup, lacks_shear
-from modalkit.blind.matching import log_ratios
-from modalkit.blind.plan import Plan
-from modalkit.blind.record import record
-from modalkit.blind.scene import Scene, draw_scene, nominal_scene
-from modalkit.blind.secrets import Secret, Values
-from modalkit.blind.secrets.choose import (
+from modalkit.blind.visibility import visibility
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
+from modalkit.simulator.hidden import Secret, Values
+from modalkit.simulator.hidden.choose import (
     checked,
     choose_secrets,
     choose_sort,
     draw_strength,
     right_answers,
 )
-from modalkit.blind.setup import Setup
-from modalkit.blind.study import study_text
-from modalkit.blind.visibility import visibility
+from modalkit.simulator.matching import log_ratios
+from modalkit.simulator.measurement import record
+from modalkit.simulator.scene import Scene, draw_scene, nominal_scene
+from modalkit.simulator.setup import Setup
+from modalkit.simulator.study_file import study_text
 
 _ATTEMPTS = 5000
 _EVERYTHING = Plan()

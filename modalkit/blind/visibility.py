@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from modalkit.blind.bodies.solid import Solid
-from modalkit.blind.matching import match
-from modalkit.blind.scene import Scene, nominal_scene
-from modalkit.blind.setup import Setup
+from modalkit.simulator.bodies.solid.solid import Solid
+from modalkit.simulator.matching import match
+from modalkit.simulator.scene import Scene, nominal_scene
+from modalkit.simulator.setup import Setup
 
 _FREQUENCY_SIGMA = 2e-4
 _SHAPE_SIGMA = 0.02

@@ -21,8 +21,8 @@ from modalkit.batch import (
     write_tables,
 )
 from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, show_table
-from modalkit.outputs import check_outputs, json_of, store_of
-from modalkit.write import write_json
+from modalkit.output.destinations import check_outputs, json_of, store_of
+from modalkit.output.whole import write_json
 
 PART = json_of("modalkit.part/1")
 _SHOWN = ["study", "verdict", "effects", "probability", "gap_before_percent", "gap_after_percent", "f1_hz"]

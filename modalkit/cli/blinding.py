@@ -16,8 +16,8 @@ from modalkit.blind import BlindResult, Plan, check_store, run_blind, score
 from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, show_figures
 from modalkit.cli.options import Figures
 from modalkit.cli.scores import MARKDOWN, score_figures, show_score, write_markdown
-from modalkit.outputs import check_outputs, json_of, store_of
-from modalkit.write import write_json
+from modalkit.output.destinations import check_outputs, json_of, store_of
+from modalkit.output.whole import write_json
 
 _SEED_BITS = 63
 _MOST_TRIALS = 10_000_000  # their numbers alone take 80 MB

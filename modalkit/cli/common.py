@@ -79,7 +79,7 @@ def read_by(files: Sequence[Path], *more: Path | None) -> Iterator[Path]:
     """
     yield from (path for path in (*files, *more) if path is not None)
     for path in filter(is_study, files):
-        from modalkit.study import read_study
+        from modalkit.study.read import read_study
 
         study = read_study(path)
         yield from study.inputs()

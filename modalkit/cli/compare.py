@@ -11,7 +11,6 @@ import typer
 from acquisition.display import counted
 from acquisition.errors import InputError
 from identification import Correlation as Comparison
-from modalkit import comparing
 from modalkit.cli.common import (
     check_folder,
     is_study,
@@ -23,14 +22,15 @@ from modalkit.cli.common import (
     working,
 )
 from modalkit.cli.options import Figures
-from modalkit.json_correlation import correlation_record
-from modalkit.outputs import Kind, check_outputs, json_of, text_of
-from modalkit.process import Session, open_study
-from modalkit.study import read_study
-from modalkit.write import write_json, write_text
-from updating.correlation import Correlation
-from updating.correlation import correlate as compare
-from updating.prediction import Predictor
+from modalkit.output.correlation import correlation_record
+from modalkit.output.destinations import Kind, check_outputs, json_of, text_of
+from modalkit.output.whole import write_json, write_text
+from modalkit.study.read import read_study
+from modalkit.workflow import comparison as comparing
+from modalkit.workflow.case import Session, open_study
+from updating.correlation.correlate import Correlation
+from updating.correlation.correlate import correlate as compare
+from updating.prediction.predict import Predictor
 
 
 class TableFormat(StrEnum):
@@ -134,7 +134,8 @@ def tables(
     figures: Figures = None,
 ) -> None:
     """Make the papers' tables through the whole chain, our value beside the published one."""
-    from modalkit.tables import fluid_work, render, work
+    from modalkit.papers.render import render
+    from modalkit.papers.tables import fluid_work, work
 
     check_outputs((output, _tables_as(form)))
     check_folder(figures)

@@ -10,8 +10,8 @@ import typer
 from acquisition.errors import InputError
 from modalkit.cli.common import check_folder, out, show_figures, show_table, working
 from modalkit.cli.diagnosing import diagnosis_figures, show_diagnosis
-from modalkit.process import open_study
-from modalkit.study import read_study
+from modalkit.study.read import read_study
+from modalkit.workflow.case import open_study
 from updating import diagnose as examine
 
 

@@ -21,16 +21,16 @@ from modalkit.cli.common import (
     working,
 )
 from modalkit.cli.options import Figures
-from modalkit.diagnosing import diagnose_studies, warnings_of
-from modalkit.letter import letter, separated
-from modalkit.library import effects_record, effects_table
-from modalkit.outputs import check_outputs, json_of
-from modalkit.process import Session, open_study
-from modalkit.records import diagnosis_record
-from modalkit.study import read_study
-from modalkit.write import write_json
+from modalkit.output.destinations import check_outputs, json_of
+from modalkit.output.library import effects_record, effects_table
+from modalkit.output.records import diagnosis_record
+from modalkit.output.summary import letter, separated
+from modalkit.output.whole import write_json
+from modalkit.study.read import read_study
+from modalkit.workflow.case import Session, open_study
+from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
 from updating import Diagnosis
-from updating.diagnosis.result import NextTest
+from updating.diagnosis.answer.result import NextTest
 
 
 def add_commands(app: typer.Typer) -> None:

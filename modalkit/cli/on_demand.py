@@ -38,11 +38,11 @@ class Entry:
 
 
 ENTRIES = (
-    Entry("inspect", "look", "List what is in a file, and what is wrong with it."),
-    Entry("frf", "look", "Turn hits into FRFs with coherence, and write them as UFF."),
+    Entry("inspect", "measuring", "List what is in a file, and what is wrong with it."),
+    Entry("frf", "measuring", "Turn hits into FRFs with coherence, and write them as UFF."),
     Entry(
         "identify",
-        "look",
+        "measuring",
         "Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already.",
     ),
     Entry(
@@ -57,7 +57,7 @@ ENTRIES = (
     ),
     Entry(
         "update",
-        "fitting",
+        "updating",
         "Update the parameters named in the study's update table, by eigenvalues or by FRFs.",
     ),
     Entry(

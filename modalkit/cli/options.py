@@ -9,7 +9,7 @@ from typing import Annotated, Literal, cast
 import typer
 
 from acquisition import ESTIMATORS, Estimator, InputError
-from modalkit.handling import Handling, hit_name, sensor_mass
+from modalkit.workflow.processing_options import Handling, hit_name, sensor_mass
 
 
 def quantity(unit: str) -> Callable[[object], object]:

@@ -10,16 +10,16 @@ import numpy as np
 import pandas as pd
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from modalkit.blind.planning import Advice, Forecast, Outlook, Told, forecast
-from modalkit.blind.planning.apart import CLASS, NONE, SEEN, SURE
-from modalkit.blind.planning.document import said, to_json
-from modalkit.blind.planning.effects import NOT_FORECAST
-from modalkit.blind.planning.trials import Check, check
-from modalkit.blind.planning.writing import noise_for, write_case
 from modalkit.cli.common import out, progress, show_figures, show_table, working
-from modalkit.planned import told_by
-from modalkit.study import read_study
-from modalkit.write import write_json
+from modalkit.output.whole import write_json
+from modalkit.planning import Advice, Forecast, Outlook, Told, forecast
+from modalkit.planning.document import said, to_json
+from modalkit.planning.effects import NOT_FORECAST
+from modalkit.planning.from_study import told_by
+from modalkit.planning.separability import CLASS, NONE, SEEN, SURE
+from modalkit.planning.trials import Check, check
+from modalkit.planning.writing import noise_for, write_case
+from modalkit.study.read import read_study
 
 _LINES = 4
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from acquisition.errors import InputError
-from modalkit.blind.real import CASES, RULES, RealOutcome, counts, real_record, real_table, run_real
 from modalkit.cli.common import out, progress, show_table
-from modalkit.outputs import check_outputs, json_of
-from modalkit.tables.chain import sample_folder
-from modalkit.write import write_json
+from modalkit.output.destinations import check_outputs, json_of
+from modalkit.output.whole import write_json
+from modalkit.papers.a.chain import sample_folder
+from modalkit.papers.real import CASES, RULES, RealOutcome, counts, real_record, real_table, run_real
 
 _GAP = """\
 Gap: r.m.s. error of the frequencies where nothing else is said, before and after, the latter on modes held out; beside

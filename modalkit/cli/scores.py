@@ -10,8 +10,8 @@ from modalkit.blind.scoring.score import Score
 from modalkit.blind.scoring.section import Section
 from modalkit.blind.scoring.sections import sections
 from modalkit.cli.common import out, show_table
-from modalkit.outputs import Kind, check_output
-from modalkit.write import write_text
+from modalkit.output.destinations import Kind, check_output
+from modalkit.output.whole import write_text
 
 
 def _takes_a_score(path: Path) -> bool:

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from acquisition import HitVerdict, force_range, hits_table
 from acquisition.display import counted
 from modalkit.cli.common import out, show_table, show_warnings, working
-from modalkit.existing import Modes
-from modalkit.write import write_json
+from modalkit.output.whole import write_json
+from modalkit.workflow.existing import Modes
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from identification import ModalModel
-    from modalkit.reading import Processed
+    from modalkit.workflow.identification import Processed
 
 
 def save_modes(
@@ -27,8 +27,8 @@ def save_modes(
     output: Path | None,
 ) -> None:
     """Write the modes as JSON, and as what the ending of the output names, where files are given, and say so."""
-    from modalkit.records import modes_record
-    from modalkit.saving import write_modes
+    from modalkit.output.modes import write_modes
+    from modalkit.output.records import modes_record
 
     hits = () if processed is None else processed.hits
     title = "" if processed is None else processed.content.title
@@ -42,7 +42,7 @@ def save_modes(
 
 def show_rejected(hits: Sequence[HitVerdict], more: Sequence[str] = ()) -> None:
     """Print the points that were left out, with the reason."""
-    from modalkit.records import without_hits
+    from modalkit.output.records import without_hits
 
     for text in [*without_hits(hits), *more]:
         out.print(f"left out: {text}", markup=False)

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 
 from acquisition import FrfSet
 from acquisition.arrays import ComplexArray, FloatArray
-from modalkit.figures.frf import NAMES
 from modalkit.figures.style import (
     BLUE,
     FAINT,
@@ -26,7 +25,8 @@ from modalkit.figures.style import (
     place,
     tidy,
 )
-from updating.correlated_frfs import CorrelatedFrfs
+from modalkit.figures.test.frf import NAMES
+from updating.correlation.frfs import CorrelatedFrfs
 
 TALL, SHORT, BLOCK = 2.35, 0.75, 4.4
 """Heights of magnitude, phase, and all that belongs to one FRF [in]."""

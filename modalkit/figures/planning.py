@@ -8,8 +8,6 @@ from matplotlib.figure import Figure
 
 from acquisition import InputError
 from acquisition.arrays import FloatArray
-from modalkit.blind.planning import Forecast, Outlook
-from modalkit.blind.planning.apart import CLASS, NONE, SEEN
 from modalkit.figures.style import (
     BLUE,
     FAINT,
@@ -32,6 +30,8 @@ from modalkit.figures.style import (
     text_width,
     tidy,
 )
+from modalkit.planning import Forecast, Outlook
+from modalkit.planning.separability import CLASS, NONE, SEEN
 
 _ROW = 0.3
 _WORDS = 3.7

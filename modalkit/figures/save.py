@@ -10,7 +10,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from acquisition import InputError
-from modalkit.outputs import PNG, check_output
+from modalkit.output.destinations import PNG, check_output
 
 RESOLUTION = 150
 """Dots per inch of the files: 1800 px at full width."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from updating import Diagnosis
-from updating.diagnosis.result import ParameterEstimate, Ranked
+from updating.diagnosis.answer.result import ParameterEstimate, Ranked
 
 PHRASES = {
     "E": "the modulus of elasticity",

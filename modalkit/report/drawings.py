@@ -17,7 +17,7 @@ from modalkit.figures.diagnosis import (
     overlaid_figure,
     shrink_figure,
 )
-from modalkit.process import Session
+from modalkit.workflow.case import Session
 from updating import Diagnosis
 
 

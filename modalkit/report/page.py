@@ -7,9 +7,7 @@ from datetime import datetime
 from html import escape
 from importlib.resources import files
 
-from modalkit.diagnosing import warnings_of
 from modalkit.figures.words import answer
-from modalkit.process import Session
 from modalkit.report.drawings import Drawing, drawings
 from modalkit.report.html import Raw, element, joined
 from modalkit.report.place import BEGIN
@@ -25,6 +23,8 @@ from modalkit.report.sections import (
     the_warnings,
 )
 from modalkit.report.svg import inline_svg
+from modalkit.workflow.case import Session
+from modalkit.workflow.diagnosis import warnings_of
 from updating import Diagnosis
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from modalkit.outputs import check_output, text_of
-from modalkit.write import write_text
+from modalkit.output.destinations import check_output, text_of
+from modalkit.output.whole import write_text
 
 BEGIN = '<!doctype html>\n<html lang="en">\n<head><meta name="generator" content="modalkit">'
 """How every report begins."""

@@ -9,9 +9,9 @@ from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from modalkit.process import Session
 from modalkit.report.html import Cell, Column, Raw, element, joined, table
-from modalkit.study import Study
+from modalkit.study.read import Study
+from modalkit.workflow.case import Session
 
 PACKAGES = ("modalkit-ema", "numpy", "scipy", "sdypy-EMA", "pyuff")
 """Packages whose versions are told."""

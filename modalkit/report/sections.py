@@ -8,10 +8,10 @@ import pandas as pd
 
 from acquisition.display import counted
 from modalkit.figures.words import METRICS, chance, gap_size, percent, quantity, share
-from modalkit.letter import letter, separated
+from modalkit.output.summary import letter, separated
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
 from updating import LIBRARY, Diagnosis
-from updating.diagnosis.result import Ranked
+from updating.diagnosis.answer.result import Ranked
 
 ROWS = 8
 """Most explanations in the table, beside those of the answer."""

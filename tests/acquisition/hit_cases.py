@@ -12,7 +12,7 @@ import numpy as np
 import scipy.signal
 
 from acquisition.dof import Dof
-from acquisition.hammer import HammerTest, Hits
+from acquisition.hits.hammer import HammerTest, Hits
 
 OVER = 4
 FILTERS = ("butter", "cheby1", "ellip", "bessel", "fir")

@@ -18,7 +18,7 @@ from acquisition import (
     hammer_test,
     modal_system,
 )
-from acquisition.bootstrap import bootstrap_frfs
+from acquisition.frfs.bootstrap import bootstrap_frfs
 
 SYSTEM = modal_system(
     frequency=np.array([60.0]),

@@ -17,8 +17,8 @@ from acquisition import (
     judge_hits,
     modal_system,
 )
-from acquisition.hit_checks import dead_from
-from acquisition.splitting import looks_long
+from acquisition.hits.checks import dead_from
+from acquisition.hits.splitting import looks_long
 
 SYSTEM = modal_system(
     frequency=np.array([60.0, 140.0, 300.0]),

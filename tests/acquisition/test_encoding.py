@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from acquisition import InputError, StudyError, read_layout, read_modes
-from modalkit.study import read_study
+from modalkit.study.read import read_study
 
 STUDY = '[test]\nmodes = "modes.csv"\ntitle = "Brücke"\n'
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from acquisition import Dof, HitVerdict, InputError
-from acquisition.verdicts import decide, rejected_points
+from acquisition.hits.verdicts import decide, rejected_points
 
 
 def verdict(point, hit, used=True, reasons=()):

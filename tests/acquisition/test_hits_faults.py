@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, HammerTest, Hits, judge_hits, unstated_window
-from acquisition.hit_checks import at_common_limit, dead_from, dropouts, flat_waves, second_hits, upright
-from acquisition.hit_checks.ringing import ringing_period, without_ringing
+from acquisition.hits.checks import at_common_limit, dead_from, dropouts, flat_waves, second_hits, upright
+from acquisition.hits.checks.ringing import ringing_period, without_ringing
 
 NUMBER = 40
 

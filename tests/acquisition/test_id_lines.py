@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from acquisition import InputError, layout_from
-from acquisition.uff.id_lines import averages_of, decay_of
+from acquisition.uff.functions.id_lines import averages_of, decay_of
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, estimate_frfs, hammer_test
-from acquisition.impulse import impulse_places
+from acquisition.hits.impulse import impulse_places
 from acquisition.synthetic import HammerPlan, ModalSystem, modal_system
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
-from acquisition.peaks import find_peaks
+from acquisition.hits.peaks import find_peaks
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -22,7 +22,7 @@ from acquisition import (
     read_uff,
     rejected_points,
 )
-from acquisition.hit_checks import clipped, pulse_width, second_hits
+from acquisition.hits.checks import clipped, pulse_width, second_hits
 
 SYSTEM = modal_system(
     frequency=np.array([60.0, 140.0, 300.0]),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, FrfSet
-from acquisition.reciprocity import COLUMNS, reciprocity
+from acquisition.frfs.reciprocity import COLUMNS, reciprocity
 
 FREQUENCY = np.arange(10.0, 200.0, 0.5)
 SHAPES = np.array([[1.0, 0.5, -0.4], [0.3, -1.0, 0.8], [-0.7, 0.6, 1.0]])

@@ -20,7 +20,7 @@ from acquisition import (
     hammer_test,
     modal_system,
 )
-from acquisition.scatter import HitGroup, HitScatter, variance_of_groups
+from acquisition.frfs.scatter import HitGroup, HitScatter, variance_of_groups
 
 SYSTEM = modal_system(
     frequency=np.array([60.0, 140.0]),

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, EstimationError, FrfSet, InputError
-from acquisition.frf import FORMS
-from acquisition.scatter import HitGroup, HitScatter
-from acquisition.sensor_mass import remove_sensor_mass
+from acquisition.frfs.frf import FORMS
+from acquisition.frfs.scatter import HitGroup, HitScatter
+from acquisition.frfs.sensor_mass import remove_sensor_mass
 
 MASS = np.diag([1.0, 0.8, 1.2, 0.6])
 SPRINGS = 1e5 * np.array([[3.0, -1.0, 0, 0], [-1.0, 2.0, -1.0, 0], [0, -1.0, 2.5, -1.5], [0, 0, -1.5, 1.5]])

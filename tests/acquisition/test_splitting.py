@@ -9,7 +9,7 @@ import pytest
 import scipy.signal
 
 from acquisition import Dof, HammerPlan, HammerTest, Hits, InputError, hammer_test, judge_hits, modal_system
-from acquisition.splitting import looks_long, propose_trigger, split_hits
+from acquisition.hits.splitting import looks_long, propose_trigger, split_hits
 
 RATE = 4096.0
 SYSTEM = modal_system(

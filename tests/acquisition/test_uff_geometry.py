@@ -19,7 +19,7 @@ from acquisition import (
     read_uff,
     write_uff,
 )
-from acquisition.uff.records import units_set
+from acquisition.uff.writing.data_sets import units_set
 
 
 def block(number: int, *lines: str) -> bytes:

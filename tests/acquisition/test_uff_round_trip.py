@@ -24,8 +24,8 @@ from acquisition import (
     read_uff,
     write_uff,
 )
-from acquisition.uff.measurements import simplest_within
-from acquisition.uff.records import field13
+from acquisition.uff.functions.measurements import simplest_within
+from acquisition.uff.writing.data_sets import field13
 
 FINITE = st.floats(-1e12, 1e12, allow_nan=False)
 SAME_FOLDER = settings(

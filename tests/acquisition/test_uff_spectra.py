@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, UffContent, read_uff
-from acquisition.uff.records import Record58, function_set, header_set, units_set
-from acquisition.uff.units import is_density, product_of, square_of
+from acquisition.uff.functions.units import is_density, product_of, square_of
+from acquisition.uff.writing.data_sets import Record58, function_set, header_set, units_set
 
 LINES, HITS, DF = 200, 5, 2.0
 RESPONSES = (Dof(1, 3), Dof(2, -1))

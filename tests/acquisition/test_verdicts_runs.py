@@ -24,7 +24,7 @@ from acquisition import (
     unstated_window,
     verdicts_of,
 )
-from acquisition.estimators import kept_hits
+from acquisition.frfs.estimators import kept_hits
 
 SYSTEM = modal_system(
     frequency=np.array([60.0, 140.0]),

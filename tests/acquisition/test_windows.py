@@ -17,7 +17,7 @@ from acquisition import (
     hammer_test,
     modal_system,
 )
-from acquisition.windows import force_noise_decay, state_window
+from acquisition.hits.windows import force_noise_decay, state_window
 
 DECAY = 9.0
 SDOF = modal_system(

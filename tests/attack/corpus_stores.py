@@ -18,7 +18,7 @@ from modalkit.blind.outcome import Outcome
 from modalkit.blind.seal import Seal, seal
 from modalkit.blind.store import Store
 from modalkit.blind.trial import Truth
-from modalkit.study import read_study
+from modalkit.study.read import read_study
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 NOTHING: dict[str, Any] = json.loads((Path(__file__).resolve().parents[1] / "no_gap.json").read_text())

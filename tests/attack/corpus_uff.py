@@ -13,7 +13,7 @@ import undetectable
 from family import Case, Family, written
 
 from acquisition import Dof, FrfSet, Geometry, HammerTest, Hits, ModalData, write_uff
-from modalkit.files import read_files
+from modalkit.workflow.files import read_files
 
 RNG = np.random.default_rng(13)
 

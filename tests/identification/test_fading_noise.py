@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from identification_cases import column, structure
 
-from acquisition.frf import FrfSet
-from identification import fading, identify
+from acquisition.frfs.frf import FrfSet
+from identification import identify
+from identification.fit.noise import window_shaped
 
 SAMPLES, RATE = 4096, 1600.0
 
@@ -34,12 +35,12 @@ def windowed_test(truth, rng, *, fade: float, noise: float, n_points: int = 6, n
 @pytest.mark.parametrize("fade", [2.0, 3.0, 8.0, 20.0])
 def test_the_fading_is_measured_under_any_level(fade, rng):
     dirt = spectra(rng, fade, 6, 1500) * np.geomspace(1e-6, 1e3, 6)[:, None]
-    assert fading.decay_over_record(dirt) == pytest.approx(fade, rel=0.1)
+    assert window_shaped.decay_over_record(dirt) == pytest.approx(fade, rel=0.1)
 
 
 def test_steady_noise_is_not_said_to_fade():
     found = [
-        fading.decay_over_record(spectra(np.random.default_rng(seed), 0.0, n, 800))
+        window_shaped.decay_over_record(spectra(np.random.default_rng(seed), 0.0, n, 800))
         for seed in range(40)
         for n in (1, 6)
     ]
@@ -51,7 +52,7 @@ def test_a_mode_left_out_is_not_taken_for_fading():
     wrong = 0
     for seed in range(10):
         frfs = windowed_test(truth, np.random.default_rng(seed), fade=0.0, noise=1e-3)
-        wrong += fading.decay_over_record(frfs.values) > 2.0
+        wrong += window_shaped.decay_over_record(frfs.values) > 2.0
     assert wrong == 0
 
 
@@ -67,7 +68,7 @@ def test_inflation_is_that_of_least_squares_in_the_time_domain(decay):
         inverse = np.linalg.inv(basis.T @ basis)
         return np.diag(inverse @ (basis.T * variance) @ basis @ inverse) / np.diag(inverse)
 
-    held, free, pole = fading.inflation(fade, np.array([decay]))
+    held, free, pole = window_shaped.inflation(fade, np.array([decay]))
     both = spread(columns)
     np.testing.assert_allclose(
         [held[0], free[0], pole[0]], [spread(columns[:, :1])[0], both[0], both[1]], rtol=2e-3

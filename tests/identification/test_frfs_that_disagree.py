@@ -8,7 +8,7 @@ import numpy as np
 from identification_cases import Structure, column, lines, structure
 
 from identification import identify
-from identification.disagreement import between_frfs, scatter_beyond_noise
+from identification.fit.noise.disagreement import between_frfs, scatter_beyond_noise
 
 SHIFT = 3e-4
 

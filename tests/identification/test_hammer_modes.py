@@ -10,7 +10,7 @@ import pytest
 from acquisition import Dof, FrfSet, estimate_frfs
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
 from identification import identify
-from identification.common_noise import common_noise, hit_groups
+from identification.fit.noise.common import common_noise, hit_groups
 
 HERTZ = np.array([31.0, 68.0, 127.0, 171.0])
 ZETA = np.array([0.006, 0.004, 0.003, 0.005])

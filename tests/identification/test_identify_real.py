@@ -7,7 +7,7 @@ import pytest
 
 from acquisition import read_uff
 from acquisition.dof import Dof
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from identification import identify, second_opinion
 
 BEAM_HZ, BEAM_DAMPING = (111.993, 306.852, 596.367, 974.181), (1.4e-4, 1.2e-4, 1.0e-4, 1.0e-4)

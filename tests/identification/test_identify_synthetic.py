@@ -12,7 +12,7 @@ from identification_cases import bench, column, lines, structure
 
 from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from identification import identify, mac
 
 

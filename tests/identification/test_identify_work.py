@@ -9,7 +9,8 @@ import pytest
 from identification_cases import bench, column, lines, structure
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from identification import basis, grams, identify
+from identification import identify
+from identification.fit.equations import basis, normal_equations
 
 REFERENCES = (4, 9, 17)
 
@@ -50,10 +51,12 @@ def test_products_of_columns_with_a_row_of_weights_each():
     columns = rng.standard_normal((700, 9)) + 1j * rng.standard_normal((700, 9))
     weights = rng.uniform(0.1, 2.0, (40, 700))
     real = np.concatenate([columns.real, columns.imag])
-    found = grams.products(real, weights)
+    found = normal_equations.products(real, weights)
     exact = np.einsum("la,jl,lb->jab", columns.conj(), weights, columns).real
     np.testing.assert_allclose(found, exact, rtol=1e-11, atol=1e-11)
-    np.testing.assert_allclose(found[:5], grams.products(real, weights[:5]), rtol=1e-11, atol=1e-11)
+    np.testing.assert_allclose(
+        found[:5], normal_equations.products(real, weights[:5]), rtol=1e-11, atol=1e-11
+    )
 
 
 def test_close_modes_of_several_references_are_told_apart_by_one_set_of_sums(bases):
@@ -69,9 +72,9 @@ def test_lengths_of_lines_for_many_matrices_as_for_few():
     rng = np.random.default_rng(4)
     real, half = rng.standard_normal((2 * 600, 7)), rng.standard_normal((30, 7, 5))
     exact = (np.einsum("lk,jkm->jlm", real, half) ** 2).sum(axis=2)
-    found = grams.forms(real, half)
+    found = normal_equations.forms(real, half)
     np.testing.assert_allclose(found, exact[:, :600] + exact[:, 600:], rtol=1e-11)
-    np.testing.assert_allclose(found[:5], grams.forms(real, half[:5]), rtol=1e-11)
+    np.testing.assert_allclose(found[:5], normal_equations.forms(real, half[:5]), rtol=1e-11)
 
 
 def test_a_fit_is_made_once_more_only_if_the_noise_turns_out_another(bases):

@@ -12,7 +12,7 @@ from hypothesis.extra import numpy as hnp
 
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
 from identification import (
     auto_mac,

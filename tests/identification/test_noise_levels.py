@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 from identification_cases import column, lines, structure
 
-from identification import identify, noise
+from identification import identify
+from identification.fit.noise import levels
 
 
 def dirt(rng, shape):
@@ -17,7 +18,7 @@ def dirt(rng, shape):
 def test_scatter_is_blind_to_what_is_smooth(rng):
     x = np.linspace(0, 1, 2000)
     values = 0.3 * dirt(rng, (5, 2000)) + 50 * np.exp(3j * x)
-    np.testing.assert_allclose(noise.scatter(values), 0.09, rtol=0.2)
+    np.testing.assert_allclose(levels.scatter(values), 0.09, rtol=0.2)
 
 
 def resonances(count):
@@ -29,7 +30,7 @@ def resonances(count):
 def test_noise_of_the_force_grows_with_the_frf(rng):
     model = resonances(6)
     sigma = np.hypot(2.0, 0.02 * np.abs(model))
-    weights, variance = noise.from_residual(
+    weights, variance = levels.from_residual(
         sigma * dirt(rng, (6, 3000)), np.zeros((1, 3000)), np.zeros((6, 1)), model
     )
     assert weights.lines.shape == (6, 3000)
@@ -39,7 +40,7 @@ def test_noise_of_the_force_grows_with_the_frf(rng):
 
 def test_white_noise_gives_one_weight_per_frf(rng):
     level = np.array([[1.0], [4.0], [0.1]])
-    weights, variance = noise.from_residual(
+    weights, variance = levels.from_residual(
         level * dirt(rng, (3, 3000)), np.zeros((1, 3000)), np.zeros((3, 1)), resonances(3)
     )
     assert weights.lines.shape == (1, 3000)
@@ -49,7 +50,7 @@ def test_white_noise_gives_one_weight_per_frf(rng):
 
 def test_a_colour_in_common_is_found(rng):
     colour = np.linspace(0.2, 3.0, 3000)
-    weights, variance = noise.from_residual(
+    weights, variance = levels.from_residual(
         colour * dirt(rng, (8, 3000)), np.zeros((1, 3000)), np.zeros((8, 1)), resonances(8)
     )
     assert weights.lines.shape == (1, 3000)
@@ -59,7 +60,7 @@ def test_a_colour_in_common_is_found(rng):
 
 def test_colours_of_their_own_are_found(rng):
     colour = np.stack([np.linspace(0.2, 3.0, 3000), np.linspace(3.0, 0.2, 3000)])
-    weights, _ = noise.from_residual(
+    weights, _ = levels.from_residual(
         colour * dirt(rng, (2, 3000)), np.zeros((1, 3000)), np.zeros((2, 1)), resonances(2)
     )
     assert weights.lines.shape == (2, 3000)

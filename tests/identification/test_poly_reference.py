@@ -9,7 +9,7 @@ import pytest
 from identification_cases import ABOVE_DAMPING, ABOVE_HZ, BENCH_DAMPING, BENCH_HZ, lines, structure
 
 from identification import identify, mac
-from identification.poly_reference import sorted_frfs
+from identification.fit.poly_reference import sorted_frfs
 
 REFERENCES = (4, 9, 17)
 
@@ -58,14 +58,14 @@ def test_constants_are_of_rank_one_and_their_sigmas_right():
 
 
 def test_rank_one_halves_the_error_of_a_close_pair(monkeypatch):
-    from identification import fitting
+    from identification.fit import fit
 
     held, free = [], []
     for seed in range(1, 7):
         truth = close_pair(0.002, seed)
         frfs = truth.frfs(lines(), matrix(), noise=0.01, rng=np.random.default_rng(seed))
         for errors, search in ((held, sorted_frfs), (free, lambda _: None)):
-            monkeypatch.setattr(fitting, "sorted_frfs", search)
+            monkeypatch.setattr(fit, "sorted_frfs", search)
             model = identify(frfs, band=(300.0, 600.0))
             pair = np.abs(model.modal.frequency - 402.4) < 2
             errors.append(model.modal.frequency[pair] / (402.0, 402.0 * 1.002) - 1)

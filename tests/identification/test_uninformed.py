@@ -10,7 +10,7 @@ import pytest
 from acquisition import Dof, FrfSet, estimate_frfs, hammer_test
 from acquisition.synthetic import HammerPlan, modal_system
 from identification import identify
-from identification.uninformed import uninformed_modes
+from identification.band.uninformed import uninformed_modes
 
 TRUE = np.array([60.0, 151.0, 288.0, 417.0, 530.0])
 

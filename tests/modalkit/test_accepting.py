@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from acquisition.errors import InputError, StudyError
-from modalkit.accepting import accepted_values
-from modalkit.named_effects import parse_effect, said
-from modalkit.study import read_study
+from modalkit.study.named_effects import parse_effect, said
+from modalkit.study.read import read_study
+from modalkit.study.stated_effects import accepted_values
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 

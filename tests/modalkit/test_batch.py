@@ -19,7 +19,7 @@ from modalkit.batch import run as batch_run
 from modalkit.batch.find import Found
 from modalkit.batch.run import run_batch
 from modalkit.batch.writing import table_places
-from modalkit.outputs import check_outputs
+from modalkit.output.destinations import check_outputs
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 MODES = """
@@ -108,7 +108,7 @@ def test_a_part_is_what_the_single_commands_say(fleet: Path, tmp_path: Path, mon
 
 
 def _plain(value: Any) -> Any:
-    from modalkit.write import plain
+    from modalkit.output.whole import plain
 
     return plain(value)
 

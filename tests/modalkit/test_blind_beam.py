@@ -10,9 +10,9 @@ import scipy.optimize
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from modalkit.blind.bodies.beam import Beam
-from modalkit.blind.bodies.mesh import graded_mesh
-from modalkit.blind.bodies.parts import Attached, Notch
+from modalkit.simulator.bodies.beam.beam import Beam
+from modalkit.simulator.bodies.mesh import graded_mesh
+from modalkit.simulator.bodies.parts import Attached, Notch
 
 SLENDER = Beam(0.0, 1.0, 0.02, 0.001, 210e9, 7850.0)
 STOCKY = Beam(0.0, 0.5, 0.04, 0.05, 210e9, 7850.0)

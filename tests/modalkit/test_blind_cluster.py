@@ -16,8 +16,8 @@ import pytest
 from acquisition.errors import InputError
 from modalkit.blind import Outcome, Plan, check_store, run_blind
 from modalkit.blind.cluster import cluster_outcomes
-from modalkit.serving import cluster as cluster_module
-from modalkit.serving.cluster import Keeper
+from modalkit.workers import cluster as cluster_module
+from modalkit.workers.cluster import Keeper
 
 distributed = pytest.importorskip("distributed")
 

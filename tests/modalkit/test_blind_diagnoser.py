@@ -139,7 +139,7 @@ def test_it_ends_when_the_one_who_asks_is_killed(study: Path) -> None:
 
 @pytest.mark.skipif(not PROC, reason="looks for the processes in /proc")
 def test_diagnoses_of_real_structures_end_when_the_one_who_asks_is_killed() -> None:
-    body = f"from modalkit.blind.real import *; run_real(CASES, __import__('pathlib').Path({str(SAMPLES)!r}), None)"
+    body = f"from modalkit.papers.real import *; run_real(CASES, __import__('pathlib').Path({str(SAMPLES)!r}), None)"
     asks = subprocess.Popen([sys.executable, "-c", body])
     while not (at_work := children(asks.pid)):
         assert asks.poll() is None

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from acquisition import estimate_frfs
-from modalkit.blind.plan import Plan
-from modalkit.blind.record import bad_hits, hit_points, measure
-from modalkit.blind.scene import Scene, draw_scene, nominal_scene
-from modalkit.blind.setup import Setup
 from modalkit.blind.trial import draw_trial
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.measurement import bad_hits, hit_points, measure
+from modalkit.simulator.scene import Scene, draw_scene, nominal_scene
+from modalkit.simulator.setup import Setup
 
 
 def plain() -> Setup:

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from acquisition import estimate_frfs, read_uff
-from modalkit.blind.bodies.beam import Beam
-from modalkit.blind.bodies.complex_modes import complex_modes
-from modalkit.blind.bodies.parts import Attached
-from modalkit.blind.plan import Plan
-from modalkit.blind.record import hammer_plan, measure, modal_system, remounting, scaled
-from modalkit.blind.scene import Scene, nominal_scene
-from modalkit.blind.setup import Setup
 from modalkit.blind.trial import draw_trial, write_trial
+from modalkit.simulator.bodies.beam.beam import Beam
+from modalkit.simulator.bodies.complex_modes import complex_modes
+from modalkit.simulator.bodies.parts import Attached
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.measurement import hammer_plan, measure, modal_system, remounting, scaled
+from modalkit.simulator.scene import Scene, nominal_scene
+from modalkit.simulator.setup import Setup
 
 BEAM = Beam(0.0, 0.5, 0.03, 0.005, 210e9, 7850.0, alpha=3.0, beta=1e-6)
 PLACES = np.array([0.1, 0.27, 0.5])

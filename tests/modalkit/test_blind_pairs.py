@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from modalkit.blind.draw import draw_setup, lacks_shear
-from modalkit.blind.plan import Plan
-from modalkit.blind.secrets import SECRETS
-from modalkit.blind.secrets.choose import choose_secrets, right_answers
 from modalkit.blind.trial import draw_trial
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
+from modalkit.simulator.hidden import SECRETS
+from modalkit.simulator.hidden.choose import choose_secrets, right_answers
 
 PAIRS = Plan(kinds=("beam",), none=0.0, outside=0.0, pairs=1.0)
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from modalkit.blind.bodies.panel import wetted
-from modalkit.blind.bodies.plate import Plate
-from modalkit.blind.bodies.plate_parts import PlateAttached
-from modalkit.blind.bodies.water import added_mass, layer_damping, slip_factor
+from modalkit.simulator.bodies.beam.water import added_mass, layer_damping, slip_factor
+from modalkit.simulator.bodies.plate.panel import wetted
+from modalkit.simulator.bodies.plate.parts import PlateAttached
+from modalkit.simulator.bodies.plate.plate import Plate
 
 PLATE = Plate(0.0, 0.376, 0.2, 0.003175, 210e9, 7850.0)
 

@@ -11,11 +11,11 @@ import scipy.optimize
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from modalkit.blind.bodies.beam import Beam
-from modalkit.blind.bodies.complex_modes import complex_modes
-from modalkit.blind.bodies.plate import Plate
-from modalkit.blind.bodies.plate_mesh import plate_lines
-from modalkit.blind.bodies.plate_parts import Patch, PlateAbsorber, PlateAttached, Rib, SoftSpot, flat_rib
+from modalkit.simulator.bodies.beam.beam import Beam
+from modalkit.simulator.bodies.complex_modes import complex_modes
+from modalkit.simulator.bodies.plate.mesh import plate_lines
+from modalkit.simulator.bodies.plate.parts import Patch, PlateAbsorber, PlateAttached, Rib, SoftSpot, flat_rib
+from modalkit.simulator.bodies.plate.plate import Plate
 
 PLATE = Plate(0.0, 0.376, 0.2, 0.003175, 210e9, 7850.0)
 ALL = ("x0", "x1", "y0", "y1")

@@ -10,7 +10,8 @@ import pytest
 
 from acquisition.errors import EstimationError, StudyError
 from modalkit.blind.answer import Answer, Estimate, Row
-from modalkit.blind.real import (
+from modalkit.cli.real import show_real
+from modalkit.papers.real import (
     CASES,
     Case,
     Fact,
@@ -23,10 +24,9 @@ from modalkit.blind.real import (
     real_table,
     run_real,
 )
-from modalkit.blind.real.anonymous import data_files, without_tables, write_anonymous
-from modalkit.blind.real.case import PUBLISHED, sets
-from modalkit.blind.real.record import BEGIN, END
-from modalkit.cli.real import show_real
+from modalkit.papers.real.anonymous import data_files, without_tables, write_anonymous
+from modalkit.papers.real.case import PUBLISHED, sets
+from modalkit.papers.real.record import BEGIN, END
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "sample_data"

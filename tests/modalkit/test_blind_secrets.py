@@ -9,16 +9,22 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from modalkit.blind.bodies.beam import Beam
-from modalkit.blind.bodies.complex_modes import ComplexModes, complex_modes
-from modalkit.blind.bodies.parts import Absorber, Attached, Stretch
-from modalkit.blind.bodies.water import _side, added_mass, layer_damping, slip_factor, thickness_factor
-from modalkit.blind.plan import Plan
-from modalkit.blind.scene import Scene, nominal_scene
-from modalkit.blind.secrets import SECRETS
-from modalkit.blind.secrets.outside import gap_share
-from modalkit.blind.setup import Setup
 from modalkit.blind.trial import Trial, draw_trial
+from modalkit.simulator.bodies.beam.beam import Beam
+from modalkit.simulator.bodies.beam.water import (
+    _side,
+    added_mass,
+    layer_damping,
+    slip_factor,
+    thickness_factor,
+)
+from modalkit.simulator.bodies.complex_modes import ComplexModes, complex_modes
+from modalkit.simulator.bodies.parts import Absorber, Attached, Stretch
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.hidden import SECRETS
+from modalkit.simulator.hidden.outside import gap_share
+from modalkit.simulator.scene import Scene, nominal_scene
+from modalkit.simulator.setup import Setup
 
 BEAM = Beam(0.0, 0.6, 0.03, 0.003, 210e9, 7850.0, alpha=2.0, beta=1e-6)
 INSIDE = [name for name, secret in SECRETS.items() if secret.in_library and name != "orthotropy"]

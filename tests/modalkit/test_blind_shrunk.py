@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from modalkit.blind.answer import Answer, Estimate, Row
-from modalkit.blind.plan import Plan
-from modalkit.blind.scene import nominal_scene
 from modalkit.blind.shrunk import put_in, true_shrinkage
 from modalkit.blind.trial import Trial, draw_trial
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.scene import nominal_scene
 
 CLEAR = Plan(kinds=("beam",), mild=0.0, strong=0.0, pairs=0.0, baseline=0.0)
 

@@ -11,20 +11,20 @@ import pytest
 
 from acquisition.errors import StudyError
 from modalkit.blind.answer import Answer, Estimate, Row
-from modalkit.blind.bodies import solid_deck
-from modalkit.blind.bodies.beam import Beam
-from modalkit.blind.bodies.complex_modes import complex_modes
-from modalkit.blind.bodies.parts import Attached, Stretch
-from modalkit.blind.bodies.plate import Plate
-from modalkit.blind.bodies.plate_parts import PlateAttached
-from modalkit.blind.bodies.solid import Cut, Solid, available
-from modalkit.blind.draw import draw_setup
-from modalkit.blind.plan import Plan
-from modalkit.blind.scene import nominal_scene
-from modalkit.blind.secrets import SECRETS
 from modalkit.blind.shrunk import true_shrinkage
 from modalkit.blind.trial import draw_trial, gap_percent, write_trial
-from modalkit.study import read_study
+from modalkit.simulator.bodies.beam.beam import Beam
+from modalkit.simulator.bodies.complex_modes import complex_modes
+from modalkit.simulator.bodies.parts import Attached, Stretch
+from modalkit.simulator.bodies.plate.parts import PlateAttached
+from modalkit.simulator.bodies.plate.plate import Plate
+from modalkit.simulator.bodies.solid.solid import Cut, Solid, available
+from modalkit.simulator.bodies.solid.solid import deck as solid_deck
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.specimen import draw_setup
+from modalkit.simulator.hidden import SECRETS
+from modalkit.simulator.scene import nominal_scene
+from modalkit.study.read import read_study
 
 needs_ccx = pytest.mark.skipif(not available(), reason="no ccx: apt-get install calculix-ccx")
 

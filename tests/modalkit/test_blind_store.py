@@ -22,7 +22,7 @@ from modalkit import cli
 from modalkit.blind import Plan, check_store, run_blind
 from modalkit.blind import store as store_module
 from modalkit.cli import blinding
-from modalkit.serving.journal import Journal, read_journal
+from modalkit.workers.journal import Journal, read_journal
 
 FAST = Plan(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
 SEED = 5

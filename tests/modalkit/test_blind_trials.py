@@ -12,14 +12,14 @@ import pytest
 import scipy.stats
 
 from acquisition.errors import StudyError
-from modalkit.blind.draw import draw_setup, lacks_shear
-from modalkit.blind.plan import Plan
-from modalkit.blind.scene import draw_scene, nominal_scene
-from modalkit.blind.secrets import SECRETS
-from modalkit.blind.secrets.choose import choose_secrets, choose_sort, draw_strength
-from modalkit.blind.setup import Setup
-from modalkit.blind.study import study_text
 from modalkit.blind.trial import Trial, Truth, draw_trial
+from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
+from modalkit.simulator.hidden import SECRETS
+from modalkit.simulator.hidden.choose import choose_secrets, choose_sort, draw_strength
+from modalkit.simulator.scene import draw_scene, nominal_scene
+from modalkit.simulator.setup import Setup
+from modalkit.simulator.study_file import study_text
 
 BEAMS = Plan(kinds=("beam",))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from modalkit.blind.bodies.water import added_mass, thickness_factor
+from modalkit.simulator.bodies.beam.water import added_mass, thickness_factor
 
 
 # DNV-RP-C205, appendix D, rectangular plates moving across their plane: share of rho pi/4 a^2 b

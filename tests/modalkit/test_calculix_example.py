@@ -15,8 +15,8 @@ import pytest
 
 from acquisition.errors import StudyError
 from modalkit.cli import main
-from modalkit.process import open_study
-from modalkit.study import read_study
+from modalkit.study.read import read_study
+from modalkit.workflow.case import open_study
 from updating import Material, Spec, build_structure
 from updating.models.imported import read_imported
 from updating.update import update

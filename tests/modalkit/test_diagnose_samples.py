@@ -9,8 +9,8 @@ import pytest
 from typer.testing import CliRunner
 
 from modalkit.cli import app
-from modalkit.process import open_study
-from modalkit.study import read_study
+from modalkit.study.read import read_study
+from modalkit.workflow.case import open_study
 from updating import Diagnosis, diagnose
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"

@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from modalkit.cli import app
-from modalkit.library import effects_record, effects_table
+from modalkit.output.library import effects_record, effects_table
 from updating import LIBRARY, Case, Damping, Effect, Material, Measured, Predictor, Spec, Tolerances, diagnose
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "effects.md"

@@ -31,13 +31,22 @@ from modalkit.figures import (
     stabilisation_figure,
     update_figure,
 )
-from modalkit.figures.blind_confusion import confusion_figure, gathered
+from modalkit.figures.blind.confusion import confusion_figure, gathered
 from modalkit.figures.diagnosis.errors import mode_errors
-from modalkit.figures.frf import pick
 from modalkit.figures.style import broken, grouped, shortened, text_width
+from modalkit.figures.test.frf import pick
 from modalkit.figures.words import answer, percent, quantity, share
 from updating import Case, Diagnosis, Material, Measured, Predictor, Spec, Tolerances
-from updating.diagnosis.result import Closed, Gap, NextTest, ParameterEstimate, Ranked, Shrink, Where, Zone
+from updating.diagnosis.answer.result import (
+    Closed,
+    Gap,
+    NextTest,
+    ParameterEstimate,
+    Ranked,
+    Shrink,
+    Where,
+    Zone,
+)
 from updating.models.state import State
 
 # --- what is written where ---------------------------------------------------------------------------

@@ -10,8 +10,8 @@ import pytest
 from acquisition import Dof, FrfSet, HammerTest, UffContent, estimate_frfs, hammer_test, judge_hits
 from acquisition.synthetic import HammerPlan, modal_system
 from identification import informed_band
-from modalkit.handling import Handling
-from modalkit.reading import Judged, Processed
+from modalkit.workflow.identification import Judged, Processed
+from modalkit.workflow.processing_options import Handling
 
 FREQUENCIES = np.array([60.0, 151.0, 288.0, 417.0, 530.0])
 SYSTEM = modal_system(

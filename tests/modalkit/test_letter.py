@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from modalkit.letter import letter, separated
+from modalkit.output.summary import letter, separated
 from updating import LIBRARY, Diagnosis
-from updating.diagnosis.result import Closed, Gap, NextTest, ParameterEstimate, Ranked, Shrink, Where
+from updating.diagnosis.answer.result import Closed, Gap, NextTest, ParameterEstimate, Ranked, Shrink, Where
 
 HEADS = ["Cause:", "Where:", "Closes:", "Sure:", "Next:"]
 MASS = ParameterEstimate(0.0123, "kg", 0.0119, 0.0127, False)

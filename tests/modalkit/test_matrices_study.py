@@ -13,10 +13,10 @@ from scipy.io import mmread, mmwrite
 
 from acquisition.errors import EstimationError, StudyError
 from modalkit.cli import main
-from modalkit.process import open_study
-from modalkit.study import read_study
+from modalkit.study.read import read_study
+from modalkit.workflow.case import open_study
 from updating import Material, Spec, build_structure
-from updating.correlation import correlate
+from updating.correlation.correlate import correlate
 from updating.update import update
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_data" / "beam_dry" / "beam_dry.uff"

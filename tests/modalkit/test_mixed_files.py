@@ -10,8 +10,8 @@ import pytest
 
 from acquisition import Dof, InputError, estimate_frfs, hammer_test, write_uff
 from acquisition.synthetic import HammerPlan, modal_system
-from modalkit.frf_checks import identical
-from modalkit.reading import read
+from modalkit.workflow.frf_checks import identical
+from modalkit.workflow.identification import read
 
 SYSTEM = modal_system(
     frequency=np.array([80.0, 200.0]),

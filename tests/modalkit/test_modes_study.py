@@ -10,12 +10,12 @@ from scipy.io import savemat
 
 from acquisition.errors import EstimationError, InputError, StudyError
 from modalkit.batch.part import part_record
-from modalkit.fitting import update_studies
-from modalkit.process import open_study
-from modalkit.study import read_study
+from modalkit.study.read import read_study
+from modalkit.workflow.case import open_study
+from modalkit.workflow.update import update_studies
 from updating import LIBRARY, diagnose
-from updating.matching import pair_modes
-from updating.prediction import Predictor
+from updating.prediction.matching import pair_modes
+from updating.prediction.predict import Predictor
 
 STUDY = """
 [test]

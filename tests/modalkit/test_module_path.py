@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from acquisition import EstimationError
-from modalkit.blind.bodies.solid_deck import program
-from modalkit.blind.real.running import diagnose_together_by
-from modalkit.serving import WarmProcess
-from modalkit.serving.pool import warm_pool
+from modalkit.papers.real.running import diagnose_together_by
+from modalkit.simulator.bodies.solid.deck import program
+from modalkit.workers import WarmProcess
+from modalkit.workers.pool import warm_pool
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = [str(Path(sys.executable).parent / "modalkit")]

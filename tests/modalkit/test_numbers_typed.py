@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from acquisition import InputError
-from identification.overrule import nearest_modes
+from identification.fit.search.manual_selection import nearest_modes
 from modalkit.cli import main
 from modalkit.cli.on_demand import ENTRIES, loaded
-from modalkit.handling import Handling, sensor_mass
+from modalkit.workflow.processing_options import Handling, sensor_mass
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_data" / "beam_wet"
 WORDS = {
@@ -116,7 +116,7 @@ def test_a_unit_of_another_kind_is_refused(refused, words: str, unit: str) -> No
 
 def test_units_are_understood_as_in_a_study() -> None:
     """A band in kHz, a decay per millisecond, a sensor in grams."""
-    command = loaded("look")["identify"]
+    command = loaded("measuring")["identify"]
     words = [
         "a.uff",
         "--band",
@@ -154,5 +154,5 @@ def test_too_little_memory_is_said_in_plain_words(refused, monkeypatch: pytest.M
     def full(*_: object, **__: object) -> None:
         raise MemoryError("Unable to allocate 7.28 TiB")
 
-    monkeypatch.setattr("modalkit.cli.look.read_files", full)
+    monkeypatch.setattr("modalkit.cli.measuring.read_files", full)
     assert "there is not enough memory (Unable to allocate 7.28 TiB)" in refused("inspect", "a.uff")

@@ -21,9 +21,9 @@ from modalkit import Modes, read, write_modes
 from modalkit.cli import main
 from modalkit.cli.on_demand import ENTRIES, loaded
 from modalkit.figures import save_figures
-from modalkit.outputs import check_output, check_outputs, json_of, store_of, table_of, uff_of
-from modalkit.serving.journal import Journal
-from modalkit.write import write_json
+from modalkit.output.destinations import check_output, check_outputs, json_of, store_of, table_of, uff_of
+from modalkit.output.whole import write_json
+from modalkit.workers.journal import Journal
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 Refused = Callable[..., str]

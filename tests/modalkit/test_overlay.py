@@ -15,7 +15,7 @@ from modalkit.cli import main
 from modalkit.cli.demonstrate import sample
 from modalkit.figures import overlay_figure
 from modalkit.figures.overlay import chosen_frfs
-from updating.correlated_frfs import CorrelatedFrfs
+from updating.correlation.frfs import CorrelatedFrfs
 
 
 def pairs(frac: list[float], drive: int = 2) -> CorrelatedFrfs:

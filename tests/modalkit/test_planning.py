@@ -13,19 +13,19 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from acquisition.errors import StudyError
-from modalkit.blind.planning import Told, by_default, forecast
-from modalkit.blind.planning.apart import EQUAL, SEEN, distances, nearest_in
-from modalkit.blind.planning.curves import Curve, solve_curve
-from modalkit.blind.planning.design import Design, columns, present, whitener
-from modalkit.blind.planning.document import to_json
-from modalkit.blind.planning.effects import families
-from modalkit.blind.planning.family import Family, short
-from modalkit.blind.planning.forecast import Forecast, Outlook
-from modalkit.blind.planning.readings import Stations
-from modalkit.blind.setup import Setup, Tolerances
 from modalkit.cli import app
-from modalkit.planned import told_by
-from modalkit.study import read_study
+from modalkit.planning import Told, by_default, forecast
+from modalkit.planning.curves import Curve, solve_curve
+from modalkit.planning.design import Design, columns, present, whitener
+from modalkit.planning.document import to_json
+from modalkit.planning.effects import families
+from modalkit.planning.family import Family, short
+from modalkit.planning.forecast import Forecast, Outlook
+from modalkit.planning.from_study import told_by
+from modalkit.planning.responses import Stations
+from modalkit.planning.separability import EQUAL, SEEN, distances, nearest_in
+from modalkit.simulator.setup import Setup, Tolerances
+from modalkit.study.read import read_study
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 

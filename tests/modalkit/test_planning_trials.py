@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from modalkit.blind.answer import Answer
-from modalkit.blind.planning import forecast
-from modalkit.blind.planning.apart import SEEN
-from modalkit.blind.planning.cases import Case, choose
-from modalkit.blind.planning.forecast import Forecast
-from modalkit.blind.planning.trials import Tried, check
-from modalkit.blind.planning.writing import noise_for, write_case
-from modalkit.planned import told_by
-from modalkit.study import read_study
+from modalkit.planning import forecast
+from modalkit.planning.cases import Case, choose
+from modalkit.planning.forecast import Forecast
+from modalkit.planning.from_study import told_by
+from modalkit.planning.separability import SEEN
+from modalkit.planning.trials import Tried, check
+from modalkit.planning.writing import noise_for, write_case
+from modalkit.study.read import read_study
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 

@@ -9,10 +9,10 @@ import pytest
 from acquisition import FrfSet, Geometry, HammerTest, InputError, ModalData, StudyError, write_uff
 from acquisition.dof import Dof
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
-from modalkit.process import open_study, process
-from modalkit.reading import read
-from modalkit.saving import write_modes
-from modalkit.study import read_study
+from modalkit.output.modes import write_modes
+from modalkit.study.read import read_study
+from modalkit.workflow.case import open_study, process
+from modalkit.workflow.identification import read
 
 NODES = (1, 2, 3)
 X = np.array([0.1, 0.25, 0.376])

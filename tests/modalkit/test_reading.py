@@ -21,12 +21,12 @@ from acquisition import (
     write_uff,
 )
 from acquisition.synthetic import HammerPlan, modal_system
-from modalkit.figures.hits import _gather
-from modalkit.files import read_files
-from modalkit.handling import Handling, sensor_mass
-from modalkit.joining import together
-from modalkit.reading import read
-from modalkit.records import modes_record
+from modalkit.figures.test.hits import _gather
+from modalkit.output.records import modes_record
+from modalkit.workflow.files import read_files
+from modalkit.workflow.identification import read
+from modalkit.workflow.joining import together
+from modalkit.workflow.processing_options import Handling, sensor_mass
 
 RATE, SAMPLES = 2048.0, 4096
 SYSTEM = modal_system(
@@ -87,17 +87,17 @@ def test_hits_of_several_tests_are_numbered_through(tmp_path: Path) -> None:
     weak = three()
     weak = replace(weak, points=(quieter(weak.points[0], 1, 0.02), *weak.points[1:]))
     other = replace(weak, rate=RATE, source="b")
-    from modalkit import reading
+    from modalkit.workflow import identification
 
-    judged = reading._judged([one, other], Handling(), [])
+    judged = identification._judged([one, other], Handling(), [])
     drawn = _gather(judged[1].test, judged[1].verdicts)
     assert [name for name, used in zip(drawn.names, drawn.used, strict=True) if not used] == ["1+Z hit 5"]
     names = [(str(v.point), v.hit) for j in judged for v in j.verdicts]
     assert len(set(names)) == 18
     assert [n for n in names if n[0] == "1+Z"] == [("1+Z", k) for k in range(1, 7)]
     assert [(str(v.point), v.hit) for j in judged for v in j.verdicts if not v.used] == [("1+Z", 5)]
-    decided = reading._judged([one, other], Handling(leave=(("1+Z", 4),)), [])
-    frfs = reading._estimated(decided, Handling())
+    decided = identification._judged([one, other], Handling(leave=(("1+Z", 4),)), [])
+    frfs = identification._estimated(decided, Handling())
     assert frfs.averages is not None
     assert frfs.averages.tolist() == [3, 3, 3, 1, 3, 3]
 

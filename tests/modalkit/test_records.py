@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from acquisition import HitVerdict
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from modalkit import write
-from modalkit.library import effects_record
-from modalkit.process import process
-from modalkit.records import diagnosis_record, modes_record
-from modalkit.study import read_study
-from modalkit.write import plain, write_json, write_text
+from modalkit.output import whole
+from modalkit.output.library import effects_record
+from modalkit.output.records import diagnosis_record, modes_record
+from modalkit.output.whole import plain, write_json, write_text
+from modalkit.study.read import read_study
+from modalkit.workflow.case import process
 from updating import Axes, Case, Diagnosis, Material, Measured, Spec, diagnose, measured_from_modes
-from updating.diagnosis.result import Closed, NextTest
+from updating.diagnosis.answer.result import Closed, NextTest
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_data" / "beam_dry" / "study.toml"
 MODES = {"schema", "modes", "points_rejected", "hits", "window_decay_removed", "warnings"}
@@ -98,7 +98,7 @@ def test_the_record_of_an_identification(tmp_path: Path) -> None:
 
 
 def test_the_record_of_a_hit() -> None:
-    from modalkit.records import hit_record
+    from modalkit.output.records import hit_record
 
     verdict = HitVerdict(Dof(3, -3), 2, False, ("double hit",), 1.0, 1.0, 1.0, 1.0)
     assert written(hit_record(verdict)) == {
@@ -212,7 +212,7 @@ def test_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: s
     if fault == "replace":
         monkeypatch.setattr(Path, "replace", full)
     else:
-        monkeypatch.setattr(write.Path, "chmod", full)
+        monkeypatch.setattr(whole.Path, "chmod", full)
     with pytest.raises(InputError, match=r"out\.json: cannot be written \(No space left"):
         write_text(path, "after")
     assert path.read_text(encoding="utf-8") == "before"

@@ -20,16 +20,16 @@ from acquisition import Dof, FrfSet, InputError
 from modalkit.cli import main
 from modalkit.figures.diagnosis import fitted
 from modalkit.figures.diagnosis.frfs import LINES, thinned
-from modalkit.letter import letter
-from modalkit.process import Session, open_study
+from modalkit.output.summary import letter
 from modalkit.report import Drawing, diagnosis_report, drawings, write_report
 from modalkit.report.html import Column, element, table, text
 from modalkit.report.place import BEGIN
 from modalkit.report.provenance import fingerprint
 from modalkit.report.svg import inline_svg
-from modalkit.study import Study, read_study
+from modalkit.study.read import Study, read_study
+from modalkit.workflow.case import Session, open_study
 from updating import Diagnosis
-from updating.diagnosis.result import Gap, HeldPoints, ParameterEstimate, Ranked, Shrink
+from updating.diagnosis.answer.result import Gap, HeldPoints, ParameterEstimate, Ranked, Shrink
 
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from acquisition import read_modes
-from modalkit.process import Session, open_study
-from modalkit.reading import read
-from modalkit.study import read_study
+from modalkit.study.read import read_study
+from modalkit.workflow.case import Session, open_study
+from modalkit.workflow.identification import read
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 NAMES = ("beam_dry", "beam_wet", "plate_dry", "plate_wet", "tape_taped")

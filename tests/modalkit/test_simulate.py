@@ -13,12 +13,12 @@ import pytest
 from acquisition import Dof, read_uff, write_uff
 from acquisition.errors import InputError, StudyError
 from modalkit.cli.demonstrate import sample
-from modalkit.named_effects import parse_effect
-from modalkit.process import process
-from modalkit.reading import read
 from modalkit.rig import Options, spaced
-from modalkit.simulate import prepare, simulate_test
-from modalkit.study import read_study
+from modalkit.simulation.simulate import prepare, simulate_test
+from modalkit.study.named_effects import parse_effect
+from modalkit.study.read import read_study
+from modalkit.workflow.case import process
+from modalkit.workflow.identification import read
 from updating import LIBRARY, Damping, Material, Measured, Predictor, Spec
 
 Run = Callable[..., tuple[int, str, str]]

@@ -11,10 +11,10 @@ import pytest
 from acquisition import Dof, Geometry, UffContent, estimate_frfs, hammer_test, judge_hits
 from acquisition.synthetic import HammerPlan, ModalSystem, modal_system
 from identification import ModalModel
-from modalkit.handling import Handling
-from modalkit.reading import Judged, Processed
+from modalkit.workflow.identification import Judged, Processed
+from modalkit.workflow.processing_options import Handling
 from updating import Axes, Material, Predictor, Spec, measured_from_identified
-from updating.matching import pair_modes
+from updating.prediction.matching import pair_modes
 
 BEAM = Spec("beam", 0.4, 0.03, 0.005, (20,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))
 X = np.linspace(0.05, 0.4, 8)

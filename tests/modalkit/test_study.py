@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from acquisition.errors import StudyError
-from modalkit.study import Study, read_study
+from modalkit.study.read import Study, read_study
 
 BEAM = """
 [model]

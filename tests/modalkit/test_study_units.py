@@ -10,9 +10,9 @@ import pytest
 
 from acquisition.errors import StudyError
 from acquisition.si_units import si_value
-from modalkit.accepting import unit_of
-from modalkit.library import example
-from modalkit.study import Study, read_study
+from modalkit.output.library import example
+from modalkit.study.read import Study, read_study
+from modalkit.study.stated_effects import unit_of
 from updating import LIBRARY
 from updating.models.spec import PointMass
 
@@ -206,7 +206,7 @@ def test_the_table_of_units_is_loaded_only_where_a_unit_is_written(tmp_path: Pat
     for text, loaded in ((IN_SI, "False"), (WITH_UNITS, "True")):
         path.write_text(text, encoding="utf-8")
         code = (
-            "import sys; from pathlib import Path; from modalkit.study import read_study; "
+            "import sys; from pathlib import Path; from modalkit.study.read import read_study; "
             "read_study(Path(sys.argv[1])); print('pint' in sys.modules)"
         )
         done = subprocess.run(

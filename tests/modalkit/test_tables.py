@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from acquisition import InputError
-from modalkit.json_update import to_json
-from modalkit.tables import PaperTable, render, tables, tables_a
-from modalkit.tables.chain import Walk, open_test, sample_folder, walk, walk_all
-from modalkit.tables.figures_a import figures_a
-from modalkit.tables.printed_a import TABLES
+from modalkit.output.update import to_json
+from modalkit.papers.a.chain import Walk, open_test, sample_folder, walk, walk_all
+from modalkit.papers.a.figures import figures_a
+from modalkit.papers.a.printed import TABLES
+from modalkit.papers.a.tables import tables_a
+from modalkit.papers.render import PaperTable, render
+from modalkit.papers.tables import tables
 
 
 @pytest.fixture(scope="module")

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-import modalkit.tables
+import modalkit.papers.tables
 from modalkit.cli import app
 from modalkit.figures import save_figures
-from modalkit.tables import PaperTable, Work, render, work
-from modalkit.tables import printed_b as printed
+from modalkit.papers.b import printed
+from modalkit.papers.render import PaperTable, render
+from modalkit.papers.tables import Work, work
 
 TEST = np.array([24.3, 67.2, 130.3, 217.1, 323.8, 453.2])
 
@@ -146,7 +147,7 @@ def test_parameters_end_where_the_table_says(worked: Work, made: dict[object, Pa
 def test_the_command_writes_tables_and_figures(
     worked: Work, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(modalkit.tables, "work", lambda paper: worked)
+    monkeypatch.setattr(modalkit.papers.tables, "work", lambda paper: worked)
     target, folder = tmp_path / "b.tex", tmp_path / "figures"
     arguments = ["tables", "--paper", "B", "--format", "latex", "-o", str(target), "--figures", str(folder)]
     result = CliRunner().invoke(app, arguments)

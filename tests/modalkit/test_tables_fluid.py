@@ -5,10 +5,12 @@ import pandas as pd
 import pytest
 
 from acquisition import InputError
-from modalkit.process import open_study
-from modalkit.study import read_study
-from modalkit.tables import PaperTable, fluid_tables, fluid_work, render
-from modalkit.tables.chain import sample_folder
+from modalkit.papers.a.chain import sample_folder
+from modalkit.papers.a.fluid import fluid_tables
+from modalkit.papers.render import PaperTable, render
+from modalkit.papers.tables import fluid_work
+from modalkit.study.read import read_study
+from modalkit.workflow.case import open_study
 from updating.nominal import predictor_of
 
 SEVEN, TWELVE = "coupled, 7 modes [%]", "coupled, 12 modes [%]"

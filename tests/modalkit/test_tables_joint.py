@@ -2,11 +2,12 @@
 
 import pytest
 
-from modalkit.fitting import update_studies
-from modalkit.process import open_study
-from modalkit.study import read_study
-from modalkit.tables import PaperTable, joint_table, render
-from modalkit.tables.chain import sample_folder
+from modalkit.papers.a.chain import sample_folder
+from modalkit.papers.a.joint import joint_table
+from modalkit.papers.render import PaperTable, render
+from modalkit.study.read import read_study
+from modalkit.workflow.case import open_study
+from modalkit.workflow.update import update_studies
 
 
 @pytest.fixture(scope="module")

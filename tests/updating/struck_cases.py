@@ -11,7 +11,7 @@ from updating_cases import BEAM, DOUBTS, PLATE, POINTS, blank
 
 from acquisition import Dof, FrfSet, Geometry, HammerPlan, estimate_frfs, hammer_test, judge_hits
 from identification import identify
-from modalkit.joining import together
+from modalkit.workflow.joining import together
 from updating import Axes, Case, Measured, Predictor, Spec, Tolerances, measured_from_identified
 from updating.models.state import State
 from updating.simulation import modal_system, simulated

@@ -10,8 +10,8 @@ from updating_cases import BEAM, POINTS, blank, specimen, struck
 
 from acquisition.errors import EstimationError
 from updating import LIBRARY, Damping, Measured, Predictor
-from updating.baseline import correct
 from updating.models.state import State
+from updating.prediction.baseline import correct
 
 LOOK = Predictor(BEAM, blank(POINTS))
 SOUND = LOOK.predict(count=5)

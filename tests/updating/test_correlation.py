@@ -7,7 +7,7 @@ import pytest
 
 from acquisition import Dof, EstimationError, FrfSet, StudyError
 from updating import Case, Damping, Material, Measured, Predictor, Region, Spec
-from updating.correlation import correlate
+from updating.correlation.correlate import correlate
 from updating.simulation import frf_set, simulated
 
 BEAM = Spec("beam", 0.4, 0.03, 0.005, (12,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from updating_cases import BEAM, POINTS, blank
 
 from acquisition.errors import StudyError
-from modalkit.library import effects_record
+from modalkit.output.library import effects_record
 from updating import LIBRARY, Environment, Predictor
 from updating.effects import accepted_state
 from updating.models import PointMass

@@ -13,9 +13,9 @@ from scipy import linalg, optimize
 from updating_cases import BEAM, PLATE, POINTS, ExactBeam, blank
 
 from updating import LIBRARY, Material, Predictor, Spec
-from updating.effects.axial_load import buckling_load
 from updating.effects.box import SOFT, mirror_images, shares
-from updating.effects.mass import sensor_places
+from updating.effects.structure.axial_load import buckling_load
+from updating.effects.structure.mass import sensor_places
 from updating.models import FieldStructure, PointMass, Region, build_structure
 from updating.models.fields import Sparse
 from updating.models.state import State

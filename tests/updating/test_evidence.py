@@ -11,14 +11,14 @@ from scipy.stats import multivariate_normal
 from updating_cases import BEAM, DOUBTS, ExactBeam, blank, case_of, observed
 
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
-from updating.diagnosis.candidate import Candidate
-from updating.diagnosis.comparison import KNOWN_SCATTER, SCALES, Comparison
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.evidence import explain
-from updating.diagnosis.fit import Point, climb, evaluate
-from updating.diagnosis.gaussian import gaussian, marginal, whiten
-from updating.diagnosis.goodness import p_value
-from updating.diagnosis.problem import Problem
+from updating.diagnosis.search.evidence import explain
+from updating.diagnosis.search.fit import Point, climb, evaluate
+from updating.diagnosis.search.goodness import p_value
+from updating.likelihood.comparison import KNOWN_SCATTER, SCALES, Comparison
+from updating.likelihood.gaussian import gaussian, marginal, whiten
+from updating.problem.candidate import Candidate
+from updating.problem.specimen import Problem
 
 COARSE = replace(BEAM, elements=(8,), theory="euler-bernoulli")
 HIT = np.array([0.1, 0.25, 0.376])

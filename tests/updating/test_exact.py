@@ -14,7 +14,7 @@ from updating import LIBRARY, Parameter, Predictor
 from updating.effects.base import Effect, Values
 from updating.models.spec import Region
 from updating.models.state import State
-from updating.update.exact import full_modes as exact_modes
+from updating.update.parameters.exact import full_modes as exact_modes
 
 CONDENSED = {"fluid_added_mass", "fluid_damping"}
 """Effects whose full matrices are dense, and known on a reduced basis alone."""

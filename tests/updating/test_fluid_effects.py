@@ -12,7 +12,7 @@ from updating_cases import BEAM, PLATE, POINTS, blank
 
 from updating import Damping, Environment, Material, Predictor
 from updating.effects import accepted_state
-from updating.effects.fluid import WATER, FluidAddedMass, FluidDamping, fluid_density, unit_mass
+from updating.effects.structure.fluid import WATER, FluidAddedMass, FluidDamping, fluid_density, unit_mass
 from updating.fluid import FluidDomain, added_mass, beam_added_mass, quadrature_grid
 from updating.models import PointMass
 from updating.models.state import State

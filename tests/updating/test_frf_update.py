@@ -9,17 +9,17 @@ from acquisition.errors import StudyError
 from updating import Case, Material, Measured, Predictor, Region, Spec
 from updating.frf_update import FrfUpdate, bootstrap_frf_update, update_frfs
 from updating.frf_update.columns import columns
+from updating.frf_update.evaluation import changes, look, sensitivity
 from updating.frf_update.expansion import expand
 from updating.frf_update.lines import choose_lines
-from updating.frf_update.look import changes, look, sensitivity
 from updating.frf_update.run import _stage
 from updating.frf_update.solve import increment
 from updating.frf_update.stage import nominal, whitened
-from updating.measured_frfs import MeasuredFrfs
 from updating.models.state import NOMINAL
+from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.tolerances import Tolerances
 from updating.update.building import build_specimen
-from updating.update.knobs import build_panel
+from updating.update.parameters.parameters import build_panel
 
 STEEL = Material(210e9, 7860.0, 0.3)
 START = {

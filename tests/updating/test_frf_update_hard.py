@@ -10,13 +10,13 @@ from updating import Case, Damping, Material, Measured, Predictor, Region, Spec
 from updating.effects import accepted_state
 from updating.frf_update import FrfUpdate, update_frfs
 from updating.frf_update.columns import columns
-from updating.frf_update.look import changes, look, sensitivity
+from updating.frf_update.evaluation import changes, look, sensitivity
 from updating.frf_update.mounting import resonances, shifted
-from updating.measured_frfs import MeasuredFrfs
 from updating.models.response import receptance
 from updating.models.state import NOMINAL, State
+from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.tolerances import Tolerances
-from updating.update.knobs import build_panel
+from updating.update.parameters.parameters import build_panel
 
 STEEL = Material(210e9, 7850.0, 0.3)
 CANTILEVER = Spec(

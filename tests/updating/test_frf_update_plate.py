@@ -9,7 +9,7 @@ from updating_cases import blank
 
 from updating import Case, Damping, Material, Measured, Predictor, Region, Spec
 from updating.frf_update.run import solve_stages
-from updating.measured_frfs import MeasuredFrfs
+from updating.test_data.measured_frfs import MeasuredFrfs
 
 STEEL = Material(210e9, 7850.0, 0.3)
 POINTS = np.array([(x, y) for x in (0.1, 0.2, 0.3, 0.376) for y in (0.0, 0.1, 0.2)])

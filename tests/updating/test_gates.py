@@ -12,7 +12,8 @@ from updating_cases import BEAM, PLATE, STEEL, ExactBeam, blank
 
 from acquisition.errors import StudyError
 from updating import Measured, Predictor, Region, Spec, build_structure
-from updating.diagnosis.gates import (
+from updating.models.state import State
+from updating.problem.gates import (
     discrepancy,
     missing_mode,
     on_convergence,
@@ -20,7 +21,6 @@ from updating.diagnosis.gates import (
     on_modes,
     shortfall,
 )
-from updating.models.state import State
 
 THIN = replace(BEAM, theory="euler-bernoulli")
 POINTS = np.linspace(0.0752, 0.376, 5)

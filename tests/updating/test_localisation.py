@@ -15,8 +15,7 @@ from updating_cases import PLATE, POINTS, ExactBeam, blank, case_of, observed, s
 
 from updating import Measured, Predictor
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.gaussian import marginal
-from updating.diagnosis.problem import Problem
+from updating.likelihood.gaussian import marginal
 from updating.localisation import (
     METHODS,
     BestSubspace,
@@ -37,6 +36,7 @@ from updating.localisation.force_residual import region_parts
 from updating.localisation.severity import Between, integrate, refine
 from updating.localisation.shapes import dynamic, serep, shapes_of
 from updating.models.state import NOMINAL, Loss, State
+from updating.problem.specimen import Problem
 
 BEAM = FINE.with_elements(20)
 SHARP = ((ConstitutiveError(), 2), (BestSubspace(), 1), (RegionEvidence(), 1))

@@ -10,9 +10,9 @@ from updating_cases import BEAM, POINTS, blank
 
 from acquisition.errors import EstimationError
 from updating import Measured, Predictor
-from updating.matching import mac_of_constants, match, pair_modes
 from updating.models.state import State
-from updating.prediction import Prediction
+from updating.prediction.matching import mac_of_constants, match, pair_modes
+from updating.prediction.predict import Prediction
 
 LOOK = Predictor(BEAM, blank(POINTS))
 MODEL = LOOK.predict(count=6)

@@ -10,7 +10,7 @@ from updating_cases import BEAM, PLATE, ExactBeam
 
 from acquisition import Dof, Geometry, ModalData
 from acquisition.errors import StudyError
-from acquisition.frf import FrfSet
+from acquisition.frfs.frf import FrfSet
 from identification import ModalModel, identify
 from updating import Axes, Measured, measured_from_identified, measured_from_modes
 

@@ -9,8 +9,8 @@ from struck_cases import ROD, SHEET, Faults, Roving, struck_case
 from updating_cases import blank
 
 from updating import LIBRARY, Case, Diagnosis, Predictor, diagnose
-from updating.effects.points import indices
-from updating.measured import turn
+from updating.effects.measurement.points import indices
+from updating.test_data.measured import turn
 
 NAMES = (
     "E", "section_scale", "uniform_damping", "exponential_window", "calibration_gain", "time_delay", "polarity",

@@ -6,25 +6,25 @@ import numpy as np
 import pytest
 
 from acquisition import ModalData
-from updating.axes import Axes
 from updating.case import Case
-from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.answer.verdict import decide
 from updating.diagnosis.diagnose import diagnose, diagnose_together, pose
-from updating.diagnosis.evidence import explain
 from updating.diagnosis.next_test import propose
 from updating.diagnosis.next_test.base import Rival, Site, separation
+from updating.diagnosis.next_test.changed import AddedMass
 from updating.diagnosis.next_test.free_free import FreeFree
 from updating.diagnosis.next_test.instruments import BALANCE, Caliper, Weigh, WeighSensor
 from updating.diagnosis.next_test.other_points import Shapes
-from updating.diagnosis.next_test.same_test import AddedMass
-from updating.diagnosis.problem import Problem
-from updating.diagnosis.search import search
-from updating.diagnosis.verdict import decide
+from updating.diagnosis.search.evidence import explain
+from updating.diagnosis.search.search import search
 from updating.effects import LIBRARY
-from updating.measured import measured_from_modes
 from updating.models import Material, Spec
 from updating.models.state import State
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
+from updating.problem.candidate import Candidate
+from updating.problem.specimen import Problem
+from updating.test_data.axes import Axes
+from updating.test_data.measured import measured_from_modes
 from updating.tolerances import Tolerances
 
 BEAM = Spec("beam", 0.4, 0.03, 0.005, (20,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))

@@ -10,7 +10,7 @@ from updating_cases import BEAM, PLATE, POINTS, blank
 
 from updating import Measured, Predictor
 from updating.models.state import State
-from updating.reading import fixed_sensors, reading, roving
+from updating.test_data.chain import fixed_sensors, reading, roving
 
 GRID = np.array([[x, y] for x in (0.1, 0.22, 0.376) for y in (0.0, 0.09, 0.2)])
 TESTS = {"beam": Predictor(BEAM, blank(POINTS)), "plate": Predictor(PLATE, blank(GRID))}

@@ -10,7 +10,7 @@ from scipy import sparse
 from updating_cases import BEAM, PLATE, ExactBeam, blank
 
 from updating import Predictor, Region, Spec, build_structure
-from updating.effects.clamp import edge_slopes
+from updating.effects.structure.clamp import edge_slopes
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.reduced import Reduced

@@ -8,9 +8,9 @@ from updating_cases import BEAM, blank
 from acquisition import Dof, FrfSet
 from identification import identify
 from updating import Predictor
-from updating.diagnosis.candidate import Candidate
 from updating.effects import LIBRARY
 from updating.models.state import State
+from updating.problem.candidate import Candidate
 
 POINTS = np.linspace(0.0376, 0.376, 10)
 STRUCK = 3

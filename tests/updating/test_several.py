@@ -11,13 +11,13 @@ from updating_cases import PLATE as FINE_PLATE
 
 from acquisition.errors import InputError
 from updating import Case, Predictor, Spec, Tolerances
-from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.answer.result import Diagnosis
 from updating.diagnosis.diagnose import diagnose_together, pose
-from updating.diagnosis.evidence import explain
-from updating.diagnosis.result import Diagnosis
-from updating.diagnosis.several import Several
+from updating.diagnosis.problem.several import Several
+from updating.diagnosis.search.evidence import explain
 from updating.effects import LIBRARY
 from updating.models.state import NOMINAL, State, combine
+from updating.problem.candidate import Candidate
 
 BEAM = FINE.with_elements(12)
 PLATE = FINE_PLATE.with_elements(8, 5)

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from test_next_test import case_of
 
-from updating.diagnosis.candidate import Candidate
-from updating.diagnosis.comparison import Comparison
+from updating.diagnosis.answer.metric import Squares, squares
+from updating.diagnosis.answer.shrink import closed, shrinkage
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.evidence import explain
-from updating.diagnosis.fit import climb
-from updating.diagnosis.held_out import BELIEVED, believed, modes_held_out
-from updating.diagnosis.metric import Squares, squares
-from updating.diagnosis.problem import Problem
-from updating.diagnosis.shrink import closed, shrinkage
+from updating.diagnosis.search.evidence import explain
+from updating.diagnosis.search.fit import climb
+from updating.diagnosis.search.held_out import BELIEVED, believed, modes_held_out
 from updating.effects import LIBRARY
+from updating.likelihood.comparison import Comparison
+from updating.problem.candidate import Candidate
+from updating.problem.specimen import Problem
 
 
 @pytest.fixture(scope="module")

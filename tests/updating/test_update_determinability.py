@@ -8,7 +8,7 @@ import pytest
 from acquisition import Dof, EstimationError, Geometry, ModalData, StudyError
 from updating import Axes, Case, Material, Region, Spec, Tolerances, build_structure, measured_from_modes
 from updating.update import update
-from updating.update.identifiability import best_subset
+from updating.update.statistics.identifiability import best_subset
 
 STEEL = Material(210e9, 7850.0, 0.3)
 PARTS = (Region("root", (0.0, 0.1)), Region("middle", (0.1, 0.25)), Region("tip", (0.25, 0.4)))

@@ -9,8 +9,8 @@ from scipy import stats
 from acquisition import ModalData
 from updating import Axes, Case, Material, Region, Spec, Tolerances, build_structure, measured_from_modes
 from updating.update import bootstrap, update
-from updating.update.mixture import Mixture, laplace
-from updating.update.whitening import whitening
+from updating.update.data.whitening import whitening
+from updating.update.statistics.mixture import Mixture, laplace
 
 STEEL = Material(210e9, 7850.0, 0.3)
 HALVES = (Region("left", (0.0, 0.2)), Region("right", (0.2, 0.4)))

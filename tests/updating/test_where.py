@@ -9,15 +9,15 @@ from updating_cases import BEAM as FINE
 from updating_cases import PLATE, POINTS, ExactBeam, blank, case_of, observed, specimen, struck
 
 from updating import LIBRARY, Case, Measured, Predictor
-from updating.diagnosis.candidate import Candidate
-from updating.diagnosis.clusters import clusters
-from updating.diagnosis.contributions import contributions
+from updating.diagnosis.answer.clusters import clusters
+from updating.diagnosis.answer.contributions import contributions
+from updating.diagnosis.answer.where import locate
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.evidence import Explanation, explain
-from updating.diagnosis.problem import Problem
-from updating.diagnosis.search import Search, search
-from updating.diagnosis.where import locate
+from updating.diagnosis.search.evidence import Explanation, explain
+from updating.diagnosis.search.search import Search, search
 from updating.models.state import State
+from updating.problem.candidate import Candidate
+from updating.problem.specimen import Problem
 
 BEAM = FINE.with_elements(20)
 FREE = replace(BEAM, clamped=(), regions=())

@@ -11,26 +11,26 @@ from threadpoolctl import threadpool_limits
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
-from updating.baseline import correct, doubt_in_mass
 from updating.case import Case
-from updating.diagnosis.doubtful import remarks_on_doubtful
-from updating.diagnosis.gates import on_levels, on_modes, remarks_on, shortfall
-from updating.diagnosis.goodness import p_value
+from updating.diagnosis.answer.result import Diagnosis, Gap, Shrink, Where
+from updating.diagnosis.answer.shrink import shrinkage
+from updating.diagnosis.answer.verdict import decide, is_significant, rank
+from updating.diagnosis.answer.where import locate
 from updating.diagnosis.next_test import propose
-from updating.diagnosis.posed import Posed
-from updating.diagnosis.problem import Problem
-from updating.diagnosis.result import Diagnosis, Gap, Shrink, Where
-from updating.diagnosis.same_places import unmatched
-from updating.diagnosis.search import Search, search
-from updating.diagnosis.several import Several
-from updating.diagnosis.shrink import shrinkage
-from updating.diagnosis.verdict import decide, is_significant, rank
-from updating.diagnosis.where import locate
+from updating.diagnosis.problem.doubtful import remarks_on_doubtful
+from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.several import Several
+from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.search import Search, search
 from updating.effects import LIBRARY, Effect
-from updating.matching import Paired, mac_of_constants, pair_modes
 from updating.models.state import State
 from updating.nominal import predictor_of
-from updating.prediction import Predictor
+from updating.prediction.baseline import correct, doubt_in_mass
+from updating.prediction.matching import Paired, mac_of_constants, pair_modes
+from updating.prediction.predict import Predictor
+from updating.problem.gates import on_levels, on_modes, remarks_on, shortfall
+from updating.problem.same_places import unmatched
+from updating.problem.specimen import Problem
 
 
 def diagnose(

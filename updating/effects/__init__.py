@@ -9,28 +9,28 @@ from collections.abc import Mapping
 from typing import Any
 
 from acquisition.errors import StudyError
-from updating.effects.axial_load import AxialLoad
 from updating.effects.base import Channel, Effect, Parameter, Variant
-from updating.effects.clamp import ClampRotation, ClampTranslation
-from updating.effects.damping import UniformDamping
-from updating.effects.delay import TimeDelay
-from updating.effects.factor import Density, Modulus, SectionScale, Thickness
-from updating.effects.fluid import FluidAddedMass, FluidDamping
-from updating.effects.gain import CalibrationGain
-from updating.effects.joint_nonlinearity import JointNonlinearity
-from updating.effects.length import Length
 from updating.effects.limits import check_values
-from updating.effects.local_stiffness import LocalStiffness
-from updating.effects.mass import LumpedMass, SensorMass
-from updating.effects.orthotropy import Orthotropy
-from updating.effects.patch import DampingPatch
-from updating.effects.polarity import Polarity
-from updating.effects.position_error import PositionError
-from updating.effects.shear import Shear
-from updating.effects.swapped_points import SwappedPoints
-from updating.effects.window import ExponentialWindow
+from updating.effects.measurement.delay import TimeDelay
+from updating.effects.measurement.gain import CalibrationGain
+from updating.effects.measurement.polarity import Polarity
+from updating.effects.measurement.position_error import PositionError
+from updating.effects.measurement.swapped_points import SwappedPoints
+from updating.effects.measurement.window import ExponentialWindow
+from updating.effects.structure.axial_load import AxialLoad
+from updating.effects.structure.clamp import ClampRotation, ClampTranslation
+from updating.effects.structure.damping import UniformDamping
+from updating.effects.structure.factor import Density, Modulus, SectionScale, Thickness
+from updating.effects.structure.fluid import FluidAddedMass, FluidDamping
+from updating.effects.structure.joint_nonlinearity import JointNonlinearity
+from updating.effects.structure.length import Length
+from updating.effects.structure.local_stiffness import LocalStiffness
+from updating.effects.structure.mass import LumpedMass, SensorMass
+from updating.effects.structure.orthotropy import Orthotropy
+from updating.effects.structure.patch import DampingPatch
+from updating.effects.structure.shear import Shear
 from updating.models.state import State
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
 
 LIBRARY: dict[str, Effect] = {
     effect.name: effect

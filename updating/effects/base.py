@@ -12,7 +12,7 @@ import numpy as np
 
 from updating.models.spec import Spec
 from updating.models.state import State
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
 
 Channel = Literal["stiffness", "mass", "damping", "measurement"]
 

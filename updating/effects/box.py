@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.effects.base import Values
 from updating.models.spec import Spec
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
 
 Place = tuple[float, float, float]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from updating.measured import Measured
-from updating.prediction import Predictor
-from updating.reading import roving
+from updating.prediction.predict import Predictor
+from updating.test_data.chain import roving
+from updating.test_data.measured import Measured
 
 
 def damping_obstacle(predictor: Predictor) -> str | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from updating.effects.base import Parameter
 from updating.effects.box import Place
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
 
 
 def stiff_regions(predictor: Predictor) -> tuple[int, ...]:

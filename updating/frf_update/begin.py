@@ -10,9 +10,9 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.frf_update.stage import Stage
-from updating.matching import match
-from updating.prediction import Prediction
-from updating.update.specimen import Specimen
+from updating.prediction.matching import match
+from updating.prediction.predict import Prediction
+from updating.update.data.specimen import Specimen
 
 STEP = 1e-3
 """Step of the differences of frequencies, in a parameter's doubts [-]."""

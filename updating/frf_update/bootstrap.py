@@ -12,7 +12,7 @@ from acquisition.display import Displayed
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.frf_update.columns import columns
-from updating.frf_update.look import Look, look
+from updating.frf_update.evaluation import Look, look
 from updating.frf_update.mounting import resonances, shifted
 from updating.frf_update.report import report
 from updating.frf_update.result import FrfUpdate
@@ -20,9 +20,9 @@ from updating.frf_update.run import solve_stages
 from updating.frf_update.solve import CONVERGED, descend
 from updating.frf_update.stage import Stage
 from updating.frf_update.step import Step, last_steps
-from updating.measured_frfs import MeasuredFrfs
 from updating.models.state import NOMINAL, combine
-from updating.update.bootstrap import FEWEST, LEVEL
+from updating.test_data.measured_frfs import MeasuredFrfs
+from updating.update.statistics.bootstrap import FEWEST, LEVEL
 
 ROUNDS = 2
 """How often the stages are gone through for each draw, from the solution of the data at hand."""

@@ -12,10 +12,10 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.frf_update.columns import columns
-from updating.frf_update.look import look
-from updating.measured_frfs import MeasuredFrfs
+from updating.frf_update.evaluation import look
 from updating.models.state import State
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
+from updating.test_data.measured_frfs import MeasuredFrfs
 
 FEWEST = 4
 """Fewest FRFs of which one can be called odd, and one for so many may be [-]."""

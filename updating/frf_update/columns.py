@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import IntArray
-from updating.measured_frfs import MeasuredFrfs
+from updating.test_data.measured_frfs import MeasuredFrfs
 
 
 @dataclass(frozen=True, eq=False)

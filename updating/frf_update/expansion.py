@@ -6,7 +6,7 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray
 from updating.frf_update.columns import Columns
-from updating.frf_update.look import Look
+from updating.frf_update.evaluation import Look
 from updating.models.response import answers, on_each_line
 
 RIDGE = 1e-4

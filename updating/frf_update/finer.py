@@ -12,8 +12,8 @@ from acquisition.arrays import FloatArray
 from updating.frf_update.step import Step, last_steps
 from updating.models.reduced import SMALL, Reduced, extend_basis
 from updating.models.state import State, combine
-from updating.prediction import Predictor
-from updating.update.specimen import Specimen
+from updating.prediction.predict import Predictor
+from updating.update.data.specimen import Specimen
 
 AGREES = 1e-5
 """Relative change of the frequencies and of the FRFs by a new basis under which the old one will do [-]."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from updating.frf_update.columns import Columns
-from updating.frf_update.look import Look
+from updating.frf_update.evaluation import Look
 
 BEYOND = 1.2
 """Modes up to so many times the highest line move the FRFs [-]."""

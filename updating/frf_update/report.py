@@ -11,20 +11,20 @@ import pandas as pd
 from acquisition.arrays import FloatArray, IntArray
 from identification import frac
 from updating.frf_update.columns import columns
-from updating.frf_update.look import look
+from updating.frf_update.evaluation import look
 from updating.frf_update.result import FrfUpdate
 from updating.frf_update.stage import nominal
 from updating.frf_update.statistics import assess, misses, with_misses
 from updating.frf_update.step import Step, identified_ratios, last_steps
-from updating.matching import mac_of_constants, match
-from updating.measured_frfs import MeasuredFrfs
 from updating.models.state import NOMINAL, State, combine
-from updating.prediction import Predictor
-from updating.update.determine import correlations
-from updating.update.exact import full_modes
-from updating.update.knobs import Knob
+from updating.prediction.matching import mac_of_constants, match
+from updating.prediction.predict import Predictor
+from updating.test_data.measured_frfs import MeasuredFrfs
+from updating.update.data.specimen import Specimen
+from updating.update.parameters.exact import full_modes
+from updating.update.parameters.parameters import Knob
 from updating.update.result import Estimate
-from updating.update.specimen import Specimen
+from updating.update.statistics.determined import correlations
 
 NOTEWORTHY = 0.01
 """Discrepancy that the user ought to know of [-]."""

@@ -22,12 +22,12 @@ from updating.frf_update.solve import BEGIN, Solved, solve
 from updating.frf_update.stage import Stage, nominal
 from updating.frf_update.statistics import assess
 from updating.frf_update.step import UNTOLD_RATIO, Step, identified_ratios, last_steps
-from updating.matching import match
-from updating.measured_frfs import MeasuredFrfs
 from updating.models.state import NOMINAL, State, combine
+from updating.prediction.matching import match
+from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.building import build_specimen
-from updating.update.knobs import DAMPERS, DAMPING, Panel, build_panel
-from updating.update.specimen import Specimen
+from updating.update.data.specimen import Specimen
+from updating.update.parameters.parameters import DAMPERS, DAMPING, Panel, build_panel
 
 PASSES = 2
 """How often a stage chooses its lines: on the nominal model, and again where that has brought it."""

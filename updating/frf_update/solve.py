@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.frf_update.look import Look
+from updating.frf_update.evaluation import Look
 from updating.frf_update.stage import Stage, whitened
 
 BEGIN = 0.5

@@ -16,12 +16,12 @@ from scipy.stats import chi2
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from updating.frf_update.columns import Columns
+from updating.frf_update.evaluation import Look, changes, look, sensitivity
 from updating.frf_update.expansion import expand
-from updating.frf_update.look import Look, changes, look, sensitivity
-from updating.measured_frfs import MeasuredFrfs
 from updating.models.state import State
-from updating.prediction import Predictor
-from updating.update.knobs import Knob, Panel
+from updating.prediction.predict import Predictor
+from updating.test_data.measured_frfs import MeasuredFrfs
+from updating.update.parameters.parameters import Knob, Panel
 
 CHANCE = 1e-3
 """A misfit less probable than this is the model's, not the noise's [-]."""

@@ -8,14 +8,14 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.frf_update.begin import paired
-from updating.frf_update.look import Change, sensitivity
+from updating.frf_update.evaluation import Change, sensitivity
 from updating.frf_update.mounting import resonances, shifted
 from updating.frf_update.solve import DROWNED, Solved
 from updating.frf_update.stage import Stage, modal_shares, whitened
 from updating.frf_update.step import Step
 from updating.models.damping import Matrices
-from updating.prediction import Prediction
-from updating.update.specimen import Specimen
+from updating.prediction.predict import Prediction
+from updating.update.data.specimen import Specimen
 
 WEAK = 0.2
 """Modal constants under this share of a mode's largest say little of relative errors [-]."""

@@ -9,9 +9,9 @@ import numpy as np
 
 from updating.frf_update.solve import Solved
 from updating.frf_update.stage import Stage
-from updating.matching import match
 from updating.models.state import State
-from updating.update.specimen import Specimen
+from updating.prediction.matching import match
+from updating.update.data.specimen import Specimen
 
 UNTOLD_RATIO = 0.005
 """Damping ratio of modes of which the test says none [-]."""

@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.problem import Problem
+from updating.problem.specimen import Problem
 
 Kind = Literal["stiffness", "mass", "damping"]
 """What of a region may be wrong."""

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.problem import Problem
 from updating.localisation.base import Kind
 from updating.localisation.force_residual import region_parts
 from updating.models.state import NOMINAL, Loss, State
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
+from updating.problem.specimen import Problem
 
 STEP = 0.05
 """Logarithm of the factor at which sensitivities are taken [-]."""

@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.problem import Problem
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.places import centres
 from updating.localisation.shapes import shapes_of
+from updating.problem.specimen import Problem
 
 
 @dataclass(frozen=True)

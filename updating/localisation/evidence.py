@@ -15,14 +15,14 @@ import numpy as np
 from scipy.special import logsumexp
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.candidate import Doubt
-from updating.diagnosis.comparison import Comparison
-from updating.diagnosis.gaussian import marginal
-from updating.diagnosis.problem import Problem
+from updating.likelihood.comparison import Comparison
+from updating.likelihood.gaussian import marginal
 from updating.localisation.base import KINDS, Kind, Localiser, areas
 from updating.localisation.changes import NODES, changes
 from updating.localisation.severity import DEPTH, Between, integrate, refine
 from updating.models.state import NOMINAL, State
+from updating.problem.candidate import Doubt
+from updating.problem.specimen import Problem
 
 DOUBT = Doubt(fidelity=0.1)
 """A change is rarely even over just one region: how far that is off, relative to the shift it makes."""

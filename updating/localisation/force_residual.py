@@ -9,9 +9,9 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.problem import Problem
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.shapes import dynamic, serep, shapes_of
+from updating.problem.specimen import Problem
 
 
 @dataclass(frozen=True)

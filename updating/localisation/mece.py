@@ -9,10 +9,10 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.problem import Problem
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.force_residual import region_parts
 from updating.localisation.shapes import dynamic, shapes_of
+from updating.problem.specimen import Problem
 
 
 @dataclass(frozen=True)

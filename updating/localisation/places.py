@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.problem import Problem
 from updating.models.spec import Spec
+from updating.problem.specimen import Problem
 
 
 def boxes(spec: Spec) -> FloatArray:

@@ -15,7 +15,7 @@ from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.diagnosis.comparison import CHANNELS, SCALES, SHAPES, Comparison
+from updating.likelihood.comparison import CHANNELS, SCALES, SHAPES, Comparison
 
 FREQUENCY = CHANNELS.index("frequency")
 

@@ -13,8 +13,8 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.diagnosis.problem import Problem
 from updating.models.state import NOMINAL
+from updating.problem.specimen import Problem
 
 ROUNDS = 6
 """How often the two factors of the constants are fitted in turn."""

@@ -8,11 +8,11 @@ from typing import ClassVar
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.gaussian import marginal, whiten
-from updating.diagnosis.problem import Problem
+from updating.likelihood.gaussian import marginal, whiten
 from updating.localisation.base import KINDS, Kind, Localiser
 from updating.localisation.changes import columns
 from updating.models.state import NOMINAL
+from updating.problem.specimen import Problem
 
 
 @dataclass(frozen=True)

@@ -125,7 +125,7 @@ class Whole(Reduced):
         return cast(FloatArray, self.structure.unit_mass(points))
 
     def eigen(self, state: State) -> tuple[FloatArray, FloatArray]:
-        """Refuse: a full model is asked for a few modes, see :func:`updating.update.exact.full_modes`."""
+        """Refuse: a full model is asked for a few modes, see :func:`updating.update.parameters.exact.full_modes`."""
         raise ReducedOnlyError("all modes of a model at once")
 
 

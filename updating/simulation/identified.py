@@ -8,10 +8,10 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
-from updating.matching import Paired, pair_modes
-from updating.measured import Measured
 from updating.models.spec import Damping
-from updating.prediction import Prediction, Predictor
+from updating.prediction.matching import Paired, pair_modes
+from updating.prediction.predict import Prediction, Predictor
+from updating.test_data.measured import Measured
 
 UNKNOWN_DAMPING = 0.005
 """Damping ratio of modes of which neither test nor model says any [-]."""

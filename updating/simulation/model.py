@@ -15,7 +15,7 @@ from updating.case import Case
 from updating.models.damping import Matrices
 from updating.models.state import State
 from updating.nominal import predictor_of
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
 
 Departure = State | Callable[[Predictor], State]
 """What differs from the nominal model: a state, or how to make one on a predictor's basis."""

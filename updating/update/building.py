@@ -10,16 +10,16 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.case import Case
-from updating.matching import pair_modes
 from updating.models import build_structure
 from updating.models.structure import FieldStructure
 from updating.nominal import predictor_of
-from updating.prediction import Predictor
-from updating.update.affine import eligible
-from updating.update.basis import update_basis
-from updating.update.knobs import Knob, Panel, build_panel
-from updating.update.specimen import Specimen
-from updating.update.system import Quantity, System, Weights
+from updating.prediction.matching import pair_modes
+from updating.prediction.predict import Predictor
+from updating.update.data.specimen import Specimen
+from updating.update.data.system import Quantity, System, Weights
+from updating.update.parameters.affine import eligible
+from updating.update.parameters.basis import update_basis
+from updating.update.parameters.parameters import Knob, Panel, build_panel
 
 BEYOND = ("shapes", "constants")
 """What can be data beside the frequencies."""

@@ -9,7 +9,7 @@ import pandas as pd
 
 from acquisition.arrays import FloatArray
 from acquisition.display import Displayed, counted
-from updating.update.identifiability import Determinability
+from updating.update.statistics.identifiability import Determinability
 from updating.update.text import report_text
 
 

@@ -11,15 +11,15 @@ import pandas as pd
 from acquisition.arrays import FloatArray
 from updating.case import Case
 from updating.update.building import BEYOND, build_specimen, build_system, check_data, per_case
-from updating.update.determine import Statistics, assess, correlations
-from updating.update.doubts import doubts
-from updating.update.exact import full_modes
-from updating.update.knobs import Knob
-from updating.update.mixture import Mixture
+from updating.update.data.system import Quantity, System, Weights
+from updating.update.parameters.exact import full_modes
+from updating.update.parameters.parameters import Knob
 from updating.update.result import Estimate, Update
-from updating.update.several import Others, best_solution, mixture, said, within
 from updating.update.solve import Solution, solve
-from updating.update.system import Quantity, System, Weights
+from updating.update.statistics.determined import Statistics, assess, correlations
+from updating.update.statistics.doubts import doubts
+from updating.update.statistics.mixture import Mixture
+from updating.update.statistics.solutions import Others, best_solution, mixture, said, within
 
 EXACT = 1e-7
 """Agreement of reduced and full frequencies at which the outer iteration ends, relative [-]."""

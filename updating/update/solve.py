@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.update.specimen import Look
-from updating.update.system import Linear, System
+from updating.update.data.specimen import Look
+from updating.update.data.system import Linear, System
 
 NEGLIGIBLE = 1e-10
 """Singular values under this share of the largest carry nothing [-]."""

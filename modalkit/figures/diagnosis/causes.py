@@ -21,7 +21,7 @@ from modalkit.figures.style import (
 )
 from modalkit.figures.words import parameters, share, short
 from updating import Diagnosis
-from updating.diagnosis.search import REJECTED
+from updating.diagnosis.search.search import REJECTED
 
 ROWS = 7
 """Most rows shown."""

@@ -9,8 +9,8 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from modalkit.figures.diagnosis.fitted import Fitted, fitted
 from updating import Case, Diagnosis
-from updating.diagnosis.comparison import CHANNELS, Comparison
-from updating.diagnosis.metric import noise_squares, squares
+from updating.diagnosis.answer.metric import noise_squares, squares
+from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.models.state import State
 
 LABELS = {

@@ -27,7 +27,7 @@ from modalkit.figures.style import (
     place,
 )
 from modalkit.figures.words import answer, evidence
-from modalkit.letter import separated
+from modalkit.output.summary import separated
 from updating import Case, Diagnosis
 
 LEFT, MIDDLE, RIGHT = (1.3, 2.5), (4.5, 3.3), (8.35, 3.3)

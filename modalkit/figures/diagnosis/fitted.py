@@ -9,13 +9,13 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating import LIBRARY, Case, Diagnosis, Predictor
-from updating.diagnosis.candidate import Candidate
+from updating.diagnosis.answer.result import ParameterEstimate
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.fit import Point, climb, evaluate
-from updating.diagnosis.problem import Problem
-from updating.diagnosis.result import ParameterEstimate
+from updating.diagnosis.search.fit import Point, climb, evaluate
 from updating.effects import Variant
 from updating.models.state import State
+from updating.problem.candidate import Candidate
+from updating.problem.specimen import Problem
 
 
 @dataclass(frozen=True, eq=False)

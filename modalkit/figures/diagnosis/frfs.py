@@ -13,7 +13,6 @@ from acquisition import FrfSet
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from identification import frac
 from modalkit.figures.diagnosis.fitted import Fitted
-from modalkit.figures.frf import NAMES
 from modalkit.figures.overlay import chosen_frfs
 from modalkit.figures.style import (
     BLUE,
@@ -30,11 +29,12 @@ from modalkit.figures.style import (
     place,
     tidy,
 )
-from updating.correlated_frfs import CorrelatedFrfs, correlate_frfs
-from updating.matching import pair_modes
-from updating.measured import UNKNOWN_LEVEL
+from modalkit.figures.test.frf import NAMES
+from updating.correlation.frfs import CorrelatedFrfs, correlate_frfs
 from updating.models.state import State
-from updating.prediction import Predictor
+from updating.prediction.matching import pair_modes
+from updating.prediction.predict import Predictor
+from updating.test_data.measured import UNKNOWN_LEVEL
 
 TALL, SHORT, BLOCK = 2.2, 0.7, 4.15
 """Heights of magnitude, phase, and all that belongs to one FRF [in]."""

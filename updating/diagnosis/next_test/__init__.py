@@ -11,16 +11,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
+from updating.diagnosis.answer.result import NextTest, Verdict
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial, separation
+from updating.diagnosis.next_test.changed import SameTest
 from updating.diagnosis.next_test.free_free import Unclamped
 from updating.diagnosis.next_test.instruments import Instruments
 from updating.diagnosis.next_test.other_points import OtherPoints
-from updating.diagnosis.next_test.same_test import SameTest
 from updating.diagnosis.next_test.unknown import advise
-from updating.diagnosis.posed import Posed
-from updating.diagnosis.result import NextTest, Verdict
-from updating.diagnosis.search import Search
-from updating.diagnosis.several import Several
+from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.several import Several
+from updating.diagnosis.search.search import Search
 
 MAKERS: tuple[Maker, ...] = (Instruments(), SameTest(), OtherPoints(), Unclamped())
 """All kinds of test that are thought of."""

@@ -10,11 +10,11 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.diagnosis.comparison import Comparison
-from updating.diagnosis.evidence import Explanation
-from updating.diagnosis.fit import sensitivities
-from updating.diagnosis.posed import Posed
-from updating.diagnosis.problem import Problem
+from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.fit import sensitivities
+from updating.likelihood.comparison import Comparison
+from updating.problem.specimen import Problem
 
 UNIFORM = 12.0
 """Inverse variance of a parameter about which nothing is known but its prior quantile's range [-]."""

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
 from updating.diagnosis.next_test.repeat import Repeat
-from updating.diagnosis.problem import Problem
 from updating.effects.base import Effect
+from updating.problem.specimen import Problem
 
 OF_THE_CLAMP = frozenset({"clamp_rotation", "clamp_translation", "length", "joint_nonlinearity"})
 """Effects that go with the clamp; how deep it bends the structure inside is a ``length``."""

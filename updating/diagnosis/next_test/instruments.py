@@ -8,9 +8,9 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
-from updating.diagnosis.next_test.reading import Parts, Reading
+from updating.diagnosis.next_test.instrument_reading import Parts, Reading
 from updating.effects.base import total_mass
-from updating.effects.mass import sensor_places
+from updating.effects.structure.mass import sensor_places
 from updating.models.state import State
 
 BALANCE = 0.001

@@ -11,9 +11,9 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
 from updating.diagnosis.next_test.places import grid, said
 from updating.diagnosis.next_test.repeat import SHAPES_KNOWN, Repeat
-from updating.diagnosis.problem import Problem
-from updating.effects.mass import sensor_places
-from updating.measured import Measured
+from updating.effects.structure.mass import sensor_places
+from updating.problem.specimen import Problem
+from updating.test_data.measured import Measured
 
 APART = 0.04
 """Further points are at least this share of the span away from those there are [-]."""

@@ -6,8 +6,8 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Site
-from updating.diagnosis.problem import Problem
 from updating.models.spec import Spec
+from updating.problem.specimen import Problem
 
 MOST = 4
 """So many places are tried for a mass."""

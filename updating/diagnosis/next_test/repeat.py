@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.diagnosis.comparison import Comparison
-from updating.diagnosis.fit import STEP
 from updating.diagnosis.next_test.base import Outcome, Rival, Site, Trial
-from updating.diagnosis.problem import Problem
+from updating.diagnosis.search.fit import STEP
 from updating.effects.base import Effect
-from updating.measured import Measured
+from updating.likelihood.comparison import Comparison
 from updating.models.state import State
-from updating.prediction import Predictor
+from updating.prediction.predict import Predictor
+from updating.problem.specimen import Problem
+from updating.test_data.measured import Measured
 
 SHAPES_KNOWN = 0.01
 """Noise of a modal constant where nothing is known of it, relative to its mode's r.m.s. [-]."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.comparison import SHAPES
-from updating.diagnosis.evidence import Explanation
+from updating.diagnosis.answer.result import NextTest
 from updating.diagnosis.next_test.base import Site
-from updating.diagnosis.next_test.same_test import THIN
-from updating.diagnosis.problem import Problem
-from updating.diagnosis.result import NextTest
-from updating.diagnosis.search import Search
+from updating.diagnosis.next_test.changed import THIN
+from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.search import Search
+from updating.likelihood.comparison import SHAPES
+from updating.problem.specimen import Problem
 
 STANDS_OUT = 1.7
 """Points whose misfit is so many times the r.m.s. over all are named [-]..."""

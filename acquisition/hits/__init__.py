@@ -1,0 +1,1 @@
+"""Raw hits: records, verdicts with their reasons, windows, and long records cut into hits."""

@@ -1,0 +1,37 @@
+"""Records in which there is no hit to judge: too short, not finite, or without any force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.hits.hammer import Hits
+
+SHORTEST = 32
+"""Samples below which a record holds no pulse with its response; doubled, short records that hold both are lost [-]."""
+
+STEADY = 1e-9
+"""Change of a force, relative to its largest value, that is rounding of a constant [-]."""
+
+
+def why_broken(hits: Hits) -> list[str | None]:
+    """Return for each hit at a point why nothing can be said of it, None where it can be judged.
+
+    Parameters
+    ----------
+    hits : Hits
+        Hits at one point.
+    """
+    length = hits.force.shape[-1]
+    if length < SHORTEST:
+        plural = "" if length == 1 else "s"
+        return [f"too short: a record of {length} sample{plural}; {SHORTEST} are the least"] * hits.count
+    return [_why(force, motion) for force, motion in zip(hits.force, hits.motion, strict=True)]
+
+
+def _why(force: FloatArray, motion: FloatArray) -> str | None:
+    if not (np.isfinite(force).all() and np.isfinite(motion).all()):
+        return "broken record: values that are not finite"
+    if np.ptp(force) <= STEADY * np.abs(force).max():
+        return f"no force: the record is constant, {float(force[0]):.3g} N throughout"
+    return None

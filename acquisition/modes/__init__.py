@@ -1,0 +1,1 @@
+"""Modal data from tables, JSON and universal files, checked."""

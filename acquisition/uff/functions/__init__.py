@@ -1,0 +1,1 @@
+"""Functions: data set 58, from its header lines to hits and FRFs."""

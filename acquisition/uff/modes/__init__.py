@@ -1,0 +1,1 @@
+"""Modes: data sets 55 and 2414."""

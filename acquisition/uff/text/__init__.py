@@ -1,0 +1,1 @@
+"""The bytes and lines of a universal file, before anything is understood."""

@@ -1,0 +1,56 @@
+"""Modes at lines that hold nothing of the structure: without coherence, or where the anti-alias filter falls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.frfs.frf import FrfSet
+from identification.band.informed import LOST, PASSED, best_coherence
+
+FEWEST = 64
+"""Fewest lines by whose number a whole transform is told; doubled, that of a short record is not [-]."""
+
+
+def uninformed_modes(frfs: FrfSet, frequency: FloatArray) -> tuple[str, ...]:
+    """Return what to say of modes that lie where FRFs carry no information of the structure.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        All lines of the FRFs, not only those of a band.
+    frequency : (n_modes,) array
+        Frequencies found [Hz].
+    """
+    coherent, said = best_coherence(frfs), []
+    if coherent is not None:
+        lost = frequency[np.interp(frequency, frfs.frequency, coherent) < LOST]
+        if len(lost):
+            said.append(
+                f"mode(s) at {_named(lost)} lie where no FRF has a coherence over {LOST:g}: the force left nothing "
+                "there, and what is found may be noise; leave them out with drop, or end the band below"
+            )
+    filtered = frequency[frequency > _passed(frfs)]
+    if len(filtered):
+        said.append(
+            f"mode(s) at {_named(filtered)} lie above {_passed(frfs):.4g} Hz, the sampling rate over {PASSED:g}, where "
+            "the filter before the converter falls: what is folded back from beyond half the rate may pass for a mode; "
+            "sample faster, or leave them out with drop"
+        )
+    return tuple(said)
+
+
+def _named(frequency: FloatArray) -> str:
+    return ", ".join(f"{f:.5g} Hz" for f in frequency)
+
+
+def _passed(frfs: FrfSet) -> float:
+    """Return up to where the filter passes, infinite where nobody knows the rate [Hz].
+
+    Lines from 0, one more than a power of two, are all that a transform gives: they end at half the rate.
+    """
+    last, count = float(frfs.frequency[-1]), len(frfs.frequency) - 1
+    if frfs.record is not None and frfs.record.rate is not None:
+        return frfs.record.rate / PASSED
+    whole = frfs.frequency[0] < 0.5 * frfs.df and count >= FEWEST and count & (count - 1) == 0
+    return 2 * last / PASSED if whole else np.inf

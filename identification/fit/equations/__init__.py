@@ -1,0 +1,1 @@
+"""The equations of the fit: basis functions, normal equations, residues, refinement, and pruning."""

@@ -1,0 +1,224 @@
+"""From candidate poles to the fit the data bear out: refine, prune, complete, weigh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import stats
+
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray
+from acquisition.frfs.frf import FrfSet
+from identification.fit.alignment import aligned, distinct
+from identification.fit.drift import Drift, carried_over, estimate_drift
+from identification.fit.equations import background
+from identification.fit.equations.normal_equations import Weights
+from identification.fit.equations.pruning import inside
+from identification.fit.equations.refine import Fit, State, refine
+from identification.fit.equations.residues import uniform_weights
+from identification.fit.noise import window_shaped
+from identification.fit.noise.weights import absorbed_by, left_over, noise_weights, search_weights
+from identification.fit.poly_reference import RankOne, hold_to_rank_one, sorted_frfs
+from identification.fit.search import manual_selection
+from identification.fit.search.completion import COARSE, SHORT, completed, halves, pruned, without_halves
+
+_LONG = 40
+_FINE = 1e-10
+_BROAD = 0.1
+_AT_REST = 1e-4  # gain in the misfit, there a chi-square
+_COARSE_WEIGHINGS = 2  # the second sees the noise of a fit weighed by noise
+_SAME_NOISE = 0.01  # change of a variance that moves a standard deviation by half a per cent at most
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A fit with the noise it was weighted by.
+
+    Parameters
+    ----------
+    fit : Fit
+        The model.
+    weights : Weights
+        Reciprocal variances used.
+    variance : (n_frf, n_lines) array
+        Noise variance of every value [unit of the FRFs squared].
+    residual : (n_frf, n_lines) complex array
+        Data minus model [unit of the FRFs].
+    absorbed : (n_frf or 1, n_lines) array
+        Part of each line's power the linear unknowns absorb [-].
+    measured : bool
+        Whether the variance came with the data; if not it was estimated from the residual.
+    frfs : FrfSet
+        The FRFs carried over to common poles: what was fitted.
+    drift : Drift
+        How the frequencies of each FRF differ from the common ones.
+    held : RankOne, optional
+        The fit's factors, where its residues were held to rank one.
+    rank_excess : float
+        By what factor the misfit of rank-one residues exceeds what noise allows, where that is why they were
+        left free; 0 otherwise [-].
+    """
+
+    fit: Fit
+    weights: Weights
+    variance: FloatArray
+    residual: ComplexArray
+    absorbed: FloatArray
+    measured: bool
+    frfs: FrfSet
+    drift: Drift
+    held: RankOne | None = None
+    rank_excess: float = 0.0
+
+    def excess(self) -> float:
+        """Return the power the fit leaves over that of the noise, the middle one of all FRFs [-]."""
+        ratio = np.abs(self.residual) ** 2 / self.variance
+        return float(np.median(ratio.mean(axis=1) / np.maximum(1.0 - self.absorbed, 0.02).mean(axis=1)))
+
+
+def fit_modes(
+    frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float], add: Sequence[float] = ()
+) -> Fitted:
+    """Fit a modal model starting from candidate poles.
+
+    Candidates that the data do not bear out are struck off; poles beyond the band's edges and more residual
+    terms are added as long as the gain is more than noise can give; then the fit is weighted by the noise
+    and repeated.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs in the band, without a line at s = 0.
+    start : (n,) complex array
+        Candidate poles [rad/s].
+    band : tuple of float
+        The band [Hz].
+    add : sequence of float
+        Frequencies at which a mode is kept whatever the data say of it [Hz].
+
+    Returns
+    -------
+    Fitted
+        The fit and the noise.
+
+    Raises
+    ------
+    EstimationError
+        If no candidate is a mode of the band.
+    """
+    ladder = background.term_ladder(band)
+    fit = refine(frfs, start, uniform_weights(frfs), powers=ladder[0], iterations=SHORT, tolerance=COARSE)
+    weights = search_weights(frfs, fit)
+    fit = refine(frfs, fit.poles, weights, powers=ladder[0], iterations=SHORT, tolerance=COARSE)
+    fit = pruned(frfs, fit, weights, band, iterations=SHORT, tolerance=COARSE)
+    data, fit, drift = aligned(frfs, without_halves(frfs, fit))
+    fit = completed(data, fit, band, ladder)
+    if drift.variance.any():
+        data, fit, drift = aligned(frfs, without_halves(data, fit), drift)
+    fit = _without_broad(data, fit, band, ladder)
+    fitted = _weighted(frfs, without_halves(data, fit), drift, band)
+    while halves(fitted.frfs, fitted.fit) is not None:
+        fit = without_halves(fitted.frfs, fitted.fit)
+        fitted = _weighted(frfs, fit, fitted.drift, band)
+    data = fitted.frfs
+    return _held(data, _with_added(data, fitted, add, band), band)
+
+
+def _with_added(frfs: FrfSet, fitted: Fitted, hertz: Sequence[float], band: tuple[float, float]) -> Fitted:
+    """Add a mode at each frequency the user names, and do not ask whether it is significant."""
+    fit = fitted.fit
+    for value in hertz:
+        pole = manual_selection.best_start(frfs, fit.poles, fit.linear.powers, fitted.weights, value)
+        poles, before = np.append(fit.poles, pole), fit.poles
+        fit = refine(frfs, poles, fitted.weights, powers=fit.linear.powers, iterations=_LONG)
+        modes = inside(fit.poles, band, frfs.df)
+        manual_selection.must_have_stayed(fit.poles, before, value, modes, frfs.df)
+    if fit is fitted.fit:
+        return fitted
+    return replace(
+        fitted, fit=fit, residual=left_over(frfs, fit), absorbed=absorbed_by(frfs, fit, fitted.weights)
+    )
+
+
+def _held(frfs: FrfSet, fitted: Fitted, band: tuple[float, float]) -> Fitted:
+    """Hold residues to rank one where several references were measured and agree on the shapes."""
+    places = sorted_frfs(frfs)
+    if places is None:
+        return fitted
+    modes = inside(fitted.fit.poles, band, frfs.df)
+    fade = window_shaped.at_start(fitted.weights.fade)
+    held = hold_to_rank_one(frfs, fitted.fit, fitted.weights, places, modes, inflation=fade)
+    if held.excess > 1.0:
+        return replace(fitted, rank_excess=held.excess)
+    result = replace(fitted, fit=held.fit, held=held)
+    return replace(result, residual=left_over(frfs, held.fit))
+
+
+def _without_broad(
+    frfs: FrfSet, fit: Fit, band: tuple[float, float], ladder: tuple[tuple[int, ...], ...]
+) -> Fit:
+    """Do without poles whose half-power band is a tenth of the band, if a background explains as much."""
+    for pole in fit.poles[_broad(fit.poles, band, frfs.df)]:
+        rest = fit.poles[np.abs(fit.poles - pole) > 1e-9 * abs(pole)]
+        if not inside(rest, band, frfs.df).any() or len(rest) == len(fit.poles):
+            continue
+        weights = search_weights(frfs, fit)
+        limit = float(stats.chi2.isf(1e-6, 2 * len(frfs.values))) * window_shaped.at_start(weights.fade)
+        powers = fit.linear.powers
+        plain = refine(frfs, rest, weights, powers=powers, iterations=SHORT, tolerance=COARSE)
+        plain = completed(frfs, plain, band, ladder)
+        again = refine(
+            frfs, plain.poles, weights, powers=plain.linear.powers, iterations=SHORT, tolerance=COARSE
+        )
+        fewer = inside(again.poles, band, frfs.df).sum() < inside(fit.poles, band, frfs.df).sum()
+        if fewer and 2.0 * (again.cost - fit.cost) < limit:
+            fit = again
+    return fit
+
+
+def _broad(poles: ComplexArray, band: tuple[float, float], df: float) -> BoolArray:
+    return np.asarray(inside(poles, band, df) & (-poles.real / np.pi > _BROAD * (band[1] - band[0])))
+
+
+def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -> Fitted:
+    """Weigh by the noise itself, carry over to common poles and refine until all agree."""
+    data = carried_over(frfs, fit, drift.at(fit.poles))
+    residual, absorbed = left_over(data, fit), absorbed_by(data, fit, search_weights(data, fit))
+    weights, variance, measured = noise_weights(data, residual, absorbed)
+    for _ in range(_COARSE_WEIGHINGS):
+        fit = _refined(data, fit, weights, band, COARSE)
+        used, fitted = (weights, variance, measured), data
+        drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
+        data = carried_over(frfs, fit, drift)
+        residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
+        weights, variance, measured = noise_weights(data, residual, absorbed)
+    known = None
+    if data is fitted and np.abs(np.log(variance / used[1])).max() < _SAME_NOISE:
+        (weights, variance, measured), known = used, fit.equations
+    fit = _refined(data, fit, weights, band, _FINE, known)
+    drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
+    residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
+    return Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
+
+
+def _refined(
+    frfs: FrfSet,
+    fit: Fit,
+    weights: Weights,
+    band: tuple[float, float],
+    tolerance: float,
+    known: State | None = None,
+) -> Fit:
+    """Refine by the noise and strike off what it does not bear out."""
+    fit = refine(
+        frfs,
+        fit.poles,
+        weights,
+        powers=fit.linear.powers,
+        iterations=_LONG,
+        tolerance=tolerance,
+        enough=_AT_REST,
+        known=known,
+    )
+    return pruned(frfs, fit, weights, band, iterations=_LONG, tolerance=tolerance)

@@ -1,0 +1,1 @@
+"""How noisy FRFs are, and what noise that is not independent does to the evidence and to poles."""

@@ -1,0 +1,83 @@
+"""What noise common to all outputs of a hit does to the variance of the poles.
+
+Weights take the errors of all FRFs for independent. Where the force's noise moves them together, the poles err by
+more: the same at every line for all outputs, it does not average out over them. The sandwich of both
+covariances (White, Econometrica 48 (1980) 817-838) is formed here from the law of the noise, not from the hits.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.frfs.frf import FrfSet
+from identification.fit.equations import basis, normal_equations
+from identification.fit.equations.pruning import inverse_information
+from identification.fit.equations.refine import Fit, evaluate, pole_turns
+from identification.fit.noise.common import common_noise
+
+
+def common_factors(
+    frfs: FrfSet, fit: Fit, weights: normal_equations.Weights, variance: FloatArray, residual: ComplexArray
+) -> FloatArray:
+    """Return by what factor common noise raises the variance of each pole, shape (n_modes,) [-], 1 or more.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    fit : Fit
+        A fit to them.
+    weights : Weights
+        Reciprocal variances it was made with.
+    variance : (n_frf, n_lines) array
+        Noise variance of every value [unit of the FRFs squared].
+    residual : (n_frf, n_lines) complex array
+        Data minus model [unit of the FRFs].
+    """
+    n = len(fit.poles)
+    model = frfs.values - residual
+    noise = common_noise(frfs, model, residual, variance)
+    if not any(b.any() for b in noise.variance):
+        return np.ones(n)
+    columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers)
+    extra = np.zeros((2 * n, 2 * n))
+    for rows, b in zip(noise.groups, noise.variance, strict=True):
+        capped = np.minimum(
+            b, 1.0 / np.maximum((np.abs(model[rows]) ** 2 / variance[rows]).max(axis=0), 1e-300)
+        )
+        together, alone = _pulls(fit, weights, columns, rows, model[rows])
+        half = np.sqrt(capped)[:, None] * together
+        extra += (half.conj().T @ half).real - np.diag(capped @ alone)
+    normal = evaluate(frfs, fit.poles, weights, fit.linear.powers).normal
+    inverse = inverse_information(normal)
+    added = np.einsum("ab,bc,ca->a", inverse, extra, inverse) / np.diag(inverse)
+    return np.asarray(np.maximum(1.0 + added, 1.0).reshape(n, 2).mean(axis=1))
+
+
+def _pulls(
+    fit: Fit, weights: normal_equations.Weights, columns: basis.Basis, rows: IntArray, model: ComplexArray
+) -> tuple[ComplexArray, FloatArray]:
+    """Return what a unit of common noise at each line pulls the poles by, (n_lines, 2 n_modes).
+
+    Also the squares of what it would if it were independent in each FRF, summed over these.
+    """
+    n, k = len(fit.poles), columns.linear.shape[1]
+    both = np.hstack([columns.linear, columns.slopes])
+    real = np.concatenate([both.real, both.imag])
+    residues = fit.linear.residues[rows]
+    turns = pole_turns(np.stack([residues.real, residues.imag], axis=2).reshape(len(rows), -1), n)
+    lines = weights.lines if len(weights.lines) == 1 else weights.lines[rows]
+    together = np.zeros((len(both), 2 * n), np.complex128)
+    alone = np.zeros((len(both), 2 * n))
+    slopes = np.zeros(0)
+    for j, h in enumerate(model):
+        if j < len(lines):
+            gram = normal_equations.products(real, lines[[j]])
+            follow = normal_equations.solve(gram[:, :k, :k], gram[:, :k, k:])[0]
+            slopes = lines[j][:, None] * (columns.slopes - columns.linear @ follow).conj()
+        pull = np.einsum("lni,nia->lna", slopes.reshape(-1, n, 2), turns[j]).reshape(-1, 2 * n)
+        pull = weights.level[rows[j]] * h[:, None] * pull
+        together += pull
+        alone += np.abs(pull) ** 2
+    return together, alone

@@ -1,0 +1,209 @@
+"""How noisy the FRFs are: from their variance, their coherence, or what a fit leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy import ndimage, stats
+
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.frfs.frf import FrfSet
+from identification.fit.equations import normal_equations
+from identification.fit.equations.normal_equations import Weights
+
+_CHANCE = 1e-4
+_ROUNDS = 3
+_STEP = 1e-3  # a round lowers a variance to this part of what it was at the most; what follows from twice is the same
+_WINDOW = 48  # lines over which a local variance is averaged at the least
+_QUIET = 1e-6  # noise is never taken to be below this part of an FRF's r.m.s.
+_PIECE = 16  # lines over which the scatter is averaged before the median
+# A variance line by line counts by this factor over the law at the most where a stretch of lines is held against it: a
+# coherence near zero gives millions. Twice as much lets one line raise its whole stretch.
+_SPIKE = 10.0
+_MORE = 1.5  # by which a stretch must exceed the law: two standard deviations where each line has one degree of freedom
+_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / np.sqrt(70.0)
+
+
+def window_length(n_lines: int) -> int:
+    """Return over how many lines a local variance is averaged: a twelfth of the band, 48 at the least."""
+    return min(n_lines, max(_WINDOW, n_lines // 12))
+
+
+def quiet_floor(values: ComplexArray) -> FloatArray:
+    """Return the smallest variance worth believing, per FRF, shape (n_frf, 1) [unit squared]."""
+    power = np.mean(np.abs(values) ** 2, axis=1, keepdims=True)
+    return np.asarray(_QUIET**2 * np.maximum(power, 1e-12 * power.max()))
+
+
+def local_mean(power: FloatArray, window: int) -> FloatArray:
+    """Average along lines over ``window`` lines, mirrored at the ends, shape as ``power``."""
+    return np.asarray(ndimage.uniform_filter1d(power, window, axis=1, mode="reflect"))
+
+
+def scatter(residual: ComplexArray) -> FloatArray:
+    """Return the variance of the line-to-line scatter of residuals, per FRF, shape (n_frf,) [unit squared].
+
+    Fourth differences are blind to what is smooth from line to line, a mode left out or far away; a median
+    over stretches of lines is blind to a few peaks. So this is the noise, whatever the model still lacks.
+
+    Parameters
+    ----------
+    residual : (n_frf, n_lines) complex array
+        Data minus model [unit of the FRFs].
+    """
+    n_lines = residual.shape[1]
+    if n_lines < 3 * len(_DIFFERENCE):
+        return np.asarray(np.mean(np.abs(residual) ** 2, axis=1))
+    rough = ndimage.convolve1d(residual, _DIFFERENCE, axis=1, mode="reflect")[:, 2:-2]
+    pieces = max(1, rough.shape[1] // _PIECE)
+    power = np.abs(rough[:, : pieces * (rough.shape[1] // pieces)]) ** 2
+    return np.asarray(np.median(power.reshape(len(power), pieces, -1).mean(axis=2), axis=1))
+
+
+def leverage(columns: ComplexArray, weights: Weights) -> FloatArray:
+    """Return which part of each line's power the linear unknowns absorb, shape (n_frf or 1, n_lines) [-]."""
+    real = np.concatenate([columns.real, columns.imag])
+    real = real / np.maximum(np.linalg.norm(real, axis=0), np.finfo(float).tiny)
+    gram = normal_equations.products(real, weights.lines)
+    length = np.sqrt(np.maximum(np.einsum("jkk->jk", gram), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(gram / (length[:, :, None] * length[:, None, :]))
+    seen = values > 1e-13 * values[:, -1:]
+    root = np.where(seen, 1.0 / np.sqrt(np.where(seen, values, 1.0)), 0.0)
+    return 0.5 * weights.lines * normal_equations.forms(real, vectors * root[:, None, :] / length[:, :, None])
+
+
+def from_residual(
+    residual: ComplexArray, absorbed: FloatArray, floor: FloatArray, model: ComplexArray
+) -> tuple[Weights, FloatArray]:
+    """Return weights and variances from what a fit leaves.
+
+    The simplest law the residuals support is taken: white in each FRF; one colour common to all; each its own
+    colour; or, where that is more likely, white noise of the response and noise of the force, which grows with
+    the FRF. Degrees of freedom the fit absorbed are given back line by line.
+
+    Parameters
+    ----------
+    residual : (n_frf, n_lines) complex array
+        Data minus model [unit of the FRFs].
+    absorbed : (n_frf or 1, n_lines) array
+        Part of each line's power the fit absorbs [-].
+    floor : (n_frf, 1) array
+        Smallest variance to believe [unit squared].
+    model : (n_frf, n_lines) complex array
+        The fit [unit of the FRFs].
+
+    Returns
+    -------
+    Weights
+        Reciprocal variances.
+    variance : (n_frf, n_lines) array
+        Local variances of the law chosen [unit squared].
+    """
+    n_lines = residual.shape[1]
+    power = np.abs(residual) ** 2
+    free = np.broadcast_to(np.maximum(1.0 - absorbed, 0.02), power.shape)
+    level = np.maximum(power.sum(axis=1) / free.sum(axis=1), floor[:, 0])
+    window = window_length(n_lines)
+    local = np.maximum(local_mean(power, window) / local_mean(np.array(free), window), floor)
+    colour = np.log(local / level[:, None])
+    common = np.log(np.mean(local / level[:, None], axis=0, keepdims=True))
+    if n_lines < 2 * window or np.mean(colour**2) < 2.5 / window:
+        lines = np.ones((1, n_lines))
+    elif np.mean((colour - common) ** 2) < 2.5 / window:
+        lines = np.exp(-common)
+    else:
+        lines = np.exp(-colour)
+    weights = Weights(1.0 / level, lines)
+    grown = np.maximum(_levelled(power / free, np.abs(model) ** 2, _over_all_lines), floor)
+    white = np.broadcast_to(level[:, None], power.shape)
+    gain = _likelihood(power / free, grown) - _likelihood(power / free, white)
+    better = _likelihood(power / free, grown) > _likelihood(power / free, 1.0 / weights.full)
+    if better and 2.0 * gain > stats.chi2.isf(_CHANCE, len(power)):
+        mean = np.exp(np.mean(np.log(grown), axis=1))
+        weights = Weights(1.0 / mean, mean[:, None] / grown)
+    return weights, 1.0 / weights.full
+
+
+def _over_all_lines(values: FloatArray) -> FloatArray:
+    return np.asarray(np.mean(values, axis=1, keepdims=True))
+
+
+def _likelihood(power: FloatArray, variance: FloatArray) -> float:
+    """Return the logarithm of the likelihood of circular Gaussian residuals of such power."""
+    return -float(np.sum(np.log(variance) + power / variance))
+
+
+def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
+    """Return variances from the set's own variance or coherence, shape (n_frf, n_lines), or None.
+
+    Few averages make a variance line by line a poor weight, so it is levelled locally by the law noise of
+    the response plus noise proportional to the FRF: variance = a + b |H|^2, with a and b from neighbouring
+    lines. A variance without a number of averages is taken as it stands. Coherence gives
+    |H|^2 (1 - gamma^2) / (gamma^2 n) (Bendat and Piersol, Random Data, 4th ed., Sec. 9.2.3).
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    model : (n_frf, n_lines) complex array
+        A fit to them, in place of |H| itself [unit of the FRFs].
+    """
+    if frfs.variance is not None:
+        raw = np.array(frfs.variance)
+        if frfs.averages is None:
+            return np.maximum(raw, quiet_floor(frfs.values))
+    elif frfs.coherence is not None:
+        squared = np.clip(frfs.coherence, 1e-6, 1.0)
+        count = np.ones(len(frfs.values)) if frfs.averages is None else np.maximum(1.0, frfs.averages)
+        raw = np.abs(frfs.values) ** 2 * (1.0 - squared) / squared / count[:, None]
+    else:
+        return None
+    window = window_length(raw.shape[1])
+    levelled = _levelled(raw, np.abs(model) ** 2, lambda m: local_mean(m, window))
+    return np.maximum(_raised(levelled, raw), quiet_floor(frfs.values))
+
+
+def _raised(law: FloatArray, raw: FloatArray) -> FloatArray:
+    """Return variances by a law, raised where a stretch of lines has more: beside a step, which no window follows."""
+    ratio = local_mean(
+        np.minimum(raw / np.maximum(law, np.finfo(float).tiny), _SPIKE), min(_PIECE, raw.shape[1])
+    )
+    return np.where(ratio > _MORE, ratio * law, law)
+
+
+def _levelled(raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Fit raw = a + b power with a, b >= 0, relative errors weighted alike.
+
+    Scoring starts from lines of usual size. Started from a mean that a peak carries, it leaves a, the noise of the
+    quiet lines beside the peak, ten times too small, and these weigh too much.
+
+    Parameters
+    ----------
+    raw : (n_frf, n_lines) array
+        Powers of the noise, each of few degrees of freedom [unit squared].
+    power : (n_frf, n_lines) array
+        |H|^2 [unit squared].
+    mean : function
+        Mean over the lines that share a and b: those nearby, or all.
+    """
+    tiny = np.finfo(float).tiny
+    size = np.maximum(raw.mean(axis=1, keepdims=True), tiny)
+    raw, power = raw / size, power / np.maximum(power.mean(axis=1, keepdims=True), tiny)
+    guess = 0.5 * (_typical(raw, mean) + power * _typical(raw / np.maximum(power, _QUIET**2), mean))
+    for _ in range(_ROUNDS):
+        w = 1.0 / guess**2
+        s0, s1, s2 = (mean(w * m) for m in (np.ones_like(raw), power, power**2))
+        t0, t1 = mean(w * raw), mean(w * raw * power)
+        determinant = s0 * s2 - s1**2
+        safe = determinant > 1e-9 * s0 * s2
+        b = np.where(safe, (s0 * t1 - s1 * t0) / np.where(safe, determinant, 1.0), 0.0)
+        b = np.clip(b, 0.0, t1 / np.maximum(s2, tiny))
+        a = np.maximum((t0 - b * s1) / s0, 0.0)
+        guess = np.maximum(a + b * power, _STEP * guess)
+    return np.asarray(guess * size)
+
+
+def _typical(values: FloatArray, mean: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Return the geometric mean: one peak among the lines does not carry it, as it does the arithmetic one."""
+    return np.asarray(np.exp(mean(np.log(np.maximum(values, _QUIET**2)))))

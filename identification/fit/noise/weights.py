@@ -1,0 +1,71 @@
+"""What a fit leaves, and the weights that follow from it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.frfs.frf import FrfSet
+from identification.fit.equations import basis
+from identification.fit.equations.normal_equations import Weights
+from identification.fit.equations.refine import Fit
+from identification.fit.equations.residues import synthesise
+from identification.fit.noise import levels, window_shaped
+
+
+def left_over(frfs: FrfSet, fit: Fit) -> ComplexArray:
+    """Return data minus model, shape (n_frf, n_lines) [unit of the FRFs]."""
+    return np.asarray(frfs.values - synthesise(basis.Axis.of(frfs), fit.poles, fit.linear))
+
+
+def search_weights(frfs: FrfSet, fit: Fit) -> Weights:
+    """Weigh by the scatter from line to line, which does not mind what the model still lacks.
+
+    Where the data carry variance or coherence, the lines weigh in common as these say: noise of the force
+    is larger on a peak.
+    """
+    residual = left_over(frfs, fit)
+    known = levels.from_statistics(frfs, frfs.values - residual)
+    shape = np.ones((1, len(frfs.frequency)))
+    if known is not None:
+        power = np.log(known)
+        shape = np.exp(np.mean(power - power.mean(axis=1, keepdims=True), axis=0, keepdims=True))
+    even = residual / np.sqrt(shape)
+    fade = window_shaped.decay_over_record(even)
+    level = levels.scatter(even) / window_shaped.roughness(fade, 4)
+    level = np.maximum(level, levels.quiet_floor(frfs.values)[:, 0])
+    return Weights(1.0 / level, 1.0 / shape, fade)
+
+
+def decay_over_record(frfs: FrfSet, poles: ComplexArray) -> FloatArray:
+    """Return how far each pole decays over the record, sigma T, shape (n_modes,) [-]."""
+    return np.asarray((frfs.decay - poles.real) / frfs.df)
+
+
+def noise_weights(
+    frfs: FrfSet, residual: ComplexArray, absorbed: FloatArray
+) -> tuple[Weights, FloatArray, bool]:
+    """Return weights and variances by the noise itself, and whether these came with the data.
+
+    What the data say of their noise is scaled to the residual where it is coherence without hits to count.
+    """
+    fade = window_shaped.decay_over_record(residual)
+    known = levels.from_statistics(frfs, frfs.values - residual)
+    floor = levels.quiet_floor(frfs.values)
+    if known is None:
+        weights, variance = levels.from_residual(residual, absorbed, floor, frfs.values - residual)
+        return replace(weights, fade=fade), variance, False
+    if frfs.variance is None:
+        excess = np.mean(np.abs(residual) ** 2 / known / np.maximum(1.0 - absorbed, 0.02), axis=1)
+        known = np.maximum(known * excess[:, None], floor)
+    level = 1.0 / np.exp(np.mean(np.log(known), axis=1))
+    return Weights(level, 1.0 / (known * level[:, None]), fade), known, True
+
+
+def absorbed_by(frfs: FrfSet, fit: Fit, weights: Weights) -> FloatArray:
+    """Return which part of each line's power a fit absorbs, shape (n_frf or 1, n_lines) [-]."""
+    columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers).linear
+    poles_too = 1.0 + 1.0 / len(frfs.values)
+    return np.asarray(np.minimum(poles_too * levels.leverage(columns, weights), 0.98))

@@ -1,0 +1,136 @@
+"""Poles that are one mode whose frequency is another in every FRF.
+
+A sensor or a hammer that roves, or a temperature that rises, moves the frequencies from FRF to FRF. Two or
+three common poles then fit the difference nearly as well as two or three modes would. The difference is told by
+what explains the FRFs: common poles, or one pole for each FRF alone.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.frfs.frf import FORMS, FrfSet
+from identification.fit.equations.normal_equations import Weights
+
+_CLOSE = 2.5  # half-power half-widths between poles that may be one mode
+_UNEQUAL = 8.0
+"""Ratio of half-widths beyond which two poles are not parts of one mode [-]: drift spreads a mode over poles of
+about its own width. Half of it would part the narrow and the wide half of a mode that is spread unevenly."""
+_REACH = 6.0  # half-widths about them over which the FRFs are compared
+_STEPS = 10
+_DOUBT = 3.0  # standard deviations of chi-squared by which one pole each may fit worse
+_LEAST_LINES = 6
+
+
+def clusters(poles: ComplexArray, apart: BoolArray | None = None) -> list[IntArray]:
+    """Return groups of poles that are linked by less than 2.5 half-widths, two or more in each.
+
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        Poles [rad/s].
+    apart : (n_modes, n_modes) bool array, optional
+        Pairs known to be two modes.
+    """
+    width = np.maximum(np.abs(poles.real)[:, None], np.abs(poles.real)[None, :])
+    linked = np.abs(poles[:, None] - poles[None, :]) < _CLOSE * width
+    narrow = np.minimum(np.abs(poles.real)[:, None], np.abs(poles.real)[None, :])
+    linked &= width < _UNEQUAL * narrow
+    if apart is not None:
+        linked &= ~apart
+    reached = linked
+    for _ in range(len(poles)):
+        wider = (reached.astype(np.int64) @ linked) > 0
+        if np.array_equal(wider, reached):
+            break
+        reached = wider
+    first = reached.argmax(axis=1)
+    groups = [np.flatnonzero(first == i) for i in np.unique(first)]
+    return [g for g in groups if len(g) > 1]
+
+
+def is_one_mode(
+    frfs: FrfSet,
+    poles: ComplexArray,
+    residues: ComplexArray,
+    residual: ComplexArray,
+    weights: Weights,
+    group: IntArray,
+) -> bool:
+    """Tell whether one free pole for every FRF explains it as well as the common poles of a group.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    poles : (n_modes,) complex array
+        Poles of the fit [rad/s].
+    residues : (n_frf, n_modes) complex array
+        Residues of the receptance [m/(N s)].
+    residual : (n_frf, n_lines) complex array
+        Data minus the whole fit [unit of the FRFs].
+    weights : Weights
+        Reciprocal noise variances.
+    group : (n,) int array
+        Which poles.
+    """
+    own = poles[group]
+    reach = _REACH * np.abs(own.real).max() + frfs.decay
+    omega = 2 * np.pi * frfs.frequency
+    near = (omega > own.imag.min() - reach) & (omega < own.imag.max() + reach)
+    if near.sum() < _LEAST_LINES:
+        return False
+    s = frfs.laplace[near]
+    front = s ** FORMS.index(frfs.form)
+    both = np.einsum("jr,rl->jl", residues[:, group], front / (s[None, :] - own[:, None]))
+    weight = (
+        weights.full[:, near] if len(weights.lines) > 1 else weights.level[:, None] * weights.lines[:, near]
+    )
+    target = both + residual[:, near]
+    common = np.sum(weight * np.abs(residual[:, near]) ** 2)
+    energy = np.abs(residues[:, group]) ** 2
+    mean = np.sum(energy * own, axis=1) / np.maximum(energy.sum(axis=1), np.finfo(float).tiny)
+    starts = [np.broadcast_to(p, mean.shape) for p in own] + [mean]
+    each = np.min([_single(s, front, target, weight, start, frfs.decay) for start in starts], axis=0)
+    return bool(each.sum() < common + _DOUBT * np.sqrt(2.0 * target.size))
+
+
+def _single(
+    s: ComplexArray,
+    front: ComplexArray,
+    target: ComplexArray,
+    weight: FloatArray,
+    start: ComplexArray,
+    decay: float,
+) -> FloatArray:
+    """Return the weighted misfit of one pole and a constant fitted to each FRF, shape (n_frf,).
+
+    With columns u = s^q / (s - p) and u / (s - p) the second factor over the first is the step of p.
+    """
+    poles, limit = np.array(start), np.abs(start.real)
+    best = np.full(len(target), np.inf)
+    for _ in range(_STEPS):
+        u = front / (s - poles[:, None])
+        columns = np.stack([u, np.broadcast_to(front / front[0], u.shape), u / (s - poles[:, None])], axis=2)
+        two, _ = _solved(columns[:, :, :2], target, weight)
+        best = np.minimum(best, two)
+        _, factors = _solved(columns, target, weight)
+        step = factors[:, 2] / np.where(factors[:, 0] == 0, 1.0, factors[:, 0])
+        step *= limit / np.maximum(np.abs(step), limit)
+        moved = poles + step
+        poles = np.where(moved.real < decay, moved, 0.5 * (poles.real + decay) + 1j * moved.imag)
+    return best
+
+
+def _solved(
+    columns: ComplexArray, target: ComplexArray, weight: FloatArray
+) -> tuple[FloatArray, ComplexArray]:
+    """Solve each FRF's least squares; return its weighted misfit and its factors."""
+    length = np.maximum(np.sqrt(np.einsum("jl,jlk->jk", weight, np.abs(columns) ** 2)), np.finfo(float).tiny)
+    unit = columns / length[:, None, :]
+    gram = np.einsum("jlk,jl,jlm->jkm", unit.conj(), weight, unit, optimize=True)
+    right = np.einsum("jlk,jl,jl->jk", unit.conj(), weight, target, optimize=True)
+    factors = np.linalg.solve(gram + 1e-13 * np.eye(gram.shape[1]), right[:, :, None])[:, :, 0]
+    left = target - np.einsum("jlk,jk->jl", unit, factors)
+    return np.sum(weight * np.abs(left) ** 2, axis=1), np.asarray(factors / length)

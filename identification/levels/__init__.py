@@ -1,0 +1,1 @@
+"""How frequencies follow the level of the hits."""

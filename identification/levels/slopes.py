@@ -1,0 +1,225 @@
+"""Level dependence: how the frequency of each mode changes with the force of the hits.
+
+A joint that slips or closes makes a structure softer or stiffer the harder it is hit. The poles of each hit alone are
+found by a few steps from those identified, its residues free, so that where exactly a hit landed does not matter.
+Their shifts are then fitted by a slope common to all points and an offset of each point in each run, which takes up
+drift from point to point and what a roving transducer does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from acquisition import Windows
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.display import Displayed
+from acquisition.dof import Dof
+from acquisition.frfs.frf import FrfSet
+from identification.fit.equations.normal_equations import Weights
+from identification.fit.equations.refine import Step, decaying, evaluate, fit_at
+from identification.fit.equations.residues import uniform_weights
+from identification.fit.noise.weights import absorbed_by, left_over, noise_weights
+from identification.levels.hits import Judged, UsedHits, mean_level, used_hits, why_not
+from identification.model import ModalModel
+
+STEPS = 2
+"""Steps to the poles of each hit, each held to about a half-power half-width, before the last, free one."""
+
+AT_REST = 0.03
+"""Part of a half-width that a step may leave before the next is taken: its error goes as the square [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class LevelDependence(Displayed):
+    """How frequencies and damping follow the force of the hits.
+
+    The level of a hit is the largest force in its record: what a user reads off his analyser, and, with one hammer
+    and one tip, what every amplitude that follows is proportional to.
+
+    Parameters
+    ----------
+    slope, slope_sigma : (n_modes,) arrays
+        d ln f / dF of each mode and its standard deviation; nan where no hit shows the mode [1/N].
+    damping_slope, damping_slope_sigma : (n_modes,) arrays
+        d zeta / dF, likewise [1/N].
+    level : float
+        The level that the averaged FRFs, and so the identified frequencies, stand for [N].
+    weakest, strongest : float
+        Range of the levels [N].
+    levels : (n_hits,) array
+        Level of each used hit [N].
+    point : (n_hits,) int array
+        Which point and run each hit belongs to.
+    shifts, sigmas : (n_hits, n_modes) arrays
+        ln f of each hit less that identified, and the standard deviation by the misfit of this hit alone [-].
+    """
+
+    slope: FloatArray
+    slope_sigma: FloatArray
+    damping_slope: FloatArray
+    damping_slope_sigma: FloatArray
+    level: float
+    weakest: float
+    strongest: float
+    levels: FloatArray
+    point: IntArray
+    shifts: FloatArray
+    sigmas: FloatArray
+
+
+def why_no_level_dependence(tests: Sequence[Judged]) -> str | None:
+    """Return why these hits tell no level dependence, or None if they do; parameters as for `level_dependence`."""
+    return why_not(used_hits(tests))
+
+
+def level_dependence(
+    model: ModalModel, tests: Sequence[Judged], *, windows: Windows | None = None
+) -> LevelDependence | None:
+    """Return how the modes depend on the level of the hits; None where the hits do not tell.
+
+    Parameters
+    ----------
+    model : ModalModel
+        Identified from the FRFs of these hits.
+    tests : sequence of (HammerTest, verdicts)
+        The raw hits and what was decided on them; see `why_no_level_dependence`.
+    windows : Windows, optional
+        As when the FRFs were estimated.
+
+    Returns
+    -------
+    LevelDependence or None
+        None if used hits at the same points span less than 2 : 1 in level, or none is repeated.
+
+    Notes
+    -----
+    The shift of a hit is that of the pole which fits its record best, over all amplitudes through which the
+    vibration dies away: a slope is one of this effective frequency. Standard deviations come from the scatter about
+    the line, widened for its degrees of freedom so that 1.96 of them are a 95 % interval.
+    """
+    rows = {pair: i for i, pair in enumerate(zip(model.frfs.responses, model.frfs.references, strict=True))}
+    entries = [e for e in used_hits(tests) if _known(e, rows)]
+    if why_not(entries) is not None:
+        return None
+    weights = weights_of(model)
+    band = (float(model.frfs.frequency[0]), float(model.frfs.frequency[-1]))
+    found = [
+        _of_hit(model, f, weights, rows) for e in entries for f in e.single_frfs(windows=windows, band=band)
+    ]
+    shifts, variances = (np.array(part) for part in zip(*found, strict=True))
+    levels = np.concatenate([e.levels for e in entries])
+    point = np.repeat(np.arange(len(entries)), [len(e.levels) for e in entries])
+    lines = [_line(levels, point, shifts[:, :, i], variances[:, :, i]) for i in range(2)]
+    return LevelDependence(
+        *lines[0], *lines[1], mean_level(entries), float(levels.min()), float(levels.max()), levels, point,
+        shifts[:, :, 0], np.sqrt(variances[:, :, 0]),
+    )  # fmt: skip
+
+
+def _known(entry: UsedHits, rows: dict[tuple[Dof, Dof], int]) -> bool:
+    return any((response, entry.hits.reference) in rows for response in entry.hits.responses)
+
+
+def weights_of(model: ModalModel) -> Weights:
+    """Return the reciprocal variances of the noise about an identified model."""
+    poles, powers = np.concatenate([model.poles, model.background_poles]), model.background.powers
+    frfs = model.frfs if model.carried is None else model.carried
+    plain = uniform_weights(frfs)
+    fit = fit_at(frfs, poles, plain, powers, True)
+    residual = left_over(frfs, fit)
+    return noise_weights(frfs, residual, absorbed_by(frfs, fit, plain))[0]
+
+
+def _of_hit(
+    model: ModalModel, frfs: FrfSet, weights: Weights, rows: dict[tuple[Dof, Dof], int]
+) -> tuple[FloatArray, FloatArray]:
+    """Return shifts of (ln f, zeta) of each mode in one hit, (n_modes, 2), and their variances."""
+    pairs = list(zip(frfs.responses, frfs.references, strict=True))
+    kept = [i for i, pair in enumerate(pairs) if pair in rows]
+    data, told = frfs.select(kept), np.array([rows[pairs[i]] for i in kept])
+    of_lines = weights.lines if len(weights.lines) == 1 else weights.full[told].mean(axis=0, keepdims=True)
+    level = weights.level[told] if len(weights.lines) == 1 else np.ones(len(told))
+    moved, covariance = _moved_poles(model, data, Weights(level, of_lines))
+    poles, size = model.poles, np.abs(model.poles)
+    frequency = np.stack([poles.real, poles.imag], axis=1) / size[:, None] ** 2
+    damping = -np.stack([1 / size, np.zeros(len(size))], axis=1) + (poles.real / size)[:, None] * frequency
+    turn = np.stack([frequency, damping], axis=1)
+    shift = np.einsum("rij,rj->ri", turn, np.stack([moved.real, moved.imag], axis=1))
+    return shift, np.einsum("rij,rjk,rik->ri", turn, covariance, turn)
+
+
+def _moved_poles(model: ModalModel, data: FrfSet, weights: Weights) -> tuple[ComplexArray, FloatArray]:
+    """Return how far the poles of one hit are from those identified, and its (n_modes, 2, 2) covariance [rad/s].
+
+    On the way, poles are held by a prior of a half-width, so that one which this hit does not show stays where it is.
+    """
+    n, powers, at = len(model), model.background.powers, model.poles
+    width = np.abs(model.poles.real)
+    prior = np.repeat(1 / width**2, 2)
+
+    def information() -> tuple[FloatArray, FloatArray]:
+        step = evaluate(data, np.concatenate([at, model.background_poles]), weights, powers)
+        return _information(step, n, data)
+
+    for _ in range(STEPS):
+        normal, gradient = information()
+        pull = gradient - prior * _flat(at - model.poles)
+        change = _complex(np.asarray(np.linalg.solve(normal + np.diag(prior), pull)))
+        at = decaying(np.asarray(at + change), at, data.decay)
+        if np.abs(change / width).max() < AT_REST:
+            break
+    normal, gradient = information()
+    covariance = np.asarray(np.linalg.inv(normal + np.diag(1e-8 * prior)), dtype=np.float64)
+    blocks = covariance.reshape(n, 2, n, 2)[np.arange(n), :, np.arange(n), :]
+    return np.asarray(at - model.poles + _complex(covariance @ gradient)), blocks
+
+
+def _information(step: Step, n_modes: int, data: FrfSet) -> tuple[FloatArray, FloatArray]:
+    """Return information of the poles and the gradient, for the noise that the misfit of this hit shows."""
+    spare = data.values.size - 0.5 * step.solution.size
+    scale = 2.0 / max(step.cost / max(spare, 1.0), np.finfo(float).tiny)
+    return scale * step.normal[: 2 * n_modes, : 2 * n_modes], scale * step.gradient[: 2 * n_modes]
+
+
+def _flat(values: ComplexArray) -> FloatArray:
+    return np.stack([values.real, values.imag], axis=1).ravel()
+
+
+def _complex(values: FloatArray) -> ComplexArray:
+    return np.asarray(values[0::2] + 1j * values[1::2])
+
+
+def _line(
+    levels: FloatArray, point: IntArray, shifts: FloatArray, variances: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Fit one slope per mode and an offset per point, weighted; return slopes and standard deviations.
+
+    Parameters
+    ----------
+    levels, point : (n_hits,) arrays
+        Level and point of each hit.
+    shifts, variances : (n_hits, n_modes) arrays
+        What is fitted, and its variance up to a factor per mode.
+    """
+    member = (point[:, None] == np.arange(point.max() + 1)[None, :]).astype(np.float64)
+    weight = 1 / (
+        variances + np.median(variances, axis=0)
+    )  # what no misfit shows keeps any hit from ruling alone
+    total = np.maximum(member.T @ weight, np.finfo(float).tiny)
+
+    def within(values: FloatArray) -> FloatArray:
+        return np.asarray(values - member @ ((member.T @ (weight * values)) / total))
+
+    apart = within(np.broadcast_to(levels[:, None], shifts.shape))
+    about = within(shifts)
+    power = np.sum(weight * apart**2, axis=0)
+    slope = np.sum(weight * apart * about, axis=0) / power
+    left = about - slope * apart
+    freedom = len(levels) - len(np.unique(point)) - 1
+    scale = np.sum(weight * left**2, axis=0) / freedom
+    wider = stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)
+    return slope, wider * np.sqrt(scale / power)

@@ -1,0 +1,1 @@
+"""Standard deviations of what is reported, and doubts about modes."""

@@ -1,0 +1,124 @@
+"""Standard deviations of what is reported, with what the fit leaves taken into account."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import BoolArray, FloatArray
+from acquisition.frfs.frf import FrfSet
+from identification.fit.equations.pruning import constant_variance, pole_covariance
+from identification.fit.equations.refine import scores
+from identification.fit.fit import Fitted
+from identification.fit.noise import window_shaped
+from identification.fit.noise.common_spread import common_factors
+from identification.fit.noise.disagreement import Disagreement, between_frfs
+from identification.uncertainty.hit_scatter import NoiseFactors
+from identification.uncertainty.hit_scatter import factors as hit_factors
+from identification.uncertainty.misfit import misfit_factor
+
+
+def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactors:
+    """Return by what factor the errors exceed those of independent noise of the weights' size.
+
+    The hits tell where they came with the FRFs, noise that fades otherwise. What all hits have in common is
+    not in their scatter, so the factor is never under what the fit leaves about a mode.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs in the band.
+    fitted : Fitted
+        The fit.
+    modes : (n_modes,) bool array
+        Which of its poles are modes.
+    """
+    fit, misfit = fitted.fit, misfit_factor(frfs, fitted)
+    held, free, pole = window_shaped.inflation(fitted.weights.fade, (frfs.decay - fit.poles.real) / frfs.df)
+    pole = pole * common_factors(frfs, fit, fitted.weights, fitted.variance, fitted.residual)
+    shape = fit.linear.residues.shape
+    noise = NoiseFactors(pole, np.broadcast_to(free, shape), np.ones(len(pole)), np.broadcast_to(held, shape))
+    told = hit_factors(frfs, fit, fitted.weights, modes, noise)
+    if told is None:
+        return NoiseFactors(misfit * noise.poles, misfit * noise.constants, noise.shapes, misfit * noise.held)
+    poles, constants = np.maximum(told.poles, misfit), np.maximum(told.constants, misfit)
+    return NoiseFactors(poles, constants, told.shapes, np.maximum(told.held, misfit))
+
+
+def pole_statistics(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
+    """Return the covariance of (ln frequency, damping ratio) of every mode, shape (n_modes, 2, 2) [-].
+
+    First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|; with what FRFs that disagree,
+    ``apart``, add.
+    """
+    poles = fitted.fit.poles
+    full = pole_covariance(fitted.fit).reshape(len(poles), 2, len(poles), 2)
+    own = np.einsum("rarb->rab", full)
+    own = own * factors.poles[:, None, None] + apart.mean
+    a, b, size = poles.real, poles.imag, np.abs(poles)
+    jacobian = np.stack(
+        [
+            np.stack([a, b], axis=1) / size[:, None] ** 2,
+            np.stack([-(b**2), a * b], axis=1) / size[:, None] ** 3,
+        ],
+        axis=1,
+    )
+    return np.asarray(np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian))
+
+
+def constant_statistics(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
+    """Return the standard deviation of each modal constant's real part, shape (n_frf, n_modes) [1/kg].
+
+    Where FRFs disagree on a pole, each constant bears the scatter of its own FRF's pole about the common one.
+    """
+    noise = constant_variance(fitted.fit) * factors.constants
+    return np.asarray(np.sqrt(noise + _shifted(fitted, apart)))
+
+
+def _shifted(fitted: Fitted, apart: Disagreement) -> FloatArray:
+    """Return the variance of each constant by the scatter of its FRF's own pole, (n_frf, n_modes) [1/kg^2]."""
+    fit = fitted.fit
+    n = len(fit.poles)
+    gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(-1, n, n, 2)
+    own = np.einsum("jnna->jna", gain)
+    shift = np.einsum("jna,jnab,jnb->jn", own, apart.each, own)
+    return np.asarray((2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0))
+
+
+def shared_errors(fitted: Fitted, factors: NoiseFactors) -> FloatArray:
+    """Return the errors of the constants' real parts that come from the poles, (n_frf, n_modes, k) [1/kg].
+
+    One standard deviation of each of k independent causes: their covariance is the sum over the causes of
+    products. An error of a mode's own pole stretches all its constants alike; that of a neighbour's adds
+    something of the neighbour's shape.
+    """
+    fit = fitted.fit
+    covariance = pole_covariance(fit)
+    size = np.sqrt(np.diag(covariance))
+    values, vectors = np.linalg.eigh(covariance / np.outer(size, size))
+    half = (np.sqrt(np.repeat(factors.poles, 2)) * size)[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
+    moved = fit.pole_gain[:, 1 : 2 * len(fit.poles) : 2] @ half
+    return np.asarray(-2.0 * fit.poles.imag[:, None] * moved)
+
+
+def own_errors(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
+    """Return the standard deviation of each constant's real part with the poles known, (n_frf, n_modes) [1/kg]."""
+    fit = fitted.fit
+    held = (2.0 * fit.poles.imag) ** 2 * fit.linear_inverse[:, 1 : 2 * len(fit.poles) : 2]
+    return np.asarray(np.sqrt(held * factors.held + _shifted(fitted, apart)))
+
+
+def disagreement(fitted: Fitted, factors: NoiseFactors) -> Disagreement:
+    """Return how far the FRFs disagree on each pole, beyond what the noise factors allow.
+
+    What the drift explains was taken out before; what its estimate leaves in doubt comes on top: of the mean, as there
+    are only so many set-ups, and of each FRF's own shift.
+    """
+    poles = fitted.fit.poles
+    left = between_frfs(*scores(fitted.fit), factors.poles)
+    drift, way = fitted.drift.at(poles), np.stack([poles.real, poles.imag], axis=1)
+    along = way[:, :, None] * way[:, None, :]
+    return Disagreement(
+        left.mean + along * drift.mean_variance[:, None, None],
+        left.each + along * drift.doubt[:, :, None, None],
+        left.scatter,
+    )

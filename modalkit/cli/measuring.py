@@ -1,0 +1,279 @@
+"""Commands that look at a test: inspect, frf, identify."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from acquisition import (
+    Dof,
+    InputError,
+    StudyError,
+    UffContent,
+    judge_hits,
+    looks_long,
+    reciprocity,
+    write_uff,
+)
+from acquisition.display import counted, named_files
+from acquisition.warned import in_order
+from modalkit.cli.common import (
+    check_folder,
+    is_study,
+    out,
+    read_by,
+    reading,
+    show_figures,
+    show_table,
+    show_warnings,
+    working,
+)
+from modalkit.cli.options import (
+    Add,
+    Band,
+    Decay,
+    Drop,
+    Estimate,
+    Figures,
+    Files,
+    Layout,
+    Leave,
+    SensorMass,
+    Use,
+    Window,
+    WindowOn,
+    handling,
+)
+from modalkit.cli.showing import (
+    save_modes,
+    show_hits,
+    show_modes,
+    show_rejected,
+    show_second_opinion,
+)
+from modalkit.output.destinations import check_outputs, json_of, uff_of
+from modalkit.output.modes import modes_kind
+from modalkit.workflow.existing import Modes
+from modalkit.workflow.files import Progress, read_files
+from modalkit.workflow.identification import Processed, numbered, read, read_frfs, stated
+from modalkit.workflow.processing_options import Handling
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
+
+NAMED = 12
+"""So many degrees of freedom are named in one line."""
+
+
+def add_commands(app: typer.Typer) -> None:
+    """Add the commands of this module."""
+    app.command()(inspect)
+    app.command()(frf)
+    app.command()(identify)
+
+
+def inspect(
+    files: Files,
+    decay: Decay = 0.0,
+    layout: Layout = None,
+    every: Annotated[bool, typer.Option("--all", help="a row for every data set")] = False,
+) -> None:
+    """List what is in a file, and what is wrong with it."""
+    said = Handling(decay=decay)
+    with reading() as progress:
+        content = read_files(files, layout=layout, progress=progress)
+    out.print(named_files(files) + (f": {content.title}" if content.title else ""), markup=False)
+    if content.datasets:
+        show_table(content.table() if every else _in_short(content))
+    out.print("usable: " + ("; ".join(_usable(content)) or "nothing"))
+    with working("judging the hits"):
+        long = [looks_long(test) for test in content.tests]
+        single = [test for test, several_hits in zip(content.tests, long, strict=True) if not several_hits]
+        warnings: list[str] = []
+        judged = numbered([judge_hits(stated(test, said, warnings)) for test in single])
+    if any(long):
+        out.print("records hold several hits each; they are split when they are used")
+    for verdicts in judged:
+        show_hits(verdicts)
+    if content.modal is not None and len(content.modal):
+        show_modes(Modes(content.modal, named_files(files)))
+    bad = [d for d in content.datasets if not d.ok]
+    all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
+    error = f"{bad[0].place}: {bad[0].message}" if all_bad else ""
+    show_warnings([w for w in (*content.warnings, *warnings) if not error or not w.startswith(error)])
+    if error:
+        raise InputError(error)
+
+
+def _in_short(content: UffContent) -> pd.DataFrame:
+    """Return the table of data sets with those of a kind in one row, unless there is something to say of them.
+
+    What there is to say stands in the warnings.
+    """
+    from pandas import concat
+
+    table = content.table()
+    plain = table["ok"] & (table["message"] == "")
+    rows = [table[~plain]]
+    for _, group in table[plain].groupby(["file", "data set", "kind"], sort=False):
+        row = group.iloc[[0]].copy()
+        if len(group) > 1:
+            row["description"] = f"{len(group)} of them, the first: " + row["description"]
+        rows.append(row)
+    return concat(rows).sort_values(["file", "line"], kind="stable").drop(columns="message")
+
+
+def _usable(content: UffContent) -> list[str]:
+    parts = [counted(len(content.geometry.nodes), "node")] if content.geometry.nodes else []
+    for test in content.tests:
+        count = sum(p.count for p in test.points)
+        hit, seen = [p.reference for p in test.points], [d for p in test.points for d in p.responses]
+        parts.append(
+            f"{counted(count, 'hit')} at {_places(hit)}, seen at {_places(seen)}, {test.samples} samples at "
+            f"{test.rate:g} Hz"
+        )
+    if content.frfs is not None:
+        f = content.frfs
+        span = f"{f.frequency[0]:g} to {f.frequency[-1]:g} Hz in steps of {f.df:g} Hz"
+        where = f"hit at {_places(f.references)}, seen at {_places(f.responses)}"
+        parts.append(f"{counted(len(f.responses), 'FRF')} ({f.form}), {where}, {span}")
+    if content.modal is not None:
+        parts.append(counted(len(content.modal), "mode"))
+    return parts
+
+
+def _places(dofs: Sequence[Dof]) -> str:
+    """Return how many points there are, and which, the first of many."""
+    names = list(dict.fromkeys(str(dof) for dof in dofs))
+    shown = ", ".join(names[:NAMED]) + (", ..." if len(names) > NAMED else "")
+    return f"{counted(len(names), 'point')} ({shown})"
+
+
+def frf(
+    files: Files,
+    output: Annotated[Path, typer.Option("--output", "-o", help="UFF file to write")],
+    decay: Decay = 0.0,
+    window_on: WindowOn = None,
+    window: Window = 0.0,
+    estimator: Estimate = "H1",
+    use: Use = None,
+    leave: Leave = None,
+    layout: Layout = None,
+    sensor_mass: SensorMass = None,
+    figures: Figures = None,
+) -> None:
+    """Turn hits into FRFs with coherence, and write them as UFF."""
+    check_outputs((output, uff_of("frfs")), reads=read_by(files, layout))
+    check_folder(figures)
+    said = handling(
+        decay=decay,
+        window_on=window_on,
+        window=window,
+        estimator=estimator,
+        use=use,
+        leave=leave,
+        layout=layout,
+        sensors=sensor_mass,
+    )
+    with reading("averaging the hits") as progress:
+        processed = read_frfs(files, handling=said, progress=progress)
+    show_hits(processed.hits)
+    show_table(processed.frfs.table(), "FRFs")
+    show_rejected(processed.hits)
+    pairs = reciprocity(processed.frfs)
+    if len(pairs):
+        show_table(pairs, "Reciprocity: H_ij beside H_ji")
+    write_uff(output, frfs=processed.frfs, geometry=processed.frfs.geometry, title=processed.content.title)
+    out.print(f"written: {output}", markup=False)
+    show_warnings(processed.warnings)
+    show_figures(figures, lambda: _drawn(processed))
+
+
+def identify(
+    files: Annotated[list[Path], typer.Argument(help="file(s) of one test, or a study file")],
+    band: Band = None,
+    order: Annotated[int | None, typer.Option(help="highest model order")] = None,
+    add: Add = None,
+    drop: Drop = None,
+    decay: Decay = 0.0,
+    window_on: WindowOn = None,
+    window: Window = 0.0,
+    estimator: Estimate = "H1",
+    use: Use = None,
+    leave: Leave = None,
+    layout: Layout = None,
+    sensor_mass: SensorMass = None,
+    json: Annotated[Path | None, typer.Option("--json", help="file for the modes as JSON")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="file for the modes: .uff, .csv or .json")
+    ] = None,
+    check: Annotated[bool, typer.Option("--check", help="also show the poles of sdypy-EMA")] = False,
+    figures: Figures = None,
+) -> None:
+    """Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already."""
+    check_outputs(
+        (json, json_of("modalkit.modes/1")), (output, modes_kind(output)), reads=read_by(files, layout)
+    )
+    check_folder(figures)
+    said = handling(
+        decay=decay,
+        window_on=window_on,
+        window=window,
+        estimator=estimator,
+        use=use,
+        leave=leave,
+        layout=layout,
+        sensors=sensor_mass,
+    )
+    with reading("identifying") as progress:
+        processed, model = _identified(files, said, band, order, (add or (), drop or ()), progress)
+    if isinstance(model, Modes) or processed is None:
+        show_modes(model)
+    else:
+        show_hits(processed.hits)
+        show_modes(model)
+        show_rejected(processed.hits, model.points_rejected)
+        if check:
+            show_second_opinion(processed, model)
+    warnings = in_order([*(() if processed is None else processed.warnings), *model.warnings])
+    show_warnings(warnings)
+    save_modes(processed, model, warnings, json, output)
+    show_figures(figures, lambda: _drawn(*(() if processed is None else (processed,)), model))
+
+
+def _identified(
+    files: list[Path],
+    said: Handling,
+    band: tuple[float, float] | None,
+    order: int | None,
+    named: tuple[Sequence[float], Sequence[float]],
+    progress: Progress,
+) -> tuple[Processed | None, ModalModel | Modes]:
+    """Return FRFs and modes of files, or of a study's test; modes that exist already have no FRFs."""
+    add, drop = named
+    if len(files) == 1 and is_study(files[0]):
+        from modalkit.study.read import read_study
+        from modalkit.workflow.case import process
+
+        if said != Handling():
+            raise StudyError(f"{files[0]}: a study says in [test] how its files are treated; write it there")
+        return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)
+    found = read(files, handling=said, progress=progress)
+    if not isinstance(found, Modes):
+        return found, found.identify(band=band, order=order, add=add, drop=drop)
+    if order is not None or add or drop:
+        raise InputError(
+            f"{found.source}: holds modes; --order, --add and --drop are for FRFs that are identified"
+        )
+    return None, found.identify(band=band)
+
+
+def _drawn(*results: Processed | ModalModel | Modes) -> dict[str, Any]:
+    from modalkit.figures import draw
+
+    return {name: figure for result in results for name, figure in draw(result).items()}

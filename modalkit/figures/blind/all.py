@@ -1,0 +1,55 @@
+"""The score of a blind run in figures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from matplotlib.figure import Figure
+
+from modalkit.blind.scoring.closing import comparable
+from modalkit.blind.scoring.score import Score
+from modalkit.figures.blind.confidence import abstention_figure, reliability_figure
+from modalkit.figures.blind.confusion import confusion_figure
+from modalkit.figures.blind.rates import rates_figure
+from modalkit.figures.blind.truth import closing_figure, severity_figure
+
+
+def blind_figures(score: Score) -> dict[str, Figure]:
+    """Draw the score of a blind run.
+
+    Parameters
+    ----------
+    score : Score
+        As :func:`modalkit.blind.score` returns it.
+
+    Returns
+    -------
+    dict of str to Figure
+        ``blind_rates``, ``blind_confusion``, ``blind_abstention``, ``blind_reliability``, ``blind_severity`` and
+        ``blind_closing``; those that the run has nothing for are left out.
+    """
+    known, outside = score.abstention, score.abstention_outside
+    told = comparable(score.closing)
+    drawn: dict[str, tuple[bool, Callable[[], Figure]]] = {
+        "blind_rates": (len(score.headline) > 0, lambda: rates_figure(score.headline, score.effects)),
+        "blind_confusion": (True, lambda: confusion_figure(score.answers)),
+        "blind_abstention": (
+            len(known.curve) > 0,
+            lambda: abstention_figure((known.curve, known.rule), (outside.curve, outside.rule)),
+        ),
+        "blind_reliability": (
+            len(score.reliability) > 0,
+            lambda: reliability_figure(
+                score.reliability, score.calibration, score.open_set.roc, score.open_set.area
+            ),
+        ),
+        "blind_severity": (
+            bool(score.severity["error"].notna().any()),
+            lambda: severity_figure(score.severity),
+        ),
+        "blind_closing": (
+            len(told) > 0 or bool(score.places["held"].astype(bool).any()),
+            lambda: closing_figure(score.closing, score.places),
+        ),
+    }
+    return {name: make() for name, (wanted, make) in drawn.items() if wanted}

@@ -1,0 +1,1 @@
+"""Mode shapes at test points and over the model, and their correlation."""

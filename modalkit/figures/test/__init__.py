@@ -1,0 +1,1 @@
+"""Figures of a test: hits, FRFs, stabilisation chart, CMIF."""

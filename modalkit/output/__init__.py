@@ -1,0 +1,1 @@
+"""Results as text and records, and files that are written whole or not at all."""

@@ -1,0 +1,187 @@
+"""Results as the plain records of the JSON files, whose keys are a contract."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from acquisition import HitVerdict, ModalData, rejected_points
+from identification import ModalModel, mpc
+from modalkit.workflow.existing import Modes
+from updating import Diagnosis
+from updating.diagnosis.answer.result import Ranked
+
+
+def modes_record(
+    model: ModalModel | Modes, hits: Sequence[HitVerdict] = (), warnings: Sequence[str] = ()
+) -> dict[str, Any]:
+    """Return an identification, or modes that were read, as ``modalkit.modes/1``.
+
+    Beside the contract's keys it has ``nodes``, where their places are known, so that the file can be read back.
+    """
+    modal = model.modal
+    assert modal.damping is not None
+    assert modal.damping_sigma is not None
+    purity = None if modal.shapes is None else mpc(modal.shapes)
+    modes = [
+        {
+            "frequency_hz": modal.frequency[r],
+            "frequency_sigma_hz": modal.frequency_sigma[r],
+            "damping_ratio": modal.damping[r],
+            "damping_sigma": modal.damping_sigma[r],
+            "shape": _shape(modal, r),
+            "mpc": None if purity is None else purity[r],
+            "scaled": modal.scaled,
+        }
+        for r in range(len(modal))
+    ]
+    return {
+        "schema": "modalkit.modes/1",
+        "modes": modes,
+        "points_rejected": [
+            *without_hits(hits),
+            *(() if isinstance(model, Modes) else model.points_rejected),
+        ],
+        "hits": [hit_record(h) for h in hits],
+        "window_decay_removed": 0.0 if isinstance(model, Modes) else model.frfs.decay,
+        "warnings": list(warnings),
+        "nodes": [
+            {"node": node, "x": x, "y": y, "z": z}
+            for node, (x, y, z) in zip(modal.geometry.nodes, modal.geometry.coordinates, strict=True)
+        ],
+    }
+
+
+def _shape(modal: ModalData, mode: int) -> list[dict[str, Any]]:
+    if modal.shapes is None:
+        return []
+    return [
+        {
+            "node": dof.node,
+            "direction": dof.direction,
+            "re": modal.shapes[i, mode].real,
+            "im": modal.shapes[i, mode].imag,
+            "sigma": None if modal.shape_sigma is None else modal.shape_sigma[i, mode],
+        }
+        for i, dof in enumerate(modal.dofs)
+    ]
+
+
+def without_hits(hits: Sequence[HitVerdict]) -> list[str]:
+    """Return the points of which no hit is used, with the reason."""
+    return [f"{point}: none of its hits is used" for point in rejected_points(hits)]
+
+
+def hit_record(hit: HitVerdict) -> dict[str, Any]:
+    """Return the verdict on one hit."""
+    return {"point": str(hit.point), "hit": hit.hit, "used": hit.used, "reasons": list(hit.reasons)}
+
+
+def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict[str, Any]:
+    """Return a diagnosis as ``modalkit.diagnosis/1``."""
+    where, shrink = diagnosis.where, diagnosis.shrink
+    return {
+        "schema": "modalkit.diagnosis/1",
+        "title": diagnosis.title,
+        "significant": diagnosis.significant,
+        "p_value": diagnosis.p_value,
+        "gap": _gap_record(diagnosis),
+        "where": {
+            "channel": where.channel,
+            "channels": where.channels,
+            "location": where.location,
+            "locations": where.locations,
+            "points": where.points,
+            "zones": [
+                {"name": z.name, "center": z.center, "probability": z.probability} for z in where.zones
+            ],
+        },
+        "cause": {
+            "verdict": diagnosis.verdict,
+            "effects": diagnosis.effects,
+            "sets": diagnosis.sets,
+            "ranking": [_ranked_record(r, named=r.effects in diagnosis.sets) for r in diagnosis.ranking],
+        },
+        "shrink": {
+            "metric": shrink.metric,
+            "before_percent": shrink.before,
+            "after_percent": shrink.after,
+            "held_out": {
+                "before_percent": shrink.held_before,
+                "after_percent": shrink.held_after,
+                "runner_up_percent": shrink.held_runner_up,
+                "nuisance_only_percent": shrink.held_nuisance,
+                "noise_floor_percent": shrink.floor,
+                "nuisance_stretch_sigma": shrink.stretch,
+                "points": None
+                if shrink.points is None
+                else {
+                    "before_percent": shrink.points.before,
+                    "after_percent": shrink.points.after,
+                    "nuisance_only_percent": shrink.points.nuisance,
+                },
+            },
+            "closed_percent": None
+            if shrink.closed is None
+            else {
+                "value": shrink.closed.value,
+                "low95": shrink.closed.low95,
+                "high95": shrink.closed.high95,
+            },
+        },
+        "next_test": [
+            {
+                "measure": t.measure,
+                "separates": t.separates,
+                "expected_sigma": t.expected_sigma,
+            }
+            for t in diagnosis.next_test
+        ],
+        "not_examined": diagnosis.not_examined,
+        "warnings": [*diagnosis.warnings, *warnings],
+    }
+
+
+def _gap_record(diagnosis: Diagnosis) -> dict[str, Any]:
+    gap = diagnosis.gap
+    modes = [
+        {
+            "study": row["study"],
+            "test_hz": row["test [Hz]"],
+            "model_hz": row["model [Hz]"],
+            "error_percent": row["error [%]"],
+            "sigma_percent": row["sigma [%]"],
+            "mac": row["MAC"],
+            "test_damping": row["test damping"],
+            "model_damping": row["model damping"],
+        }
+        for _, row in gap.modes.iterrows()
+    ]
+    return {
+        "frequency_rms_percent": gap.rms_percent,
+        "noise_floor_percent": gap.floor_percent,
+        "modes": modes,
+        "frac": gap.frac,
+    }
+
+
+def _ranked_record(row: Ranked, *, named: bool) -> dict[str, Any]:
+    """Return a row of the ranking; points and sensors stand in the rows of the answer alone, numbers in all."""
+    told = {n: e for n, e in row.parameters.items() if named or not isinstance(e.value, tuple | str)}
+    return {
+        "effects": row.effects,
+        "probability": row.probability,
+        "equivalents": row.equivalents,
+        "parameters": {
+            name: {
+                "value": e.value,
+                "unit": e.unit,
+                "low95": e.low95,
+                "high95": e.high95,
+                "at_bound": e.at_bound,
+            }
+            for name, e in told.items()
+        },
+        "plausible": row.plausible,
+        "fit_p_value": row.p_value,
+    }

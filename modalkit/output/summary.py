@@ -1,0 +1,271 @@
+"""A diagnosis as a colleague would write it: five lines that answer, then the tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import combinations
+
+from modalkit.output.quantities import number, place, size
+from updating import LIBRARY, Diagnosis
+from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
+from updating.diagnosis.search.held_out import BELIEVED
+
+EQUAL_BY_PHYSICS = {
+    frozenset({"calibration_gain", "section_scale"}): (
+        "both scale every FRF and nothing else: no hammer test tells them apart; calibrate the chain, or weigh and "
+        "measure the specimen"
+    ),
+    frozenset({"exponential_window", "uniform_damping"}): (
+        "both add one decay to every mode: no hammer test tells them apart; look the window up in the analyser's "
+        "settings"
+    ),
+}
+"""Effects that make one and the same change, and what to do about it."""
+
+IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
+"""Parameters that the line on the place tells."""
+
+SHOWN = 4
+"""So many parameters are told in the line on the cause."""
+
+LIKELY = 0.5
+"""A region is named if it holds so much of the probability [-]."""
+
+
+def letter(diagnosis: Diagnosis) -> list[str]:
+    """Return five lines: what, where, how far, how sure, what next."""
+    return [
+        f"Cause:   {_cause(diagnosis)}",
+        f"Where:   {_where(diagnosis)}",
+        f"Closes:  {_closes(diagnosis)}",
+        f"Sure:    {_sure(diagnosis)}",
+        f"Next:    {_next(diagnosis)}",
+    ]
+
+
+def _cause(diagnosis: Diagnosis) -> str:
+    if diagnosis.verdict == "none":
+        return "no gap beyond tolerances and noise; there is nothing to explain"
+    if diagnosis.verdict == "unknown" and not diagnosis.comparable:
+        return (
+            "unknown: most measured modes have no partner in the model, and the few that have one name no cause; check "
+            "axes, points, signs and boundary conditions first"
+        )
+    if diagnosis.verdict == "unknown":
+        return (
+            "unknown: the gap is real, and nothing in the library explains it, alone or in the pairs weighed"
+        )
+    if diagnosis.verdict == "named":
+        names = diagnosis.sets[0]
+        summary = " ".join(LIBRARY[n].sentence(_stated(diagnosis, n)) for n in names if n in LIBRARY)
+        return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
+    said = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
+    exact = _equal(diagnosis)
+    return f"{said}; {exact.partition(':')[0]}" if exact else said
+
+
+def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
+    """Return the values of one effect of the first set, by their own names."""
+    row = _row(diagnosis, diagnosis.sets[0])
+    found = {} if row is None else row.parameters
+    return {n.removeprefix(f"{effect}."): e.value for n, e in found.items() if n.startswith(f"{effect}.")}
+
+
+def _equal(diagnosis: Diagnosis) -> str:
+    """Return what is said of a class whose members make one and the same change, or nothing."""
+    if any(len(names) > 1 for names in diagnosis.sets):
+        return ""
+    return EQUAL_BY_PHYSICS.get(frozenset(diagnosis.effects), "")
+
+
+def _row(diagnosis: Diagnosis, names: tuple[str, ...]) -> Ranked | None:
+    return next((row for row in diagnosis.ranking if row.effects == names), None)
+
+
+def _values(diagnosis: Diagnosis) -> str:
+    """Return the sizes of a named cause, and whether they are believable."""
+    row = _row(diagnosis, diagnosis.sets[0])
+    if row is None:
+        return ""
+    told = []
+    for name, estimate in row.parameters.items():
+        effect, _, parameter = name.partition(".")
+        shape = estimate.low95 is None and not isinstance(estimate.value, str | tuple)
+        if estimate.aside or parameter in IN_THE_PLACE or (shape and "point" not in parameter):
+            continue
+        bare = parameter.replace("_", " ")
+        whose = f"{effect} " if parameter == "factor" and len(row.effects) > 1 else ""
+        told.append(
+            f"{whose}{bare} {size(estimate)}" + (", the end of its range" if estimate.at_bound else "")
+        )
+    text = f"({'; '.join(told[:SHOWN])}; 95 % in brackets)" if told else ""
+    return (
+        text
+        if row.plausible
+        else f"{text} That size is hardly believable: look for another cause, too.".strip()
+    )
+
+
+def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
+    """Return a set of effects, with its size where it is one number."""
+    row, said = _row(diagnosis, names), " + ".join(names)
+    if row is None or len(row.parameters) != 1 or len(names) > 1:
+        return said
+    (estimate,) = row.parameters.values()
+    if not isinstance(estimate.value, float):
+        return said
+    bare = size(estimate).partition(" (")[0]
+    return f"{said} ({'x ' if estimate.unit == '-' else ''}{bare})"
+
+
+def _where(diagnosis: Diagnosis) -> str:
+    where = diagnosis.where
+    if diagnosis.verdict == "none" or where.channel == "none":
+        return "nowhere: every channel agrees"
+    if diagnosis.verdict == "unknown":
+        band = f"{where.band} " if where.band else ""
+        return f"{band}The {where.channel} is where the least bad explanations act; do not trust it."
+    text = f"{where.channel} ({100 * where.channels[where.channel]:.0f} %)"
+    if where.location is None:
+        return text + (
+            ", spread over the whole structure" if where.channel != "measurement" else _points(where.points)
+        )
+    places = list(dict.fromkeys(place(at) for at in where.locations[:3]))
+    text += ", at " + (" and ".join(places) if places else place(where.location))
+    zone = min(where.zones, key=lambda z: math.dist(z.center, where.location or z.center), default=None)
+    if zone is not None and round(zone.probability, 2) >= LIKELY and len(places) < 2:
+        text += f", region {zone.name}"
+    if where.nearest:
+        text += f" (nearest test point{_listed(where.nearest)})"
+    beside = tuple(node for node in where.points if node not in where.nearest)
+    return f"{text}; in the measurement, point{_listed(beside)}" if beside else text
+
+
+def _points(points: tuple[int, ...]) -> str:
+    if not points:
+        return ""
+    return f", point{_listed(points)}"
+
+
+def _listed(points: tuple[int, ...]) -> str:
+    return f"{'s' if len(points) > 1 else ''} {', '.join(map(str, points))}"
+
+
+def _closes(diagnosis: Diagnosis) -> str:
+    shrink = diagnosis.shrink
+    say = _teller(shrink)
+    what = (
+        "misfit of all data"
+        if shrink.metric == "combined"
+        else f"{shrink.metric.replace('frf', 'FRF')} error"
+    )
+    if diagnosis.verdict == "none":
+        return f"nothing to close; r.m.s. {what} {say(shrink.before)}, noise floor {say(shrink.floor)}"
+    who = "with the least bad explanation, " if diagnosis.verdict == "unknown" else ""
+    text = f"{who}r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted"
+    if not math.isfinite(shrink.held_after):
+        return f"{text} (noise floor {say(shrink.floor)}); with one mode none can be held out, so that proves nothing"
+    text += f", {say(shrink.held_after)} on modes held out (noise floor {say(shrink.floor)})"
+    others = [f"tolerances alone {say(shrink.held_nuisance)}" + _stretched(shrink)]
+    if shrink.held_runner_up is not None:
+        others.insert(0, f"runner-up {say(shrink.held_runner_up)}")
+    text += "; held out, " + ", ".join(others)
+    if shrink.points is not None:
+        text += f"; on points held out {number(shrink.points.before)} % -> {number(shrink.points.after)} %"
+    if shrink.closed is not None and diagnosis.verdict != "unknown":
+        c = shrink.closed
+        text += f"; closes {c.value:.0f} % ({c.low95:.0f} to {c.high95:.0f}) of what can be closed"
+    return text
+
+
+def _teller(shrink: Shrink) -> Callable[[float], str]:
+    if shrink.metric == "combined":
+        return lambda value: f"{number(float(f'{value / 100:.2g}'))} sigma"
+    return lambda value: f"{float(f'{value:.2g}' if value < 10 else f'{value:.3g}'):g} %"
+
+
+def _stretched(shrink: Shrink) -> str:
+    if shrink.stretch <= BELIEVED:
+        return ""
+    return f" (kept within {BELIEVED:g} sigma; to explain it they would have to be {shrink.stretch:.0f} sigma off)"
+
+
+def _sure(diagnosis: Diagnosis) -> str:
+    least = f"p = {diagnosis.p_value:.1g}" if diagnosis.p_value > 0 else "p < 1e-300"
+    chance = f"chance alone makes such a gap with {least}"
+    if diagnosis.verdict == "none":
+        return chance
+    if diagnosis.verdict == "unknown":
+        return chance + _left_out(diagnosis)
+    chosen = [row for row in diagnosis.ranking if row.effects in diagnosis.sets]
+    total, fit = sum(row.probability for row in chosen), max(row.p_value for row in chosen)
+    rest = [row for row in diagnosis.ranking if row.effects not in diagnosis.sets]
+    behind = f"; next {' + '.join(rest[0].effects)} {_percent(rest[0].probability)}" if rest else ""
+    fits = "fits within the noise" if fit >= 0.05 else "fits, but not well"
+    together = f"{_percent(total)} probable" + (" together" if len(diagnosis.sets) > 1 else "")
+    return f"{together}{behind}; {fits} (p = {fit:.2g}); {chance}"
+
+
+def _percent(share: float) -> str:
+    """Return a probability in per cent, never rounded to certainty."""
+    if share > 0.999:
+        return "over 99.9 %"
+    return "below 0.1 %" if share < 0.001 else f"{100 * share:.3g} %"
+
+
+def _left_out(diagnosis: Diagnosis) -> str:
+    """Say how many effects the data did not allow to examine: one of them may be it."""
+    lacking = [
+        why for why in diagnosis.not_examined.values() if why.startswith(("no ", "it takes", "the data"))
+    ]
+    if not lacking:
+        return ""
+    return f"; {len(lacking)} effects could not be examined for want of data (listed below)"
+
+
+def _next(diagnosis: Diagnosis) -> str:
+    if diagnosis.verdict == "none":
+        return "nothing; the model may be used within its tolerances"
+    if diagnosis.verdict == "class" and (exact := _equal(diagnosis)):
+        return exact.partition("; ")[2]
+    if diagnosis.next_test:
+        test = diagnosis.next_test[0]
+        if diagnosis.verdict == "unknown":
+            return test.measure
+        confirm = "to confirm it, " if diagnosis.verdict == "named" else ""
+        return f"{confirm}{test.measure}: {separated(test)}"
+    names = diagnosis.sets[0] if diagnosis.verdict == "named" else diagnosis.effects
+    ways = "; ".join(dict.fromkeys(LIBRARY[n].separated_by for n in names if n in LIBRARY))
+    if diagnosis.verdict == "named":
+        return f"no rival is left to separate; to confirm: {ways}"
+    if diagnosis.verdict == "unknown":
+        return "look at the modes that miss most below; more points there, and a test of the bare specimen"
+    return ways
+
+
+def separated(test: NextTest) -> str:
+    """Say what a test separates, and how well."""
+    by = "" if math.isnan(test.expected_sigma) else f" by {number(round(test.expected_sigma))} sigma"
+    if not test.pairs:
+        return f"separates {' from '.join(test.separates)}{by}" if test.separates else ""
+    firsts = list(dict.fromkeys(a for a, _ in test.pairs))
+    seconds = list(dict.fromkeys(b for _, b in test.pairs))
+    if test.whole and len(firsts) > 1:
+        return f"separates all that is left{by}"
+    common = [s for s in firsts + seconds if all(s in pair for pair in test.pairs)]
+    if common:
+        others = list(dict.fromkeys(b if a == common[0] else a for a, b in test.pairs))
+        return f"separates {' + '.join(common[0])} from {_either(others)}{by}"
+    every = list(dict.fromkeys(firsts + seconds))
+    lacking = [(a, b) for a, b in combinations(every, 2) if not {(a, b), (b, a)} & set(test.pairs)]
+    if len(lacking) < len(test.pairs):
+        but = [f"{' + '.join(a)} from {' + '.join(b)}" for a, b in lacking]
+        return f"separates all but {' and '.join(but)}{by}"
+    each = [f"{' + '.join(a)} from {' + '.join(b)}" for a, b in test.pairs]
+    return f"separates {'; '.join(each)}{by}"
+
+
+def _either(sets: list[tuple[str, ...]]) -> str:
+    said = [" + ".join(names) for names in sets]
+    return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"

@@ -1,0 +1,97 @@
+"""Write a study without what its name, title and remarks give away."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from acquisition.errors import StudyError
+from modalkit.papers.real.case import Source
+
+_HEADER = re.compile(r"^\s*\[\[?\s*([\w.]+)\s*\]\]?")
+
+
+def write_anonymous(source: Source, home: Path, folder: Path, number: int) -> Path:
+    """Copy a study and its data under names that say nothing.
+
+    Parameters
+    ----------
+    source : Source
+        The study.
+    home : Path
+        Folder its path starts from.
+    folder : Path
+        Where the copy goes.
+    number : int
+        Of the study in its case [-].
+
+    Returns
+    -------
+    Path
+        The study file.
+
+    Raises
+    ------
+    StudyError
+        If it cannot be read.
+    """
+    original = home / source.path
+    try:
+        text = source.text or original.read_text(encoding="utf-8")
+        text = without_tables(text, source.drop)
+        document = tomllib.loads(text)
+    except (OSError, ValueError, RecursionError) as error:
+        raise StudyError(f"{original}: cannot be read ({error})") from error
+    for i, name in enumerate(data_files(document)):
+        copied = f"test{number}-{i}{Path(name).suffix}"
+        if source.modes:
+            (folder / copied).write_text(source.modes, encoding="utf-8")
+        else:
+            _copy(original.parent / name, folder / copied)
+        text = text.replace(f'"{name}"', f'"{copied}"')
+    study = folder / f"study{number}.toml"
+    study.write_text(_untitled(text, number), encoding="utf-8")
+    return study
+
+
+def without_tables(text: str, drop: tuple[str, ...]) -> str:
+    """Return a study without some of its tables, and without remarks on lines of their own."""
+    lines, keep = [], True
+    for line in text.splitlines():
+        header = _HEADER.match(line)
+        if header:
+            keep = header.group(1).split(".")[0] not in drop
+        if keep and not line.lstrip().startswith("#"):
+            lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def data_files(document: dict[str, Any]) -> list[str]:
+    """Return the files of data that a study names, those of the baseline too."""
+    names = []
+    for table in ("test", "baseline"):
+        part = document.get(table, {})
+        names += list(part.get("files", []))
+        names += [part["modes"]] if "modes" in part else []
+    return names
+
+
+def _untitled(text: str, number: int) -> str:
+    title = f'title = "Test {number}"'
+    text, found = re.subn(r"^\s*title\s*=.*$", title, text, count=1, flags=re.MULTILINE)
+    return text if found else f"{title}\n{text}"
+
+
+def _copy(file: Path, target: Path) -> None:
+    """Copy a file; of a table of modes without its remarks."""
+    try:
+        if file.suffix.lower() != ".csv":
+            shutil.copyfile(file, target)
+            return
+        lines = file.read_text(encoding="utf-8").splitlines()
+    except OSError as error:
+        raise StudyError(f"{file}: cannot be read ({error.strerror})") from error
+    target.write_text("\n".join(line for line in lines if not line.startswith("#")) + "\n", encoding="utf-8")

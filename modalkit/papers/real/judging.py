@@ -1,0 +1,119 @@
+"""Right, partly or wrong: the rules by which an answer about a real structure is judged."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from modalkit.blind.answer import Answer, Estimate
+from modalkit.papers.real.case import Case, Fact
+
+RULES = """\
+* right: it names a set of effects that is true; or a class that holds a true set and else only sets that
+  these data cannot tell from it;
+* partly: it says `unknown` where the library has the effect; or names a part of the truth only; or holds a
+  true set beside a false one; or is right but for a known number outside its 95 % interval or a place it does
+  not point to;
+* wrong: it names something else, says `none` where something is, or anything but `none` where nothing is;
+* with the effect left out of the library: `unknown` is right, and so is what says the same under another
+  name; such a stand-in beside others, or with something added to it, is partly right; all else is wrong.
+"""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """How an answer is judged.
+
+    Parameters
+    ----------
+    grade : {"right", "partly", "wrong"}
+        By the rules.
+    reason : str
+        Which of them.
+    """
+
+    grade: str
+    reason: str
+
+
+def judge(case: Case, answer: Answer) -> Judgement:
+    """Judge an answer.
+
+    Parameters
+    ----------
+    case : Case
+        What is known.
+    answer : Answer
+        What is said.
+
+    Returns
+    -------
+    Judgement
+        The grade with its reason.
+    """
+    if frozenset() in case.accepted:
+        return _of_nothing(answer)
+    if answer.verdict == "none":
+        return Judgement("wrong", "says that nothing is missing")
+    if case.removed:
+        return _of_left_out(case, answer)
+    if answer.verdict == "unknown":
+        return Judgement("partly", "sees a gap and names nothing")
+    return _of_effects(case, answer)
+
+
+def _of_nothing(answer: Answer) -> Judgement:
+    if answer.verdict == "none":
+        return Judgement("right", "nothing is missing, nothing is named")
+    return Judgement("wrong", "a false alarm")
+
+
+def _of_left_out(case: Case, answer: Answer) -> Judgement:
+    if answer.verdict == "unknown":
+        return Judgement("right", "unknown")
+    told = [s for s in answer.sets if s in case.stands_in]
+    if told and len(told) == len(answer.sets):
+        return Judgement("right", "the same under another name")
+    if any(stand_in <= s for s in answer.sets for stand_in in case.stands_in):
+        return Judgement("partly", "a stand-in beside others, or with something added")
+    return Judgement("wrong", "a cause that it is not")
+
+
+def _of_effects(case: Case, answer: Answer) -> Judgement:
+    true = [s for s in answer.sets if s in case.accepted]
+    if not true:
+        known = frozenset().union(*case.accepted)
+        if any(s & known for s in answer.sets):
+            return Judgement("partly", "a part of the truth")
+        return Judgement("wrong", "a cause that it is not")
+    if any(s not in case.accepted and s not in case.equivalent for s in answer.sets):
+        return Judgement("partly", "the truth beside something else")
+    return _of_numbers(case, answer)
+
+
+def _of_numbers(case: Case, answer: Answer) -> Judgement:
+    missed = [fact.text for fact, estimate in estimates(case, answer) if not covers(estimate, fact)]
+    if missed:
+        return Judgement("partly", f"not within its interval: {', '.join(missed)}")
+    if case.places and not points_to(case, answer):
+        return Judgement("partly", "points to another place")
+    return Judgement("right", "the cause" if len(answer.sets) == 1 else "in a class of what looks the same")
+
+
+def estimates(case: Case, answer: Answer) -> list[tuple[Fact, Estimate]]:
+    """Return the known numbers with what the most probable true set says of them."""
+    row = next((row for row in answer.ranking if row.effects in case.accepted), None)
+    told = {} if row is None else row.parameters
+    return [(fact, told[fact.parameter]) for fact in case.facts if fact.parameter in told]
+
+
+def covers(estimate: Estimate, fact: Fact) -> bool:
+    """Tell whether a 95 % interval reaches what is known."""
+    if math.isnan(estimate.low) or math.isnan(estimate.high):
+        return fact.low <= estimate.value <= fact.high
+    return estimate.low <= fact.high and fact.low <= estimate.high
+
+
+def points_to(case: Case, answer: Answer) -> bool:
+    """Tell whether one of the places of an answer lies where it should."""
+    return any(low <= x <= high for low, high in case.places for x, _ in answer.locations)

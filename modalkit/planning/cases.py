@@ -1,0 +1,131 @@
+"""Which effects, how strong and where, are tried to check a forecast."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modalkit.planning.family import Family
+from modalkit.planning.forecast import Advice, Outlook
+from modalkit.planning.separability import CLASS, EQUAL, NONE, SURE, Distances, at_severity, crossing
+from modalkit.simulator.hidden import SECRETS, Values
+from modalkit.simulator.setup import Setup
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One effect at one severity and place, and what is forecast of it.
+
+    Parameters
+    ----------
+    family : Family
+        The effect.
+    q : float
+        Severity [SI].
+    place : float
+        Where [m], or which form.
+    now, then : float
+        Distance to the nearest rival, as the test is and once the advice is followed [-].
+    rival_now, rival_then : str
+        Who that is.
+    rivals_now, rivals_then : tuple of str
+        All that lie under 2 sigma.
+    """
+
+    family: Family
+    q: float
+    place: float
+    now: float
+    then: float
+    rival_now: str
+    rival_then: str
+    rivals_now: tuple[str, ...]
+    rivals_then: tuple[str, ...]
+
+    @property
+    def values(self) -> Values:
+        """Parameters under the contract's names [SI]."""
+        return self.family.values(self.q, self.place)
+
+    def accepted(self, setup: Setup) -> frozenset[str]:
+        """Return names that are right answers."""
+        values = self.values
+        return frozenset((self.family.name, *SECRETS[self.family.name].equals(setup, values)))
+
+    @property
+    def said(self) -> str:
+        """Severity in words."""
+        name = self.family.name
+        told = {key: value for key, value in self.values.items() if value}
+        return ", ".join(f"{key} {value:.3g}" for key, value in told.items()) or name
+
+
+def choose(now: Outlook, advice: Advice | None, count: int, rng: np.random.Generator) -> tuple[Case, ...]:
+    """Return cases about the thresholds: half are effects that the advice newly tells apart, then others in turn.
+
+    Parameters
+    ----------
+    now : Outlook
+        The test as it is.
+    advice : Advice, optional
+        What is followed.
+    count : int
+        How many cases [-].
+    rng : numpy.random.Generator
+        For signs and places.
+    """
+    after = now if advice is None else advice.after
+    table = after.thresholds
+    hard = [str(name) for name in (table["told"] / table["clear"]).sort_values(ascending=False).index]
+    first = [n for pair in (advice.separates if advice else ()) for n in pair if n != NONE]
+    first, others = _possible(first, now, after), _possible(hard, now, after)
+    others = [name for name in others if name not in first]
+    half = -(-count // 2) if first and others else count
+    names = [*_in_turn(first or others, half), *_in_turn(others or first, count - half)]
+    return tuple(_case(_found(now, name), _found(after, name), rng) for name in names)
+
+
+def _possible(names: Sequence[str], now: Outlook, after: Outlook) -> list[str]:
+    """Return names once each, without those that a baseline has too."""
+    kept = dict.fromkeys(names)
+    return [n for n in kept if not (after.design.baseline and _found(now, n).curve.family.always)]
+
+
+def _in_turn(names: Sequence[str], count: int) -> list[str]:
+    return [names[i % len(names)] for i in range(count)]
+
+
+def _found(look: Outlook, name: str) -> Distances:
+    return look.found[look.names.index(name)]
+
+
+def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:
+    """Take the severity from which on the effect is surely told once the advice is followed."""
+    family = now.curve.family
+    place, sign = int(rng.integers(len(now.places))), float(rng.choice([-1.0, 1.0]))
+    side = np.flatnonzero(sign * family.grid > 0) if family.low < 0 else np.flatnonzero(family.grid > 0)
+    side = side[np.argsort(np.abs(family.grid[side]))]
+    size = crossing(np.abs(family.grid[side]), then.nearest[place, side], SURE)
+    most = float(np.abs(family.grid[side]).max())
+    q = float(np.sign(family.grid[side[0]]) * min(size, most))
+    before, after = (at_severity(family.grid, one.sigma[:, place], q) for one in (now, then))
+    own = _own(now)
+    return Case(
+        family,
+        q,
+        float(now.places[place]),
+        float(before[own].min()),
+        SURE if size <= most else float(after[own].min()),
+        now.rivals[own[int(np.argmin(before[own]))]],
+        then.rivals[own[int(np.argmin(after[own]))]],
+        tuple(now.rivals[i] for i in own if before[i] < CLASS),
+        tuple(then.rivals[i] for i in own if after[i] < CLASS),
+    )
+
+
+def _own(found: Distances) -> list[int]:
+    """Return the rivals that are no exact equals."""
+    name = found.curve.family.name
+    return [i for i, rival in enumerate(found.rivals) if (name, rival) not in EQUAL]

@@ -1,0 +1,81 @@
+"""The forecast as JSON can carry it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from modalkit.planning.effects import NOT_FORECAST
+from modalkit.planning.forecast import Advice, Forecast, Outlook
+
+SCHEMA = "modalkit.plan/1"
+
+
+def to_json(found: Forecast) -> dict[str, Any]:
+    """Return a forecast as JSON.
+
+    Parameters
+    ----------
+    found : Forecast
+        What was found.
+
+    Returns
+    -------
+    dict
+        ``null`` stands for a severity that is never told.
+    """
+    return {
+        "schema": SCHEMA,
+        "said": list(found.told.said),
+        "left_out": list(found.told.left_out),
+        "not_forecast": [*NOT_FORECAST, *found.told.without],
+        "now": _outlook(found.now),
+        "advice": [_advice(one) for one in found.advice],
+    }
+
+
+def _outlook(look: Outlook) -> dict[str, Any]:
+    matrix = look.matrix
+    return {
+        "effects": [
+            {
+                "effect": name,
+                "seen_from": said(look, name, limit.seen),
+                "told_from": said(look, name, limit.told),
+                "sure_from": said(look, name, limit.sure),
+                "sure": _number(limit.sure),
+                "seen": _number(limit.seen),
+                "told": _number(limit.told),
+                "asked": said(look, name, limit.clear),
+                "nearest": limit.nearest,
+                "nearest_sigma": _number(limit.sigma),
+                "sigma": {str(rival): _number(value) for rival, value in matrix.loc[name].items()},
+            }
+            for name, limit in look.limits.items()
+        ],
+        "classes": [list(group) for group in look.classes],
+        "unseen": list(look.unseen),
+        "told_share": look.told_share,
+    }
+
+
+def _advice(one: Advice) -> dict[str, Any]:
+    return {
+        "change": one.change.key,
+        "measure": one.change.measure,
+        "worth": one.worth,
+        "threshold_factor": one.factor,
+        "separates": [list(pair) for pair in one.separates],
+        "then": _outlook(one.after),
+    }
+
+
+def said(look: Outlook, name: str, q: float) -> str | None:
+    """Return a severity in words; None where there is none that is told."""
+    family = look.found[look.names.index(name)].curve.family
+    return family.say(q) if math.isfinite(q) else None
+
+
+def _number(value: Any) -> float | None:
+    number = float(value)
+    return number if math.isfinite(number) else None

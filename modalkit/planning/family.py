@@ -1,0 +1,101 @@
+"""An effect at all its severities and places: what is varied, how far, and how it is said."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from modalkit.simulator.hidden import SECRETS, Values
+from modalkit.simulator.scene import Scene
+from modalkit.simulator.setup import Setup
+
+_FINEST = 1e-3
+_RATIO = 1.8
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """One kind of effect as a curve, or for each of its places a curve, in the space of the data.
+
+    Parameters
+    ----------
+    name : str
+        Under the contract's names; the rig's secret of that name acts.
+    values : callable
+        ``values(q, place)``: parameters under the contract's names; ``q`` = 0 is no effect [SI].
+    low, high : float
+        Range of ``q``; ``low`` is 0 where the effect has one sign [SI].
+    clear : float
+        Size of ``q`` that is asked about: a clear case [SI].
+    say : callable
+        ``say(q)`` is the severity in physical units, as in 'a sensor heavier than ...'.
+    places : (n,) array
+        Where it may sit [m], or which of its forms it takes; empty where there is but one.
+    apart : bool
+        Whether places are forms of which none is between two others.
+    always : bool
+        Whether it was there from the start, so that a baseline of the same specimen has it too.
+    graded : bool
+        Whether it has severities; without, only ``clear`` counts.
+    """
+
+    name: str
+    values: Callable[[float, float], Values]
+    low: float
+    high: float
+    clear: float
+    say: Callable[[float], str]
+    places: FloatArray = field(default_factory=lambda: np.zeros(0))
+    apart: bool = False
+    always: bool = False
+    graded: bool = True
+
+    def act(self, scene: Scene, q: float, place: float) -> Scene:
+        """Return a scene with the effect.
+
+        Parameters
+        ----------
+        scene : Scene
+            Without it.
+        q : float
+            Severity; 0 is none [SI].
+        place : float
+            Where [m], or which form.
+        """
+        return SECRETS[self.name].act(scene, self.values(q, place)) if q else scene
+
+    @property
+    def grid(self) -> FloatArray:
+        """Severities that are solved, 0 among them, ever closer towards it, (n_severities,) [SI]."""
+        if not self.graded:
+            return np.array([0.0, self.clear])
+        sides = [-_steps(-self.low)[::-1]] if self.low < 0 else []
+        return np.concatenate([*sides, [0.0], _steps(self.high)])
+
+    @property
+    def sites(self) -> FloatArray:
+        """Places, or one that means nothing."""
+        return self.places if len(self.places) else np.zeros(1)
+
+    @property
+    def asked(self) -> tuple[float, ...]:
+        """Clear severities, one for each sign."""
+        return (-self.clear, self.clear) if self.low < 0 else (self.clear,)
+
+
+def _steps(end: float) -> FloatArray:
+    count = int(np.ceil(np.log(1 / _FINEST) / np.log(_RATIO)))
+    return np.asarray(end * _RATIO ** -np.arange(count, -1.0, -1.0))
+
+
+def short(value: float) -> str:
+    """Return a number in up to three digits, with an exponent only where it is very large or small."""
+    rounded = float(f"{value:.2g}") if abs(value) < 100 else float(f"{value:.3g}")
+    return f"{rounded:.6g}" if rounded == 0 or 1e-3 <= abs(rounded) < 1e6 else f"{rounded:.2e}"
+
+
+Maker = Callable[[Setup], Family | None]
+"""Makes a family for a setup; None where the effect cannot be."""

@@ -1,0 +1,250 @@
+"""The forecast of a test: what it tells apart, from what severity on, and which change of it buys most."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.spatial.distance import squareform
+
+from modalkit.planning.changes import Change, changes
+from modalkit.planning.curves import Curve, solve_curve
+from modalkit.planning.design import Design, present
+from modalkit.planning.effects import families
+from modalkit.planning.known import Told
+from modalkit.planning.responses import Stations
+from modalkit.planning.separability import CLASS, EQUAL, NONE, SEEN, SURE, Distances, distances
+
+_CAP = 10.0
+
+
+@dataclass(frozen=True)
+class Limit:
+    """From what severity on an effect shows.
+
+    Parameters
+    ----------
+    seen, told, sure : float
+        Severity from which it is seen, told from all others by 3 sigma, and by 5; infinite for never [SI].
+    clear : float
+        Severity that is asked about [SI].
+    nearest : str
+        Who can do most of what it does, when it is clear.
+    sigma : float
+        Distance to that one [-].
+    """
+
+    seen: float
+    told: float
+    sure: float
+    clear: float
+    nearest: str
+    sigma: float
+
+
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """What one test tells.
+
+    Parameters
+    ----------
+    design : Design
+        The test.
+    found : tuple of Distances
+        Every effect against all others.
+    """
+
+    design: Design
+    found: tuple[Distances, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return tuple(one.curve.family.name for one in self.found)
+
+    @cached_property
+    def matrix(self) -> pd.DataFrame:
+        """Standard deviations from each effect, clear, to all that another can do; the first column is ``none``."""
+        rows = [dict(zip(one.rivals, one.clear(one.sigma), strict=True)) for one in self.found]
+        return pd.DataFrame(rows, index=list(self.names), columns=[NONE, *self.names])
+
+    @cached_property
+    def limits(self) -> dict[str, Limit]:
+        """From what severity on each effect is seen, and told from all others, by name."""
+        return {one.curve.family.name: _limit(one) for one in self.found}
+
+    @property
+    def thresholds(self) -> pd.DataFrame:
+        """The limits as a table [SI]."""
+        rows = [asdict(limit) for limit in self.limits.values()]
+        return pd.DataFrame(rows, index=list(self.limits))
+
+    @cached_property
+    def pairs(self) -> dict[tuple[str, str], float]:
+        """Separation of each pair of effects: the smaller of the two directions [-]."""
+        table = self.matrix[list(self.names)].to_numpy(dtype=float)
+        both = np.fmin(table, table.T)
+        return {
+            (a, self.names[j]): float(both[i, j]) for i, a in enumerate(self.names) for j in range(i + 1, len(both))
+        }  # fmt: skip
+
+    @property
+    def unseen(self) -> tuple[str, ...]:
+        """Effects that, clear as they are, would be taken for none."""
+        return tuple(self.matrix.index[self.matrix[NONE] < CLASS])
+
+    @property
+    def classes(self) -> tuple[tuple[str, ...], ...]:
+        """Groups of effects that all lie less than 2 sigma from each other, those of one effect left out."""
+        names, pairs = list(self.names), self.pairs
+        apart = np.zeros((len(names), len(names)))
+        for (a, b), sigma in pairs.items():
+            apart[names.index(a), names.index(b)] = apart[names.index(b), names.index(a)] = sigma
+        label = fcluster(linkage(squareform(apart), "complete"), CLASS, "distance")
+        groups = [tuple(n for n, own in zip(names, label, strict=True) if own == g) for g in np.unique(label)]
+        return tuple(g for g in groups if len(g) > 1)
+
+    @property
+    def told_share(self) -> float:
+        """Share of the pairs of effects that are 3 sigma apart or more [-]."""
+        values = np.array(list(self.pairs.values()))
+        return float(np.mean(values >= SEEN)) if len(values) else 1.0
+
+    @property
+    def worth(self) -> float:
+        """Share of pairs told, and beside it how low thresholds are on a logarithmic scale, as one number [-]."""
+        table = self.thresholds
+        depth = np.log(np.clip(table["clear"] / table["told"], 1 / _CAP, _CAP))
+        near = np.clip(list(self.pairs.values()), 0.1, SEEN) / SEEN
+        return float(self.told_share + np.mean(depth) / np.log(_CAP) + np.mean(near))
+
+
+def _limit(one: Distances) -> Limit:
+    family = one.curve.family
+    at = zip(one.rivals[1:], one.clear(one.sigma)[1:], strict=True)
+    rival, sigma = min(
+        ((r, float(s)) for r, s in at if (family.name, r) not in EQUAL), key=lambda pair: pair[1]
+    )
+    return Limit(
+        seen=one.threshold(one.sigma[0]),
+        told=one.threshold(one.nearest),
+        sure=one.threshold(one.nearest, SURE),
+        clear=family.clear,
+        nearest=rival,
+        sigma=sigma,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Advice:
+    """A change, and what it brings.
+
+    Parameters
+    ----------
+    change : Change
+        What to do.
+    after : Outlook
+        The test then.
+    separates : tuple of (str, str)
+        Pairs told apart then and not before; ``none`` stands for an effect that becomes visible.
+    factor : float
+        How many times smaller the severities told become, geometric mean [-].
+    worth : float
+        Growth of the share of pairs told, of thresholds and of small separations, as one number [-].
+    """
+
+    change: Change
+    after: Outlook
+    separates: tuple[tuple[str, str], ...]
+    factor: float
+    worth: float
+
+
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """All that a plan of a test says.
+
+    Parameters
+    ----------
+    told : Told
+        The test.
+    curves : tuple of Curve
+        The effects.
+    now : Outlook
+        The test as it is.
+    advice : tuple of Advice
+        Changes, the most worth first.
+    """
+
+    told: Told
+    curves: tuple[Curve, ...]
+    now: Outlook
+    advice: tuple[Advice, ...]
+
+
+def forecast(told: Told, *, progress: Callable[[str], None] | None = None) -> Forecast:
+    """Forecast a test with the rig's own bodies.
+
+    Parameters
+    ----------
+    told : Told
+        The test.
+    progress : callable, optional
+        Called with what is being done.
+
+    Returns
+    -------
+    Forecast
+        What it tells apart now, and what each change would bring.
+    """
+    say = progress or (lambda _: None)
+    stations, curves = Stations(told.setup), []
+    for family in families(told):
+        say(f"solving {family.name}")
+        curves.append(solve_curve(family, stations))
+    kept = tuple(curves)
+
+    def look(design: Design, *, fine: bool = True) -> Outlook:
+        return Outlook(design, distances(kept, design, told, stations, fine=fine))
+
+    design = present(told)
+    now = look(design)
+    say("weighing changes")
+    tried = changes(design, stations, lambda d: look(d, fine=False).worth)
+    found = [_advice(change, now, look) for change in tried]
+    found.sort(key=lambda one: -one.worth)
+    return Forecast(told, kept, now, tuple(found))
+
+
+def _advice(change: Change, now: Outlook, look: Callable[[Design], Outlook]) -> Advice:
+    after = _with_what_was_there(look(change.design), now)
+    before, then = now.pairs, after.pairs
+    newly = [pair for pair in before if before[pair] < SEEN <= then[pair] and not _equal(pair)]
+    for name in now.names:
+        if shown(now, name) < SEEN <= shown(after, name):
+            newly.append((name, NONE))
+    old, new = now.thresholds, after.thresholds
+    ratio = np.clip(old["told"], None, _CAP * old["clear"]) / np.clip(new["told"], None, _CAP * old["clear"])
+    factor = float(np.exp(np.mean(np.log(ratio))))
+    return Advice(change, after, tuple(newly), factor, after.worth - now.worth)
+
+
+def shown(look: Outlook, name: str) -> float:
+    """Return by how many sigma an effect, clear, stands off none [-]."""
+    return float(look.found[look.names.index(name)].clear_of(NONE))
+
+
+def _equal(pair: tuple[str, str]) -> bool:
+    return pair in EQUAL or pair[::-1] in EQUAL
+
+
+def _with_what_was_there(after: Outlook, now: Outlook) -> Outlook:
+    """Leave the effects that were always there as they are: a baseline has them too, so that they cancel."""
+    if not after.design.baseline or now.design.baseline:
+        return after
+    pairs = zip(after.found, now.found, strict=True)
+    return Outlook(after.design, tuple(b if b.curve.family.always else a for a, b in pairs))

@@ -1,0 +1,226 @@
+"""How far effects lie apart in a test: distances from one effect to all that another can do, doubts projected out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from modalkit.planning.curves import Curve
+from modalkit.planning.design import Design, columns, whitener
+from modalkit.planning.known import Told
+from modalkit.planning.responses import Stations
+
+NONE = "none"
+SEEN = 3.0
+"""Standard deviations from which on an effect is seen, or told from another."""
+
+SURE = 5.0
+"""Standard deviations from which on an effect is named alone, in 17 of 20 trials of the sample beam."""
+
+CLASS = 2.0
+"""Effects less apart than this are one class to a test."""
+
+EQUAL = frozenset(
+    {
+        ("sensor_mass", "lumped_mass"),
+        ("exponential_window", "uniform_damping"),
+        ("calibration_gain", "section_scale"),
+        ("section_scale", "calibration_gain"),
+    }
+)
+"""(effect, rival): the rival can do exactly what the effect does, whatever is hit."""
+
+_TARGET_PLACES = 9
+
+
+@dataclass(frozen=True, eq=False)
+class Distances:
+    """One effect against all others in one test.
+
+    Parameters
+    ----------
+    curve : Curve
+        The effect.
+    places : (n_places,) array
+        Places that were looked at [m].
+    rivals : tuple of str
+        ``none`` first, then the other effects.
+    sigma : (n_rivals, n_places, n_severities) array
+        Mahalanobis distance to the nearest that the rival can do [-].
+    """
+
+    curve: Curve
+    places: FloatArray
+    rivals: tuple[str, ...]
+    sigma: FloatArray
+
+    @property
+    def nearest(self) -> FloatArray:
+        """Distance to the nearest rival that is not its exact equal, ``none`` among them."""
+        name = self.curve.family.name
+        return np.asarray(self.sigma[[(name, r) not in EQUAL for r in self.rivals]].min(axis=0))
+
+    def clear(self, sigma: FloatArray) -> FloatArray:
+        """Return distances at the clear severities: the worse sign, the middle of the places.
+
+        Parameters
+        ----------
+        sigma : (..., n_places, n_severities) array
+            Distances.
+        """
+        family = self.curve.family
+        at = np.stack([at_severity(family.grid, sigma, q) for q in family.asked], axis=-1).min(axis=-1)
+        return np.asarray(np.median(at, axis=-1))
+
+    def clear_of(self, rival: str) -> float:
+        """Return the distance to one rival at the clear severities."""
+        return float(self.clear(self.sigma[self.rivals.index(rival)]))
+
+    def threshold(self, sigma: FloatArray, level: float = SEEN) -> float:
+        """Return the severity from which on distances stay above a level: the worse sign, the middle of the places.
+
+        Parameters
+        ----------
+        sigma : (n_places, n_severities) array
+            Distances.
+        level : float
+            Standard deviations [-].
+
+        Returns
+        -------
+        float
+            Size of the severity [SI]; infinite where there is none.
+        """
+        grid = self.curve.family.grid
+        if not self.curve.family.graded:
+            return float(grid[-1]) if sigma[:, -1].min() >= level else np.inf
+        up = grid > 0
+        each = [[crossing(grid[up], row[up], level) for row in sigma]]
+        if (down := grid < 0).any():
+            each.append([crossing(-grid[down][::-1], row[down][::-1], level) for row in sigma])
+        worst = np.sort(np.max(each, axis=0))
+        return float(worst[len(worst) // 2])
+
+
+def at_severity(grid: FloatArray, sigma: FloatArray, q: float) -> FloatArray:
+    """Return distances at a severity between those of a grid, (...,) [-].
+
+    Parameters
+    ----------
+    grid : (n,) array
+        Severities [SI].
+    sigma : (..., n) array
+        Distances [-].
+    q : float
+        The severity [SI].
+    """
+    above = int(np.clip(np.searchsorted(grid, q), 1, len(grid) - 1))
+    part = (q - grid[above - 1]) / (grid[above] - grid[above - 1])
+    return np.asarray((1 - part) * sigma[..., above - 1] + part * sigma[..., above])
+
+
+def crossing(q: FloatArray, sigma: FloatArray, level: float) -> float:
+    """Return the severity from which on distances stay above a level, interpolated; infinite where there is none.
+
+    Parameters
+    ----------
+    q : (n,) array
+        Sizes of the severity, ascending [SI].
+    sigma : (n,) array
+        Distances [-].
+    level : float
+        Standard deviations [-].
+    """
+    below = np.flatnonzero(sigma < level)
+    if not len(below):
+        return float(q[0])
+    last = int(below[-1])
+    if last == len(q) - 1:
+        return np.inf
+    ends = np.log(np.maximum(sigma[last : last + 2], 1e-9))
+    part = (np.log(level) - ends[0]) / (ends[1] - ends[0])
+    return float(np.exp(np.interp(part, [0, 1], np.log(q[last : last + 2]))))
+
+
+def distances(
+    curves: Sequence[Curve], design: Design, told: Told, stations: Stations, *, fine: bool = True
+) -> tuple[Distances, ...]:
+    """Return how far every effect is from every other in a test.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        The effects.
+    design : Design
+        The test.
+    told : Told
+        How well data are known.
+    stations : Stations
+        What the data are.
+    fine : bool
+        Whether surfaces are interpolated between the severities and places that were solved.
+    """
+    have = columns(design, stations)
+    white = whitener(design, told, stations)
+    clouds = [(curve.cloud if fine else curve.data)[..., have] @ white.T for curve in curves]
+    out = []
+    for i, curve in enumerate(curves):
+        chosen = np.unique(np.linspace(0, len(curve.data) - 1, _TARGET_PLACES).astype(int))
+        targets = curve.data[chosen][..., have] @ white.T
+        flat = targets.reshape(-1, targets.shape[-1])
+        rows = [np.linalg.norm(flat, axis=1)]
+        names = [NONE]
+        for j, cloud in enumerate(clouds):
+            if j != i:
+                rows.append(np.minimum(nearest_in(flat, cloud), rows[0]))
+                names.append(curves[j].family.name)
+        sigma = np.array(rows).reshape(len(rows), *targets.shape[:2])
+        out.append(Distances(curve, curve.family.sites[chosen], tuple(names), sigma))
+    return tuple(out)
+
+
+def nearest_in(targets: FloatArray, cloud: FloatArray) -> FloatArray:
+    """Return the distance from each target to a surface given by a fine grid of points.
+
+    The nearest point is sought over the whole grid, then moved within its cell along the surface's tangents.
+
+    Parameters
+    ----------
+    targets : (n, m) array
+        Points.
+    cloud : (n_places, n_severities, m) array
+        The surface.
+
+    Returns
+    -------
+    (n,) array
+        Distances.
+    """
+    points = cloud.reshape(-1, cloud.shape[-1])
+    square = np.einsum("ij,ij->i", points, points) - 2 * targets @ points.T
+    best = np.argmin(square, axis=1)
+    left = targets - points[best]
+    place, severity = np.unravel_index(best, cloud.shape[:2])
+    for index, axis in ((severity, 1), (place, 0)):
+        left = _moved(left, cloud, (place, severity), index, axis)
+    return np.asarray(np.linalg.norm(left, axis=1))
+
+
+def _moved(
+    left: FloatArray, cloud: FloatArray, at: tuple[IntArray, IntArray], index: IntArray, axis: int
+) -> FloatArray:
+    """Move along one direction of the grid, to the side that brings the target nearer, by no more than a cell."""
+    best = left
+    for step in (-1, 1):
+        other = np.clip(index + step, 0, cloud.shape[axis] - 1)
+        moved = (at[0], other) if axis == 1 else (other, at[1])
+        tangent = cloud[moved] - cloud[at]
+        size = np.einsum("ij,ij->i", tangent, tangent)
+        share = np.einsum("ij,ij->i", left, tangent) / np.maximum(size, 1e-300)
+        tried = left - np.clip(share, 0.0, 1.0)[:, None] * tangent
+        nearer = np.linalg.norm(tried, axis=1) < np.linalg.norm(best, axis=1)
+        best = np.where(nearer[:, None], tried, best)
+    return best

@@ -1,0 +1,217 @@
+"""Check a forecast: real blind trials on the user's own rig, as it is and once the advice is followed."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from acquisition.errors import ModalkitError
+from modalkit.blind.answer import Answer, read_answer
+from modalkit.blind.diagnoser import Diagnose, diagnosers
+from modalkit.planning.cases import Case, choose
+from modalkit.planning.forecast import Advice, Forecast
+from modalkit.planning.known import Told
+from modalkit.planning.separability import SEEN, SURE
+from modalkit.planning.writing import write_case
+
+_LEAST = SURE - 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """One case, diagnosed.
+
+    Parameters
+    ----------
+    case : Case
+        What was hidden.
+    followed : bool
+        Whether the advice was followed.
+    answer : Answer or None
+        What was answered; None where the diagnosis failed.
+    right : frozenset of str
+        Names that are right.
+    failure : str
+        Why it failed.
+    """
+
+    case: Case
+    followed: bool
+    answer: Answer | None
+    right: frozenset[str]
+    failure: str = ""
+
+    @property
+    def sigma(self) -> float:
+        """Forecast: distance to the nearest rival [-]."""
+        return self.case.then if self.followed else self.case.now
+
+    @property
+    def named(self) -> bool:
+        """Whether the effect alone was named."""
+        answer = self.answer
+        if answer is None or answer.verdict not in ("named", "class") or not answer.sets:
+            return False
+        return all(len(s) == 1 and s <= self.right for s in answer.sets)
+
+    @property
+    def kept(self) -> bool:
+        """Whether the effect was named, or is in the class that was answered."""
+        answer = self.answer
+        if answer is None or answer.verdict not in ("named", "class"):
+            return False
+        return any(len(s) == 1 and s <= self.right for s in answer.sets)
+
+    @property
+    def said(self) -> str:
+        """The answer in words."""
+        if self.answer is None:
+            return f"failed: {self.failure}"
+        if self.answer.verdict in ("none", "unknown"):
+            return self.answer.verdict
+        return " or ".join(" + ".join(sorted(s)) for s in self.answer.sets)
+
+    @property
+    def forecast(self) -> str:
+        """The forecast in words."""
+        rival = self.case.rival_then if self.followed else self.case.rival_now
+        if self.sigma >= _LEAST:
+            return "told"
+        return f"on the edge to {rival}" if self.sigma >= SEEN else f"not told from {rival}"
+
+    def row(self) -> dict[str, Any]:
+        """Return a line of the table."""
+        return {
+            "effect": self.case.family.name,
+            "severity": self.case.said,
+            "test": "advice followed" if self.followed else "as it is",
+            "forecast": self.forecast,
+            "sigma": self.sigma,
+            "answered": self.said,
+            "right": "yes" if self.named else "in the class" if self.kept else "no",
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Check:
+    """Forecast and answers beside each other.
+
+    Parameters
+    ----------
+    advice : Advice or None
+        What was followed.
+    tried : tuple of Tried
+        As the test is, then with the advice followed.
+    """
+
+    advice: Advice | None
+    tried: tuple[Tried, ...]
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """One line a trial."""
+        return pd.DataFrame([one.row() for one in self.tried])
+
+    @property
+    def summary(self) -> tuple[str, ...]:
+        """Counts in words."""
+        lines = []
+        for followed, words in ((False, "As the test is"), (True, "With the advice followed")):
+            mine = [one for one in self.tried if one.followed == followed]
+            if mine:
+                lines.append(f"{words}: {_counted(mine)}")
+        if self.advice is not None:
+            lines.append(f"Advice followed: {self.advice.change.measure}")
+        return tuple(lines)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return it as JSON can carry it."""
+        return {
+            "followed": None if self.advice is None else self.advice.change.measure,
+            "trials": [one.row() for one in self.tried],
+            "summary": list(self.summary),
+        }
+
+
+def _counted(tried: Sequence[Tried]) -> str:
+    """Return how many were named, by what was forecast of them."""
+    kinds = (("told", _LEAST, np.inf), ("on the edge", SEEN, _LEAST), ("not told", 0.0, SEEN))
+    words = []
+    for kind, low, high in kinds:
+        mine = [one for one in tried if low <= one.sigma < high]
+        if mine:
+            words.append(f"{sum(t.named for t in mine)} of {len(mine)} forecast as {kind}")
+    kept = sum(one.kept for one in tried)
+    return f"named alone {', '.join(words)}; in the class answered {kept} of {len(tried)}"
+
+
+def check(
+    found: Forecast,
+    count: int,
+    seed: int,
+    *,
+    noise: float | None = None,
+    workers: int = 1,
+    progress: Callable[[], None] | None = None,
+) -> Check:
+    """Hide effects at severities about the thresholds in the user's own rig, and have them diagnosed.
+
+    Parameters
+    ----------
+    found : Forecast
+        What is to be checked; the first of its advice that can be followed is followed.
+    count, seed : int
+        Cases, each tried as the test is and with the advice followed, and the seed of all draws [-].
+    noise : float, optional
+        Noise of the channels relative to their peak [-].
+    workers : int
+        Diagnoses at a time [-].
+    progress : callable, optional
+        Called after each diagnosis.
+
+    Returns
+    -------
+    Check
+        The process that diagnoses is given the study and the raw hits, and nothing else.
+    """
+    advice = next((one for one in found.advice if one.worth > 0), None)
+    told = found.told
+    if noise is not None:
+        told = replace(told, setup=replace(told.setup, noise=noise))
+    cases = choose(found.now, advice, count, np.random.default_rng([seed, 0]))
+    wanted = [(case, False, told) for case in cases]
+    if advice is not None:
+        design = advice.change.design
+        setup = advice.change.follow(told.setup)
+        followed = replace(told, setup=setup, shapes=design.shapes, absolute=design.absolute)
+        wanted += [(case, True, followed) for case in cases]
+    with diagnosers(workers) as diagnose, ThreadPoolExecutor(workers) as pool:
+
+        def one(job: tuple[int, tuple[Case, bool, Told]]) -> Tried:
+            index, (case, follows, own) = job
+            tried = _try(case, follows, own, [seed, 1 + index % len(cases)], diagnose)
+            if progress is not None:
+                progress()
+            return tried
+
+        return Check(advice, tuple(pool.map(one, enumerate(wanted))))
+
+
+def _try(case: Case, followed: bool, told: Told, seed: list[int], diagnose: Diagnose) -> Tried:
+    """Draw specimen and test, hide the case, and have it diagnosed; the same draws with and without the advice."""
+    setup = told.setup
+    right = case.accepted(setup)
+    with tempfile.TemporaryDirectory(prefix="test-", ignore_cleanup_errors=True) as name:
+        study = write_case(case, told, Path(name), seed=seed)
+        try:
+            answer = read_answer(diagnose(study, ()))
+        except (ModalkitError, OSError) as error:
+            return Tried(case, followed, None, right, str(error))
+    return Tried(case, followed, answer, right)

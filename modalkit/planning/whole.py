@@ -1,0 +1,182 @@
+"""Effects on the whole specimen, its supports and the measurement."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+
+import numpy as np
+
+from modalkit.planning.family import Family, Maker, short
+from modalkit.simulator.setup import Setup
+
+_SOFTEST_CLAMP, _SOFT_CLAMP = 1.5, 20.0
+_SOFTEST_SLIDE, _SOFT_SLIDE = 60.0, 2000.0
+_CLEAR_LOAD, _MOST_LOAD = 0.25, 0.7
+_MIDDLE = 1
+
+
+def _off(noun: str) -> Callable[[float], str]:
+    return lambda q: f"{noun} off by more than {short(100 * abs(np.expm1(q)))} %"
+
+
+def _factor(name: str, noun: str, *, most: float, clear: float) -> Maker:
+    """A property of the whole specimen, off by exp(q)."""
+    return lambda setup: Family(
+        name,
+        lambda q, _: {"factor": float(np.exp(q))},
+        -float(np.log(most)),
+        float(np.log(most)),
+        clear,
+        _off(noun),
+        always=True,
+    )
+
+
+def _length(setup: Setup) -> Family | None:
+    if not setup.clamped:
+        return None
+    return Family(
+        "length",
+        lambda q, _: {"extension": q},
+        -0.06 * setup.length,
+        0.12 * setup.length,
+        0.03 * setup.length,
+        lambda q: f"a free length off by more than {short(1e3 * abs(q))} mm",
+        always=True,
+    )
+
+
+def _clamp(setup: Setup) -> Family | None:
+    if not setup.clamped:
+        return None
+    unit = setup.rigidity / setup.length
+    return Family(
+        "clamp_rotation",
+        lambda q, _: {"stiffness": 1 / q if q else inf},
+        0.0,
+        1 / (_SOFTEST_CLAMP * unit),
+        1 / (_SOFT_CLAMP * unit),
+        lambda q: f"a clamp softer than {short(1 / q)} N m/rad ({short(1 / q / unit)} EI/L)",
+    )
+
+
+def _slide(setup: Setup) -> Family | None:
+    if not setup.clamped:
+        return None
+    unit = setup.rigidity / setup.length**3
+    return Family(
+        "clamp_translation",
+        lambda q, _: {"stiffness": 1 / q if q else inf},
+        0.0,
+        1 / (_SOFTEST_SLIDE * unit),
+        1 / (_SOFT_SLIDE * unit),
+        lambda q: f"a clamp that shifts, softer than {short(1 / q)} N/m",
+    )
+
+
+def _load(setup: Setup) -> Family | None:
+    if not setup.clamped:
+        return None
+    ends = 4.0 if len(setup.clamped) == 2 else 0.25
+    buckling = ends * setup.rigidity * (np.pi / setup.length) ** 2
+    return Family(
+        "axial_load",
+        lambda q, _: {"force": q},
+        -_MOST_LOAD * buckling,
+        2 * buckling,
+        _CLEAR_LOAD * buckling,
+        lambda q: f"an axial load above {short(abs(q))} N",
+    )
+
+
+def _gain(setup: Setup) -> Family:
+    return Family(
+        "calibration_gain",
+        lambda q, _: {"gain": float(np.exp(q))},
+        -float(np.log(2.5)),
+        float(np.log(2.5)),
+        0.2,
+        _off("a level"),
+    )
+
+
+def _fluid(setup: Setup) -> Family:
+    told = setup.environment
+    return Family(
+        "fluid_added_mass",
+        lambda q, _: {"fluid_density": q},
+        0.0,
+        2000.0 if told is None else told,
+        told or 998.0,
+        lambda q: f"a fluid denser than {short(q)} kg/m3",
+    )
+
+
+def _viscous(setup: Setup) -> Family:
+    """Severity is the root of the viscosity, in proportion to which a boundary layer damps."""
+    return Family(
+        "fluid_damping",
+        lambda q, _: {"viscosity": q**2},
+        0.0,
+        1.0,
+        0.1,
+        lambda q: f"a fluid more viscous than {short(1e3 * q**2)} mPa s",
+    )
+
+
+def _middle(setup: Setup) -> tuple[float, float]:
+    """Return angular frequency [rad/s] and expected decay [1/s] of the second mode."""
+    mode = min(_MIDDLE, setup.modes - 1)
+    return 2 * np.pi * setup.nominal_hz[mode], float(setup.decays[mode])
+
+
+def _window(setup: Setup) -> Family:
+    _, decay = _middle(setup)
+    return Family(
+        "exponential_window",
+        lambda q, _: {"decay": q},
+        0.0,
+        max(70.0, 20 * decay),
+        1.5 * decay,
+        lambda q: f"a window of more than {short(q)} 1/s",
+    )
+
+
+def _uniform(setup: Setup) -> Family:
+    """Three laws, each as much as the second mode's expected decay at ``q`` = 1."""
+    omega, decay = _middle(setup)
+    unit = {"alpha": 2 * decay, "beta": 2 * decay / omega**2, "loss_factor": 2 * decay / omega}
+    laws = tuple(unit)
+
+    def values(q: float, law: float) -> dict[str, float]:
+        return {name: q * unit[name] * (name == laws[int(law)]) for name in laws}
+
+    return Family(
+        "uniform_damping",
+        values,
+        0.0,
+        20.0,
+        1.5,
+        lambda q: f"damping {short(1 + q)} times that expected in the middle",
+        np.arange(3.0),
+        apart=True,
+    )
+
+
+WHOLE: tuple[Maker, ...] = (
+    _factor("E", "a modulus", most=2.5, clear=0.1),
+    _factor("density", "a density", most=2.5, clear=0.1),
+    _factor("thickness", "a thickness", most=1.6, clear=0.05),
+    _factor("section_scale", "a width", most=2.5, clear=0.15),
+    _length,
+    _clamp,
+    _slide,
+    _load,
+    _gain,
+    _fluid,
+)
+"""What needs no damping to be known."""
+
+DAMPING: tuple[Maker, ...] = (_viscous, _window, _uniform)
+"""What shows in damping alone."""

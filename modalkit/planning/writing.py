@@ -1,0 +1,112 @@
+"""Write the files of a test on the user's own rig, with something hidden in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from modalkit.planning.cases import Case
+from modalkit.planning.known import Told
+from modalkit.simulator.measurement import record
+from modalkit.simulator.scene import Scene, draw_scene
+from modalkit.simulator.setup import Setup
+from modalkit.simulator.study_file import study_text
+
+
+def write_case(case: Case | None, told: Told, folder: Path, *, seed: list[int]) -> Path:
+    """Draw a specimen within the tolerances, hide a case in it, and write raw hits and study.
+
+    Parameters
+    ----------
+    case : Case or None
+        What is hidden; None for nothing.
+    told : Told
+        The test.
+    folder : Path
+        An empty one.
+    seed : list of int
+        Of all draws.
+
+    Returns
+    -------
+    Path
+        The study file.
+    """
+    build, first, second = np.random.default_rng(seed).spawn(3)
+    before = draw_scene(told.setup, build)
+    scene = before if case is None else case.family.act(before, case.q, case.place)
+    return write_scene(scene, before, told, folder, rngs=(first, second))
+
+
+_OF_RECORDS = ("exponential_window",)
+
+
+def write_scene(
+    scene: Scene, before: Scene, told: Told, folder: Path, *, rngs: tuple[np.random.Generator, np.random.Generator]
+) -> Path:  # fmt: skip
+    """Write the files of a test, with modes alone where the user's data are no more.
+
+    Parameters
+    ----------
+    scene, before : Scene
+        The rig with and without what is hidden.
+    told : Told
+        The test.
+    folder : Path
+        An empty one.
+    rngs : two of numpy.random.Generator
+        For the test and its baseline.
+    """
+    setup = told.setup
+    text = study_text(setup, test_file="test.uff", baseline_file="baseline.uff")
+    if not told.damping_known:
+        text = _without_damping(text)
+    names = [("test", scene, rngs[0]), *([("baseline", before, rngs[1])] if setup.baseline else [])]
+    for name, one, rng in names:
+        if told.shapes:
+            record(one, folder / f"{name}.uff", rng=rng)
+        else:
+            _write_modes(one, told, folder / f"{name}.csv", rng)
+            text = text.replace(f'files = ["{name}.uff"]', f'modes = "{name}.csv"')
+    if not told.shapes:
+        text = _without_records(text)
+    study = folder / "study.toml"
+    study.write_text(text, encoding="utf-8")
+    return study
+
+
+def _without_records(text: str) -> str:
+    """Leave out what is stated of records and FRFs: modes have none."""
+    return "".join(line for line in text.splitlines(keepends=True) if line.split(" =")[0] not in _OF_RECORDS)
+
+
+def _without_damping(text: str) -> str:
+    lines = text.splitlines()
+    start = lines.index("[model.damping]")
+    end = next((i for i in range(start + 1, len(lines)) if lines[i].startswith("[")), len(lines))
+    return "\n".join([*lines[:start], *lines[end:]]) + "\n"
+
+
+def _write_modes(scene: Scene, told: Told, path: Path, rng: np.random.Generator) -> None:
+    """Write frequencies as they would be identified after mounting anew."""
+    setup = told.setup
+    modes = scene.elastic().take(slice(0, setup.modes))
+    known = np.resize(told.frequency, setup.modes)
+    off = np.hypot(known, setup.repeatability) * rng.standard_normal(setup.modes)
+    hertz = modes.frequency * (1 + off)
+    lines = [f"{f:.8g},{f * s:.3g}" for f, s in zip(hertz, known, strict=True)]
+    path.write_text("\n".join(["frequency,sigma", *lines]) + "\n", encoding="utf-8")
+
+
+def noise_for(wanted: float, found: float, setup: Setup) -> float:
+    """Return the channels' noise that makes constants as uncertain as wanted.
+
+    Parameters
+    ----------
+    wanted, found : float
+        Standard deviation wanted, and that found with the setup's own noise [-].
+    setup : Setup
+        With the noise that made ``found``.
+    """
+    return float(np.clip(setup.noise * wanted / found, 1e-5, 3e-2))

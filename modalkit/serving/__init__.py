@@ -1,5 +1,0 @@
-"""Warm processes: modalkit loaded once, one command after another, each in a fork of its own."""
-
-from modalkit.serving.client import ATTEMPTS, COMMAND, TIMEOUT, WarmProcess
-
-__all__ = ["ATTEMPTS", "COMMAND", "TIMEOUT", "WarmProcess"]

@@ -1,0 +1,88 @@
+"""What the hammer hits: poles and residues between the points of a rig, mounted anew if so wished."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from acquisition import Dof, ModalSystem
+from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
+from modalkit.simulation.setup import Rig
+from modalkit.study.read import Study
+from updating import Predictor
+from updating.models.state import NOMINAL, State
+from updating.simulation import Simulated, modal_system
+from updating.test_data.chain import reading
+
+
+def systems(model: Simulated, rig: Rig, state: State = NOMINAL) -> list[ModalSystem]:
+    """Return the poles and residues between the points, one system for all points that share their responses.
+
+    Parameters
+    ----------
+    model : Simulated
+        The model; where points were misplaced, seen from all places of :func:`updating.test_data.chain.reading`.
+    rig : Rig
+        How it is hit.
+    state : State
+        What is wrong with the measurement of single points: signs, labels, places; and the delay.
+    """
+    read = reading(rig.measured, replace(state, gain=1.0))
+    heard: dict[Dof, dict[Dof, int]] = {}
+    for row, (response, reference) in enumerate(zip(rig.responses, rig.references, strict=True)):
+        heard.setdefault(reference, {})[response] = row
+    groups: dict[tuple[Dof, ...], list[Dof]] = {}
+    for reference, own in heard.items():
+        groups.setdefault(tuple(own), []).append(reference)
+    found = []
+    for responses, references in groups.items():
+        rows = np.array([[heard[at][seen] for at in references] for seen in responses])
+        system = modal_system(
+            model,
+            seen=read.seen[rows[:, 0]],
+            hit=read.hit[rows[0]],
+            responses=responses,
+            points=references,
+            signs=rig.signs[rows] * read.gain[rows],
+        )
+        found.append(_late(system, state.delay))
+    return found
+
+
+def _late(system: ModalSystem, delay: float) -> ModalSystem:
+    """Return a system whose responses lag: each residue holds exp(-s tau) at its pole."""
+    if not delay:
+        return system
+    factor = np.exp(-system.poles * delay)
+    gradients = None if system.gradients is None else system.gradients * factor
+    return replace(system, residues=system.residues * factor, gradients=gradients)
+
+
+def remounted(system: ModalSystem, factors: FloatArray) -> ModalSystem:
+    """Return a system whose poles are multiplied by factors (n_modes,), its modal constants as they were."""
+    gradients = None if system.gradients is None else system.gradients / factors
+    return replace(
+        system, poles=system.poles * factors, residues=system.residues / factors, gradients=gradients
+    )
+
+
+def known_sensors(study: Study, rig: Rig) -> list[Callable[[Predictor], State]]:
+    """Return the masses that the study takes out of its FRFs again, to be put on the model before.
+
+    Raises
+    ------
+    StudyError
+        If one sits at no point of the test.
+    """
+    return [_carrying(rig, name, mass) for name, mass in study.test.sensor_masses.items()]
+
+
+def _carrying(rig: Rig, name: str, mass: float) -> Callable[[Predictor], State]:
+    node = Dof.of(name).node
+    if node not in rig.measured.nodes:
+        raise StudyError(f"[test] sensor_masses: {name} is no point of the test")
+    place = rig.measured.points[[rig.measured.nodes.index(node)]]
+    return lambda predictor: State(mass=(mass * predictor.reduced.unit_mass(place),))

@@ -1,0 +1,1 @@
+"""The simulator's plate: Reissner-Mindlin on quintic elements, dry or in water."""

@@ -1,0 +1,185 @@
+"""What a plate of the rig is made of: its dimensions, material and parts, and their values over its grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from modalkit.simulator.bodies.plate.grid import Grid
+from modalkit.simulator.bodies.plate.matrices import Section
+from modalkit.simulator.bodies.plate.mesh import plate_lines
+from modalkit.simulator.bodies.plate.parts import Patch, PlateAbsorber, PlateAttached, Rib, SoftSpot, Spot
+
+_STIFF = 100.0
+_LAYER = 1.5
+_ELEMENTS = 30
+
+
+@dataclass(frozen=True)
+class PlateFields:
+    """A rectangular plate, as far as it can be described without solving anything.
+
+    Parameters
+    ----------
+    start, end : float
+        Its edges x0 and x1 in the model's axes [m].
+    width, thickness : float
+        Extent along y, and thickness [m].
+    E, density, poisson : float
+        Young's modulus along x [Pa], density [kg/m3], Poisson's ratio [-].
+    clamped : tuple of {"x0", "x1", "y0", "y1"}
+        Edges that are held; none is a free plate.
+    side : float
+        The edge y0 [m].
+    clamp_rotation, clamp_translation : float
+        Stiffness of the held edges per metre, [N m/rad/m] and [N/m/m]; the edge that shifts goes on holding the
+        slope.
+    skew : float
+        Angle between the edge x0 and the y axis about its middle, positive towards +x at y1 [rad].
+    ratio : float
+        E across over E along; coupling, twist and shear follow the geometric mean [-].
+    taper : float
+        Relative change of thickness from x0 to x1, about the middle [-].
+    axial, axial_across : float
+        Whole tension along x and along y [N].
+    fluid_density : float
+        Density of a fluid on both faces [kg/m3].
+    drag : float
+        Density times viscosity of the fluid whose boundary layer damps [kg2/(m4 s)].
+    wall : bool
+        Whether the only held edge x0 stands at an endless wall, through which no fluid flows.
+    shear : bool
+        False makes shear a hundred times stiffer and leaves out rotary inertia: for telling what they do.
+    shear_factor : float
+        Kappa (Reissner) [-].
+    spots, patches, ribs, attached, absorbers : tuples
+        Local losses of stiffness; layers; ribs; masses, springs and dashpots; masses that hang.
+    alpha, beta : float
+        Rayleigh damping that the modeller expects [1/s], [s].
+    added_alpha, added_beta, added_loss : float
+        Damping beside it: proportional to all mass, to the material's stiffness, and structural
+        [1/s], [s], [-].
+    elements : (along, across), optional
+        Elements before refinement, without the narrow ones along the edges; default some thirty, nearly square
+        [-].
+    """
+
+    start: float
+    end: float
+    width: float
+    thickness: float
+    E: float
+    density: float
+    poisson: float = 0.3
+    clamped: tuple[str, ...] = ("x0",)
+    side: float = 0.0
+    clamp_rotation: float = np.inf
+    clamp_translation: float = np.inf
+    skew: float = 0.0
+    ratio: float = 1.0
+    taper: float = 0.0
+    axial: float = 0.0
+    axial_across: float = 0.0
+    fluid_density: float = 0.0
+    drag: float = 0.0
+    wall: bool = True
+    shear: bool = True
+    shear_factor: float = 5.0 / 6.0
+    spots: tuple[SoftSpot, ...] = ()
+    patches: tuple[Patch, ...] = ()
+    ribs: tuple[Rib, ...] = ()
+    attached: tuple[PlateAttached, ...] = ()
+    absorbers: tuple[PlateAbsorber, ...] = ()
+    alpha: float = 0.0
+    beta: float = 0.0
+    added_alpha: float = 0.0
+    added_beta: float = 0.0
+    added_loss: float = 0.0
+    elements: tuple[int, int] | None = None
+
+    @property
+    def length(self) -> float:
+        """Length in the middle [m]."""
+        return self.end - self.start
+
+    @property
+    def mass(self) -> float:
+        """Mass of the plate alone [kg]."""
+        return self.density * self.width * self.thickness * self.length
+
+    @property
+    def bending_stiffness(self) -> float:
+        """D of the undisturbed plate, per width, along x [N m]."""
+        return self.E * self.thickness**3 / (12 * (1 - self.poisson**2))
+
+    @property
+    def gradients(self) -> tuple[str, ...]:
+        """The slopes along both axes."""
+        return ("slope_x", "slope_y")
+
+    @property
+    def rigid_modes(self) -> int:
+        """Three of a free plate, none of a held one [-]."""
+        return 0 if self.clamped else 3
+
+    @cached_property
+    def grid(self) -> Grid:
+        """Its elements; a narrow row along the edges holds the layer in which twisting moments die away."""
+        along = self._lines(0, self.start, self.end)
+        across = self._lines(1, self.side, self.side + self.width)
+        return Grid(along, across, float(np.tan(self.skew)))
+
+    @property
+    def mesh(self) -> tuple[int, int]:
+        """Elements along and across, before refinement [-]."""
+        if self.elements is not None:
+            return self.elements
+        size = np.sqrt(self.length * self.width / _ELEMENTS)
+        along, across = (max(2, int(np.ceil(side / size - 0.3))) for side in (self.length, self.width))
+        return along, across
+
+    def _lines(self, axis: int, low: float, high: float) -> FloatArray:
+        spots: tuple[Spot, ...] = (*self.spots, *self.patches)
+        return plate_lines(
+            low,
+            high,
+            elements=self.mesh[axis],
+            layer=_LAYER * self.thickness,
+            windows=tuple(s.windows("xy"[axis]) for s in spots),
+            lines=tuple(r.start[axis] for r in self.ribs if abs(r.direction[axis]) < 1e-9),
+        )
+
+    @cached_property
+    def points(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Gauss points on the plate, x and y, and the thickness there [m]."""
+        grid_x, y, _, _ = self.grid.gauss
+        thick = self.thickness * (1.0 + self.taper * ((grid_x - self.start) / self.length - 0.5))
+        return self.grid.place(grid_x, y), y, thick
+
+    @cached_property
+    def section(self) -> Section:
+        """Stiffness of the bare plate at the Gauss points."""
+        x, y, thick = self.points
+        bending = self.E * thick**3 / (12 * (1 - self.poisson**2))
+        for spot in self.spots:
+            bending = bending * spot.factor(x, y)
+        modulus = self.shear_factor * self.E / (2 * (1 + self.poisson)) * np.sqrt(self.ratio)
+        return Section(bending, modulus * thick * (1.0 if self.shear else _STIFF), self.ratio, self.poisson)
+
+    def under(self, patch: Patch) -> Section:
+        """Return the stiffness of the bare plate where a patch covers it, and nothing elsewhere."""
+        x, y, _ = self.points
+        bare = self.section
+        return Section(bare.bending * patch.covers(x, y), bare.shear, bare.ratio, bare.poisson)
+
+    def inertia(self) -> tuple[FloatArray, FloatArray]:
+        """Return mass and rotary inertia per area at the Gauss points [kg/m2], [kg]."""
+        x, y, thick = self.points
+        area = self.density * thick
+        rotary = area * thick**2 / 12 / (1.0 if self.shear else _STIFF**2)
+        for patch in self.patches:
+            area = area * (1.0 + patch.mass * patch.covers(x, y))
+        return area, rotary

@@ -1,0 +1,1 @@
+"""The simulator's solid bodies, solved by CalculiX."""

@@ -1,0 +1,1 @@
+"""Random specimens and tests, drawn without knowledge of what is hidden."""

@@ -1,0 +1,105 @@
+"""Fix something to a body, cut into it or stick something on it, be it a beam or a plate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from modalkit.simulator.bodies.parts import Absorber, Attached, Notch, Stretch
+from modalkit.simulator.bodies.plate.parts import Patch, PlateAbsorber, PlateAttached, SoftSpot
+from modalkit.simulator.bodies.solid.solid import Cut, Solid
+from modalkit.simulator.scene import Scene
+
+
+def appended(scene: Scene, name: str, part: Any) -> Scene:
+    """Return the scene with one more part in a tuple of its body's.
+
+    Parameters
+    ----------
+    scene : Scene
+        The rig.
+    name : str
+        Of the tuple.
+    part : object
+        What is added.
+    """
+    return scene.with_body(**{name: (*getattr(scene.body, name), part)})
+
+
+def attached(scene: Scene, place: tuple[float, ...], **properties: float) -> Scene:
+    """Return the scene with a mass, a spring or a dashpot at a place.
+
+    Parameters
+    ----------
+    scene : Scene
+        The rig.
+    place : (x,) or (x, y)
+        [m].
+    **properties : float
+        Of mass [kg], inertia [kg m2], stiffness [N/m] and damping [N s/m].
+    """
+    part: Any = PlateAttached if len(place) == 2 else Attached
+    return appended(scene, "attached", part(*place, **properties))
+
+
+def hung(scene: Scene, place: tuple[float, ...], *, mass: float, hertz: float, ratio: float) -> Scene:
+    """Return the scene with a mass that hangs by a spring and a dashpot.
+
+    Parameters
+    ----------
+    scene : Scene
+        The rig.
+    place : (x,) or (x, y)
+        [m].
+    mass, hertz, ratio : float
+        Of the mass on its spring alone [kg], [Hz], [-].
+    """
+    part: Any = PlateAbsorber if len(place) == 2 else Absorber
+    omega = 2 * np.pi * hertz
+    stiffness, damping = mass * omega**2, 2 * ratio * mass * omega
+    return appended(scene, "absorbers", part(*place, mass=mass, stiffness=stiffness, damping=damping))
+
+
+def softened(scene: Scene, values: Mapping[str, Any]) -> Scene:
+    """Return the scene with a local loss of bending stiffness.
+
+    Parameters
+    ----------
+    scene : Scene
+        The rig.
+    values : mapping
+        x, on plates y, extent [m], loss [-], and ``form``: cosine where it is left out. A solid gets a slot
+        of the depth that leaves as much of the section's stiffness.
+    """
+    if isinstance(scene.body, Solid):
+        depth = scene.body.thickness * (1.0 - (1.0 - values["loss"]) ** (1 / 3))
+        return appended(scene, "cuts", Cut(values["x"], values["extent"], depth))
+    smooth = values.get("form", "cosine") == "cosine"
+    if "y" in values:
+        at, side, loss = (values["x"], values["y"]), values["extent"], values["loss"]
+        return appended(scene, "spots", SoftSpot(*at, side, side, loss=loss, smooth=smooth))
+    if smooth:
+        return appended(scene, "notches", Notch(values["x"], values["extent"], values["loss"]))
+    return appended(scene, "stretches", Stretch(values["x"], values["extent"], bending=1 - values["loss"]))
+
+
+def covered(scene: Scene, values: Mapping[str, Any]) -> Scene:
+    """Return the scene with a layer on a stretch of a beam or on a square of a plate.
+
+    Parameters
+    ----------
+    scene : Scene
+        The rig.
+    values : mapping
+        x, on plates y, extent [m], loss_factor, and what it adds: mass and stiffness [-].
+    """
+    extent, loss = values["extent"], values["loss_factor"]
+    mass, stiffness = values.get("mass", 0.0), values.get("stiffness", 0.0)
+    if "y" in values:
+        at = values["x"], values["y"]
+        layer = Patch(*at, extent, extent, loss_factor=loss, mass=mass, stiffness=stiffness)
+        return appended(scene, "patches", layer)
+    part = Stretch(values["x"], extent, bending=1 + stiffness, line=1 + mass, loss=loss)
+    return appended(scene, "stretches", part)

@@ -1,0 +1,125 @@
+"""Clamps that give, and loads along the structure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from modalkit.simulator.bodies.body import Body
+from modalkit.simulator.hidden.base import (
+    Secret,
+    Values,
+    clamped_places,
+    either_sign,
+    is_clamped,
+    log_uniform,
+    with_level,
+)
+from modalkit.simulator.scene import Scene
+from modalkit.simulator.setup import Setup
+
+_PROBE = 300.0
+
+
+def edge_length(setup: Setup) -> float:
+    """Return what stiffnesses per metre of edge are taken per: a beam has none, so 1 [m or -]."""
+    if setup.kind == "beam":
+        return 1.0
+    return setup.width if setup.clamped[0][0] == "x" else setup.length
+
+
+def _span(setup: Setup) -> float:
+    """Return the distance that the clamps look across [m]."""
+    return setup.width if setup.clamped and setup.clamped[0][0] == "y" else setup.length
+
+
+def _draw_rotation(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
+    relative = max(log_uniform(rng, 5.0, 150.0) / strength, 1.5)
+    return {"stiffness": relative * _rigidity(setup) / _span(setup) / edge_length(setup)}
+
+
+def _rigidity(setup: Setup) -> float:
+    """Return the bending stiffness of the whole section across the clamps [N m2]."""
+    across_y = bool(setup.clamped) and setup.clamped[0][0] == "y"
+    return setup.rigidity * (setup.length / setup.width if across_y else 1.0)
+
+
+def _draw_translation(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
+    relative = max(log_uniform(rng, 300.0, 2e4) / strength, 60.0)
+    return {"stiffness": relative * _rigidity(setup) / _span(setup) ** 3 / edge_length(setup)}
+
+
+def _draw_slope(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
+    return {"slope": -min(strength * log_uniform(rng, 0.008, 0.05), 0.08) / setup.peak}
+
+
+def _act_slope(scene: Scene, values: Values) -> Scene:
+    """Let the clamp turn the more, the harder the hit; the slope is the mean over the modes of the band.
+
+    At rest the clamp is as it was. Its compliance grows in proportion to the force, and to first order each
+    mode falls in proportion to the compliance.
+    """
+    setup, rest = scene.setup, scene.body
+    probe = _PROBE * _rigidity(setup) / _span(setup) / edge_length(setup)
+    chosen = slice(rest.rigid_modes, rest.rigid_modes + setup.modes)
+    held, _ = rest.real_modes(chosen.stop)
+    loose, _ = _turning(rest, probe).real_modes(chosen.stop)
+    share = float(np.mean(1.0 - loose[chosen] / held[chosen]))
+
+    def change(body: Body, level: float) -> Body:
+        return _turning(body, probe * share / (abs(values["slope"]) * level))
+
+    return with_level(scene, change)
+
+
+def _turning(body: Body, stiffness: float) -> Body:
+    return replace(body, clamp_rotation=stiffness)  # type: ignore[type-var]
+
+
+def can_show_levels(setup: Setup) -> bool:
+    """Tell whether hits of one point span some two to one in force."""
+    return setup.level_scatter >= 0.3 and setup.hits >= 4
+
+
+def _draw_load(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
+    ends = 4.0 if {"x0", "x1"} <= set(setup.clamped) else 0.25
+    buckling = ends * setup.rigidity * (np.pi / setup.length) ** 2
+    return {"force": float(either_sign(rng) * min(strength * log_uniform(rng, 0.08, 0.5), 0.7) * buckling)}
+
+
+SUPPORTS = (
+    Secret(
+        "clamp_rotation",
+        _draw_rotation,
+        lambda scene, values: scene.with_body(clamp_rotation=values["stiffness"]),
+        applies=is_clamped,
+        places=clamped_places,
+        seat="clamp",
+        share=0.74,
+    ),
+    Secret(
+        "clamp_translation",
+        _draw_translation,
+        lambda scene, values: scene.with_body(clamp_translation=values["stiffness"]),
+        applies=is_clamped,
+        places=clamped_places,
+        share=0.74,
+    ),
+    Secret(
+        "joint_nonlinearity",
+        _draw_slope,
+        _act_slope,
+        applies=lambda setup: is_clamped(setup) and can_show_levels(setup),
+        places=clamped_places,
+        seat="clamp",
+        share=0.37,
+    ),
+    Secret(
+        "axial_load",
+        _draw_load,
+        lambda scene, values: scene.with_body(axial=values["force"]),
+        applies=lambda setup: "x0" in setup.clamped,
+        share=0.74,
+    ),
+)

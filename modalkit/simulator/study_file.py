@@ -1,0 +1,74 @@
+"""Write the study file of a trial: what is stated, never what is hidden."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from modalkit.simulator.setup import Setup
+
+
+def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
+    """Return the study as TOML.
+
+    Parameters
+    ----------
+    setup : Setup
+        Everything that is stated.
+    test_file, baseline_file : str
+        Names of the test files, relative to the study; the second is used where there is a baseline.
+
+    Returns
+    -------
+    str
+        A study as the contract has it.
+    """
+    test: dict[str, Any] = {
+        "files": [test_file],
+        "band": list(setup.band),
+        "exponential_window": setup.window,
+        "calibration": setup.calibration,
+        "repeatability": setup.repeatability,
+        "position_sigma": setup.position_sigma,
+    }
+    tolerances = {name: getattr(setup.tolerances, name) for name in setup.tolerances.__dataclass_fields__}
+    tables: list[tuple[str, dict[str, Any]]] = [("[test]", test)]
+    if setup.baseline:
+        tables.append(("[baseline]", test | {"files": [baseline_file]}))
+    model = {
+        "type": "plate" if setup.kind == "plate" else "beam",
+        "length": setup.length,
+        "width": setup.width,
+        "thickness": setup.thickness,
+        "elements": list(setup.elements) if setup.kind == "plate" else setup.elements[0],
+        "clamped": list(setup.clamped),
+        "theory": setup.theory,
+    }
+    tables += [
+        ("[model]", model),
+        ("[model.material]", {"E": setup.E, "density": setup.density, "poisson": setup.poisson}),
+        ("[model.damping]", {"alpha": setup.alpha, "beta": setup.beta}),
+        ("[tolerances]", tolerances),
+    ]
+    if setup.sensor_mass:
+        known = {
+            "at": list(setup.points[setup.sensor]),
+            "mass": setup.sensor_mass,
+            "inertia": setup.sensor_inertia,
+        }
+        tables.insert(-1, ("[[model.mass]]", known))
+    if setup.environment is not None:
+        tables.append(("[environment]", {"fluid_density": setup.environment}))
+    lines = [f"title = {_value(setup.title)}"]
+    for header, entries in tables:
+        lines += [header, *(f"{key} = {_value(value)}" for key, value in entries.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_value(v) for v in value) + "]"
+    if isinstance(value, float):
+        return repr(float(value))
+    return str(value)

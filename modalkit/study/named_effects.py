@@ -1,0 +1,142 @@
+"""Effects as a user names them on the command line, and whether they fit a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
+from typing import Any
+
+import numpy as np
+
+from acquisition.errors import InputError, StudyError
+from acquisition.si_units import si_value
+from modalkit.study.stated_effects import SOME, nodes, sensor, unit_of
+from updating import LIBRARY, Predictor
+from updating.effects import check_values, labels_of
+from updating.models.state import State
+
+EffectValues = tuple[str, Mapping[str, Any]]
+
+
+def departure(name: str, values: Mapping[str, Any]) -> Callable[[Predictor], State]:
+    """Return the function that puts an effect into a predictor's model."""
+    return lambda predictor: LIBRARY[name].state(predictor, values)
+
+
+def parse_effect(text: str, kind: str = "beam") -> tuple[str, dict[str, Any]]:
+    """Read an effect written NAME or NAME:PARAM=VALUE,PARAM=VALUE; points are node numbers, as points=3/4.
+
+    Parameters
+    ----------
+    text : str
+        As typed; a value may have its unit, ``lumped_mass:mass=20g,x=100mm``, and is in SI units without.
+    kind : {"beam", "plate", "matrices"}
+        Kind of model, on which the unit of a spring along an edge depends.
+
+    Raises
+    ------
+    InputError
+        If the effect is unknown or a value is no number.
+    """
+    name, _, rest = (part.strip() for part in text.partition(":"))
+    if name not in LIBRARY:
+        near = get_close_matches(name, LIBRARY, n=3)
+        meant = f"did you mean {' or '.join(near)}?" if near else "`modalkit effects` lists them"
+        raise InputError(f"--effect {text}: there is no effect {name!r}; {meant}")
+    values: dict[str, Any] = {}
+    for entry in filter(None, (part.strip() for part in rest.split(","))):
+        parameter, equals, told = (part.strip() for part in entry.partition("="))
+        if parameter in values:
+            raise InputError(f"--effect {text}: {parameter} stands twice")
+        if parameter in LIBRARY[name].labels:
+            values[parameter] = _points(text, parameter, told)
+            continue
+        if parameter == "channel" and LIBRARY[name].of_sensor:
+            values[parameter] = _sensor(text, told)
+            continue
+        try:
+            values[parameter] = _value(told, name, parameter, kind)
+        except ValueError as error:
+            if equals and told[:1].isdigit():
+                raise InputError(f"--effect {text}: {parameter}: {error}") from error
+            equals = ""
+        if not equals or not np.isfinite(values[parameter]):
+            raise InputError(f"--effect {text}: {entry!r} is no PARAM=VALUE; write {name}:PARAM=VALUE,...")
+    return name, values
+
+
+def _value(told: str, name: str, parameter: str, kind: str) -> float:
+    """Return a number in SI units."""
+    try:
+        return float(told)
+    except ValueError:
+        return float(si_value(told, unit_of(name, parameter, kind)))
+
+
+def _points(text: str, label: str, told: str) -> Any:
+    """Return the node numbers written 3 or 3/4."""
+    try:
+        found = [int(part) for part in told.split("/")]
+        return nodes(label, found if label == SOME or len(found) > 1 else found[0])
+    except (ValueError, StudyError) as error:
+        wanted = f"{label}=3/4" if label == SOME else f"{label}=3"
+        raise InputError(f"--effect {text}: {told!r} are no node numbers; write {wanted}") from error
+
+
+def _sensor(text: str, told: str) -> str:
+    try:
+        return sensor(told)
+    except StudyError as error:
+        raise InputError(f"--effect {text}: {error}") from error
+
+
+def check_effect(
+    predictor: Predictor, name: str, values: Mapping[str, Any], *, where: str = "--effect"
+) -> None:
+    """Refuse an effect that does not fit the model, and parameters that do not fit the effect."""
+    effect, tested = LIBRARY[name], _as_tested(predictor)
+    if effect.channel == "measurement" and predictor.spec.kind in effect.models:
+        obstacle = None  # what a diagnosis would need of the data is no obstacle to simulating them
+    else:
+        obstacle = effect.why_not(tested)
+    if obstacle is not None:
+        raise StudyError(f"{where} {name}: {obstacle}")
+    takes = {p.name: p for p in effect.parameters(tested)}
+    labels = labels_of(effect, values)
+    needed = {*labels, *(p.name for p in takes.values() if p.default is None)}
+    if not needed <= set(values) <= {*takes, *labels}:
+        told = [f"{label} (node numbers)" for label in effect.labels]
+        wanted = ", ".join([*told, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"
+        raise StudyError(f"{where} {name}: it takes {wanted}, found {', '.join(sorted(values)) or 'none'}")
+    for label in labels - {"channel"}:
+        given = values[label] if isinstance(values[label], tuple) else (values[label],)
+        if missing := [node for node in given if node not in predictor.measured.nodes]:
+            there = ", ".join(map(str, predictor.measured.nodes[:12]))
+            raise StudyError(f"{where} {name}: the test has no point {missing[0]}; it has {there}")
+    check_values(tuple(takes.values()), values, f"{where} {name}")
+
+
+def _as_tested(predictor: Predictor) -> Predictor:
+    """Return the predictor of a test that found some modes with their damping, as one of the simulated data will."""
+    test = predictor.measured
+    frequency = test.frequency if len(test.frequency) else predictor.predict(count=5).frequency
+    return predictor.looking(replace(test, frequency=frequency, damping=np.full(len(frequency), 0.01)))
+
+
+def written(value: Any) -> str:
+    """Return a value as it is written on the command line."""
+    if isinstance(value, tuple):
+        return "/".join(map(str, value))
+    if isinstance(value, str):
+        return value
+    return f"{value:g}"
+
+
+def said(effects: Sequence[EffectValues]) -> str:
+    """Return effects as they are written on the command line."""
+    parts = [
+        name + (":" if values else "") + ",".join(f"{k}={written(v)}" for k, v in values.items())
+        for name, values in effects
+    ]
+    return " ".join(parts) or "no effect"

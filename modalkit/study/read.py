@@ -1,0 +1,226 @@
+"""The study file: a test, a model, doubts. Read strictly, so that a misspelt key is an error and not a default."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from acquisition.encoding import not_utf8
+from acquisition.errors import StudyError
+from modalkit.study.errors import explain, known_keys
+from modalkit.study.matrices import matrices_of, matrices_spec
+from modalkit.study.probable_units import check_units
+from modalkit.study.stated_effects import accepted_values
+from modalkit.study.tables import (
+    MATRICES_ONLY,
+    EnvironmentTable,
+    MeasurementTable,
+    ModelTable,
+    Strict,
+    TolerancesTable,
+    UpdateTable,
+)
+from updating.environment import Environment
+from updating.models import Damping, Material, PointMass, Region, Spec
+from updating.models.imported import Imported
+from updating.models.spec_checks import check_places
+from updating.test_data.axes import Axes
+from updating.tolerances import Tolerances
+
+__all__ = [
+    "MATRICES_ONLY",
+    "EnvironmentTable",
+    "MeasurementTable",
+    "ModelTable",
+    "Study",
+    "TolerancesTable",
+    "UpdateTable",
+    "read_study",
+]
+
+NOTHING = 1e-9
+"""Tolerances below this are none: their squares, and one over them, are no use as numbers [-]."""
+
+
+class Study(Strict):
+    """A whole study file.
+
+    Use :func:`read_study`; paths are relative to ``folder``.
+    """
+
+    title: str = ""
+    note: str = ""
+    test: MeasurementTable
+    baseline: MeasurementTable | None = None
+    model: ModelTable | None = None
+    tolerances: TolerancesTable = TolerancesTable()
+    environment: EnvironmentTable = EnvironmentTable()
+    update: UpdateTable = UpdateTable()
+    path: Path = Path("study.toml")
+
+    def file(self, name: str) -> Path:
+        """Return a file of the study, relative to the study file."""
+        return self.path.parent / name
+
+    def inputs(self) -> tuple[Path, ...]:
+        """Return the study file and every file it names."""
+        names: list[str | None] = []
+        for table in (self.test, self.baseline):
+            names += [] if table is None else [*table.files, table.modes, table.layout]
+        if (model := self.model) is not None:
+            names += [
+                model.stiffness,
+                model.mass_matrix,
+                model.nodes,
+                *model.stiffness_parts,
+                *model.mass_parts,
+            ]
+        return (self.path, *(self.file(name) for name in names if name is not None))
+
+    @property
+    def name(self) -> str:
+        """Title, or the folder's name."""
+        return self.title or self.path.resolve().parent.name
+
+    def spec(self) -> Spec:
+        """Return the nominal model.
+
+        Raises
+        ------
+        StudyError
+            If there is no model, or one that cannot be.
+        """
+        try:
+            return self._spec()
+        except StudyError as error:
+            raise StudyError(f"{self.path}: {error}") from error
+
+    def _spec(self) -> Spec:
+        model = self.model
+        if model is None:
+            raise StudyError("this command needs a [model]")
+        damping = Damping(
+            model.damping.alpha,
+            model.damping.beta,
+            model.damping.loss_factor,
+            None if model.damping.ratios is None else tuple(model.damping.ratios),
+        )
+        if model.type == "matrices":
+            return matrices_spec(model, self._imported, damping)
+        if given := [key for key in MATRICES_ONLY if getattr(model, key)]:
+            raise StudyError(
+                f"[model] of type {model.type} takes no {', '.join(given)}; they are of type matrices"
+            )
+        if unplaced := [region.name for region in model.region if region.x is None]:
+            raise StudyError(f"[[model.region]] {unplaced[0]!r} needs x")
+        for key in ("length", "width", "thickness", "material"):
+            if getattr(model, key) is None:
+                raise StudyError(f"[model] of type {model.type} needs {key}")
+        check_units(model)
+        assert model.material is not None
+        assert model.length is not None
+        assert model.width is not None
+        assert model.thickness is not None
+        spec = Spec(
+            model.type,
+            model.length,
+            model.width,
+            model.thickness,
+            self._elements(model),
+            tuple(model.clamped),
+            model.theory or ("euler-bernoulli" if model.type == "beam" else "kirchhoff"),  # type: ignore[arg-type]
+            Material(model.material.E, model.material.density, model.material.poisson),
+            tuple(Region(**region.model_dump()) for region in model.region),
+            tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
+            damping,
+        )
+        check_places(spec)
+        return spec
+
+    @cached_property
+    def _imported(self) -> Imported:
+        """The matrices of the model, read once."""
+        assert self.model is not None
+        return matrices_of(self.model, self.file)
+
+    def _elements(self, model: ModelTable) -> tuple[int, ...]:
+        if model.elements is None:
+            return (40,) if model.type == "beam" else (38, 20)
+        return (model.elements,) if isinstance(model.elements, int) else tuple(model.elements)
+
+    def axes(self, table: MeasurementTable) -> Axes:
+        """Return the model's axes in the coordinates of a test."""
+        try:
+            return Axes(table.axes.origin, table.axes.x, table.axes.y)
+        except StudyError as error:
+            raise StudyError(f"{self.path}: {error}") from error
+
+    def doubts(self) -> Tolerances:
+        """Return the tolerances."""
+        told = self.tolerances.model_dump()
+        values = {name: value if value > NOTHING else 0.0 for name, value in told.items()}
+        damping = values.pop("damping")
+        return Tolerances(values, damping)
+
+    def accepted(self) -> tuple[tuple[str, dict[str, Any]], ...]:
+        """Return the effects put into the model, with the values of their parameters and the points they speak of.
+
+        Raises
+        ------
+        StudyError
+            If one is unknown, or a value is neither a number nor, where points are meant, node numbers.
+        """
+        if self.model is None:
+            return ()
+        try:
+            return tuple(accepted_values(entry, self.model.type) for entry in self.model.effect)
+        except StudyError as error:
+            raise StudyError(f"{self.path}: {error}") from error
+
+    def surroundings(self) -> Environment:
+        """Return the environment."""
+        return Environment(**self.environment.model_dump())
+
+
+def read_study(path: Path | str) -> Study:
+    """Read a study file.
+
+    Parameters
+    ----------
+    path : path
+        The TOML file.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    StudyError
+        If the file cannot be read, is no TOML, or has a key or value that does not belong there.
+    """
+    path = Path(path)
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise StudyError(
+            f"{path}: cannot be read ({error.strerror}); give the path of a study file"
+        ) from error
+    except UnicodeDecodeError as error:
+        binary = f"{path}: not a valid TOML file but binary data; give a study file that names it"
+        raise StudyError(not_utf8(path, path.read_bytes()) or binary) from error
+    except (ValueError, RecursionError) as error:
+        raise StudyError(f"{path}: not a valid TOML file: {error}") from error
+    if "path" in content:
+        raise StudyError(f"{path}: unknown key path; known here: {', '.join(known_keys((), Study))}")
+    model = content.get("model", {})
+    if isinstance(model, dict) and isinstance(model.get("mass"), str):
+        content["model"] = {"mass_matrix" if key == "mass" else key: value for key, value in model.items()}
+    try:
+        return Study(**content, path=path)
+    except ValidationError as error:
+        raise StudyError(f"{path}: {explain(error, Study)}") from error

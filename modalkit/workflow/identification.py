@@ -1,0 +1,381 @@
+"""From files to FRFs to modes: the part of the chain that knows no model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from acquisition import (
+    Dof,
+    FrfSet,
+    HammerTest,
+    HitVerdict,
+    InputError,
+    UffContent,
+    Windows,
+    decide,
+    estimate_frfs,
+    force_range,
+    hits_table,
+    judge_hits,
+    looks_long,
+    split_hits,
+    state_window,
+)
+from acquisition.display import Displayed, named_files
+from acquisition.warned import Consequential, in_order
+from modalkit.workflow.existing import Modes, existing
+from modalkit.workflow.files import Progress, read_files
+from modalkit.workflow.frf_checks import identical, without_constant
+from modalkit.workflow.hit_warnings import on_coherence, on_hits, on_window
+from modalkit.workflow.joining import together
+from modalkit.workflow.level_warnings import with_level_warning
+from modalkit.workflow.mixed import with_read
+from modalkit.workflow.processing_options import Handling
+from modalkit.workflow.sensors import without_sensors
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from identification import ModalModel
+
+AS_READ = Handling()
+SAME_DECAY = 1e-3  # relative difference of decays that are the same
+
+
+@dataclass(frozen=True, eq=False)
+class Judged(Displayed):
+    """A test with what is thought of its hits.
+
+    Parameters
+    ----------
+    test : HammerTest
+        Records, one a hit.
+    verdicts : tuple of HitVerdict
+        On each hit, the user's decisions included.
+    """
+
+    test: HammerTest
+    verdicts: tuple[HitVerdict, ...]
+
+    def _headline(self) -> str:
+        return f"{self.test._headline()}; {sum(not v.used for v in self.verdicts)} left out"
+
+    def _frame(self) -> pd.DataFrame:
+        return self.test.table()
+
+
+@dataclass(frozen=True, eq=False)
+class Processed(Displayed):
+    """A test, turned into FRFs.
+
+    Parameters
+    ----------
+    content : UffContent
+        What the files held.
+    frfs : FrfSet
+        FRFs, estimated from the hits or read.
+    judged : tuple of Judged
+        The hits they were estimated from; empty where the files held FRFs.
+    handling : Handling
+        What the user said.
+    warnings : tuple of str
+        What the user ought to know.
+    """
+
+    content: UffContent
+    frfs: FrfSet
+    judged: tuple[Judged, ...]
+    handling: Handling
+    warnings: tuple[str, ...]
+
+    @property
+    def hits(self) -> tuple[HitVerdict, ...]:
+        """What is thought of every hit."""
+        return tuple(v for judged in self.judged for v in judged.verdicts)
+
+    def hits_table(self) -> pd.DataFrame:
+        """Return one row per hit, with its verdict."""
+        return hits_table(self.hits)
+
+    def identify(
+        self,
+        *,
+        band: tuple[float, float] | None = None,
+        order: int | None = None,
+        add: Sequence[float] = (),
+        drop: Sequence[float] = (),
+    ) -> ModalModel:
+        """Identify the modes of a band; see :func:`identification.identify`.
+
+        Left out, the band of FRFs made of hits ends where the force is 20 dB down. A band that is given is cut to
+        the part in which the FRFs carry information, and what was done is among the warnings; so is what was found of
+        the hits that changes a number, as a window that nobody stated.
+        """
+        model = self._modes(band, order, add, drop)
+        own = [w for w in self.warnings if isinstance(w, Consequential)]
+        warnings = in_order([*own, *model.warnings])
+        return model if warnings == model.warnings else replace(model, warnings=warnings)
+
+    def _modes(
+        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
+    ) -> ModalModel:
+        """Identify, and say whether frequencies follow the level of the hits."""
+        model = self._identified(band, order, add, drop)
+        if self.handling.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
+            return model
+        windows = Windows(decay=self.handling.window) if self.handling.window else None
+        return with_level_warning(model, [(j.test, j.verdicts) for j in self.judged], windows=windows)
+
+    def _identified(
+        self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
+    ) -> ModalModel:
+        from identification import identify
+
+        reach = self._reach([*add, *drop]) if band is None else None
+        if reach is None and band is not None:
+            return self._informed(band, order, add, drop)
+        if reach is None:
+            return identify(self.frfs, band=band, order=order, add=add, drop=drop)
+        model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
+        said = Consequential(
+            f"the force is 20 dB down at {reach[1]:.4g} Hz: modes are looked for below that; give a band to go "
+            "further"
+        )
+        return replace(model, warnings=(*model.warnings, said))
+
+    def _informed(
+        self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
+    ) -> ModalModel:
+        """Identify the modes of the part of a band in which the FRFs carry information."""
+        from identification import at_cut_edge, identify, informed_band
+
+        within, said = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
+        if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
+            within, said = band, None
+        model = identify(self.frfs, band=within, order=order, add=add, drop=drop)
+        if beyond := at_cut_edge(model.modal.frequency, within, band, self.frfs.df):
+            model = identify(self.frfs, band=within, order=order, add=add, drop=[*drop, *beyond])
+        return model if said is None else replace(model, warnings=(*model.warnings, said))
+
+    def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
+        """Return the band that the force reaches, if it ends before the lines do and no mode is named beyond."""
+        force, lines = force_range(self.hits), self.frfs.frequency
+        low = float(lines[lines > 0][0])
+        if force is None or not low < force.band20 < lines[-1] or max(named, default=0.0) >= force.band20:
+            return None
+        return low, force.band20
+
+    def _headline(self) -> str:
+        hits = f"; {len(self.hits)} hits, {sum(not v.used for v in self.hits)} left out" if self.hits else ""
+        return f"{self.frfs._headline()}{hits}"
+
+    def _frame(self) -> pd.DataFrame:
+        return self.frfs.table()
+
+
+def read(
+    path: Path | str | Sequence[Path | str],
+    *,
+    decay: float = 0.0,
+    layout: Path | str | None = None,
+    handling: Handling = AS_READ,
+    progress: Progress | None = None,
+) -> Processed | Modes:
+    """Read files as one test: hits are turned into FRFs; modes that exist already are taken as they are.
+
+    Parameters
+    ----------
+    path : path or sequence of paths
+        The files: UFF, column text or .mat with a layout, a table or a JSON file of modes, or what an installed
+        reader knows.
+    decay : float
+        Decay rate of an exponential window applied before the files were written, where they do not say it
+        themselves; short for ``Handling(decay=...)`` [1/s].
+    layout : path, optional
+        Layout of column text; short for ``Handling(layout=...)``.
+    handling : Handling
+        All that may be said of how records are treated.
+    progress : function, optional
+        Called with the part of the files that is read, from 0 to 1.
+
+    Returns
+    -------
+    Processed or Modes
+        Modes where the files hold these and neither hits nor FRFs. Both have `identify`, and that a table.
+
+    Raises
+    ------
+    InputError
+        If the files hold nothing of that, or what is said of their treatment does not fit them.
+    """
+    handling = _said(handling, decay, layout)
+    paths = [Path(p) for p in ([path] if isinstance(path, str | Path) else path)]
+    content = read_files(paths, layout=handling.layout, progress=progress)
+    modes = existing(content.modal, paths, content.title, content.warnings)
+    if modes is None or content.tests or content.frfs is not None:
+        return _processed(content, paths, handling)
+    if replace(handling, layout=None) != AS_READ:
+        raise InputError(
+            f"{modes.source}: holds modes; decay, windows, hits, estimator and sensor masses are for hits and FRFs"
+        )
+    return modes
+
+
+def read_frfs(
+    path: Path | str | Sequence[Path | str], *, handling: Handling = AS_READ, progress: Progress | None = None
+) -> Processed:
+    """Read files as `read` does, hits and FRFs only.
+
+    Parameters
+    ----------
+    path, handling, progress
+        As of `read`.
+
+    Raises
+    ------
+    InputError
+        If the files hold neither.
+    """
+    found = read(path, handling=handling, progress=progress)
+    if isinstance(found, Modes):
+        raise InputError(
+            f'{found.source}: holds modes, but neither raw hits nor FRFs; a study names them by modes = "..."'
+        )
+    return found
+
+
+def _said(handling: Handling, decay: float, layout: Path | str | None) -> Handling:
+    """Return the handling with what was said beside it."""
+    handling = replace(handling, decay=decay) if decay else handling
+    handling = handling if layout is None else replace(handling, layout=Path(layout))
+    if handling.window_on is not None and not handling.decay:
+        raise InputError(
+            f"a window on {handling.window_on} is told of without its decay; add --decay, or exponential_window in a "
+            "study"
+        )
+    return handling
+
+
+def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -> Processed:
+    warnings = list(content.warnings)
+    judged = _judged(content.tests, handling, warnings)
+    if judged:
+        warnings += on_hits([(j.test, j.verdicts) for j in judged])
+        frfs = _estimated(judged, handling)
+        if content.frfs is not None:
+            frfs = with_read(frfs, content.frfs, content.tests, warnings, decay=handling.decay)
+    elif content.frfs is not None:
+        frfs = _as_read(content.frfs, handling, warnings)
+    else:
+        names = named_files(paths)
+        raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
+    frfs = without_constant(frfs, warnings)
+    warnings += [*identical(frfs), *on_coherence(frfs, [(j.test, j.verdicts) for j in judged])]
+    frfs = without_sensors(frfs, handling.sensor_masses, warnings)
+    return Processed(content, frfs, judged, handling, in_order(warnings))
+
+
+def _as_read(frfs: FrfSet, handling: Handling, warnings: list[str]) -> FrfSet:
+    """Return FRFs that were read, with the window stated; what is said of hits has nothing to act on."""
+    said = {"--use": handling.use, "--leave": handling.leave, "--window": handling.window}
+    useless = [name for name, value in said.items() if value]
+    if useless:
+        raise InputError(
+            f"{frfs.source}: {', '.join(useless)} (or the same in a study) is for raw hits, but the files hold FRFs; "
+            "leave it out or give the time records"
+        )
+    if handling.estimator != "H1":
+        warnings.append(
+            f"{frfs.source}: the files hold FRFs, which stay as they are; estimator {handling.estimator} is not used"
+        )
+    if handling.window_on == "responses":
+        warnings.append(
+            f"{frfs.source}: the files hold FRFs; a window on the responses alone cannot be set right in them"
+        )
+    if handling.decay and frfs.decay:
+        _check_decay(frfs.source, frfs.decay, handling.decay)
+    return replace(frfs, decay=handling.decay) if handling.decay and not frfs.decay else frfs
+
+
+def _check_decay(source: str, stated: float, said: float) -> None:
+    if abs(stated - said) > SAME_DECAY * stated:
+        raise InputError(
+            f"{source}: the file states an exponential window of {stated:g} 1/s, but {said:g} 1/s is said; "
+            "leave one out or mend the other"
+        )
+
+
+def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]) -> tuple[Judged, ...]:
+    """Split long records, state the window and judge the hits; decisions go to the test that has the hit."""
+    split = []
+    for test in tests:
+        one = test
+        if looks_long(one):
+            one, said = split_hits(replace(one, decay=one.decay or handling.decay))
+            warnings += said
+        split.append(stated(one, handling, warnings))
+    proposals = numbered([judge_hits(test) for test in split])
+    every = tuple(v for verdicts in proposals for v in verdicts)
+    decided = iter(decide(every, use=handling.use, leave=handling.leave) if every else ())
+    return tuple(
+        Judged(test, tuple(next(decided) for _ in verdicts))
+        for test, verdicts in zip(split, proposals, strict=True)
+    )
+
+
+def stated(test: HammerTest, handling: Handling, warnings: list[str]) -> HammerTest:
+    """Return a test with the window stated that is said to have been applied; one that nobody states is warned of.
+
+    Parameters
+    ----------
+    test : HammerTest
+        Records, one a hit.
+    handling : Handling
+        What the user says of the window.
+    warnings : list of str
+        What was found is added to it.
+
+    Raises
+    ------
+    InputError
+        If the file states another window.
+    """
+    if handling.decay and test.decay:
+        _check_decay(test.source, test.decay, handling.decay)
+    elif handling.decay:
+        test, said = state_window(test, decay=handling.decay, on=handling.window_on)
+        warnings += said
+    else:
+        warnings += on_window(test)
+    return test
+
+
+def numbered(tests: Sequence[tuple[HitVerdict, ...]]) -> list[tuple[HitVerdict, ...]]:
+    """Return the verdicts on the hits of several tests, the hits at each point numbered through.
+
+    Parameters
+    ----------
+    tests : sequence of tuple of HitVerdict
+        What `judge_hits` says of each test.
+    """
+    seen: dict[Dof, int] = {}
+    answer = []
+    for verdicts in tests:
+        before = dict(seen)
+        answer.append(tuple(replace(v, hit=before.get(v.point, 0) + v.hit) for v in verdicts))
+        for v in verdicts:
+            seen[v.point] = seen.get(v.point, 0) + 1
+    return answer
+
+
+def _estimated(judged: Sequence[Judged], handling: Handling) -> FrfSet:
+    windows = Windows(decay=handling.window) if handling.window else None
+    return together(
+        [
+            estimate_frfs(j.test, estimator=handling.estimator, verdicts=j.verdicts, windows=windows)
+            for j in [j for j in judged if any(v.used for v in j.verdicts)] or judged[:1]
+        ]
+    )

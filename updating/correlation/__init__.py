@@ -1,0 +1,1 @@
+"""Test beside model: pairs of modes, MAC, and FRFs one over the other."""

@@ -1,0 +1,156 @@
+"""Test beside model: paired frequencies, MAC, what has no partner, FRAC."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from acquisition import Dof, FrfSet
+from acquisition.arrays import FloatArray, IntArray
+from acquisition.display import Displayed, counted
+from updating.case import Case
+from updating.correlation.frfs import CorrelatedFrfs, correlate_frfs
+from updating.nominal import predictor_of
+from updating.prediction.matching import Paired, mac_of_constants, pair_modes
+from updating.prediction.predict import Prediction
+from updating.simulation.identified import partners
+from updating.test_data.measured import Measured
+
+
+@dataclass(frozen=True, eq=False)
+class Correlation(Displayed):
+    """How far a test and a model agree.
+
+    Parameters
+    ----------
+    table : DataFrame
+        One row per pair: test mode, model mode (from 1), their frequencies [Hz], error and sigma [%], MAC [-].
+    mac : DataFrame
+        MAC of every measured mode (rows) with every model mode (columns), numbered from 1; empty without
+        shapes [-].
+    unpaired_test : DataFrame
+        Measured modes without a partner: mode and frequency [Hz].
+    unpaired_model : DataFrame
+        Model modes in the range of the test without a partner: mode and frequency [Hz].
+    frac : DataFrame
+        One row per FRF: points of response and force, and FRAC [-]: of the FRFs where these were given, else of
+        the modal constants over the paired modes.
+    warnings : tuple of str
+        What the user ought to know.
+    frfs : CorrelatedFrfs, optional
+        The FRFs themselves, measured and the model's.
+    """
+
+    table: pd.DataFrame
+    mac: pd.DataFrame
+    unpaired_test: pd.DataFrame
+    unpaired_model: pd.DataFrame
+    frac: pd.DataFrame
+    warnings: tuple[str, ...]
+    frfs: CorrelatedFrfs | None = None
+
+    @property
+    def rms_percent(self) -> float:
+        """R.m.s. frequency error over the pairs [%]."""
+        return float(np.sqrt(np.mean(self.table["error [%]"] ** 2)))
+
+    def _headline(self) -> str:
+        return f"{self.rms_percent:.3g} % r.m.s. frequency error over {counted(len(self.table), 'pair')}"
+
+
+def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:
+    """Compare a test with the nominal model, accepted effects included.
+
+    Parameters
+    ----------
+    case : Case
+        Test beside model.
+    frfs : FrfSet, optional
+        Measured FRFs; the model's are computed beside them, with the identified damping where the model says none.
+
+    Returns
+    -------
+    Correlation
+
+    Raises
+    ------
+    EstimationError
+        If no measured mode has a partner.
+    StudyError
+        If the FRFs are none of the case's.
+    """
+    predictor = predictor_of(case)
+    prediction = predictor.predict()
+    paired = pair_modes(case.measured, prediction)
+    test, partner = _rows(case.measured, paired), partners(paired, prediction)
+    both = None if frfs is None else correlate_frfs(frfs, case.measured, predictor, prediction, paired)
+    return Correlation(
+        _table(case.measured, prediction, test, partner),
+        _mac_matrix(case.measured, prediction),
+        _alone(case.measured.frequency, test, case.measured.frequency.max()),
+        _alone(prediction.frequency, partner, prediction.frequency[partner].max()),
+        _frac_of_constants(paired.measured, prediction.select(partner))
+        if both is None
+        else _frac_table([(r.node, f.node) for r, f in _dofs(both.measured)], both.frac),
+        (*case.measured.warnings, *paired.warnings),
+        both,
+    )
+
+
+def _rows(measured: Measured, paired: Paired) -> IntArray:
+    return np.flatnonzero(np.isin(measured.frequency, paired.measured.frequency))
+
+
+def _dofs(frfs: FrfSet) -> list[tuple[Dof, Dof]]:
+    return list(zip(frfs.responses, frfs.references, strict=True))
+
+
+def _table(measured: Measured, prediction: Prediction, test: IntArray, partner: IntArray) -> pd.DataFrame:
+    f, model = measured.frequency[test], prediction.frequency[partner]
+    sigma = np.sqrt((measured.frequency_sigma[test] / f) ** 2 + measured.repeatability**2)
+    mac = np.full(len(test), np.nan)
+    if measured.has_shapes:
+        mac = mac_of_constants(measured, prediction)[test, partner]
+    columns = {
+        "test mode": test + 1,
+        "model mode": partner + 1,
+        "test [Hz]": f,
+        "model [Hz]": model,
+        "error [%]": 100 * (model / f - 1),
+        "sigma [%]": 100 * sigma,
+        "MAC": mac,
+    }
+    return pd.DataFrame(columns)
+
+
+def _mac_matrix(measured: Measured, prediction: Prediction) -> pd.DataFrame:
+    if not measured.has_shapes:
+        return pd.DataFrame()
+    matrix = mac_of_constants(measured, prediction)
+    rows = pd.RangeIndex(1, matrix.shape[0] + 1, name="test mode")
+    return pd.DataFrame(matrix, rows, pd.RangeIndex(1, matrix.shape[1] + 1, name="model mode"))
+
+
+def _alone(frequency: FloatArray, paired: IntArray, top: float) -> pd.DataFrame:
+    left = np.setdiff1d(np.flatnonzero(frequency <= top), paired)
+    return pd.DataFrame({"mode": left + 1, "frequency [Hz]": frequency[left]})
+
+
+def _frac_of_constants(measured: Measured, prediction: Prediction) -> pd.DataFrame:
+    a, b = measured.constants, prediction.constants
+    power = np.sum(a**2, axis=1) * np.sum(b**2, axis=1)
+    values = np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300)
+    return _frac_table(_ends(measured), np.asarray(values))
+
+
+def _ends(measured: Measured) -> list[tuple[int, int | None]]:
+    """Return the nodes of response and force of every FRF; None for a mere shape."""
+    pairs = zip(measured.seen.tolist(), measured.hit.tolist(), strict=True)
+    return [(measured.nodes[s], None if h < 0 else measured.nodes[h]) for s, h in pairs]
+
+
+def _frac_table(ends: Sequence[tuple[int, int | None]], values: FloatArray) -> pd.DataFrame:
+    return pd.DataFrame({"response": [r for r, _ in ends], "force": [f for _, f in ends], "FRAC": values})

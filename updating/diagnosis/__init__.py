@@ -1,0 +1,1 @@
+"""From a gap between test and model to its cause."""

@@ -1,0 +1,1 @@
+"""The answer: verdict, places, how far the gap closes, and in which terms."""

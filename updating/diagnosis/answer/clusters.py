@@ -1,0 +1,226 @@
+"""The places of an explanation: its posterior samples gathered in clusters, and what symmetry puts beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import chain, combinations
+
+import numpy as np
+from scipy.cluster.hierarchy import fcluster, linkage
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.diagnosis.answer.result import Place
+from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.fit import climb
+from updating.problem.specimen import Problem
+
+LEAST = 0.05
+"""A place with less of the weight is not told."""
+
+HEAVY = 300
+"""So many of the heaviest samples are looked at."""
+
+APART = 0.05
+"""Samples further from each other than this share of the span belong to different places [-]."""
+
+NOTHING = 1e-4
+"""Samples with less than this share of the heaviest one's weight are not looked at [-]."""
+
+SEARCHED = frozenset({"x", "y", "z", "region"})
+"""Parameters that say where an effect sits."""
+
+FAINT = 1e-3
+"""Samples with less than this share of the heaviest one's weight build no bridges between places [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cluster:
+    """One place where a cause may sit.
+
+    Parameters
+    ----------
+    place : (3,) array
+        Posterior mean of the place [m].
+    spread : (3,) array
+        Posterior standard deviation [m].
+    weight : float
+        Share of the posterior probability [-].
+    seat : int
+        Which of the places that an explanation has at the same time: a mass on each of two sensors has two.
+    """
+
+    place: FloatArray
+    spread: FloatArray
+    weight: float
+    seat: int = 0
+
+
+def clusters(problem: Problem, explanation: Explanation, channel: str) -> tuple[Cluster, ...]:
+    """Gather the places of an explanation.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    explanation : Explanation
+        A candidate with its posterior samples.
+    channel : str
+        Channel whose effects are asked for; of all effects if none of that channel has a place.
+
+    Returns
+    -------
+    tuple of Cluster
+        The most probable first.
+    """
+    sampled = sampled_places(problem, explanation, channel)
+    if not len(sampled.weights):
+        return ()
+    span = _span(problem)
+    found = [
+        cluster
+        for seat in np.unique(sampled.seats).tolist()
+        for cluster in _gather(sampled.of(seat), span, seat)
+    ]
+    found += _mirrored(problem, explanation, channel, found, span)
+    return tuple(sorted(_told(found), key=lambda c: -c.weight))
+
+
+def _told(found: list[Cluster]) -> Iterator[Cluster]:
+    """Share the weight of each seat among its places, and drop those with little of it."""
+    for seat in {cluster.seat for cluster in found}:
+        here = [cluster for cluster in found if cluster.seat == seat]
+        total = sum(cluster.weight for cluster in here)
+        yield from (replace(c, weight=c.weight / total) for c in here if c.weight >= LEAST * total)
+
+
+@dataclass(frozen=True, eq=False)
+class Sampled:
+    """Places of the posterior samples, one row each.
+
+    Parameters
+    ----------
+    places : (n, 3) array
+        In model axes [m].
+    weights : (n,) array
+        Posterior weight; that of one sample is shared among the places that are alternatives [-].
+    seats : (n,) int array
+        Places of one seat are alternatives, such as mirror images; those of several are taken at the same time.
+    """
+
+    places: FloatArray
+    weights: FloatArray
+    seats: IntArray
+
+    def of(self, seat: int) -> Sampled:
+        """Return the places of one seat."""
+        here = self.seats == seat
+        return Sampled(self.places[here], self.weights[here], self.seats[here])
+
+
+def sampled_places(problem: Problem, explanation: Explanation, channel: str | None = None) -> Sampled:
+    """Return the places of the heaviest samples.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    explanation : Explanation
+        A candidate with its posterior samples.
+    channel : str, optional
+        Channel whose effects are asked for; left out, all but the measurement. Where none of these has a place, all
+        effects are.
+    """
+    heavy = np.argsort(explanation.weights)[::-1][:HEAVY]
+    heavy = heavy[explanation.weights[heavy] > NOTHING * explanation.weights[heavy[0]]]
+    rows = [
+        (place, float(explanation.weights[i]) / len(alternatives), seat)
+        for i in heavy.tolist()
+        for seat, alternatives in enumerate(_seats(problem, explanation, explanation.samples[i], channel))
+        for place in alternatives
+    ]
+    return Sampled(
+        np.array([place for place, _, _ in rows], dtype=float).reshape(-1, 3),
+        np.array([weight for _, weight, _ in rows], dtype=float),
+        np.array([seat for _, _, seat in rows], dtype=np.int64),
+    )
+
+
+def _seats(
+    problem: Problem, explanation: Explanation, sample: FloatArray, channel: str | None
+) -> list[list[Place]]:
+    """Return the places of one sample by seat: an effect that searches its place has one, with alternatives."""
+    candidate = explanation.candidate
+    stage = candidate.stage(problem.predictor)
+    by_channel: dict[bool, list[list[Place]]] = {True: [], False: []}
+    for effect, values in candidate.split(stage, sample.tolist()):
+        places = list(effect.locations(stage, values))
+        searches = bool(SEARCHED & {parameter.name for parameter in effect.parameters(stage)})
+        seats = [places] if searches else [[place] for place in places]
+        asked = effect.channel == channel if channel else effect.channel != "measurement"
+        by_channel[asked] += [seat for seat in seats if seat]
+    return by_channel[True] or by_channel[False]
+
+
+def _span(problem: Problem) -> float:
+    spec = problem.predictor.spec
+    return max(spec.length, spec.width if spec.kind != "beam" else 0.0)
+
+
+def _gather(sampled: Sampled, span: float, seat: int) -> list[Cluster]:
+    """Gather the samples of one seat: what hangs together is one place."""
+    bold = sampled.weights >= FAINT * sampled.weights.max()
+    places, weights = sampled.places[bold], sampled.weights[bold]
+    labels = np.ones(len(places), dtype=int)
+    if len(places) > 1:
+        labels = fcluster(linkage(places, "single"), APART * span, criterion="distance")
+    found = []
+    for label in np.unique(labels):
+        here, share = places[labels == label], weights[labels == label]
+        mean = share @ here / share.sum()
+        spread = np.sqrt(share @ (here - mean) ** 2 / share.sum())
+        found.append(Cluster(mean, spread, float(share.sum() / weights.sum()), seat))
+    return found
+
+
+def _mirrored(
+    problem: Problem, explanation: Explanation, channel: str, found: list[Cluster], span: float
+) -> list[Cluster]:
+    """Look for places on the other side that explain the data as well, which the samples may have missed."""
+    best = explanation.best
+    leaders = {c.seat: c for c in sorted(found, key=lambda c: c.weight)}
+    more: list[Cluster] = []
+    for flipped in _flips(problem, explanation):
+        peak = climb(problem, explanation.candidate, flipped, rounds=4).point
+        likely = np.exp(min(peak.marginal.log_likelihood - best.marginal.log_likelihood, 0.0))
+        if likely < LEAST:
+            continue
+        for seat, places in enumerate(_seats(problem, explanation, peak.coordinates, channel)):
+            known = [c.place for c in [*found, *more] if c.seat == seat]
+            if seat not in leaders:
+                continue
+            for place in np.asarray(places, dtype=float):
+                if min(np.linalg.norm(place - k) for k in known) > APART * span:
+                    share = float(likely) * leaders[seat].weight
+                    more.append(Cluster(place, leaders[seat].spread, share, seat))
+    return more
+
+
+def _flips(problem: Problem, explanation: Explanation) -> Iterator[FloatArray]:
+    """Give the best parameters with x, with y, and with both on the other side of the middle."""
+    candidate, spec = explanation.candidate, problem.predictor.spec
+    parameters = candidate.parameters(candidate.stage(problem.predictor))
+    size = {"x": spec.length, "y": spec.width}
+    rows: dict[str, list[int]] = {}
+    for i, (name, parameter) in enumerate(parameters):
+        axis = name.rpartition(".")[2]
+        if axis in size and not parameter.log and np.isclose(parameter.low + parameter.high, size[axis]):
+            rows.setdefault(axis, []).append(i)
+    for axes in chain.from_iterable(combinations(sorted(rows), n) for n in range(1, len(rows) + 1)):
+        flipped = np.array(explanation.best.coordinates, dtype=float)
+        chosen = [i for axis in axes for i in rows[axis]]
+        flipped[chosen] = 1 - flipped[chosen]
+        yield flipped
+
+
+__all__ = ["Cluster", "clusters", "sampled_places"]

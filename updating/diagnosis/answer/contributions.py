@@ -1,0 +1,137 @@
+"""Which modes, bands and kinds of data carry the gap: each against the doubt it is held in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy.linalg import cho_factor, cho_solve
+from scipy.stats import chi2 as chi_square
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.diagnosis.problem.face import Posed
+from updating.likelihood.comparison import CHANNELS, Comparison
+from updating.models.state import NOMINAL
+
+NAMES = {
+    "frequency": "frequency",
+    "damping": "damping",
+    "frf": "shape and level",
+    "phase": "phase",
+    "level": "change with force",
+}
+"""How the kinds of data are called."""
+
+NOTABLE = 3.0
+"""From so many standard deviations on a mode carries some of the gap."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contributions:
+    """What every mode adds to the gap.
+
+    Parameters
+    ----------
+    modes : DataFrame
+        One row per paired mode: test frequency [Hz], and for each kind of data how far model and test are apart in
+        standard deviations of noise and tolerances together: signed, test over model, for frequency and damping, the
+        root mean square for what holds several values; ``share [%]`` of the squared distance of all.
+    summary : str
+        One sentence on the worst band.
+    """
+
+    modes: pd.DataFrame
+    summary: str
+
+
+def contributions(problem: Posed, comparison: Comparison | None = None) -> Contributions:
+    """Weigh what every mode adds to the gap between the test and the model as it stands.
+
+    Parameters
+    ----------
+    problem : Problem or Several
+        Test and model.
+    comparison : Comparison, optional
+        A comparison in place of that with the nominal model: what is left after an effect, for instance.
+    """
+    plain = problem.compare(NOMINAL) if comparison is None else comparison
+    covariance = np.diag(plain.variance) + plain.nuisance @ plain.nuisance.T
+    frequency = np.concatenate([one.measured.frequency for one in problem.specimens])
+    count = len(frequency)
+    kinds = [int(c) for c in np.unique(plain.channel)]
+    apart = {_name(c): np.full(count, np.nan) for c in kinds}
+    excess, squared = np.zeros((count, len(kinds))), np.zeros(count)
+    for k, kind in enumerate(kinds):
+        for mode in range(count):
+            rows = np.flatnonzero((plain.channel == kind) & (plain.mode == mode))
+            if len(rows):
+                distance = _distance(plain.residual[rows], covariance[np.ix_(rows, rows)])
+                sign = np.sign(plain.residual[rows[0]]) if len(rows) == 1 else 1.0
+                apart[_name(kind)][mode] = sign * np.sqrt(distance / len(rows))
+                excess[mode, k] = _sigmas(distance, len(rows))
+                squared[mode] += distance
+    table = pd.DataFrame(
+        {
+            "test [Hz]": frequency,
+            **{f"{name} [sigma]": values for name, values in apart.items()},
+            "share [%]": 100 * squared / max(float(squared.sum()), 1e-300),
+        },
+        index=pd.RangeIndex(1, count + 1, name="mode"),
+    )
+    return Contributions(table, _sentence(frequency, excess, [_name(k) for k in kinds]))
+
+
+def _name(channel: int) -> str:
+    return NAMES[CHANNELS[channel]]
+
+
+def _distance(residual: FloatArray, covariance: FloatArray) -> float:
+    return float(residual @ cho_solve(cho_factor(covariance), residual))
+
+
+def _sigmas(distance: float, count: int) -> float:
+    """Return how many sigma of one normal variate are as improbable as a squared distance of ``count`` data."""
+    log_tail = float(chi_square.logsf(distance, count))
+    if log_tail < -600:  # beyond the range of numbers: the tails of both are alike
+        return float(np.sqrt(distance))
+    return float(np.sqrt(chi_square.isf(np.exp(log_tail), 1)))
+
+
+def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str]) -> str:
+    """Say which kind of data of which modes is the furthest off."""
+    if not excess.size or excess.max() < NOTABLE:
+        return "No mode stands out: none is further off than noise and tolerances allow."
+    worst = int(np.argmax(excess.max(axis=0)))
+    column = excess[:, worst]
+    order = np.argsort(frequency)
+    band = _band(column[order], max(NOTABLE, 0.5 * float(column.max())))
+    modes = order[band]
+    hertz = frequency[modes]
+    what = names[worst]
+    if len(modes) == len(frequency) > 1:
+        which = f"of all {len(frequency)} modes"
+    elif len(modes) == 1:
+        which = f"of mode {modes[0] + 1} ({hertz[0]:.4g} Hz)"
+    else:
+        which = f"of modes {modes[0] + 1} to {modes[-1] + 1} ({hertz[0]:.4g} to {hertz[-1]:.4g} Hz)"
+    return f"The gap is carried most by the {what} {which}: up to {_plain(column.max())} sigma."
+
+
+def _band(values: FloatArray, bar: float) -> IntArray:
+    """Return the unbroken run about the largest value that stays above a bar."""
+    top = int(np.argmax(values))
+    low = high = top
+    while low > 0 and values[low - 1] >= bar:
+        low -= 1
+    while high < len(values) - 1 and values[high + 1] >= bar:
+        high += 1
+    return np.arange(low, high + 1)
+
+
+__all__ = ["Contributions", "contributions"]
+
+
+def _plain(value: float) -> str:
+    """Return a number with three digits and no exponent below a million."""
+    return f"{float(f'{value:.3g}'):.10g}" if value < 1e6 else f"{value:.3g}"

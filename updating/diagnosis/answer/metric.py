@@ -1,0 +1,145 @@
+"""In which terms a gap is told: the error of frequencies, of damping, of the FRFs, or of all data together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.answer.result import Metric
+from updating.diagnosis.search.fit import Point
+from updating.likelihood.comparison import CHANNELS, Comparison
+from updating.likelihood.gaussian import marginal
+from updating.problem.specimen import REPEATED_DAMPING, Problem
+
+AS_MUCH = 0.5
+"""A second channel carries the gap, too, if the logarithm of its probability is this share of the first's [-]."""
+
+TOLD_AS: dict[str, Metric] = {
+    "frequency": "frequency",
+    "damping": "damping",
+    "frf": "frf",
+    "phase": "frf",
+    "level": "combined",
+}
+"""The metric of each channel: phases are of the FRFs, and the dependence on force has no error of its own."""
+
+
+def metric_of(point: Point) -> Metric:
+    """Return the metric of the channel that carries the gap, or ``combined`` where two carry it.
+
+    Parameters
+    ----------
+    point : Point
+        The nominal model with its tolerances.
+    """
+    surprise = {}
+    for i, name in enumerate(CHANNELS):
+        keep = point.comparison.channel == i
+        if keep.any():
+            part = marginal(point.comparison, keep)
+            surprise[name] = float(chi2.logsf(part.chi2, part.count))
+    order = sorted(surprise, key=lambda name: surprise[name])
+    if not order:
+        return "frequency"
+    told = [TOLD_AS[name] for name in order if surprise[name] <= AS_MUCH * surprise[order[0]]]
+    return told[0] if len(set(told)) == 1 else "combined"
+
+
+@dataclass(frozen=True, eq=False)
+class Squares:
+    """Errors by mode: their sum of squares and how many they are.
+
+    Parameters
+    ----------
+    total : (n_modes,) array
+        Sum of squares of each mode [-].
+    count : (n_modes,) array
+        Number of data of each mode.
+    """
+
+    total: FloatArray
+    count: FloatArray
+
+    @property
+    def mean(self) -> float:
+        """Mean square [-]."""
+        return float(self.total.sum() / max(self.count.sum(), 1.0))
+
+    @property
+    def rms(self) -> float:
+        """R.m.s. [-]."""
+        return float(np.sqrt(self.mean))
+
+
+def squares(residual: FloatArray, nominal: Comparison, metric: Metric) -> Squares:
+    """Return the errors that residuals mean in a metric.
+
+    Parameters
+    ----------
+    residual : (n,) array
+        Measured minus predicted data [-].
+    nominal : Comparison
+        The nominal model's, for channels, modes and noise.
+    metric : str
+        ``frequency`` and ``damping``: relative error of the model; ``frf``: error of the complex modal constants
+        over their r.m.s. in the mode; ``combined``: every datum over its standard deviation.
+    """
+    channel, count = nominal.channel, int(nominal.mode.max()) + 1
+    if metric == "combined":
+        error, counted = residual / np.sqrt(nominal.variance), np.ones(len(residual), dtype=bool)
+    elif metric == "frf":
+        # a mode turned by a small angle is off by that angle in all its constants
+        counted, turned = channel == CHANNELS.index("frf"), channel == CHANNELS.index("phase")
+        share = np.sqrt(counted.sum() / max(turned.sum(), 1))
+        error = np.where(counted, residual, np.where(turned, share * residual, 0.0))
+    else:
+        counted = channel == CHANNELS.index(metric)
+        error = np.where(counted, np.expm1(-np.where(counted, residual, 0.0)), 0.0)
+    return Squares(
+        np.asarray(np.bincount(nominal.mode, error**2, minlength=count), dtype=float),
+        np.asarray(np.bincount(nominal.mode, counted.astype(float), minlength=count), dtype=float),
+    )
+
+
+def noise_squares(specimens: tuple[Problem, ...], nominal: Comparison, metric: Metric) -> Squares:
+    """Return the errors that repeating the test, and the baseline, alone would give.
+
+    Parameters
+    ----------
+    specimens : tuple of Problem
+        The specimens.
+    nominal : Comparison
+        The nominal model's.
+    metric : str
+        As in :func:`squares`.
+    """
+    if metric == "combined":
+        return squares(np.sqrt(nominal.variance), nominal, metric)
+    variance = np.array(nominal.variance)
+    rows = nominal.channel == CHANNELS.index("frequency")
+    variance[rows] = np.concatenate([_repeated(one) for one in specimens])
+    rows = nominal.channel == CHANNELS.index("damping")
+    variance[rows] = np.concatenate([_damped(one) for one in specimens])
+    return _small(np.sqrt(np.maximum(variance, 0.0)), nominal, metric)
+
+
+def _damped(problem: Problem) -> FloatArray:
+    """Return the variance of ln zeta from one mounting to the next, per mode whose damping is known [-]."""
+    test, rows = problem.measured, problem.damping_known
+    relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=0.05)
+    return np.asarray(relative**2 + REPEATED_DAMPING**2)
+
+
+def _small(sigma: FloatArray, nominal: Comparison, metric: Metric) -> Squares:
+    """Return the squares of small errors, for which relative and logarithmic are the same."""
+    return squares(-np.log1p(sigma) if metric != "frf" else sigma, nominal, metric)
+
+
+def _repeated(problem: Problem) -> FloatArray:
+    """Return the variance of ln f that repeating the test (and the baseline) gives, per mode [-]."""
+    tests = [problem.measured] + ([] if problem.baseline is None else [problem.baseline])
+    noise = [np.mean((t.frequency_sigma / t.frequency) ** 2) + t.repeatability**2 for t in tests]
+    return np.full(len(problem.measured.frequency), sum(noise))

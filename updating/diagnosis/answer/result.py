@@ -1,0 +1,351 @@
+"""What a diagnosis says, as records that the face turns into text, JSON and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import pandas as pd
+
+from acquisition.arrays import FloatArray
+from acquisition.display import Displayed, counted
+
+Verdict = Literal["named", "class", "unknown", "none"]
+Metric = Literal["frequency", "damping", "frf", "combined"]
+Place = tuple[float, float, float]
+
+
+SETS = 10
+"""So many sets of effects are printed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gap(Displayed):
+    """The gap between the test and the nominal model, mode by mode.
+
+    Parameters
+    ----------
+    modes : DataFrame
+        One row per paired mode: test and model frequency [Hz], error and sigma [%], MAC, damping ratios [-].
+    rms_percent, floor_percent : float
+        R.m.s. frequency error, and what noise alone would give [%].
+    frac : (n_frf,) array
+        Correlation of measured and predicted modal constants over the modes, per FRF [-].
+    """
+
+    modes: pd.DataFrame
+    rms_percent: float
+    floor_percent: float
+    frac: FloatArray
+
+    def _headline(self) -> str:
+        return (
+            f"{self.rms_percent:.3g} % r.m.s. frequency error over {counted(len(self.modes), 'mode')}, "
+            f"noise floor {self.floor_percent:.2g} %"
+        )
+
+    def _frame(self) -> pd.DataFrame:
+        return self.modes
+
+
+@dataclass(frozen=True)
+class ParameterEstimate:
+    """A parameter of an effect with its 95 % interval [unit], or what its form fixes: points, which have none.
+
+    One that is ``aside`` matters little by itself and takes a default elsewhere, as the rotary inertia of a mass.
+    """
+
+    value: float | str | tuple[int, ...]
+    unit: str
+    low95: float | None
+    high95: float | None
+    at_bound: bool
+    aside: bool = False
+
+    def __str__(self) -> str:
+        if isinstance(self.value, str):
+            return self.value
+        if isinstance(self.value, tuple):
+            return ", ".join(map(str, self.value))
+        unit = "" if self.unit in {"-", "node"} else f" {self.unit}"
+        if self.low95 is None:
+            return f"{self.value:g}"
+        return f"{self.value:.4g} [{self.low95:.4g}, {self.high95:.4g}]{unit}"
+
+
+@dataclass(frozen=True, eq=False)
+class Ranked(Displayed):
+    """One set of effects with its probability, and what the form of each fixes: the points, which parameters act."""
+
+    effects: tuple[str, ...]
+    probability: float
+    equivalents: tuple[tuple[str, ...], ...]
+    parameters: dict[str, ParameterEstimate]
+    plausible: bool
+    p_value: float
+    forms: tuple[Mapping[str, Any], ...] = ()
+
+    def _headline(self) -> str:
+        sizes = "; ".join(f"{n} = {e}" for n, e in self.parameters.items())
+        return f"{' + '.join(self.effects) or '(tolerances alone)'}, {100 * self.probability:.4g} %: {sizes}"
+
+
+@dataclass(frozen=True)
+class Zone:
+    """Probability that the cause sits in a region."""
+
+    name: str
+    center: Place
+    probability: float
+
+
+@dataclass(frozen=True)
+class Seat:
+    """One place where a cause may sit.
+
+    Parameters
+    ----------
+    place : tuple of float
+        Where it most probably is [m].
+    spread : tuple of float
+        Standard deviation along each axis [m].
+    probability : float
+        Share of the explanation's probability; places taken at the same time have 1 each [-].
+    """
+
+    place: Place
+    spread: Place
+    probability: float
+
+
+@dataclass(frozen=True, eq=False)
+class Where(Displayed):
+    """Where the cause sits.
+
+    Parameters
+    ----------
+    channel : str
+        stiffness, mass, damping, measurement, or none.
+    channels : dict of str to float
+        Probability of each, given that there is a cause; ``none`` is that of no cause at all [-].
+    location : tuple of float, optional
+        The most probable place [m].
+    locations : tuple of tuple of float
+        All places that hold a notable share of the probability, mirrored ones too, most probable first [m].
+    points : tuple of int
+        Test nodes concerned: at the places, or those of which an effect of the measurement speaks.
+    zones : tuple of Zone
+        Probability of each region.
+    zones_by : {"explanations", "regions"}
+        Whether these rest on the places of the explanations, or, where nothing explains the gap, on the evidence of
+        a change of one region alone.
+    seats : tuple of Seat
+        The locations with spread and probability.
+    modes : DataFrame, optional
+        What each mode adds to the gap, in standard deviations; see :mod:`updating.diagnosis.answer.contributions`.
+    band : str
+        One sentence on the modes and the kind of data that carry the gap.
+    nearest : tuple of int
+        Test nodes nearest to the places, where any are near.
+    """
+
+    channel: str
+    channels: dict[str, float]
+    location: Place | None
+    locations: tuple[Place, ...]
+    points: tuple[int, ...]
+    zones: tuple[Zone, ...]
+    zones_by: Literal["explanations", "regions"] = "explanations"
+    seats: tuple[Seat, ...] = ()
+    modes: pd.DataFrame | None = None
+    band: str = ""
+    nearest: tuple[int, ...] = ()
+
+    def _headline(self) -> str:
+        share = 100 * self.channels.get(self.channel, 0.0)
+        places = " and ".join(f"({', '.join(f'{x:.3g}' for x in at)}) m" for at in self.locations[:3])
+        return f"{self.channel} ({share:.0f} %)" + (f", at {places}" if places else "")
+
+
+@dataclass(frozen=True)
+class Closed:
+    """Share of the closable gap that closes, with its 95 % interval [%]."""
+
+    value: float
+    low95: float
+    high95: float
+
+
+@dataclass(frozen=True)
+class HeldPoints:
+    """R.m.s. error of the modal constants at points held out part by part [%]."""
+
+    before: float
+    after: float
+    nuisance: float
+
+
+@dataclass(frozen=True)
+class Shrink(Displayed):
+    """How far the gap shrinks, on the data fitted and on modes held out in turn [%].
+
+    Parameters
+    ----------
+    metric : str
+        What the errors are of: frequency, damping, frf, or combined, where 100 % is one standard deviation.
+    before, after : float
+        R.m.s. error of the nominal model, and once the best explanation is fitted [%].
+    held_before, held_after, held_runner_up, held_nuisance : float
+        The same on modes held out, with the best explanation, the one behind it, and the tolerances alone, none of them
+        taken further than is believed; nan where there is one mode only [%].
+    floor : float
+        What repeating the test alone would give [%].
+    closed : Closed, optional
+        Share of the closable gap that closes on modes held out; None where there is next to nothing to close.
+    stretch : float
+        By how much a tolerance would have to be off if tolerances alone were to explain the data [sigma].
+    points : HeldPoints, optional
+        The errors at points held out, where the gap shows in the FRFs.
+    """
+
+    metric: Metric
+    before: float
+    after: float
+    held_before: float
+    held_after: float
+    held_runner_up: float | None
+    held_nuisance: float
+    floor: float
+    closed: Closed | None
+    stretch: float = 0.0
+    points: HeldPoints | None = None
+
+
+@dataclass(frozen=True)
+class NextTest(Displayed):
+    """A measurement, what it separates, and by how many sigma.
+
+    Parameters
+    ----------
+    measure : str
+        What to do.
+    separates : tuple of str
+        The effects of the explanations it separates.
+    expected_sigma : float
+        By how many sigma at least; nan for advice where there is nothing to separate [-].
+    pairs : tuple of (set, set)
+        Which explanations it separates from which.
+    whole : bool
+        Whether these are all that are left.
+    """
+
+    measure: str
+    separates: tuple[str, ...]
+    expected_sigma: float
+    pairs: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...] = ()
+    whole: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis(Displayed):
+    """The whole answer.
+
+    Parameters
+    ----------
+    title : str
+        Of the study.
+    significant, p_value : bool, float
+        Whether test and model differ by more than tolerances and noise.
+    gap, where, shrink : Gap, Where, Shrink
+        How large, where, and how far it closes.
+    verdict : str
+        named, class, unknown or none.
+    sets : tuple of tuple of str
+        The sets of effects that hold 95 % of the probability.
+    ranking : tuple of Ranked
+        All sets examined, most probable first.
+    next_test : tuple of NextTest
+        What to measure next.
+    warnings : tuple of str
+        What the reader ought to know.
+    not_examined : dict of str to str
+        Effects that could not be examined, and why.
+    comparable : bool
+        Whether most measured modes have a partner in the model; if not, no cause is named.
+    """
+
+    title: str
+    significant: bool
+    p_value: float
+    gap: Gap
+    where: Where
+    shrink: Shrink
+    verdict: Verdict
+    sets: tuple[tuple[str, ...], ...]
+    ranking: tuple[Ranked, ...]
+    next_test: tuple[NextTest, ...]
+    warnings: tuple[str, ...]
+    not_examined: dict[str, str]
+    comparable: bool = True
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Union of the sets, in the order of their probability."""
+        return tuple(dict.fromkeys(name for names in self.sets for name in names))
+
+    def table(self) -> pd.DataFrame:
+        """Return the ranking, one row per set of effects, with its probability [-] to four decimals.
+
+        The effects are the index, so that no width of a terminal hides the probability; `ranking` has all digits.
+        """
+        columns = {
+            "probability": [round(r.probability, 4) for r in self.ranking],
+            "fits (p)": [float(f"{r.p_value:.3g}") for r in self.ranking],
+            "parameters": [", ".join(f"{n} = {e}" for n, e in r.parameters.items()) for r in self.ranking],
+        }
+        names = [" + ".join(r.effects) or "(tolerances alone)" for r in self.ranking]
+        return pd.DataFrame(columns, index=pd.Index(names, name="effects"))
+
+    def sizes(self, *, count: int = SETS) -> pd.DataFrame:
+        """Return one row per parameter of the most probable sets, in short columns that print whole.
+
+        Parameters
+        ----------
+        count : int
+            Number of sets.
+
+        Returns
+        -------
+        DataFrame
+            Probability and fit of the set [-]; value and 95 % interval of the parameter [unit]. Effects and parameter
+            are the index.
+        """
+        rows = [
+            {
+                "effects": " + ".join(r.effects) or "(tolerances alone)",
+                "parameter": name,
+                "probability": f"{r.probability:.4f}",
+                "fits (p)": f"{r.p_value:.3g}",
+                "size": "" if estimate is None else str(estimate),
+            }
+            for r in self.ranking[:count]
+            for name, estimate in r.parameters.items() or [("", None)]
+        ]
+        columns = ["effects", "parameter", "probability", "fits (p)", "size"]
+        return pd.DataFrame(rows, columns=columns).set_index(["effects", "parameter"])
+
+    def __str__(self) -> str:
+        """Return one line, and the sizes below it, nothing cut."""
+        if not self.ranking:
+            return self._headline()
+        rows = self.sizes().reset_index()
+        again = rows["effects"].duplicated()
+        rows[["effects", "probability", "fits (p)"]] = rows[["effects", "probability", "fits (p)"]].mask(
+            again, ""
+        )
+        return f"{self._headline()}\n{rows.to_string(index=False, justify='left', max_colwidth=None)}"
+
+    def _headline(self) -> str:
+        which = " | ".join(" + ".join(names) for names in self.sets)
+        return f"{self.title}: {self.verdict}{f' ({which})' if which else ''}; {self.gap._headline()}"

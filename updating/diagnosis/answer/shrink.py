@@ -1,0 +1,124 @@
+"""How far the gap shrinks, on the data that were fitted and on modes and points held out in turn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from updating.diagnosis.answer.metric import Squares, metric_of, noise_squares, squares
+from updating.diagnosis.answer.result import Closed, HeldPoints, Metric, Shrink
+from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.held_out import believed, modes_held_out, points_held_out
+from updating.likelihood.comparison import Comparison
+from updating.problem.candidate import Candidate
+
+DRAWS = 400
+"""Of the bootstrap."""
+
+CLOSABLE = 1.5
+"""A gap within this many times the floor has nothing to close [-]."""
+
+
+def shrinkage(
+    problem: Posed,
+    nothing: Explanation,
+    best: Explanation,
+    runner_up: Explanation | None,
+    rng: np.random.Generator,
+) -> Shrink:
+    """Compare the gap before and after.
+
+    Before is the nominal model as it stands, no tolerance moved. In all that comes after, tolerances, calibration and
+    the level of damping are refitted, too. Where they are refitted alone, none is taken further than is believed of
+    it: they would else close any gap that moves all modes alike, by an absurd modulus.
+
+    Parameters
+    ----------
+    problem : Problem or Several
+        Test and model.
+    nothing, best, runner_up : Explanation
+        The nominal model with its tolerances, the best explanation, and the one behind it.
+    rng : Generator
+        For the bootstrap.
+    """
+    metric = metric_of(nothing.best)
+    plain = problem.at(Candidate(), np.zeros(0))
+
+    def held(explanation: Explanation) -> Squares:
+        return squares(modes_held_out(problem, explanation), plain, metric)
+
+    before, after = squares(plain.residual, plain, metric), held(best)
+    alone = best.best.comparison if not best.names else None
+    fitted = best.best.left_over if alone is None else believed(alone, best.best.marginal.scale)
+    floor = noise_squares(problem.specimens, plain, metric)
+    return Shrink(
+        metric,
+        100 * before.rms,
+        100 * squares(fitted, plain, metric).rms,
+        100 * before.rms,
+        100 * after.rms,
+        None if runner_up is None else 100 * held(runner_up).rms,
+        100 * held(nothing).rms,
+        100 * floor.rms,
+        closed(before, after, floor, rng),
+        _stretch(nothing),
+        _points(problem, nothing, best, plain, metric),
+    )
+
+
+def _stretch(nothing: Explanation) -> float:
+    """Return by how much the tolerances alone would have to be off to explain the data best [sigma]."""
+    shift = nothing.best.marginal.shift[nothing.best.comparison.doubts]
+    return float(np.abs(shift).max(initial=0.0))
+
+
+def _points(
+    problem: Posed, nothing: Explanation, best: Explanation, plain: Comparison, metric: Metric
+) -> HeldPoints | None:
+    """Return the errors of the modal constants at points held out; None where another metric tells the gap."""
+    if metric not in {"frf", "combined"}:
+        return None
+    after, alone = points_held_out(problem, best), points_held_out(problem, nothing)
+    if after is None or alone is None:
+        return None
+    errors = [
+        100 * squares(np.where(after[1], residual, 0.0), plain, "frf").rms
+        for residual in (plain.residual, after[0], alone[0])
+    ]
+    return HeldPoints(*errors)
+
+
+def closed(before: Squares, after: Squares, floor: Squares, rng: np.random.Generator) -> Closed | None:
+    """Return the share of the closable gap that closes, with a bootstrap over modes and over the test's scatter.
+
+    Parameters
+    ----------
+    before, after, floor : Squares
+        Errors of the nominal model, on modes held out, and those of a test repeated.
+    rng : Generator
+        Draws the modes anew, and of each the errors that hitting again would add.
+    """
+    if before.rms < CLOSABLE * floor.rms or not np.isfinite(after.rms):
+        return None
+    value = _share(before, after, floor, np.arange(len(before.count)))
+    draws = [_drawn(before, after, floor, rng) for _ in range(DRAWS)]
+    low, high = np.nanpercentile(draws, [2.5, 97.5])
+    value = min(value, 100.0)
+    return Closed(value, float(min(low, value)), float(max(min(high, 100.0), value)))
+
+
+def _share(before: Squares, after: Squares, floor: Squares, modes: np.ndarray) -> float:
+    count = max(before.count[modes].sum(), 1.0)
+    b, a, s = (part.total[modes].sum() / count for part in (before, after, floor))
+    return float(100 * (1 - (a - s) / (b - s))) if b > s else np.nan
+
+
+def _drawn(before: Squares, after: Squares, floor: Squares, rng: np.random.Generator) -> float:
+    """Return the share for modes drawn with replacement, their errors after scattered as the noise has it."""
+    modes = rng.choice(len(before.count), len(before.count))
+    size = np.sqrt(after.total[modes])
+    noise = np.sqrt(floor.total[modes] / np.maximum(floor.count[modes], 1.0))
+    scattered = (size + noise * rng.standard_normal(len(modes))) ** 2 - noise**2
+    count = max(before.count[modes].sum(), 1.0)
+    b, s = before.total[modes].sum() / count, floor.total[modes].sum() / count
+    return float(100 * (1 - (scattered.sum() / count - s) / (b - s))) if b > s else np.nan

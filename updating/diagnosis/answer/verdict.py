@@ -1,0 +1,166 @@
+"""From probabilities to an answer: named, a class, unknown, or none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import chi2
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.answer.result import ParameterEstimate, Ranked, Verdict
+from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.search import Search, Weighed
+
+CERTAIN = 0.95
+"""Probability that the sets of an answer hold together."""
+
+SIGNIFICANT = 0.005
+"""A gap is one when chance alone makes it less often than this."""
+
+FAR_BETTER = 6.0
+"""Logarithm of the Bayes factor at which an effect shows a gap that no single test does."""
+
+RIVAL = 0.02
+"""A rival that fits as well as the first is kept from this share of its probability on [-]."""
+
+CHANCE = 1e-3
+"""Chance, over all that was tried, that an effect fits noise that much better, below which there is a gap."""
+
+FORMS = 2
+"""Places tried for each form of an effect, roughly: what a chance is multiplied by, beside the form's share [-]."""
+
+FAINT, HEAVY, FEW = 1e-4, 300, 40
+"""Parameters of explanations less probable than this are taken from few of their heaviest samples."""
+
+CLOSE = 4.0
+"""Twice the difference of log-likelihood at 2 sigma: below it two explanations are equivalent."""
+
+
+def is_significant(found: Search, p_value: float) -> bool:
+    """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
+
+    A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it.
+    """
+    fitting = [row for row in found.weighed if row.names and not row.rejected]
+    gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
+    gain -= found.nothing.log_evidence
+    return bool(p_value < SIGNIFICANT or gain > FAR_BETTER or _by_chance(found) < CHANCE)
+
+
+def _by_chance(found: Search) -> float:
+    """Return the chance that noise alone makes one of the single effects that fit so much more likely (Wilks 1938)."""
+    singles = [row.explanation for row in found.weighed if len(row.names) == 1 and not row.rejected]
+    least = found.nothing.best.marginal.log_likelihood
+    chances = [
+        chi2.sf(2 * (one.best.marginal.log_likelihood - least), one.samples.shape[1])
+        * np.exp(-one.candidate.log_weight)
+        for one in singles
+        if one.samples.shape[1] and one.best.possible
+    ]
+    return float(min(1.0, FORMS * len(singles) * min(chances, default=1.0)))
+
+
+def decide(
+    found: Search, *, significant: bool, comparable: bool = True
+) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
+    """Return the verdict and the sets of effects it rests on.
+
+    Parameters
+    ----------
+    found : Search
+        What was weighed, most probable first.
+    significant : bool
+        Whether there is a gap.
+    comparable : bool
+        Whether most measured modes have a partner: the rest alone names no cause.
+    """
+    if not significant:
+        return "none", ()
+    rows = [row for row in found.weighed if row.names]
+    if not rows or rows[0].rejected:
+        return "unknown", ()
+    least = found.nothing.log_evidence
+    better = [row for row in rows if not row.rejected and row.explanation.log_evidence > least]
+    if not better:
+        return "unknown", ()
+    sets = _credible(better)
+    if len(sets) > 1:
+        return "class", sets
+    return ("named", sets) if comparable else ("unknown", ())
+
+
+def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:
+    """Return the fewest rows that hold the certainty asked for, and those that fit as well as the first.
+
+    A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
+    widely they may range, and that is no measurement.
+    """
+    total = sum(row.probability for row in rows)
+    sets: list[tuple[str, ...]] = []
+    held = 0.0
+    for row in rows:
+        alike = _close(rows[0], row) and row.probability > RIVAL * rows[0].probability
+        if held < CERTAIN or alike:
+            sets.append(row.names)
+        held += row.probability / max(total, 1e-300)
+    return tuple(sets)
+
+
+def rank(problem: Posed, found: Search) -> tuple[Ranked, ...]:
+    """Turn what was weighed into rows of the ranking, the empty set left out."""
+    rows = [row for row in found.weighed if row.names]
+    total = sum(row.probability for row in found.weighed)
+    return tuple(
+        Ranked(
+            row.names,
+            row.probability / total,
+            tuple(o.names for o in rows if o is not row and _close(row, o)),
+            estimates(problem, row.explanation, row.extreme, most=HEAVY if row.probability > FAINT else FEW),
+            not row.extreme,
+            row.p_value,
+            tuple(form.values for form in row.explanation.candidate.forms),
+        )
+        for row in rows
+    )
+
+
+def _close(a: Weighed, b: Weighed) -> bool:
+    best = [row.explanation.best.marginal.log_likelihood for row in (a, b)]
+    return bool(2 * abs(best[0] - best[1]) < CLOSE)
+
+
+def estimates(
+    problem: Posed, explanation: Explanation, extreme: Sequence[str] = (), *, most: int = 300
+) -> dict[str, ParameterEstimate]:
+    """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means."""
+    candidate = explanation.candidate
+    searched = problem.parameters(candidate)
+    keep = np.argsort(explanation.weights)[::-1][:most]
+    weights = explanation.weights[keep] / explanation.weights[keep].sum()
+    samples = [explanation.samples[i] for i in keep]
+    drawn = [problem.values(candidate, u) for u in samples]
+    result = {}
+    for name, parameter in searched:
+        low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
+        aside = parameter.default is not None
+        result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
+    labels = [f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels]
+    sensors = [f"{effect.name}.channel" for effect in candidate.effects if effect.of_sensor]
+    for name, unit in [*((label, "node") for label in labels), *((sensor, "channel") for sensor in sensors)]:
+        if name in drawn[0]:
+            result[name] = ParameterEstimate(drawn[0][name], unit, None, None, False)
+    derived = [problem.derived(candidate, u) for u in samples]
+    for name, (_, unit) in derived[0].items():
+        low, middle, high = _quantiles(np.array([d[name][0] for d in derived]), weights)
+        result[name] = ParameterEstimate(middle, unit, low, high, at_bound=False)
+    return result
+
+
+def _quantiles(values: FloatArray, weights: FloatArray) -> tuple[float, float, float]:
+    """Return the weighted 2.5, 50 and 97.5 % quantiles, interpolated between samples."""
+    order = np.argsort(values)
+    share = np.cumsum(weights[order]) - 0.5 * weights[order]
+    low, middle, high = np.interp([0.025, 0.5, 0.975], share, values[order])
+    return float(low), float(middle), float(high)

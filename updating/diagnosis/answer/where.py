@@ -1,0 +1,158 @@
+"""Where the cause sits: which modes, which channel, which place, which points, which regions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.answer.clusters import Cluster, clusters, sampled_places
+from updating.diagnosis.answer.contributions import contributions
+from updating.diagnosis.answer.result import Place, Seat, Where, Zone
+from updating.diagnosis.answer.verdict import decide
+from updating.diagnosis.search.search import Search, Weighed
+from updating.effects.base import Values
+from updating.effects.measurement.points import channel_point
+from updating.localisation import areas, centres, regions_at, weigh_regions
+from updating.problem.specimen import Problem
+
+CHANNELS = ("stiffness", "mass", "damping", "measurement")
+
+REACH = 0.05
+"""A test point within this share of the span of a place is concerned [-]."""
+
+ALIKE = 0.02
+"""Channels whose probabilities differ by less act together: halves of one pair [-]."""
+
+NEGLIGIBLE = 1e-4
+"""An explanation less probable than this has no say in the regions [-]."""
+
+LABELS = (".point", ".points", ".channel")
+"""How parameters that speak of points of the test end."""
+
+
+def locate(problem: Problem, found: Search, *, significant: bool, whole: Search | None = None) -> Where:
+    """Say where the cause sits, averaged over all explanations by their probability.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    found : Search
+        What was weighed.
+    significant : bool
+        Whether there is a gap at all; if not, the channel is ``none``.
+    whole : Search, optional
+        What was weighed for several specimens, of which ``found`` holds what acts on this one.
+    """
+    shares, nothing = _channels(found if whole is None else whole)
+    seen = contributions(problem)
+    if not significant:
+        zones = _zones(problem, _by_explanations(problem, found))
+        told = {**shares, "none": nothing}
+        return Where("none", told, None, (), (), zones, modes=seen.modes, band=seen.summary)
+    top = _leading(shares)
+    leader = next((row for row in found.weighed if row.names), None)
+    seats = () if leader is None else clusters(problem, leader.explanation, top)
+    places = tuple(_place(cluster.place) for cluster in seats)
+    unknown = decide(found, significant=True, comparable=not problem.mostly_alone)[0] == "unknown"
+    probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
+    return Where(
+        top,
+        {**shares, "none": nothing},
+        places[0] if places else None,
+        places,
+        _points(problem, leader) or _nearest(problem, seats),
+        _zones(problem, probability),
+        "regions" if unknown else "explanations",
+        tuple(Seat(_place(c.place), _place(c.spread), c.weight) for c in seats),
+        seen.modes,
+        seen.summary,
+        _nearest(problem, seats),
+    )
+
+
+def _leading(shares: dict[str, float]) -> str:
+    """Return the most probable channel; of a pair that acts on measurement and structure alike, the structure's."""
+    top = max(shares, key=lambda n: shares[n])
+    if top != "measurement":
+        return top
+    structural = max((n for n in shares if n != top), key=lambda n: shares[n])
+    return structural if shares[structural] > shares[top] - ALIKE else top
+
+
+def _channels(found: Search) -> tuple[dict[str, float], float]:
+    """Return the probability of each channel given that there is a cause, and that of none."""
+    channels, nothing = dict.fromkeys(CHANNELS, 0.0), 0.0
+    for row in found.weighed:
+        acting = [effect.channel for effect in row.explanation.candidate.effects]
+        for name in acting:
+            channels[name] += row.probability / len(acting)
+        nothing += row.probability if not acting else 0.0
+    explained = sum(channels.values())
+    return {n: float(v / explained) if explained > 0 else 0.0 for n, v in channels.items()}, nothing
+
+
+def _place(place: FloatArray) -> Place:
+    return float(place[0]), float(place[1]), float(place[2])
+
+
+def _points(problem: Problem, leader: Weighed | None) -> tuple[int, ...]:
+    """Return the test nodes of which an effect of the measurement speaks."""
+    if leader is None:
+        return ()
+    explanation, test = leader.explanation, problem.measured
+    values: Values = problem.values(explanation.candidate, explanation.best.coordinates)
+    named = [v for name, v in values.items() if name.endswith(LABELS)]
+    sensors = [test.nodes[channel_point(test, v)[1]] for v in named if isinstance(v, str)]
+    nodes = [n for v in named if not isinstance(v, str) for n in np.atleast_1d(np.asarray(v)).tolist()]
+    return tuple(dict.fromkeys(map(int, nodes + sensors)))
+
+
+def _nearest(problem: Problem, seats: tuple[Cluster, ...]) -> tuple[int, ...]:
+    """Return the test nodes at the places."""
+    test, spec = problem.measured, problem.predictor.spec
+    if not seats or not len(test.points):
+        return ()
+    dim = test.points.shape[1]
+    away = np.linalg.norm(np.stack([c.place[:dim] for c in seats])[:, None] - test.points[None], axis=2)
+    near = away.min(axis=1) <= REACH * max(spec.length, spec.width if dim > 1 else 0.0)
+    return tuple(dict.fromkeys(test.nodes[int(i)] for i in away.argmin(axis=1)[near]))
+
+
+def _zones(problem: Problem, probability: FloatArray) -> tuple[Zone, ...]:
+    regions, middle = problem.predictor.spec.regions, centres(problem)
+    return tuple(
+        Zone(region.name, _place(at), float(p))
+        for region, at, p in zip(regions, middle, probability, strict=True)
+    )
+
+
+def _by_explanations(problem: Problem, found: Search) -> FloatArray:
+    """Spread each explanation over the regions: a seated one by its places, any other by area."""
+    even = areas(problem)
+    total = np.zeros(len(even))
+    for row in found.weighed:
+        if row.names and row.probability > NEGLIGIBLE:
+            total += row.probability * _spread(problem, row, even)
+    return np.asarray(total / total.sum() if total.sum() > 0 else even)
+
+
+def _spread(problem: Problem, row: Weighed, even: FloatArray) -> FloatArray:
+    explanation = row.explanation
+    values = problem.values(explanation.candidate, explanation.best.coordinates)
+    if any(
+        name.endswith(".region") for name in values
+    ):  # one form per region, of which only the best is kept
+        channel = next(e.channel for e in explanation.candidate.effects if f"{e.name}.region" in values)
+        return _by_regions(problem, channel)
+    sampled = sampled_places(problem, explanation)
+    if not sampled.weights.sum() > 0:
+        return even
+    shares = regions_at(problem.predictor.spec, sampled.places)
+    return np.asarray(sampled.weights @ shares / sampled.weights.sum())
+
+
+def _by_regions(problem: Problem, channel: str) -> FloatArray:
+    """Return the probability of each region by the evidence of a change of it alone."""
+    kinds = [kind for kind in ("stiffness", "mass", "damping") if channel in (kind, "measurement")]
+    return weigh_regions(problem.specimens[0], tuple(kinds)).regions  # type: ignore[arg-type]

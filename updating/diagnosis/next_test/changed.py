@@ -1,0 +1,133 @@
+"""The same test once more, with one thing changed: a mass, the hammer's level, the surroundings, more care."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.next_test.base import Maker, Outcome, Rival, Site, Trial
+from updating.diagnosis.next_test.places import said, telling_places
+from updating.diagnosis.next_test.repeat import Repeat
+from updating.effects.base import Effect, total_mass
+from updating.models.state import State
+from updating.prediction.predict import Predictor
+from updating.problem.specimen import Problem
+
+KNOWN_MASS = 0.05
+"""Mass to add, relative to the structure's [-]."""
+
+THIN = 10.0
+"""A fluid of less density is a gas: there is no drier test [kg/m^3]."""
+
+HARDER = 4.0
+"""How many times better a dependence on the force is known once hits span a wider range of levels [-]."""
+
+
+class AddedMass(Repeat):
+    """The same test with a weighed mass at one place."""
+
+    family = "added mass"
+    cost = 4
+
+    def __init__(self, site: Site, place: FloatArray, mass: float) -> None:
+        """Take a place [m] and a mass [kg]."""
+        self.measure = (
+            f"repeat the test with a weighed mass of {1000 * mass:.2g} g fixed at {said(site, place)}"
+        )
+        self.place, self.mass = place, mass
+
+    def problem(self, site: Site) -> Problem:
+        """Return the problem with the mass in the model, before what a baseline has put there."""
+        problem, place, mass = site.problem, self.place[None, :], self.mass
+
+        def add(predictor: Predictor) -> State:
+            return State(mass=(mass * predictor.reduced.unit_mass(place),))
+
+        additions: list[Callable[[Predictor], State]] = list(problem.predictor.additions)
+        additions.insert(len(additions) - (problem.baseline is not None), add)
+        return replace(problem, predictor=problem.predictor.looking(problem.measured, tuple(additions)))
+
+
+class Again(Repeat):
+    """The same test once more with care: a slip of the first does not come again."""
+
+    family = "again"
+    cost = 4
+    measure = "check labels, signs and places of the points in question, and hit them again"
+
+    def problem(self, site: Site) -> Problem:
+        """Return the problem as it is."""
+        return site.problem
+
+    def keeps(self, effect: Effect) -> bool:
+        """Leave out slips: effects that are about labelled points."""
+        return not effect.labels
+
+
+class InAir(Repeat):
+    """The same specimen tested in air."""
+
+    family = "in air"
+    cost = 8
+    measure = "test the same specimen in air, as a baseline"
+
+    def problem(self, site: Site) -> Problem:
+        """Return the problem as it is."""
+        return site.problem
+
+    def keeps(self, effect: Effect) -> bool:
+        """Leave out what the fluid does."""
+        return not effect.name.startswith("fluid")
+
+
+class Levels(Trial):
+    """Softer and harder hits: how frequencies follow the force."""
+
+    family = "levels"
+    cost = 4
+    measure = "hit each point softly and hard, the levels some 1 : 5 apart"
+
+    def outcomes(self, site: Site, rivals: tuple[Rival, ...]) -> tuple[Outcome, ...]:
+        """Return the slope that each rival expects."""
+        return tuple(self._outcome(site, rival) for rival in rivals)
+
+    def _outcome(self, site: Site, rival: Rival) -> Outcome:
+        candidate, best = rival.explanation.candidate, rival.explanation.best.coordinates
+        test = site.problem.measured
+        assert test.slope_sigma is not None
+        known = test.slope_sigma[np.isfinite(test.slope_sigma)]
+        sigma = 1 / np.sqrt(np.sum(known**-2.0)) / HARDER
+
+        def slope(coordinates: FloatArray) -> float:
+            return float(site.posed.place(candidate, coordinates)[site.index].slope / sigma)
+
+        here = slope(best)
+        step = 1e-3 * np.eye(len(best)) * np.where(best < 0.5, 1.0, -1.0)
+        by = [(slope(best + row) - here) / row.sum() for row in step]
+        return Outcome(
+            np.array([here]), np.zeros((1, len(rival.shift))), np.array([by]), np.zeros((1, 0)), np.ones(1)
+        )
+
+
+class SameTest(Maker):
+    """The repetitions that a specimen admits."""
+
+    def trials(self, site: Site, rivals: tuple[Rival, ...]) -> Iterator[Trial]:
+        """Give them."""
+        problem = site.problem
+        mass = KNOWN_MASS * total_mass(problem.predictor.spec)
+        for place in telling_places(problem):
+            yield AddedMass(site, place, mass)
+        effects = [effect for rival in rivals for effect in rival.explanation.candidate.effects]
+        if any(effect.labels for effect in effects):
+            yield Again()
+        wet = any(effect.name.startswith("fluid") for effect in effects)
+        around = problem.predictor.environment.fluid_density
+        in_air = around is not None and around < THIN
+        if wet and not in_air and problem.baseline is None and not problem.predictor.additions:
+            yield InAir()
+        if problem.measured.slope is not None:
+            yield Levels()

@@ -1,0 +1,54 @@
+"""Whether a test looks as if it were not of this model: single wild frequencies, or all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from updating.problem.specimen import Problem
+
+ALONE = 0.08
+"""A frequency so far from what the others' median error says, and..."""
+
+OUTLYING = 6.0
+"""...so many times the median deviation of the others, stands alone [-]."""
+
+FEWEST = 4
+"""With fewer modes, none can be said to stand alone."""
+
+ANOTHER = 0.5
+"""R.m.s. error from which test and model are hardly the same structure [-]."""
+
+
+def remarks_on_doubtful(problem: Problem) -> list[str]:
+    """Return what ought to be checked before an answer is believed.
+
+    Parameters
+    ----------
+    problem : Problem
+        Test and model.
+    """
+    test, model = problem.measured, problem.nominal
+    error = np.log(model.frequency / test.frequency)
+    if not np.isfinite(error).all():
+        return []
+    remarks = []
+    if np.sqrt(np.mean(np.expm1(error) ** 2)) > ANOTHER:
+        size = 100 * np.sqrt(np.mean(np.expm1(error) ** 2))
+        remarks.append(
+            f"frequencies are {size:.0f} % off (r.m.s.): test and model are hardly the same structure, or the modes "
+            "are wrongly paired; check size, material, clamps and band before anything else"
+        )
+        return remarks
+    if len(error) >= FEWEST:
+        away = np.abs(error - np.median(error))
+        bar = max(ALONE, OUTLYING * float(np.median(away)))
+        remarks += [
+            f"the mode at {test.frequency[i]:.4g} Hz stands alone: the model is {100 * np.expm1(error[i]):+.0f} % off "
+            f"there and {100 * np.expm1(np.median(error)):+.0f} % in most others; a slip, or a mode mistaken for "
+            "another? Nothing should be concluded before that is settled"
+            for i in np.flatnonzero(away > bar).tolist()
+        ]
+    return remarks
+
+
+__all__ = ["remarks_on_doubtful"]

@@ -1,0 +1,234 @@
+"""Several specimens diagnosed together: causes they share have one severity, all others one for each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.search.evidence import Explanation
+from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.likelihood.comparison import Comparison, join
+from updating.models.state import State
+from updating.prediction.predict import Prediction, Predictor
+from updating.problem.candidate import Candidate
+from updating.problem.gates import Shortfall
+from updating.problem.specimen import Problem
+from updating.test_data.measured import Measured
+
+
+@dataclass(frozen=True, eq=False)
+class Several:
+    """The problems of several specimens, to be explained by one set of effects.
+
+    It answers what a :class:`Problem` answers; where one specimen has to stand for all, the first does.
+
+    Parameters
+    ----------
+    specimens : tuple of Problem
+        One per specimen.
+    titles : tuple of str
+        Their names.
+    shared : frozenset of str
+        Effects whose parameters have one value on all specimens; those of all others have one on each.
+    """
+
+    specimens: tuple[Problem, ...]
+    titles: tuple[str, ...]
+    shared: frozenset[str] = field(default_factory=frozenset)
+
+    @property
+    def predictor(self) -> Predictor:
+        """That of the first specimen."""
+        return self.specimens[0].predictor
+
+    @property
+    def measured(self) -> Measured:
+        """That of the first specimen."""
+        return self.specimens[0].measured
+
+    @property
+    def nominal(self) -> Prediction:
+        """That of the first specimen."""
+        return self.specimens[0].nominal
+
+    @property
+    def shortfall(self) -> Shortfall | None:
+        """That of the first specimen."""
+        return self.specimens[0].shortfall
+
+    @property
+    def wide(self) -> bool:
+        """Whether any specimen's tolerances are too wide for one linearisation."""
+        return any(problem.wide for problem in self.specimens)
+
+    def strain(self, shift: FloatArray) -> float:
+        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
+        ends = np.cumsum([0, *self._counts])
+        return max(
+            problem.strain(shift[a:b]) for problem, a, b in zip(self.specimens, ends, ends[1:], strict=False)
+        )
+
+    @cached_property
+    def _counts(self) -> list[int]:
+        """How many nuisances each specimen has."""
+        return [problem.at(Candidate(), np.zeros(0)).nuisance.shape[1] for problem in self.specimens]
+
+    def applies(self, effect: Effect) -> str | None:
+        """Return why an effect can be examined on none of the specimens, or None."""
+        if effect.labels:
+            return "which point it is differs from test to test; diagnose each specimen by itself"
+        found = [problem.applies(effect) for problem in self.specimens]
+        return None if None in found else found[0]
+
+    def forms(self, effect: Effect) -> tuple[Variant, ...]:
+        """Return the forms in which an effect may come: those of the first specimen it applies to."""
+        found = self.specimens[self._where(effect)[0]].forms(effect)
+        return tuple(
+            form for form in found if "channel" not in form.values
+        )  # a sensor of that specimen alone
+
+    def _where(self, effect: Effect) -> list[int]:
+        """Return the specimens an effect applies to."""
+        return [i for i, problem in enumerate(self.specimens) if problem.applies(effect) is None]
+
+    @cached_property
+    def _kept(self) -> dict[str, list[int]]:
+        return {}
+
+    def _seats(self, effect: Effect) -> list[int]:
+        """Return the specimens on which an effect has parameters of its own: the first for a shared one."""
+        if effect.name not in self._kept:
+            self._kept[effect.name] = self._where(effect)
+        return self._kept[effect.name][: 1 if effect.name in self.shared else None]
+
+    def _blocks(self, candidate: Candidate) -> list[tuple[Effect, Variant, int, list[tuple[str, Parameter]]]]:
+        """Return effect, form, specimen and parameters of every block of coordinates, in their order."""
+        blocks = []
+        for effect, form in zip(candidate.effects, candidate.forms, strict=True):
+            for i in self._seats(effect):
+                own = Candidate((effect,), candidate.theory, (form,))
+                stage = own.stage(self.specimens[i].predictor)
+                blocks.append((effect, form, i, list(own.parameters(stage))))
+        return blocks
+
+    def _name(self, name: str, effect: Effect, i: int) -> str:
+        return name if effect.name in self.shared else f"{name} ({self.titles[i]})"
+
+    def parameters(self, candidate: Candidate) -> tuple[tuple[str, Parameter], ...]:
+        """Return the parameters that are searched, as (effect.parameter, prior), by specimen where not shared."""
+        return tuple(
+            (self._name(name, effect, i), parameter)
+            for effect, _, i, own in self._blocks(candidate)
+            for name, parameter in own
+        )
+
+    def starts(self, candidate: Candidate) -> list[FloatArray]:
+        """Return prior quantiles from which to search: the same start on all specimens."""
+        parts = []
+        for effect, form, i, _ in self._blocks(candidate):
+            own = Candidate((effect,), candidate.theory, (form,)).starts(self.specimens[i].predictor)
+            parts.append((effect.name, own))
+        names = list(dict.fromkeys(name for name, _ in parts))
+        counts = {name: min(len(own) for n, own in parts if n == name) for name in names}
+        found = []
+        for choice in product(*(range(counts[name]) for name in names)):
+            taken = dict(zip(names, choice, strict=True))
+            found.append(np.concatenate([*(own[taken[name]] for name, own in parts), []]))
+        return found
+
+    def _split(self, candidate: Candidate, coordinates: FloatArray) -> list[dict[str, Values]]:
+        """Return the values of every effect on each specimen; an effect that does not apply there is missing."""
+        values: list[dict[str, Values]] = [{} for _ in self.specimens]
+        start = 0
+        for effect, form, i, own in self._blocks(candidate):
+            end = start + len(own)
+            single = Candidate((effect,), candidate.theory, (form,))
+            stage = single.stage(self.specimens[i].predictor)
+            ((_, found),) = single.split(stage, coordinates[start:end].tolist())
+            everywhere = self._kept[effect.name] if effect.name in self.shared else [i]
+            for j in everywhere:
+                values[j][effect.name] = found
+            start = end
+        return values
+
+    def values(self, candidate: Candidate, coordinates: FloatArray) -> dict[str, float]:
+        """Return all values at prior quantiles, by effect.parameter."""
+        split = self._split(candidate, coordinates)
+        return {
+            self._name(f"{effect.name}.{n}", effect, i): v
+            for effect in candidate.effects
+            for i in self._seats(effect)
+            for n, v in split[i][effect.name].items()
+        }
+
+    def derived(self, candidate: Candidate, coordinates: FloatArray) -> dict[str, tuple[float, str]]:
+        """Return derived quantities at prior quantiles, by effect.name."""
+        split = self._split(candidate, coordinates)
+        found = {}
+        for effect in candidate.effects:
+            for i in self._seats(effect):
+                stage = candidate.stage(self.specimens[i].predictor)
+                for n, v in effect.derived(stage, split[i][effect.name]).items():
+                    found[self._name(f"{effect.name}.{n}", effect, i)] = v
+        return found
+
+    def place(self, candidate: Candidate, coordinates: FloatArray) -> tuple[State, ...]:
+        """Return the state of each specimen at prior quantiles."""
+        split = self._split(candidate, coordinates)
+        return tuple(
+            self._state(candidate, problem, own) for problem, own in zip(self.specimens, split, strict=True)
+        )
+
+    def parts(self, candidate: Candidate, coordinates: FloatArray) -> tuple[list[tuple[Effect, Values]], ...]:
+        """Return the effects on each specimen with their values at prior quantiles."""
+        return tuple(
+            [(effect, own[effect.name]) for effect in candidate.effects if effect.name in own]
+            for own in self._split(candidate, coordinates)
+        )
+
+    def _state(self, candidate: Candidate, problem: Problem, own: Mapping[str, Values]) -> State:
+        stage = candidate.stage(problem.predictor)
+        parts = [(effect, own[effect.name]) for effect in candidate.effects if effect.name in own]
+        return candidate.assemble(stage, parts)
+
+    def at(
+        self, candidate: Candidate, coordinates: FloatArray, shift: FloatArray | None = None
+    ) -> Comparison:
+        """Compare all data with a candidate at prior quantiles; see :meth:`Problem.at`."""
+        states = self.place(candidate, coordinates)
+        parts: list[Comparison] = []
+        start = 0
+        for problem, state in zip(self.specimens, states, strict=True):
+            told = None if shift is None else shift[start : start + len(problem.names)]
+            part = problem.compare(state, told, doubt=candidate.doubt_on(problem.predictor))
+            start += part.nuisance.shape[1]
+            parts.append(part)
+        return join(parts)
+
+    def compare(self, state: State) -> Comparison:
+        """Compare all data with one state of every specimen."""
+        return join([problem.compare(state) for problem in self.specimens])
+
+    def restrict(self, explanation: Explanation, i: int = 0) -> Explanation:
+        """Return that part of an explanation that concerns one specimen."""
+        candidate, start = explanation.candidate, 0
+        columns: list[int] = []
+        kept: list[tuple[Effect, Variant]] = []
+        for effect, form, seat, own in self._blocks(candidate):
+            end = start + len(own)
+            here = i in self._kept[effect.name] if effect.name in self.shared else seat == i
+            if here:
+                columns += range(start, end)
+                kept.append((effect, form))
+            start = end
+        part = Candidate(tuple(e for e, _ in kept), candidate.theory, tuple(f for _, f in kept))
+        chosen = np.array(columns, dtype=np.int64)
+        best = replace(explanation.best, coordinates=explanation.best.coordinates[chosen])
+        return replace(
+            explanation, candidate=part, best=best, samples=explanation.samples[:, chosen], peaks=()
+        )

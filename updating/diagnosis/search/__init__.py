@@ -1,0 +1,1 @@
+"""Sets of effects: their best parameters, their evidence, and which are examined."""

@@ -1,0 +1,282 @@
+"""Evidence of a candidate: the marginal likelihood integrated over the prior of its parameters.
+
+The integral is taken by importance sampling from a mixture: a widened t-distribution about every peak, cut
+off where the prior ends, and the prior itself. So it is right for a peak at the edge of the prior, for
+several peaks, and for a parameter the data do not see, where a Laplace approximation is not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import qmc
+from scipy.stats import t as student
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.search.fit import Peak, Point, climb, evaluate
+from updating.diagnosis.search.goodness import p_value
+from updating.problem.candidate import Candidate
+
+PRIOR_SHARE = 0.25
+"""Share of the samples drawn from the prior itself."""
+
+FREEDOM = 5
+"""Degrees of freedom of the t-distributions."""
+
+ROUNDS = 2
+"""How often the samples are drawn anew when too few of them carry the weight."""
+
+MOST = 256
+"""Most samples drawn at a time..."""
+
+DRAFT = 512
+"""...and for a draft, which costs no predictions."""
+
+ENOUGH = 10.0
+"""Effective number of samples that is enough."""
+
+TRIED, FEW = 12, 4
+"""From how many of the starting places at most, and for how many rounds, a climb is tried..."""
+
+CLIMBS = 3
+"""...and how many of these climbs go on to the top."""
+
+SAME_PLACE = 0.02
+"""Peaks nearer to each other than this in every prior quantile are one [-]."""
+
+BEHIND = 12.0
+"""Peaks whose log-likelihood lies further behind the highest are left out [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """A candidate after looking at the data.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        The effects.
+    log_evidence : float
+        Logarithm of the evidence, the prior share of the effects' forms in it [-].
+    best : Point
+        Most probable parameters.
+    samples : (m, k) array
+        Posterior samples as prior quantiles [-].
+    weights : (m,) array
+        Their weights, summing to 1 [-].
+    peaks : tuple of Peak
+        The maxima found.
+    draft : bool
+        Whether the samples were weighed by parabolas only.
+    other : float
+        Logarithm of what the evidence of the other theory adds, relative to this one's [-].
+    """
+
+    candidate: Candidate
+    log_evidence: float
+    best: Point
+    samples: FloatArray
+    weights: FloatArray
+    peaks: tuple[Peak, ...] = ()
+    draft: bool = False
+    other: float = 0.0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return self.candidate.names
+
+    @cached_property
+    def p_value(self) -> float:
+        """How well the best parameters fit: the p-value of chi-squared over all data and each channel [-]."""
+        return p_value(self.best, self.samples.shape[1])
+
+
+def explain(
+    problem: Posed,
+    candidate: Candidate,
+    *,
+    starts: list[FloatArray] | None = None,
+    density: int = 16,
+    draft: bool = False,
+    climbs: int = CLIMBS,
+    bar: float = -np.inf,
+) -> Explanation:
+    """Weigh a candidate.
+
+    Parameters
+    ----------
+    problem : Problem or Several
+        Test and model.
+    candidate : Candidate
+        Effects.
+    starts : list of (k,) arrays, optional
+        Prior quantiles to start from; left out, the effects' own.
+    density : int
+        Samples: this many times two to the number of parameters, at most 512.
+    draft : bool
+        Whether the samples are weighed by the parabolas through the peaks instead of by predictions: enough to
+        tell the hopeless from the rest.
+    climbs : int
+        From how many starting places, those that a short climb finds best, the search goes on to the top.
+    bar : float
+        Log-likelihood that another candidate has reached; what stays far below it is searched less closely.
+
+    Returns
+    -------
+    Explanation
+    """
+    places = problem.starts(candidate) if starts is None else starts
+    if len(places[0]) == 0:
+        point = evaluate(problem, candidate, np.zeros(0))
+        evidence = point.marginal.log_likelihood + candidate.log_weight
+        return Explanation(candidate, evidence, point, np.zeros((1, 0)), np.ones(1))
+    peaks = _peaks(problem, candidate, places, climbs, bar)
+    if not peaks[0].point.possible:
+        return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
+    if draft:
+        samples, proposal = _draw(peaks, DRAFT)
+        log_weight = _parabolas(peaks, samples) - proposal
+        return _weighed(candidate, peaks[0].point, samples, log_weight, peaks, draft=True)
+    return _sampled(problem, candidate, peaks, density)
+
+
+def finish(problem: Posed, explanation: Explanation, *, density: int = 32) -> Explanation:
+    """Weigh a draft by predictions, from the maxima it found.
+
+    Parameters
+    ----------
+    problem : Problem or Several
+        Test and model.
+    explanation : Explanation
+        A draft.
+    density : int
+        As in :func:`explain`.
+    """
+    found = _sampled(problem, explanation.candidate, list(explanation.peaks), density)
+    return replace(found, log_evidence=found.log_evidence + explanation.other, other=explanation.other)
+
+
+def _sampled(problem: Posed, candidate: Candidate, peaks: list[Peak], density: int) -> Explanation:
+    count = min(density * 2 ** len(peaks[0].gradient), MOST)
+    for _ in range(ROUNDS):
+        samples, proposal = _draw(peaks, count)
+        points = [evaluate(problem, candidate, u) for u in samples]
+        log_weight = np.array([p.marginal.log_likelihood for p in points]) - proposal
+        weights = np.exp(log_weight - logsumexp(log_weight))
+        if 1 / np.sum(weights**2) >= ENOUGH:
+            break
+        peaks = [*peaks, _moments(problem, candidate, samples, weights)]
+        count = min(2 * count, MOST)
+    best = max([*points, *(p.point for p in peaks)], key=lambda p: p.marginal.log_likelihood)
+    return _weighed(candidate, best, samples, log_weight, peaks)
+
+
+def _weighed(
+    candidate: Candidate,
+    best: Point,
+    samples: FloatArray,
+    log_weight: FloatArray,
+    peaks: list[Peak],
+    *,
+    draft: bool = False,
+) -> Explanation:
+    total = float(logsumexp(log_weight))
+    evidence = total - float(np.log(len(samples))) + candidate.log_weight
+    return Explanation(candidate, evidence, best, samples, np.exp(log_weight - total), tuple(peaks), draft)
+
+
+def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
+    """Return the highest of the log-likelihood's parabolas through the peaks, at some samples [-]."""
+    found = []
+    for peak in peaks:
+        away = samples - peak.point.coordinates
+        slope = peak.gradient * _at_edge(peak)
+        curve = 0.5 * np.einsum("si,ij,sj->s", away, peak.normal, away)
+        found.append(peak.point.marginal.log_likelihood + away @ slope - curve)
+    return np.asarray(np.max(found, axis=0))
+
+
+def _moments(problem: Posed, candidate: Candidate, samples: FloatArray, weights: FloatArray) -> Peak:
+    """Return a component about the mean of the weighted samples: where the first ones missed the bulk."""
+    best = climb(problem, candidate, samples[int(np.argmax(weights))], rounds=4)
+    spread = samples - best.point.coordinates
+    covariance = (spread.T * weights) @ spread + 1e-6 * np.eye(samples.shape[1])
+    return Peak(best.point, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
+
+
+def _peaks(
+    problem: Posed, candidate: Candidate, places: list[FloatArray], climbs: int, bar: float
+) -> list[Peak]:
+    if len(places) > climbs:
+        looks = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
+        nearest = [places[i] for i in np.argsort(looks)[::-1][:TRIED]]
+        tried = [climb(problem, candidate, place, rounds=FEW, bar=bar) for place in nearest]
+        tried.sort(key=lambda p: -p.point.marginal.log_likelihood)
+        places = [peak.point.coordinates for peak in _apart(tried)[:climbs]]
+    found = _apart([climb(problem, candidate, place, bar=bar) for place in places])
+    top = found[0].point.marginal.log_likelihood
+    return [peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < BEHIND]
+
+
+def _apart(peaks: list[Peak]) -> list[Peak]:
+    """Return the peaks that are not the same as a higher one, the highest first."""
+    kept: list[Peak] = []
+    for peak in sorted(peaks, key=lambda p: -p.point.marginal.log_likelihood):
+        here = peak.point.coordinates
+        if all(np.abs(here - other.point.coordinates).max() >= SAME_PLACE for other in kept):
+            kept.append(peak)
+    return kept
+
+
+def _draw(peaks: list[Peak], count: int) -> tuple[FloatArray, FloatArray]:
+    """Return samples inside the unit cube and the logarithm of the density they were drawn with.
+
+    The density counts the samples that fell outside, whose likelihood is zero.
+    """
+    k = len(peaks[0].point.coordinates)
+    cube = qmc.Sobol(k, seed=1).random(count)
+    uniform = round(PRIOR_SHARE * count)
+    each = (count - uniform) // len(peaks)
+    scales = [_scale(peak) for peak in peaks]
+    drawn = [cube[:uniform]]
+    for i, (peak, scale) in enumerate(zip(peaks, scales, strict=True)):
+        part = cube[uniform + i * each : uniform + (i + 1) * each]
+        lower = np.linalg.cholesky(scale)
+        normal = student.ppf(np.clip(part, 1e-6, 1 - 1e-6), FREEDOM)
+        drawn.append(peak.point.coordinates + normal @ lower.T)
+    samples = np.concatenate(drawn)
+    shares = [uniform / len(samples)] + [each / len(samples)] * len(peaks)
+    inside = np.all((samples >= 0) & (samples <= 1), axis=1)
+    parts = [np.full(int(inside.sum()), np.log(max(shares[0], 1e-12)))]
+    for peak, scale, share in zip(peaks, scales, shares[1:], strict=True):
+        parts.append(np.log(share) + _log_density(samples[inside], peak, scale))
+    density = logsumexp(np.stack(parts), axis=0) + np.log(len(samples) / inside.sum())
+    return samples[inside], np.asarray(density)
+
+
+def _log_density(samples: FloatArray, peak: Peak, scale: FloatArray) -> FloatArray:
+    """Return the density of independent t-variates taken through the Cholesky factor of ``scale``."""
+    lower = np.linalg.cholesky(scale)
+    standard = np.linalg.solve(lower, (samples - peak.point.coordinates).T)
+    return np.asarray(student.logpdf(standard, FREEDOM).sum(axis=0) - np.log(np.diag(lower)).sum())
+
+
+def _scale(peak: Peak) -> FloatArray:
+    """Return the covariance to draw with: a little wider than the peak, no wider than its slope at an edge."""
+    k = len(peak.gradient)
+    precision = peak.normal + np.diag(peak.gradient**2 * _at_edge(peak)) + 4.0 * np.eye(k)
+    values, vectors = np.linalg.eigh((precision + precision.T) / 2)
+    return np.asarray((vectors * (1.4 / np.maximum(values, 1.0))) @ vectors.T)
+
+
+def _at_edge(peak: Peak) -> FloatArray:
+    u = peak.point.coordinates
+    return np.asarray((u <= 0) | (u >= 1), dtype=float)
+
+
+__all__ = ["Explanation", "explain"]

@@ -1,0 +1,251 @@
+"""The most probable parameters of a candidate: Gauss-Newton in the unit cube of prior quantiles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from acquisition.arrays import BoolArray, FloatArray
+from updating.diagnosis.problem.face import Posed
+from updating.likelihood.comparison import Comparison
+from updating.likelihood.gaussian import Marginal, marginal, whiten
+from updating.problem.candidate import Candidate
+
+STEP = 1e-3
+"""Finite-difference step in prior quantiles."""
+
+UNDERSTEPPED = 1.3
+"""A step that gains so many times what the parabola promised was too short: far from the data the likelihood's tails
+are heavier than its curvature says [-]."""
+
+CHEAP = 2
+"""With so few parameters sensitivities are taken anew after every step."""
+
+PATIENCE, LITTLE = 6, 0.002
+"""After so many steps a gain below this share of what is missing to the best found elsewhere ends a climb [-]."""
+
+HOPELESS = 40.0
+"""How far below the best found elsewhere a maximum need not be known any better [-]."""
+
+AT_REST = 0.01
+"""A climb is at rest when a step gains less than this [-]."""
+
+RELINEARISED = 3
+"""How often at most wide tolerances are linearised anew; what comes nearest to its own linearisation stands."""
+
+STRAINED = 0.01
+"""Relative change of a tolerance's property that a linearisation bears [-]."""
+
+FARTHEST = 6.0
+"""Tolerances are followed so far from nominal, in standard deviations."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A candidate at one place of its parameter space.
+
+    Parameters
+    ----------
+    coordinates : (k,) array
+        Prior quantiles [-].
+    comparison : Comparison
+        Data against prediction there.
+    marginal : Marginal
+        Its marginal likelihood.
+    about : (p,) array, optional
+        Nuisances about which tolerances were linearised; None is about none [standard deviations].
+    """
+
+    coordinates: FloatArray
+    comparison: Comparison
+    marginal: Marginal
+    about: FloatArray | None = None
+
+    @property
+    def possible(self) -> bool:
+        """Whether the model has a finite prediction there."""
+        return bool(np.isfinite(self.marginal.log_likelihood))
+
+    @property
+    def left_over(self) -> FloatArray:
+        """Residual after the most probable nuisances, shape (n,) [-]."""
+        return self.comparison.residual - self.comparison.nuisance @ self.marginal.shift
+
+
+@dataclass(frozen=True, eq=False)
+class Peak:
+    """A local maximum and the curvature there.
+
+    Parameters
+    ----------
+    point : Point
+        Where it is.
+    normal : (k, k) array
+        Fisher information of the prior quantiles, the nuisances integrated out [-].
+    gradient : (k,) array
+        Slope of the log-likelihood, not zero where the prior ends [-].
+    """
+
+    point: Point
+    normal: FloatArray
+    gradient: FloatArray
+
+
+def evaluate(
+    problem: Posed, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
+) -> Point:
+    """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide.
+
+    Where the linearisation swings, the one whose most probable tolerances lie nearest to where it was made stands.
+    """
+    point = _linearised(problem, candidate, coordinates, None, keep)
+    if not problem.wide:
+        return point
+    best, left = point, problem.strain(_wanted(point))
+    for _ in range(RELINEARISED):
+        if left < STRAINED or not np.isfinite(left):
+            break
+        about = _wanted(point) if point.about is None else 0.5 * (point.about + _wanted(point))
+        point = _linearised(problem, candidate, coordinates, about, keep)
+        away = problem.strain(_wanted(point) - about)
+        if away < left:
+            best, left = point, away
+    return best
+
+
+def _wanted(point: Point) -> FloatArray:
+    return np.clip(point.marginal.shift, -FARTHEST, FARTHEST)
+
+
+def _linearised(
+    problem: Posed,
+    candidate: Candidate,
+    coordinates: FloatArray,
+    about: FloatArray | None,
+    keep: BoolArray | None,
+) -> Point:
+    comparison = problem.at(candidate, coordinates, about)
+    return Point(coordinates, comparison, marginal(comparison, keep), about)
+
+
+def sensitivities(problem: Posed, candidate: Candidate, point: Point) -> FloatArray:
+    """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
+    return _slopes(problem, candidate, point, None)[0]
+
+
+def _slopes(
+    problem: Posed, candidate: Candidate, point: Point, keep: BoolArray | None
+) -> tuple[FloatArray, FloatArray]:
+    """Return the change of the prediction (n, k) and that of the log-likelihood (k,) per prior quantile."""
+    columns, rises, steps = [], [], []
+    for i, u in enumerate(point.coordinates):
+        step = STEP if u < 0.5 else -STEP
+        moved = point.coordinates.copy()
+        moved[i] += step
+        there = problem.at(candidate, moved, point.about)
+        columns.append((point.comparison.residual - there.residual) / step)
+        rises.append((marginal(there, keep).log_likelihood - point.marginal.log_likelihood) / step)
+        steps.append(step)
+    count = len(point.comparison.residual)
+    whole = np.stack(columns, axis=1) if columns else np.zeros((count, 0))
+    if not columns:
+        return whole, np.zeros(0)
+    curve = np.diag(_curvature(point, whole, keep)[0])  # a difference is the slope half a step away
+    return whole, np.array(rises) + 0.5 * np.array(steps) * curve
+
+
+def climb(
+    problem: Posed,
+    candidate: Candidate,
+    start: FloatArray,
+    *,
+    keep: BoolArray | None = None,
+    rounds: int = 20,
+    bar: float = -np.inf,
+) -> Peak:
+    """Climb to the nearest maximum of the marginal likelihood within the prior's range.
+
+    Parameters
+    ----------
+    problem : Problem or Several
+        Test and model.
+    candidate : Candidate
+        Effects.
+    start : (k,) array
+        Prior quantiles to start from.
+    keep : (n,) bool array, optional
+        Data to use; left out, all.
+    rounds : int
+        Most steps taken; a climb that is at rest ends before.
+    bar : float
+        Log-likelihood that has been reached elsewhere: a climb far below that gains little ends.
+    """
+    point = evaluate(problem, candidate, start, keep=keep)
+    if not point.possible:
+        return Peak(point, np.eye(len(start)), np.zeros(len(start)))
+    damping, stretch, fresh = 1e-3, 1.0, True
+    columns, rise = _slopes(problem, candidate, point, keep)
+    normal, load = _curvature(point, columns, keep)
+    beside = _finite(rise - load)  # what the noise's own change with the parameters adds to the slope
+    for step_number in range(rounds if len(start) else 0):
+        gradient = load + beside
+        free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
+        if not free.any():
+            break
+        step = _step(normal, gradient, free, damping, stretch)
+        if not np.isfinite(step).all():
+            break
+        there = np.clip(point.coordinates + step, 0.0, 1.0)
+        trial = evaluate(problem, candidate, there, keep=keep)
+        gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
+        promised = float(step @ gradient - 0.5 * step @ normal @ step)
+        stretch = 2 * stretch if gain > UNDERSTEPPED * promised > 0 else 1.0
+        if gain > 0:
+            beside = beside * min(trial.marginal.chi2 / max(point.marginal.chi2, 1e-12), 1.0)
+            columns, fresh = _secant(columns, point, trial), False
+            point, damping = trial, damping / 5
+        elif fresh:
+            damping *= 10
+        missing = LITTLE * (bar - point.marginal.log_likelihood) if step_number >= PATIENCE else 0.0
+        if abs(gain) < max(AT_REST, missing) or damping > 1e6:
+            break
+        if not fresh and (gain <= 0 or len(start) <= CHEAP):
+            columns, rise = _slopes(problem, candidate, point, keep)
+            fresh = True
+        normal, load = _curvature(point, columns, keep)
+        if fresh:
+            beside = _finite(rise - load)
+    if not fresh and bar - point.marginal.log_likelihood < HOPELESS:
+        columns, rise = _slopes(problem, candidate, point, keep)
+        normal, load = _curvature(point, columns, keep)
+        beside = _finite(rise - load)
+    return Peak(point, normal, load + beside)
+
+
+def _secant(columns: FloatArray, before: Point, now: Point) -> FloatArray:
+    """Correct sensitivities by what a step has shown (Broyden 1965)."""
+    step = now.coordinates - before.coordinates
+    change = before.comparison.residual - now.comparison.residual
+    if not np.isfinite(change).all() or not step.any():
+        return columns
+    return np.asarray(columns + np.outer(change - columns @ step, step) / float(step @ step))
+
+
+def _step(
+    normal: FloatArray, gradient: FloatArray, free: BoolArray, damping: float, stretch: float
+) -> FloatArray:
+    step = np.zeros_like(gradient)
+    inner = normal[np.ix_(free, free)]
+    ridge = np.diag(damping * np.diag(inner) + 1e-6)
+    step[free] = np.linalg.solve(inner + ridge, gradient[free])
+    return np.asarray(step * min(stretch, 0.3 / max(np.abs(step).max(), 1e-12)))
+
+
+def _curvature(point: Point, columns: FloatArray, keep: BoolArray | None) -> tuple[FloatArray, FloatArray]:
+    return whiten(point.comparison, _finite(columns), point.marginal.scale, keep)
+
+
+def _finite(values: FloatArray) -> FloatArray:
+    """Put nothing in the place of what a prediction beyond all measure leaves."""
+    return np.where(np.isfinite(values), values, 0.0)

@@ -1,0 +1,140 @@
+"""Data left out of a fit and predicted from the rest, so that a gap that closes by mere freedom shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from acquisition.arrays import BoolArray, FloatArray
+from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.fit import CHEAP, climb, sensitivities
+from updating.likelihood.comparison import SHAPES, Comparison
+from updating.likelihood.gaussian import marginal, whiten
+from updating.problem.candidate import Candidate
+
+BELIEVED = 3.0
+"""No tolerance, and no calibration, is taken to be further off than this [standard deviations]."""
+
+ROUNDS = 6
+"""Most steps of a refit from the best parameters on all data."""
+
+SHORT = 0.02
+"""Longest step, in prior quantiles, that a refit takes on the sensitivities at the best parameters [-]."""
+
+PRIOR = 4.0
+"""Curvature that keeps parameters the data do not see where they are, per squared prior quantile [-]."""
+
+FOLDS = 5
+"""In so many parts the points are left out."""
+
+
+def modes_held_out(posed: Posed, explanation: Explanation) -> FloatArray:
+    """Predict each mode from all others, and return measured minus predicted data, (n,) [-].
+
+    Parameters
+    ----------
+    posed : Problem or Several
+        Test and model.
+    explanation : Explanation
+        What is refitted without each mode in turn.
+    """
+    mode = explanation.best.comparison.mode
+    return held_out(posed, explanation, [mode != m for m in np.unique(mode)])
+
+
+def points_held_out(posed: Posed, explanation: Explanation) -> tuple[FloatArray, BoolArray] | None:
+    """Predict the constants at a part of the points from all other data, part by part.
+
+    Returns
+    -------
+    residual : (n,) array
+        Measured minus predicted data [-].
+    told : (n,) bool array
+        Which of them are constants.
+    None
+        Where there are too few points to leave any out.
+    """
+    groups = _groups(posed)
+    if groups is None:
+        return None
+    parts = [groups != fold for fold in range(FOLDS)]
+    return held_out(posed, explanation, parts), groups >= 0
+
+
+def _groups(posed: Posed) -> np.ndarray | None:
+    """Return which part each datum belongs to, -1 for what is no constant; None where there are few points."""
+    found = []
+    for problem in posed.specimens:
+        test = problem.measured
+        channel = problem.at(Candidate(), np.zeros(0)).channel
+        group = np.full(len(channel), -1)
+        if test.has_shapes:
+            roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
+            rank = np.unique(roving, return_inverse=True)[1] % FOLDS
+            group[channel == SHAPES] = np.repeat(rank, test.constants.shape[1])
+        found.append(group)
+    groups = np.concatenate(found)
+    return groups if len(np.unique(groups[groups >= 0])) == FOLDS else None
+
+
+def held_out(posed: Posed, explanation: Explanation, parts: Sequence[BoolArray]) -> FloatArray:
+    """Return measured minus predicted data, those outside each part predicted from those inside, (n,) [-].
+
+    Tolerances alone are kept within what is believed of them; how far an effect's fit stretches them, its p-value
+    judges. Where nothing is left to fit, the residuals are nan.
+    """
+    best = explanation.best
+    columns = np.nan_to_num(sensitivities(posed, explanation.candidate, best))
+    errors = np.zeros(len(best.comparison.residual))
+    for keep in parts:
+        if not keep.any():
+            errors[~keep] = np.nan
+        elif not explanation.names:
+            errors[~keep] = believed(best.comparison, marginal(best.comparison, keep).scale, keep)[~keep]
+        else:
+            errors[~keep] = _refitted(posed, explanation, columns, keep)[~keep]
+    return errors
+
+
+def _refitted(posed: Posed, explanation: Explanation, columns: FloatArray, keep: BoolArray) -> FloatArray:
+    """Return what is left of all data when some of them were fitted: of many parameters by a short linear step."""
+    best = explanation.best
+    if columns.shape[1] <= CHEAP:
+        return climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point.left_over
+    normal, load = whiten(best.comparison, columns, best.marginal.scale, keep)
+    step = np.linalg.solve(normal + PRIOR * np.eye(len(load)), load)
+    step = np.clip(best.coordinates + step, 0.0, 1.0) - best.coordinates
+    if np.abs(step).max(initial=0.0) > SHORT:
+        return climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point.left_over
+    moved = replace(best.comparison, residual=best.comparison.residual - columns @ step)
+    return np.asarray(moved.residual - moved.nuisance @ marginal(moved, keep).shift)
+
+
+def believed(comparison: Comparison, scale: float, keep: BoolArray | None = None) -> FloatArray:
+    """Return what is left of a residual once all doubts, within what is believed of them, have done their best.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Residual, nuisances and noise.
+    scale : float
+        Of the noise of the shapes [-].
+    keep : (n,) bool array, optional
+        Data that are fitted; left out, all.
+    """
+    rows = slice(None) if keep is None else keep
+    weight = 1 / np.sqrt(comparison.noise(scale)[rows])
+    columns = comparison.nuisance[rows] * weight[:, None]
+    count = columns.shape[1]
+    whole = np.vstack([columns, np.eye(count)])
+    data = np.concatenate([comparison.residual[rows] * weight, np.zeros(count)])
+    shift = np.linalg.lstsq(whole, data, rcond=None)[0]
+    limit = np.full(count, np.inf)
+    limit[comparison.doubts] = BELIEVED
+    if (np.abs(shift) > limit).any():
+        shift = lsq_linear(whole, data, bounds=(-limit, limit)).x
+    return np.asarray(comparison.residual - comparison.nuisance @ shift)

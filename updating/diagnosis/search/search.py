@@ -1,0 +1,363 @@
+"""Which candidates are weighed: singles first, pairs when no single explains the data.
+
+An effect may come in several forms (which point, which sign); each is weighed by itself, with its share of the
+effect's prior, and their evidence is added up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from scipy.special import logsumexp
+
+from acquisition.arrays import FloatArray
+from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.search.evidence import CLIMBS, Explanation, explain, finish
+from updating.diagnosis.search.fit import sensitivities
+from updating.effects import Effect, Variant
+from updating.likelihood.gaussian import whiten
+from updating.problem.candidate import Candidate
+
+REJECTED = 0.003
+"""A single effect that fits worse than this is rejected..."""
+
+DOUBTED = 0.02
+"""...and where none fits better than this, pairs are weighed beside them, which must fit as well themselves."""
+
+PROBABLE = 6.0
+"""Explanations whose logarithm of the probability lies further behind the best do not count as explanations [-]."""
+
+WITHIN_REACH = 7.0
+"""Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]."""
+
+LOOKS = 3
+"""How often what is within reach is sought."""
+
+PAIRS = 8
+"""How many pairs are weighed, those a linear look finds the most promising..."""
+
+ANEW = 3
+"""...and how many of these, the best, from all starts of either effect; doubled, pairs take half as long again."""
+
+FORM_SHARE = 0.02
+"""Forms of an effect with less than this share of the most probable one do not speak for its fit [-]."""
+
+POSSIBLE = 1e-4
+"""Below this probability nobody asks where the parameters lie [-]."""
+
+FAR_FROM_END, HELD_THERE = 0.25, 0.95
+"""A parameter is held at the end of its range where so much of its posterior lies within that share of it [-]."""
+
+PAIR_PRIOR = 0.05
+"""Prior weight of a pair against a single effect."""
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """An explanation with its share of the probability and how well it fits.
+
+    Parameters
+    ----------
+    explanation : Explanation
+        What was weighed.
+    probability : float
+        Its share [-].
+    p_value : float
+        How well it fits [-].
+    extreme : tuple of str
+        Parameters that the data push to an end of their range that is no natural one.
+    """
+
+    explanation: Explanation
+    probability: float
+    p_value: float
+    extreme: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return self.explanation.names
+
+    @property
+    def rejected(self) -> bool:
+        """Whether it is no answer: it fits too badly (pairs, which have more freedom, must fit better), or only at a
+        size beyond what is plausible.
+        """
+        return bool(self.extreme) or self.p_value < (DOUBTED if len(self.names) > 1 else REJECTED)
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """All that was weighed.
+
+    Parameters
+    ----------
+    nothing : Explanation
+        The nominal model with its tolerances.
+    weighed : tuple of Weighed
+        All sets of effects, most probable first; the empty set is among them.
+    not_examined : dict
+        Effects left out, and why.
+    """
+
+    nothing: Explanation
+    weighed: tuple[Weighed, ...]
+    not_examined: dict[str, str]
+
+
+def examine(problem: Posed, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
+    """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
+    obstacles = {effect.name: problem.applies(effect) for effect in library}
+    possible = [effect for effect in library if obstacles[effect.name] is None]
+    return possible, {name: why for name, why in obstacles.items() if why is not None}
+
+
+def search(problem: Posed, library: Sequence[Effect]) -> Search:
+    """Weigh nothing, every single effect, and pairs if no single one fits.
+
+    Parameters
+    ----------
+    problem : Problem or Several
+        Test and model.
+    library : sequence of Effect
+        Effects to consider.
+    """
+    effects, obstacles = examine(problem, library)
+    nothing = explain(problem, Candidate())
+    twin = _falls_short(problem, effects)
+    drafts = _singles(problem, effects, nothing, twin=twin)
+    found = _finished(problem, [nothing, *drafts])
+    if not _explained(problem, found):
+        found = _finished(problem, found + _pairs(problem, found[1:]))
+    return Search(nothing, _merged(problem, _weigh(found)), obstacles)
+
+
+def _explained(problem: Posed, found: list[Explanation]) -> bool:
+    """Tell whether any of the probable explanations fits beyond doubt, and at a plausible size."""
+    rows = _weigh(found)
+    top = max(row.probability for row in rows)
+    near = [row for row in rows if row.probability > top * np.exp(-PROBABLE)]
+    return any(row.p_value >= DOUBTED and not _extreme(problem, row.explanation) for row in near)
+
+
+def _finished(problem: Posed, found: list[Explanation]) -> list[Explanation]:
+    """Weigh by predictions what drafts left within reach of the best; the rest stays as drafted."""
+    finished = list(found)
+    for look in range(LOOKS):
+        rows = _weigh(finished)
+        bar = max(row.probability for row in rows) * np.exp(-WITHIN_REACH)
+        left = [i for i, row in enumerate(rows) if row.explanation.draft and row.probability > bar]
+        if not left:
+            break
+        left.sort(key=lambda i: -rows[i].probability)
+        for i in left if look else left[:1]:  # the best first: it may put the others out of reach
+            finished[i] = finish(problem, finished[i])
+    return finished
+
+
+def _merged(problem: Posed, rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
+    """Add up the forms of each set of effects; the most probable form stands for them."""
+    forms: dict[frozenset[str], list[Weighed]] = {}
+    for row in rows:
+        forms.setdefault(frozenset(row.names), []).append(row)
+    merged = []
+    for own in forms.values():
+        top = max(own, key=lambda row: row.probability)
+        total = float(logsumexp([row.explanation.log_evidence for row in own]))
+        fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
+        probability = sum(row.probability for row in own)
+        extreme = _extreme(problem, top.explanation) if probability > POSSIBLE else ()
+        merged.append(Weighed(replace(top.explanation, log_evidence=total), probability, fits, extreme))
+    return tuple(sorted(merged, key=lambda row: -row.probability))
+
+
+def _extreme(problem: Posed, explanation: Explanation) -> tuple[str, ...]:
+    """Return the parameters whose best value and most of whose posterior lie at an end that is a judgement."""
+    found = []
+    for i, (name, parameter) in enumerate(problem.parameters(explanation.candidate)):
+        best = float(explanation.best.coordinates[i])
+        away = np.abs(explanation.samples[:, i] - round(best))
+        if parameter.extreme(best) and explanation.weights[away > FAR_FROM_END].sum() < 1 - HELD_THERE:
+            found.append(name)
+    return tuple(found)
+
+
+def _weigh(found: list[Explanation]) -> list[Weighed]:
+    prior = np.array([PAIR_PRIOR if len(e.names) > 1 else 1.0 for e in found])
+    score = np.array([e.log_evidence for e in found]) + np.log(prior)
+    probability = np.exp(score - logsumexp(score))
+    return [Weighed(e, float(p), e.p_value) for e, p in zip(found, probability, strict=True)]
+
+
+def _falls_short(problem: Posed, effects: list[Effect]) -> bool:
+    """Tell whether every effect must also be weighed on the better beam theory.
+
+    It must where the theory shifts frequencies by more than a part of the noise, unless the better theory alone
+    explains the data: then nothing else is needed beside it.
+    """
+    shear = next((effect for effect in effects if effect.name == "shear"), None)
+    if shear is None or explain(problem, Candidate((shear,))).p_value >= REJECTED:
+        return False
+    count = len(problem.nominal.frequency) + 5
+    here = problem.predictor.predict(count=count).frequency
+    there = problem.predictor.under("timoshenko").predict(count=count).frequency
+    within = here <= 1.001 * problem.nominal.frequency.max()
+    noise = np.hypot(
+        problem.measured.repeatability, np.min(problem.measured.frequency_sigma / problem.measured.frequency)
+    )
+    return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
+
+
+def _singles(problem: Posed, effects: list[Effect], nothing: Explanation, *, twin: bool) -> list[Explanation]:
+    """Weigh every form of every effect, the simple ones first: what they reach is the bar for the others."""
+    forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
+    forms.sort(key=lambda pair: len(problem.parameters(Candidate((pair[0],), chosen=(pair[1],)))))
+    bar, found = nothing.best.marginal.log_likelihood, []
+    for effect, form in forms:
+        found.append(_single(problem, effect, form, twin=twin, bar=bar))
+        bar = max(bar, found[-1].best.marginal.log_likelihood)
+    return found
+
+
+def _single(problem: Posed, effect: Effect, form: Variant, *, twin: bool, bar: float) -> Explanation:
+    """Weigh one form of an effect; where the theory falls short, on either theory and half the evidence of each."""
+    plain = explain(problem, Candidate((effect,), chosen=(form,)), draft=True, bar=bar)
+    if not twin or effect.name == "shear":
+        return plain
+    better = explain(problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), draft=True, bar=bar)
+    total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
+    chosen = max(plain, better, key=lambda e: e.log_evidence)
+    return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
+
+
+def _pairs(problem: Posed, singles: list[Explanation]) -> list[Explanation]:
+    """Weigh the pairs that a linear look at every pair finds the most promising."""
+    possible = [e for e in singles if e.best.possible]
+    if len(possible) < 2:
+        return []
+    reached = _linear_looks(problem, possible)
+    data = len(problem.at(Candidate(), np.zeros(0)).residual)
+    looks = []
+    for i, j in combinations(range(len(possible)), 2):
+        first, second = possible[i], possible[j]
+        if first.names == second.names:
+            continue
+        if len(first.best.coordinates) + len(second.best.coordinates) >= data:
+            continue  # as many parameters as data explain anything
+        weight = first.candidate.log_weight + second.candidate.log_weight
+        looks.append((max(reached[i, j], reached[j, i]) + weight, first, second))
+    looks = [look for look in looks if np.isfinite(look[0])]
+    looks.sort(key=lambda look: -look[0])
+    chosen: dict[frozenset[str], tuple[Explanation, Explanation]] = {}
+    for _, first, second in looks:  # of every two effects, the most promising forms
+        chosen.setdefault(frozenset(first.names + second.names), (first, second))
+    found: list[Explanation] = []
+    bar = max(e.best.marginal.log_likelihood for e in possible)
+    for first, second in list(chosen.values())[:PAIRS]:
+        halves = [(e.candidate, e.best.coordinates) for e in (first, second)]
+        found.append(_pair(problem, halves[0], halves[1], bar))
+        bar = max(bar, found[-1].best.marginal.log_likelihood)
+    found.sort(key=lambda e: -e.log_evidence)
+    for i, pair in enumerate(found[:ANEW]):
+        again = _pair(problem, *_halves(problem, pair), bar, anew=True)
+        found[i] = max(pair, again, key=lambda e: e.log_evidence)
+        bar = max(bar, found[i].best.marginal.log_likelihood)
+    return found + _alike(problem, possible, found, bar)
+
+
+Half = tuple[Candidate, FloatArray]
+"""One of the two effects of a pair, and prior quantiles to start from."""
+
+
+def _pair(problem: Posed, first: Half, second: Half, bar: float, *, anew: bool = False) -> Explanation:
+    """Draft a pair, from the best that each of the two has alone, and where asked from all its own starts anew.
+
+    An effect that explains as much as it can alone bends to what the other does, so that its place alone may be far
+    from that in the pair.
+    """
+    (one, a), (two, b) = first, second
+    middle = [np.full(len(u), 0.5) for u in (a, b)]
+    starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
+    if anew:
+        starts += [np.concatenate([a, own]) for own in problem.starts(two)]
+        starts += [np.concatenate([own, b]) for own in problem.starts(one)]
+    both = Candidate(one.effects + two.effects, theory=one.theory or two.theory, chosen=one.forms + two.forms)
+    unlike = list(
+        {tuple(u.tolist()): u for u in starts}.values()
+    )  # of an effect without parameters all are alike
+    return explain(problem, both, starts=unlike, draft=True, climbs=CLIMBS if anew else 1, bar=bar)
+
+
+def _alike(
+    problem: Posed, singles: list[Explanation], pairs: list[Explanation], bar: float
+) -> list[Explanation]:
+    """Draft what some data cannot tell from the best pair: one of the two in the place of an effect like it.
+
+    Such a rival may fit as well where it alone, at another place, fits too badly for the linear look to choose it.
+    """
+    best = max(pairs, key=lambda e: e.log_evidence, default=None)
+    if best is None:
+        return []
+    known, found = {frozenset(e.names) for e in pairs}, []
+    data = len(best.best.comparison.residual)
+    halves = _halves(problem, best)
+    for (kept, place), (other, _) in (halves, halves[::-1]):
+        for rival in _like(other.effects[0], singles):
+            names = frozenset(kept.names + rival.names)
+            if len(names) == 2 and names not in known and len(place) + len(rival.best.coordinates) < data:
+                known.add(names)
+                found.append(
+                    _pair(problem, (kept, place), (rival.candidate, rival.best.coordinates), bar, anew=True)
+                )
+    return found
+
+
+def _halves(problem: Posed, pair: Explanation) -> tuple[Half, Half]:
+    """Take a pair apart."""
+    whole = pair.candidate
+    first, second = (
+        Candidate((effect,), theory=whole.theory, chosen=(form,))
+        for effect, form in zip(whole.effects, whole.forms, strict=True)
+    )
+    count = len(problem.parameters(first))
+    return (first, pair.best.coordinates[:count]), (second, pair.best.coordinates[count:])
+
+
+def _like(effect: Effect, singles: list[Explanation]) -> list[Explanation]:
+    """Return the best form of every single that is declared to resemble an effect, or that the effect declares."""
+    best: dict[str, Explanation] = {}
+    for single in singles:
+        for other in single.candidate.effects:
+            alike = other.name in effect.equivalent_to or effect.name in other.equivalent_to
+            if alike and (other.name not in best or best[other.name].log_evidence < single.log_evidence):
+                best[other.name] = single
+    return list(best.values())
+
+
+def _linear_looks(problem: Posed, singles: list[Explanation]) -> FloatArray:
+    """Return the log-likelihood that a linear step from each single's best, with each other, would reach.
+
+    Returns
+    -------
+    (n, n) array
+        Row: whose best is the start; column: whose whole shift, and its sensitivities there, are added [-].
+    """
+    nominal = problem.at(Candidate(), np.zeros(0)).residual
+    own = [np.nan_to_num(sensitivities(problem, e.candidate, e.best)) for e in singles]
+    shifts = [(nominal - e.best.comparison.residual)[:, None] for e in singles]
+    everything = np.nan_to_num(np.hstack([np.hstack(pair) for pair in zip(shifts, own, strict=True)]))
+    ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
+    reached = np.full((len(singles), len(singles)), -np.inf)
+    for i, leader in enumerate(singles):
+        normal, load = whiten(leader.best.comparison, everything, leader.best.marginal.scale)
+        start = leader.best.marginal.log_likelihood
+        mine = np.arange(ends[i] + 1, ends[i + 1])
+        for j in range(len(singles)):
+            if j != i:
+                columns = np.concatenate([mine, np.arange(ends[j], ends[j + 1])])
+                step = np.linalg.lstsq(normal[np.ix_(columns, columns)], load[columns], rcond=1e-10)[0]
+                reached[i, j] = start + 0.5 * float(load[columns] @ step)
+    return reached

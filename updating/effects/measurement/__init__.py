@@ -1,0 +1,1 @@
+"""Effects of the measurement: windows, delays, gains, signs, labels and places."""

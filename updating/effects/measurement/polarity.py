@@ -1,0 +1,99 @@
+"""Signs of points the wrong way round."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.measurement.points import channel_of, channel_point, indices, places, points_of
+from updating.effects.measurement.shape_screening import PROMISING, look_at
+from updating.effects.obstacles import shape_obstacle
+from updating.models.state import Role, State
+from updating.prediction.predict import Predictor
+from updating.test_data.chain import roving
+from updating.test_data.measured import Measured
+
+MANY = 4
+"""At most so many points of one test are reversed."""
+
+FEWER = 0.5
+"""Prior probability that no more points are reversed than so far [-]."""
+
+OTHER_END = 0.2
+"""Prior probability that it is one of several points at the end that stayed [-]."""
+
+
+class Polarity(Effect):
+    """Some points' signs are reversed: hit from the other side, or a sensor upside down."""
+
+    name = "polarity"
+    channel = "measurement"
+    summary = "Some points are reversed in sign: hit from the other side, or a sensor mounted upside down."
+    footprint = (
+        "The constants of the points, or of a fixed sensor, change sign in all modes; nothing else changes."
+    )
+    models = ("beam", "plate", "matrices")
+    equivalent_to = ("swapped_points",)
+    separated_by = "look at the sign of the drive point FRF and of the points' hits again"
+    labels = ("points",)
+    of_sensor = True
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return nothing to search: which points it is, the variant says."""
+        return ()
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need shapes at several points."""
+        return shape_obstacle(predictor.measured, 3)
+
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return the sets of points whose reversal brings the shapes nearest to the model's."""
+        role = roving(predictor.measured)
+        found = look_at(predictor)
+        points = points_of(predictor.measured, role)
+        chosen: list[int] = []
+        variants: list[Variant] = []
+        share = 1.0
+        for count in range(1, min(MANY, max(len(points) // 2, 1)) + 1):
+            left = [p for p in points if p not in chosen]
+            misfits = [found.misfit({(role, p): -1.0 for p in (*chosen, q)}) for q in left]
+            order = np.argsort(misfits)
+            share *= FEWER * count / len(left)  # one of the sets of so many points
+            near = order[: PROMISING if count == 1 else 1]
+            variants += [self._variant(predictor, [*chosen, left[i]], share) for i in near]
+            chosen.append(left[order[0]])
+        return (*variants, *self._fixed(predictor, "seen" if role == "hit" else "hit"))
+
+    def _fixed(self, predictor: Predictor, role: str) -> list[Variant]:
+        """Return each of several points of the end that stayed."""
+        test = predictor.measured
+        points = points_of(test, role)
+        if len(points) < 2:
+            return []
+        return [Variant({"channel": channel_of(test, p)}, OTHER_END / len(points)) for p in points]
+
+    def _variant(self, predictor: Predictor, points: list[int], weight: float) -> Variant:
+        return Variant({"points": tuple(predictor.measured.nodes[p] for p in points)}, weight)
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the points of the end that roved reversed, or the sensor that stayed."""
+        return State(point_gains=dict.fromkeys(self._reversed(predictor.measured, values), -1.0))
+
+    def _reversed(self, test: Measured, values: Values) -> list[Role]:
+        if "channel" in values:
+            return [channel_point(test, values["channel"])]
+        return [(roving(test), p) for p in indices(test, values["points"])]
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
+        """Return the points, or where the sensor sits."""
+        test = predictor.measured
+        return places(test, tuple(test.nodes[p] for _, p in self._reversed(test, values)))
+
+    def sentence(self, values: Values) -> str:
+        """Say whether it is a fixed sensor or points of the end that roved."""
+        if "channel" in values:
+            return (
+                f"The sensor {values['channel']} is reversed in sign, whichever point is hit: mounted upside down, or "
+                "its sign set wrongly."
+            )
+        return "Some points are reversed in sign: hit from the other side, or where the sensor roved, upside down."

@@ -1,0 +1,33 @@
+"""An exponential window that was left in the damping."""
+
+from __future__ import annotations
+
+from updating.effects.base import Effect, Parameter, Values
+from updating.effects.obstacles import damping_obstacle
+from updating.models.state import State
+from updating.prediction.predict import Predictor
+
+
+class ExponentialWindow(Effect):
+    """An exponential window was applied and not taken out of the damping."""
+
+    name = "exponential_window"
+    channel = "measurement"
+    summary = "An exponential window is still in the damping: it adds one decay rate to every mode."
+    footprint = "Damping ratios rise in inverse proportion to frequency; nothing else changes."
+    models = ("beam", "plate", "matrices")
+    equivalent_to = ("uniform_damping",)
+    separated_by = "the analyser's settings, or a repeat with another window or a longer record"
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the decay rate."""
+        why = "windows end at 0.1 to 10 % of their start over records of 0.1 to 20 s"
+        return (Parameter("decay", "1/s", 0.1, 70.0, why, log=True),)
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need an expectation of the damping."""
+        return damping_obstacle(predictor)
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the decay added to every mode."""
+        return State(decay=values["decay"])

@@ -1,0 +1,88 @@
+"""A tension or a thrust along the structure."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import linalg, sparse
+
+from acquisition.arrays import FloatArray
+from updating.effects.base import Effect, Parameter, Values
+from updating.models.base import Structure
+from updating.models.fields import Sparse
+from updating.models.state import State
+from updating.models.structure import FieldStructure
+from updating.prediction.predict import Predictor
+
+
+class AxialLoad(Effect):
+    """A force along the structure that keeps its direction: heat between two clamps, a cable, a dead weight.
+
+    Its potential energy is N/2 the integral of w'^2 (Timoshenko and Gere, Theory of Elastic Stability, 1961). On
+    plates the force is spread evenly over the edge and acts along x, or along y where y edges alone are clamped.
+    """
+
+    name = "axial_load"
+    channel = "stiffness"
+    summary = "A tension or thrust along the structure stiffens or softens it in bending."
+    footprint = (
+        "Frequencies rise with tension, the lowest most: in proportion to N over the wavelength's stiffness."
+    )
+    separated_by = "loosen one end and retighten it, or repeat the test at another temperature"
+    fidelity = 0.02
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the force."""
+        critical = buckling_load(predictor)
+        why = f"from 0.8 of the load that buckles the model, {critical:.3g} N, to five times it in tension"
+        return (Parameter("force", "N", -0.8 * critical, 5 * critical, why),)
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need a support to push against."""
+        if predictor.spec.kind == "matrices":
+            return "not for imported matrices: they have no field of slopes"
+        return None if predictor.spec.clamped else "nothing holds a free structure against an axial force"
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from a thrust, and from a small and a large tension."""
+        return ((0.08,), (0.2,), (0.5,))
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the structure under the force."""
+        longer = predictor.base.factors.get("length", 1.0)
+        return State(stiffness=(values["force"] / longer * _unit(predictor),))
+
+
+def buckling_load(predictor: Predictor) -> float:
+    """Return the thrust that makes the clamped model buckle [N]."""
+    return float(predictor.once("buckling", lambda: np.array(_buckling(predictor))))
+
+
+def _buckling(predictor: Predictor) -> float:
+    reduced = predictor.reduced.small
+    n = reduced.ranks[frozenset()]
+    stiffness = np.zeros((n, n))
+    for term, whole in zip(reduced.structure.terms, reduced.sums, strict=True):
+        if term.kind == "stiffness":
+            stiffness += whole[:n, :n]
+    return 1 / float(
+        linalg.eigh(reduced.project(tension(reduced.structure))[:n, :n], stiffness, eigvals_only=True)[-1]
+    )
+
+
+def _unit(predictor: Predictor) -> FloatArray:
+    reduced = predictor.reduced
+
+    def build() -> FloatArray:
+        return reduced.project(tension(reduced.structure))
+
+    return predictor.once("tension", build)
+
+
+def tension(structure: Structure) -> Sparse:
+    """Return the stiffness of the full model under a tension of 1 N [1/m in w]."""
+    assert isinstance(structure, FieldStructure)
+    spec, fields = structure.spec, structure.fields
+    along_y = bool(spec.clamped) and all(edge[0] == "y" for edge in spec.clamped)
+    rows = fields.sampled["wy" if along_y else "wx"]
+    spread = 1.0 if spec.kind == "beam" else (spec.length if along_y else spec.width)
+    return Sparse(rows.T @ sparse.diags_array(fields.weights / spread) @ rows)

@@ -1,0 +1,130 @@
+"""Clamps that give: in rotation, in translation, or in a pair of effects in both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Literal
+
+import numpy as np
+from scipy import sparse
+
+from acquisition.arrays import FloatArray
+from updating.effects.base import Effect, Parameter, Values, bending_stiffness
+from updating.effects.structure.length import clamped_places
+from updating.models.base import Structure
+from updating.models.fields import Sparse
+from updating.models.state import State
+from updating.models.structure import FieldStructure
+from updating.prediction.predict import Predictor
+
+
+class Clamp(Effect):
+    """A spring in place of a built-in edge."""
+
+    channel = "stiffness"
+    fidelity = 0.02
+    freed: ClassVar[Literal["rotation", "translation"]]
+    """What the clamp no longer holds by itself."""
+    power: ClassVar[int]
+    """Power of the length with which E I makes the natural unit of the spring's stiffness."""
+    units: ClassVar[tuple[str, str]]
+    """Units of the stiffness on a beam and on a plate."""
+    span: ClassVar[tuple[float, float]]
+    """Range of the prior, in natural units."""
+    why: ClassVar[str]
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the spring's stiffness, per metre of edge on plates."""
+        spec = predictor.spec
+        scale = bending_stiffness(spec) / spec.length**self.power
+        unit = self.units[spec.kind == "plate"]
+        return (Parameter("stiffness", unit, self.span[0] * scale, self.span[1] * scale, self.why, log=True),)
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need a clamp."""
+        if predictor.spec.kind == "matrices":
+            return "not for imported matrices: their supports are part of them"
+        return None if predictor.spec.clamped else "the model has no clamped edge"
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the structure on the spring."""
+        unit = predictor.once(f"edge {self.freed}", lambda: _edges(predictor, self.freed))
+        return State(stiffness=(values["stiffness"] * unit,), released=frozenset({self.freed}))
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
+        """Return the clamped edges."""
+        return clamped_places(predictor)
+
+
+class ClampRotation(Clamp):
+    """The clamp turns: a rotational spring in place of a built-in edge."""
+
+    name = "clamp_rotation"
+    summary = "The clamp turns with the structure instead of holding its slope."
+    footprint = "All frequencies fall, the lowest most; shapes tilt about the clamp."
+    equivalent_to = ("E", "length", "clamp_translation", "local_stiffness")
+    separated_by = (
+        "points near the clamp, a free-free test of the same specimen, or re-clamping at another torque"
+    )
+    freed = "rotation"
+    power = 1
+    units = ("N m/rad", "N m/rad per m")
+    span = (1.0, 2000.0)
+    why = "from nearly a hinge to 2000 times the structure's own E I / L, where nothing can see it"
+
+
+class ClampTranslation(Clamp):
+    """The clamp shifts: a spring across the structure in place of a built-in edge, whose slope stays held."""
+
+    name = "clamp_translation"
+    summary = "The clamp shifts with the structure instead of holding it in place."
+    footprint = "Frequencies fall, the higher modes most; shapes move at the clamp, with no tilt there."
+    equivalent_to = ("clamp_rotation",)
+    separated_by = "a sensor on the clamp, or a test on a heavier foundation"
+    freed = "translation"
+    power = 3
+    units = ("N/m", "N/m per m")
+    span = (5.0, 1e7)
+    why = "from nearly as soft as the structure, 5 E I / L^3, to ten million E I / L^3, where nothing can see it"
+
+
+def _edges(predictor: Predictor, freed: Literal["rotation", "translation"]) -> FloatArray:
+    """Integrate the square of the slope, or of the displacement, across every clamped edge, as (r, r) [m in w]."""
+    reduced = predictor.reduced
+    full = edge_slopes(reduced.structure) if freed == "rotation" else edge_shifts(reduced.structure)
+    return reduced.project(full)
+
+
+def edge_slopes(structure: Structure) -> Sparse:
+    """Integrate the square of the slope across every clamped edge of the full model [m in w]."""
+    assert isinstance(structure, FieldStructure)
+    normal = {"x": "wx", "y": "wy"}
+    if structure.spec.theory == "timoshenko":
+        normal["x"] = "r"
+    return _along_edges(structure, normal)
+
+
+def edge_shifts(structure: Structure) -> Sparse:
+    """Integrate the square of the displacement across every clamped edge of the full model [m in w]."""
+    assert isinstance(structure, FieldStructure)
+    return _along_edges(structure, {"x": "w", "y": "w"})
+
+
+def _along_edges(structure: FieldStructure, names: Mapping[str, str]) -> Sparse:
+    """Integrate the square of a field, named by the edge's normal, across every clamped edge."""
+    spec, fields = structure.spec, structure.fields
+    total = Sparse((fields.n_dofs, fields.n_dofs))
+    for edge in spec.clamped:
+        name = names[edge[0]]
+        place = {"x0": 0.0, "x1": spec.length, "y0": 0.0, "y1": spec.width}[edge]
+        if spec.kind == "beam":
+            component = next(c for c in fields.components if name in c.names)
+            rows, weights = component.at(np.array([[place]]), fields.n_dofs)[name], np.ones(1)
+        else:
+            size = spec.width if edge[0] == "x" else spec.length
+            nodes, weights = np.polynomial.legendre.leggauss(40)
+            span, weights = (nodes + 1) * size / 2, weights * size / 2
+            ends = (np.full(40, place), span) if edge[0] == "x" else (span, np.full(40, place))
+            rows = fields.at(np.stack(ends, axis=1))[name]
+        total = total + rows.T @ sparse.diags_array(weights) @ rows
+    return Sparse(total)

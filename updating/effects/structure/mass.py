@@ -1,0 +1,213 @@
+"""Masses that the model forgot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
+from updating.effects.box import Place, mirror_images, starting_places
+from updating.models.base import Structure
+from updating.models.fields import Sparse
+from updating.models.imported.structure import ImportedStructure
+from updating.models.spec import Spec
+from updating.models.state import State
+from updating.prediction.predict import Predictor
+
+STEEL = 7850.0
+"""Density of the cube by which a mass that is all we know is given its rotary inertia [kg/m^3]."""
+
+ROVING = 0.5
+"""How far the mean over a roving sensor's places may be off: loud FRFs, and split peaks, have more weight [-]."""
+
+AXES = ("x", "y", "z")
+
+STILL, CUBE = 0.0, 1.0
+"""Rotary inertia of a sensor and of a body where none is told, as a multiple of a steel cube's [-]."""
+
+LARGEST = 6.0
+"""Largest rotary inertia of a body, as a multiple of a steel cube's of its mass [-]."""
+
+
+def cube_inertia(mass: float) -> float:
+    """Return the rotary inertia of a steel cube about an axis through its middle, m a^2 / 6 [kg m^2]."""
+    return float(mass * (mass / STEEL) ** (2 / 3) / 6)
+
+
+def unit_inertia(structure: Structure, points: FloatArray) -> Sparse:
+    """Return the matrix of 1 kg m^2 at each of some points, about every axis the model can turn about."""
+    if isinstance(structure, ImportedStructure):
+        turns = structure.imported.places.motions(points.reshape(-1, 3), range(3, 6))
+        return Sparse(turns.T @ turns)
+    rows = structure.rows(points)
+    total = Sparse((structure.n_dofs, structure.n_dofs))
+    for slope in ("wx", "wy"):
+        if slope in rows:
+            total = Sparse(total + rows[slope].T @ rows[slope])
+    return total
+
+
+class SensorMass(Effect):
+    """Each mounted sensor loads the structure with its mass; one that roves, with the mean over its places.
+
+    A sensor that roves shifts each measurement by another amount. The frequency found from all of them is about the
+    mean of these shifts; where the structure moves most the FRFs are the loudest and the shift the largest, so that
+    the mean may be off by half of itself.
+    """
+
+    name = "sensor_mass"
+    channel = "mass"
+    summary = "The mounted sensor (each of them) loads the structure and is not in the model."
+    footprint = (
+        "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
+        " Its bulk is its rotary inertia over that of a steel cube of its mass."
+    )
+    models = ("beam", "plate", "matrices")
+    equivalent_to = ("lumped_mass",)
+    separated_by = "weigh the sensor, or add a second known mass beside it"
+    fidelity = 0.03
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the mass of one sensor."""
+        high = 0.5 * total_mass(predictor.spec)
+        why = (
+            "from the lightest accelerometer with its wax to an impedance head as heavy as half the structure"
+        )
+        return (Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True), _bulk(STILL))
+
+    def fidelity_on(self, predictor: Predictor) -> float:
+        """Return the doubt in the mean over the places where the sensor roves [-]."""
+        return ROVING if sensor_roves(predictor) else self.fidelity
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need to know where the sensors sit."""
+        if len(sensor_places(predictor)):
+            return None
+        return "the data do not say where a sensor sits; a [[model.mass]] of 0 kg would"
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the structure with the mass at every sensor, or spread over the places of one that roves."""
+        reduced, points = predictor.reduced, sensor_places(predictor)
+        mass = values["mass"] * predictor.once("sensors", lambda: reduced.unit_mass(points))
+        turning = predictor.once("sensors turning", lambda: _reduced_inertia(predictor, points))
+        mass = mass + values.get("bulk", STILL) * cube_inertia(values["mass"]) * turning
+        return State(mass=(sensor_share(predictor) * mass,))
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
+        """Return the sensors."""
+        points = sensor_places(predictor)
+        padded = np.hstack([points, np.zeros((len(points), 3 - points.shape[1]))])
+        return tuple((float(x), float(y), float(z)) for x, y, z in padded)
+
+
+class LumpedMass(Effect):
+    """A compact body at one place: a bracket, a bolt, a magnet, a cable's connector."""
+
+    name = "lumped_mass"
+    channel = "mass"
+    summary = "A body is fixed to the structure at one place that the model does not hold."
+    footprint = (
+        "Frequencies fall in the modes that move there, not in those with a node there; shapes shrink there."
+        " Its bulk is its rotary inertia over that of a steel cube of its mass."
+    )
+    models = ("beam", "plate", "matrices")
+    equivalent_to = ("sensor_mass",)
+    separated_by = "look for the body and take it off; or more points around the place"
+    fidelity = 0.03
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the mass and its place."""
+        high = 0.5 * total_mass(predictor.spec)
+        why = "from what repeated tests can see to half the structure's own mass"
+        places = _outline(predictor)
+        return (Parameter("mass", "kg", 2e-3 * high, high, why, log=True), *places, _bulk(CUBE))
+
+    def obstacle(self, predictor: Predictor) -> str | None:
+        """Need places: on imported matrices, the points of the test."""
+        if predictor.spec.kind != "matrices" or len(predictor.measured.points):
+            return None
+        return "the test has no points on the imported matrices at which a body might sit"
+
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return one form for each test point of imported matrices, which have no surface in between."""
+        if predictor.spec.kind != "matrices":
+            return (Variant(),)
+        points = np.unique(predictor.measured.points, axis=0)
+        named = [dict(zip(AXES, map(float, point), strict=True)) for point in points]
+        return tuple(Variant(place, 1 / len(named)) for place in named)
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from a row of places and the ends, with a middling mass."""
+        if predictor.spec.kind == "matrices":
+            return tuple((u, 0.5, 0.5, 0.5, 0.2) for u in (0.3, 0.6))
+        ends = (
+            ((0.02,), (0.98,)) if predictor.spec.kind == "beam" else ((0.98, 0.02), (0.98, 0.98), (0.98, 0.5))
+        )
+        places = (*starting_places(predictor.spec), *ends)
+        return tuple((0.45, *where, 0.2) for where in places)
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the structure with the body."""
+        point = np.array([[values[name] for name in AXES[: predictor.spec.dim]]])
+        inertia = values.get("bulk", CUBE) * cube_inertia(values["mass"])
+        if predictor.spec.kind == "matrices":
+            mass = predictor.reduced.unit_mass(point) * values["mass"]
+            return State(mass=(mass + inertia * _reduced_inertia(predictor, point),))
+        rows = predictor.reduced.rows(point)
+        body = values["mass"] * (rows["w"].T @ rows["w"])
+        for name in ("wx", "wy"):
+            if name in rows:
+                body = body + inertia * (rows[name].T @ rows[name])
+        return State(mass=(body,))
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
+        """Return the place; where no shapes tell it from its mirror images, these too."""
+        at = (float(values["x"]), float(values.get("y", 0.0)), float(values.get("z", 0.0)))
+        return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def _bulk(default: float) -> Parameter:
+    """Return the rotary inertia about the body's own middle and its height above the surface."""
+    why = "rotary inertia over a steel cube's of its mass: from a flat disc to a tall body of light metal"
+    return Parameter("bulk", "-", 0.0, LARGEST, why, default=default, natural=EDGES)
+
+
+def _outline(predictor: Predictor) -> tuple[Parameter, ...]:
+    """Return the coordinates of a place with the structure's outline as their range."""
+    spec: Spec = predictor.spec
+    if spec.kind != "matrices":
+        sides: Sequence[tuple[float, float]] = ((0.0, spec.length), (0.0, spec.width))[: spec.dim]
+    else:
+        points = predictor.measured.points
+        low, high = points.min(axis=0), points.max(axis=0)
+        sides = [(a, max(b, a + 1e-9)) for a, b in zip(low.tolist(), high.tolist(), strict=True)]
+    why = ("anywhere along the structure", "anywhere across the structure", "at any height of the structure")
+    return tuple(
+        Parameter(n, "m", *side, w, natural=EDGES) for n, side, w in zip(AXES, sides, why, strict=False)
+    )
+
+
+def _reduced_inertia(predictor: Predictor, points: FloatArray) -> FloatArray:
+    reduced = predictor.reduced
+    return reduced.project(unit_inertia(reduced.structure, points))
+
+
+def sensor_roves(predictor: Predictor) -> bool:
+    """Tell whether one sensor was moved from point to point while the hammer stayed."""
+    test = predictor.measured
+    return len(test.sensors) > 3 and len(set(test.hit.tolist())) == 1
+
+
+def sensor_share(predictor: Predictor) -> float:
+    """Return in which share of the measurements each place of :func:`sensor_places` carries the mass [-]."""
+    return 1 / len(sensor_places(predictor)) if sensor_roves(predictor) else 1.0
+
+
+def sensor_places(predictor: Predictor) -> FloatArray:
+    """Return where sensors sit, (n, dim) [m]: as the data say, else where the modeller put masses."""
+    test, spec = predictor.measured, predictor.spec
+    if test.sensors:
+        return np.unique(test.points[list(test.sensors)], axis=0)
+    return np.array([mass.at[: spec.dim] for mass in spec.masses], dtype=float).reshape(-1, spec.dim)

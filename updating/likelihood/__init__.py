@@ -1,0 +1,1 @@
+"""How probable data are under a state of the model, nuisances integrated out."""

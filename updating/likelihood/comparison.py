@@ -1,0 +1,157 @@
+"""One test beside one state of the model: residuals, what may explain them, and noise, in blocks by channel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.prediction.predict import Prediction
+
+CHANNELS = ("frequency", "damping", "frf", "phase", "level")
+"""What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force."""
+
+SHAPES = 2
+"""The channel whose noise has an unknown scale."""
+
+SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
+"""How many times worse than thought the shapes may be."""
+
+KNOWN_SCATTER = (0.85, 0.12, 0.025, 0.004, 0.001)
+UNKNOWN_SCATTER = (0.3, 0.25, 0.2, 0.15, 0.1)
+"""Prior of each scale, where repeated hits show the scatter and where nothing does."""
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """The data of one channel.
+
+    Parameters
+    ----------
+    channel : int
+        Which of ``CHANNELS``.
+    residual, variance : (n,) arrays
+        Measured minus predicted, and the variance of the independent noise [-].
+    factors : (n, n_names) array
+        Change of the prediction per unit of the logarithm of each factor with a tolerance [-].
+    named, own : (n, p) arrays
+        Change per standard deviation of the nuisances of this channel alone: those that bear a name, whose
+        stretching is a finding, and the rest [-].
+    mode : (n,) int array
+        Measured mode each datum belongs to.
+    """
+
+    channel: int
+    residual: FloatArray
+    variance: FloatArray
+    factors: FloatArray
+    named: FloatArray
+    own: FloatArray
+    mode: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Measured minus predicted data at one state, with what may explain it.
+
+    Parameters
+    ----------
+    residual : (n,) array
+        ln f, then ln damping ratio, then modal constants over their r.m.s. per mode, their phases [rad], and the
+        frequencies' dependence on force times its mean [-].
+    nuisance : (n, p) array
+        Change of the prediction per standard deviation of each nuisance [-].
+    variance : (n,) array
+        Variance of the independent noise [-].
+    channel : (n,) int array
+        Which of ``CHANNELS``.
+    mode : (n,) int array
+        Measured mode each datum belongs to; those of further specimens count on.
+    predictions : tuple of Prediction
+        The predicted modes of each specimen, in the order of the measured ones.
+    scale_prior : tuple of float
+        Prior of each of ``SCALES`` on the noise of the shapes [-].
+    doubts : (k,) int array
+        Which nuisances are named doubts: tolerances, level of damping, calibration.
+    """
+
+    residual: FloatArray
+    nuisance: FloatArray
+    variance: FloatArray
+    channel: IntArray
+    mode: IntArray
+    predictions: tuple[Prediction, ...]
+    scale_prior: tuple[float, ...]
+    doubts: IntArray
+
+    @property
+    def prediction(self) -> Prediction:
+        """The predicted modes of the first specimen."""
+        return self.predictions[0]
+
+    def noise(self, scale: float) -> FloatArray:
+        """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
+        return np.where(self.channel == SHAPES, scale**2, 1.0) * self.variance
+
+
+def assemble(
+    blocks: Sequence[Block],
+    sigmas: FloatArray,
+    shift: FloatArray,
+    prediction: Prediction,
+    scale_prior: tuple[float, ...],
+) -> Comparison:
+    """Put the blocks of one test together.
+
+    Parameters
+    ----------
+    blocks : sequence of Block
+        One per channel.
+    sigmas : (n_names,) array
+        Standard deviations of the factors [-].
+    shift : (n_names,) array
+        Where they stand in the prediction [standard deviations].
+    prediction, scale_prior
+        As in :class:`Comparison`.
+    """
+    rows = np.cumsum([0, *(len(block.residual) for block in blocks)])
+    count = len(sigmas)
+    named = np.cumsum([count, *(block.named.shape[1] for block in blocks)])
+    own = np.cumsum([named[-1], *(block.own.shape[1] for block in blocks)])
+    nuisance = np.zeros((rows[-1], own[-1]))
+    for i, block in enumerate(blocks):
+        here = slice(rows[i], rows[i + 1])
+        nuisance[here, :count] = block.factors * sigmas
+        nuisance[here, named[i] : named[i + 1]] = block.named
+        nuisance[here, own[i] : own[i + 1]] = block.own
+    return Comparison(
+        np.concatenate([block.residual for block in blocks]) + nuisance[:, :count] @ shift,
+        nuisance,
+        np.concatenate([block.variance for block in blocks]),
+        np.concatenate([np.full(len(block.residual), block.channel) for block in blocks]),
+        np.concatenate([block.mode for block in blocks]),
+        (prediction,),
+        scale_prior,
+        np.arange(named[-1]),
+    )
+
+
+def join(parts: Sequence[Comparison]) -> Comparison:
+    """Put the comparisons of several specimens together, whose nuisances have nothing in common."""
+    if len(parts) == 1:
+        return parts[0]
+    starts = np.cumsum([0, *(part.nuisance.shape[1] for part in parts)])
+    modes = np.cumsum([0, *(len(part.prediction.frequency) for part in parts)])
+    return Comparison(
+        np.concatenate([part.residual for part in parts]),
+        block_diag(*(part.nuisance for part in parts)),
+        np.concatenate([part.variance for part in parts]),
+        np.concatenate([part.channel for part in parts]),
+        np.concatenate([part.mode + first for part, first in zip(parts, modes, strict=False)]),
+        tuple(p for part in parts for p in part.predictions),
+        max((part.scale_prior for part in parts), key=lambda prior: -prior[0]),
+        np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),
+    )

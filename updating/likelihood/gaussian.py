@@ -1,0 +1,135 @@
+"""Marginal likelihood of a comparison: nuisances integrated out exactly, in the small space they span.
+
+How well shapes were measured is known only so far: cross-talk, oblique hits and rounded positions leave no
+trace in the coherence. So the noise of the shapes has an unknown scale, summed over a few values by their
+prior; a misfit of shapes then counts for as much as their noise, judged by all of them, allows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from acquisition.arrays import BoolArray, FloatArray
+from updating.likelihood.comparison import SCALES, SHAPES, Comparison
+
+
+@dataclass(frozen=True, eq=False)
+class Marginal:
+    """A Gaussian residual with variance D + J J^T, D with an unknown scale on the shapes.
+
+    Parameters
+    ----------
+    log_likelihood : float
+        Logarithm of the marginal likelihood, summed over the scales [-].
+    chi2 : float
+        Mahalanobis length of the residual at the most probable scale [-].
+    shift : (p,) array
+        Most probable nuisances at that scale [standard deviations].
+    count : int
+        Number of data.
+    scale : float
+        The most probable scale of the noise of the shapes [-].
+    """
+
+    log_likelihood: float
+    chi2: float
+    shift: FloatArray
+    count: int
+    scale: float
+
+
+def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
+    """Integrate nuisances and scale out of a comparison.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Residual, nuisances and noise.
+    keep : (n,) bool array, optional
+        Data to use; left out, all.
+
+    Returns
+    -------
+    Marginal
+        With a likelihood of zero where the prediction is not finite.
+    """
+    if not _sound(comparison):
+        nothing = np.zeros(comparison.nuisance.shape[1])
+        return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
+    shapes = comparison.channel == SHAPES if keep is None else (comparison.channel == SHAPES) & keep
+    scales = SCALES if shapes.any() else SCALES[:1]
+    parts = gaussian(comparison, scales, keep)
+    prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
+    score = np.array([part.log_likelihood for part in parts]) + prior
+    top = parts[int(np.argmax(score))]
+    peak = float(score.max())
+    total = peak + float(np.log(np.sum(np.exp(score - peak))))
+    return Marginal(total, top.chi2, top.shift, top.count, top.scale)
+
+
+def _sound(comparison: Comparison) -> bool:
+    """Tell whether a prediction is finite and no sensitivity is beyond all measure."""
+    whole = np.isfinite(comparison.residual).all() and np.isfinite(comparison.nuisance).all()
+    return bool(
+        whole
+        and np.isfinite(comparison.variance).all()
+        and np.abs(comparison.nuisance).max(initial=0.0) < 1e6
+    )
+
+
+def gaussian(
+    comparison: Comparison, scales: Sequence[float], keep: BoolArray | None = None
+) -> list[Marginal]:
+    """Integrate the nuisances out at each of some scales of the noise of the shapes; see :func:`marginal`."""
+    rows = slice(None) if keep is None else keep
+    r, j, d = comparison.residual[rows], comparison.nuisance[rows], comparison.variance[rows]
+    shapes = comparison.channel[rows] == SHAPES
+    data = np.column_stack([j, r])
+    # every scale weighs the same two Gram matrices, those of the shapes and of the rest
+    grams = [(data[part].T / d[part]) @ data[part] for part in (~shapes, shapes)]
+    share = 1.0 / np.square(np.asarray(scales))[:, None, None]
+    gram = grams[0] + share * grams[1]
+    p = j.shape[1]
+    inner = np.eye(p) + gram[:, :p, :p]
+    lower = np.linalg.cholesky(inner)
+    load = gram[:, :p, p:]
+    shift = np.linalg.solve(inner, load)[:, :, 0]
+    chi2 = gram[:, p, p] - np.einsum("sp,sp->s", load[:, :, 0], shift)
+    log_det = 2 * np.log(np.einsum("sii->si", lower)).sum(axis=1)
+    log_det += np.sum(np.log(d)) + 2 * shapes.sum() * np.log(np.asarray(scales))
+    score = -0.5 * (chi2 + log_det + len(r) * np.log(2 * np.pi))
+    return [
+        Marginal(float(score[i]), float(chi2[i]), shift[i], len(r), scale) for i, scale in enumerate(scales)
+    ]
+
+
+def whiten(
+    comparison: Comparison, columns: FloatArray, scale: float, keep: BoolArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Return normal matrix and load of least squares on ``columns``, the nuisances integrated out.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Residual, nuisances and noise.
+    columns : (n, k) array
+        Change of the prediction per parameter.
+    scale : float
+        Scale of the noise of the shapes [-].
+    keep : (n,) bool array, optional
+        Data to use; left out, all.
+
+    Returns
+    -------
+    normal : (k, k) array
+    load : (k,) array
+    """
+    rows = slice(None) if keep is None else keep
+    j, d, columns = comparison.nuisance[rows], comparison.noise(scale)[rows], columns[rows]
+    inner = cho_factor(np.eye(j.shape[1]) + (j.T / d) @ j)
+    solved = (columns.T / d).T - ((j.T / d).T) @ cho_solve(inner, (j.T / d) @ columns)
+    return columns.T @ solved, solved.T @ comparison.residual[rows]

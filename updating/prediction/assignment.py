@@ -1,0 +1,62 @@
+"""Which of a model's predicted modes belongs to each measured mode, fast enough for every evaluation."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from acquisition.arrays import BoolArray, FloatArray, IntArray
+from updating.prediction.predict import Prediction
+from updating.test_data.measured import Measured
+
+FREQUENCY_WEIGHT = 0.5
+"""How much a frequency ratio of e counts against a MAC of zero."""
+
+
+def mac_of_constants(
+    measured: Measured, prediction: Prediction, trusted: BoolArray | None = None
+) -> FloatArray:
+    """Return the MAC between measured and predicted modal constants, (n_measured, n_predicted) [-].
+
+    Parameters
+    ----------
+    measured, prediction
+        Test and model.
+    trusted : (n_frf,) bool array, optional
+        Rows to use; left out, all.
+    """
+    rows = slice(None) if trusted is None else trusted
+    a, b = measured.constants[rows], prediction.constants[rows]
+    power = np.outer(np.sum(a**2, axis=0), np.sum(b**2, axis=0))
+    return np.asarray((a.T @ b) ** 2 / np.maximum(power, 1e-300))
+
+
+def match(
+    measured: Measured, prediction: Prediction, order: IntArray, trusted: BoolArray | None = None
+) -> IntArray:
+    """Assign a predicted mode to every measured mode.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test.
+    prediction : Prediction
+        The model's modes.
+    order : (n_measured,) int array
+        Rank of the model mode that belongs to each measured one where shapes cannot tell: the i-th entry
+        counts model modes from the lowest.
+    trusted : (n_frf,) bool array, optional
+        Rows whose shapes are compared; left out, those that the test trusts.
+
+    Returns
+    -------
+    (n_measured,) int array
+        Index of the predicted mode of each measured mode.
+    """
+    if not measured.has_shapes:
+        return np.asarray(np.argsort(prediction.frequency)[order])
+    trusted = measured.trusted if trusted is None else trusted
+    ratio = np.abs(np.log(measured.frequency[:, None] / prediction.frequency[None, :]))
+    ratio = np.nan_to_num(ratio, nan=3.0)
+    cost = 1 - mac_of_constants(measured, prediction, trusted) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
+    return np.asarray(linear_sum_assignment(cost)[1])

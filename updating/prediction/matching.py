@@ -1,0 +1,192 @@
+"""Which measured modes have a partner in the model, and which."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from acquisition.arrays import BoolArray, IntArray
+from acquisition.errors import EstimationError
+from identification import pair
+from updating.prediction.assignment import mac_of_constants, match
+from updating.prediction.predict import Prediction
+from updating.prediction.trusted_frfs import left_out, trusted_rows
+from updating.test_data.measured import Measured
+
+WILD = 0.25
+"""Standard deviation of the logarithms of the frequency ratios beyond which ranks are doubted."""
+
+DISTANT, NOTHING_IN_COMMON = 2.0, 10.0
+"""Typical ratio of frequencies, test to model or back, from which pairs by rank are doubted, and refused."""
+
+FAINT = 0.35
+"""Modes whose constants are no better known than this, relative to their r.m.s., are not compared."""
+
+ASTRAY = 0.5
+"""A pair whose logarithm of the frequency ratio lies so far from the others' median is no pair..."""
+
+SAME = 0.95
+"""...unless the shapes are the same."""
+
+LOWEST_MAC = 0.4
+"""Below this MAC a measured mode has no partner, however near; the least MAC rises from here to `SAME` with the
+distance of its frequency ratio from the others' up to `ASTRAY`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Paired:
+    """Measured modes that have a partner in the model.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test with these modes only, and the rows by which they were paired where some channel spoils the shapes.
+    order : (n_modes,) int array
+        Rank of each one's partner among the model's modes.
+    warnings : tuple of str
+        Which modes have none.
+    mostly_alone : bool
+        Whether most of the measured modes have none.
+    """
+
+    measured: Measured
+    order: IntArray
+    warnings: tuple[str, ...]
+    mostly_alone: bool = False
+
+    @property
+    def trusted(self) -> BoolArray | None:
+        """Rows by which they were paired, where some points or sensors spoil the shapes of all modes."""
+        return self.measured.trusted
+
+
+def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
+    """Find the partner of every measured mode, and leave out those without one.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test.
+    prediction : Prediction
+        The nominal model's modes, in order of frequency.
+
+    Raises
+    ------
+    EstimationError
+        If no mode has a partner.
+    """
+    if not measured.has_shapes:
+        return _pair_by_order(measured, prediction)
+    measured, lost = _without_faint(replace(measured, trusted=None))
+    if len(measured.frequency) > len(prediction.frequency):
+        raise EstimationError(
+            f"the test has {len(measured.frequency)} modes and the model {len(prediction.frequency)} in its band; "
+            "narrow the band of the test"
+        )
+    trusted = trusted_rows(measured, prediction)
+    order = match(measured, prediction, np.arange(len(measured.frequency)), trusted)
+    mac = mac_of_constants(measured, prediction, trusted)[np.arange(len(order)), order]
+    ratio = np.log(measured.frequency / prediction.frequency[order])
+    distance = np.minimum(np.abs(ratio - np.median(ratio)) / ASTRAY, 1.0)
+    keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * distance
+    if not keep.any():
+        raise EstimationError(
+            f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
+            "check axes, points, boundary conditions, and the model's units (m, Pa, kg/m3)"
+        )
+    lost += [
+        f"mode at {f:.2f} Hz has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f}) "
+        "and is left out"
+        for f, m, r in zip(measured.frequency[~keep], mac[~keep], ratio[~keep], strict=True)
+    ]
+    alone = bool(keep.sum() < len(keep) / 2)
+    if alone:
+        lost.append(MOSTLY_ALONE)
+    if trusted is not None:
+        lost.append(f"modes are paired without {left_out(measured, trusted)}, which spoils their shapes")
+    return Paired(replace(measured.modes(keep), trusted=trusted), order[keep], tuple(lost), alone)
+
+
+MOSTLY_ALONE = (
+    "most measured modes have no partner: test and model may not be the same structure, or points and signs are "
+    "mistaken"
+)
+"""What is said then."""
+
+
+def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
+    """Leave out modes whose constants drown in their own uncertainty."""
+    size = np.sqrt(np.mean(measured.constants**2, axis=0))
+    doubt = np.sqrt(np.mean(measured.constants_sigma**2, axis=0)) / np.maximum(size, 1e-300)
+    faint = doubt > FAINT
+    if faint.all():
+        raise EstimationError(
+            f"{measured.title or 'test'}: every mode's shape drowns in noise; average more hits or narrow the band"
+        )
+    lost = [
+        f"mode at {f:.2f} Hz is too faint to compare (its constants are uncertain by {100 * d:.0f} %) and is left out"
+        for f, d in zip(measured.frequency[faint], doubt[faint], strict=True)
+    ]
+    return measured.modes(~faint), lost
+
+
+def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
+    """Pair by rank; let modes be skipped only where the ratios of frequencies are wild without."""
+    above = prediction.frequency[measured.below :]
+    count = min(len(measured.frequency), len(above))
+    ratio = np.log(measured.frequency[:count] / above[:count])
+    if count == len(measured.frequency) and np.std(ratio) < WILD:
+        order = measured.below + np.arange(count)
+        return Paired(measured, order, _distance(measured, float(np.exp(np.median(ratio)))))
+    pairs = pair(measured.frequency, prediction.frequency, None)
+    rows = np.array([p.test for p in pairs if p.model is not None and p.test is not None], dtype=int)
+    order = np.array([p.model for p in pairs if p.model is not None and p.test is not None], dtype=int)
+    if not len(rows):
+        raise EstimationError(f"{measured.title or 'test'}: no measured frequency has a partner in the model")
+    keep = np.zeros(len(measured.frequency), dtype=bool)
+    keep[rows] = True
+    lost = [f"mode at {f:.2f} Hz has no partner in the model" for f in measured.frequency[~keep]]
+    return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))
+
+
+MISTAKEN = {
+    1e3: "the model's lengths are in mm, or its E in MPa",
+    10**4.5: "the model's E is in GPa",
+    1e-3: "the model's thickness alone is in mm, or the test's frequencies are in kHz",
+    10**-1.5: "the model's density is in g/cm3",
+    39.37: "the model's lengths are in inches",
+}
+"""Ratio of frequencies, test to model, that a unit other than SI makes: frequencies go as thickness over length
+squared, and as the root of E over density [-]."""
+
+LIKELY = 2.5
+"""How far from such a ratio, as a factor, test and model may be for it to be named: farther off than most gaps [-]."""
+
+
+def _probable(ratio: float) -> str:
+    """Return which unit was probably meant by a ratio of frequencies, test to model; nothing where none fits."""
+    off = {other: abs(np.log(ratio / other)) for other in MISTAKEN}
+    nearest = min(off, key=lambda other: off[other])
+    return f"; probably {MISTAKEN[nearest]}" if off[nearest] < np.log(LIKELY) else ""
+
+
+def _distance(measured: Measured, ratio: float) -> tuple[str, ...]:
+    """Say how far test and model are apart where ranks alone pair them.
+
+    Raises
+    ------
+    EstimationError
+        If so far that they have no mode in common.
+    """
+    times = f"the test's frequencies are {ratio:.3g} times the model's"
+    if max(ratio, 1 / ratio) > NOTHING_IN_COMMON:
+        raise EstimationError(
+            f"{measured.title or 'test'}: no modes in common: {times}; check the units of the model (m, Pa, kg/m3) "
+            f"and of the test (Hz){_probable(ratio)}"
+        )
+    far = max(ratio, 1 / ratio) > DISTANT
+    return (f"{times}, and only their order pairs them: they may be other modes",) if far else ()
+
+
+__all__ = ["Paired", "mac_of_constants", "match", "pair_modes"]

@@ -1,0 +1,409 @@
+"""What a model predicts for the points of a test, with its sensitivities.
+
+Eigenvalue sensitivities are paper A's Eqs. 16 and 17; eigenvector sensitivities are the modal expansion over
+all modes of the reduced basis (Fox and Kapoor 1968).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from scipy import linalg
+
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.display import Displayed
+from updating.environment import Environment
+from updating.models.build import build_structure
+from updating.models.complex_modes import ComplexModes, complex_modes
+from updating.models.damping import Matrices, damping_matrices, layer_slowing, modal_losses
+from updating.models.reduced import Reduced, reduce_structure
+from updating.models.response import receptance
+from updating.models.spec import Damping, Spec, Theory
+from updating.models.state import NOMINAL, State
+from updating.models.whole import Whole
+from updating.test_data.chain import Reading, reading
+from updating.test_data.measured import Measured
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction(Displayed):
+    """Modes of a model at the points of a test.
+
+    Parameters
+    ----------
+    frequency : (n_modes,) array
+        Natural frequencies, nan where the state has lost its stiffness [Hz].
+    damping : (n_modes,) array
+        Damping ratios, nan where nothing is expected [-].
+    constants : (n_frf, n_modes) array
+        Modal constants phi_response * phi_reference, the gain included [1/kg].
+    along, along_seen : (dim, n_frf, n_modes) arrays
+        Derivatives of the constants by the position of the hit, and of the sensor [1/(kg m)].
+    log_frequency_by : (n_modes, n_factors) array
+        Derivatives of ln f by the logarithms of the factors asked for [-].
+    constants_by : (n_frf, n_modes, n_factors) array
+        Derivatives of the constants by the same [1/kg].
+    vectors : (r, n_modes) array
+        Mode shapes in the coordinates of the reduced basis [kg^-1/2].
+    """
+
+    frequency: FloatArray
+    damping: FloatArray
+    constants: FloatArray
+    along: FloatArray
+    along_seen: FloatArray
+    log_frequency_by: FloatArray
+    constants_by: FloatArray
+    vectors: FloatArray
+
+    def select(self, modes: IntArray) -> Prediction:
+        """Return some of the modes, in the order given."""
+        return Prediction(
+            self.frequency[modes],
+            self.damping[modes],
+            self.constants[:, modes],
+            self.along[:, :, modes],
+            self.along_seen[:, :, modes],
+            self.log_frequency_by[modes],
+            self.constants_by[:, modes],
+            self.vectors[:, modes],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Predictor(Displayed):
+    """A specimen's model, looked at from the points of a test.
+
+    Parameters
+    ----------
+    spec : Spec
+        The nominal model.
+    measured : Measured
+        The test whose points and FRFs are predicted.
+    environment : Environment
+        What the study says of the surroundings.
+    additions : tuple of callables
+        What is put into the model beforehand, each a function of the predictor that returns a State:
+        accepted effects, the correction by a baseline test.
+    """
+
+    spec: Spec
+    measured: Measured
+    environment: Environment = field(default_factory=Environment)
+    additions: tuple[Callable[[Predictor], State], ...] = ()
+
+    @cached_property
+    def base(self) -> State:
+        """What the additions put into the model, on this predictor's basis; each sees those before it."""
+        total, seen = NOMINAL, self.bare
+        for count, addition in enumerate(self.additions, start=1):
+            total = total.plus(addition(seen))
+            seen = self.looking(self.measured, self.additions[:count])
+            seen.__dict__["base"] = total
+        return total
+
+    @cached_property
+    def bare(self) -> Predictor:
+        """The same predictor on the same basis without any addition."""
+        return self.looking(self.measured, ()) if self.additions else self
+
+    def looking(
+        self, measured: Measured, additions: tuple[Callable[[Predictor], State], ...] | None = None
+    ) -> Predictor:
+        """Return a predictor for another test or with other additions, on the same reduced basis."""
+        other = replace(self, measured=measured, additions=self.additions if additions is None else additions)
+        other.__dict__["reduced"] = self.reduced
+        return other
+
+    @cached_property
+    def reduced(self) -> Reduced:
+        """The nominal model on its reduced basis."""
+        points, directions = self.measured.points, self.measured.directions
+        if not len(points) and self.spec.imported is None:
+            points = np.zeros((1, self.spec.dim))
+        modes = 30 if self.spec.kind == "beam" else 40
+        return reduce_structure(build_structure(self.spec), points, directions, modes=modes)
+
+    @cached_property
+    def whole(self) -> Predictor:
+        """The same specimen on all degrees of freedom, for states of its full matrices."""
+        other = replace(self)
+        other.__dict__["reduced"] = Whole(self.reduced)
+        return other
+
+    def once(self, name: str, build: Callable[[], FloatArray]) -> FloatArray:
+        """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""
+        if name not in self._kept:
+            self._kept[name] = build()
+        return self._kept[name]
+
+    @cached_property
+    def _kept(self) -> dict[str, FloatArray]:
+        return {}
+
+    @property
+    def expects_damping(self) -> bool:
+        """Whether the model, a region, or a baseline test says what damping to expect."""
+        return self.expects(self.base)
+
+    def under(self, theory: Theory) -> Predictor:
+        """Return the predictor of the same specimen under another theory, kept for the next call."""
+        if theory == self.spec.theory:
+            return self
+        if theory not in self._others:
+            self._others[theory] = replace(self, spec=self.spec.with_theory(theory))
+        return self._others[theory]
+
+    @cached_property
+    def _others(self) -> dict[str, Predictor]:
+        return {}
+
+    def predict(
+        self,
+        state: State = NOMINAL,
+        *,
+        factors: Sequence[str] = (),
+        count: int | None = None,
+        at_least: int = 0,
+    ) -> Prediction:
+        """Predict the lowest elastic modes of a state.
+
+        Parameters
+        ----------
+        state : State
+            Departure from the nominal model, on top of ``base``.
+        factors : sequence of str
+            Factors to differentiate by.
+        count : int, optional
+            Number of modes; left out, those up to 1.6 times the highest measured frequency and three more.
+        at_least : int
+            Fewest modes where ``count`` is left out.
+
+        Returns
+        -------
+        Prediction
+        """
+        total = self.base.plus(state)
+        if total.theory is not None and total.theory != self.spec.theory:
+            other = self.under(total.theory)
+            bare = replace(state, theory=None)
+            return other.predict(bare, factors=factors, count=count, at_least=at_least)
+        reduced = self.reduced
+        values, vectors = reduced.eigen(total)
+        first = reduced.structure.rigid_modes
+        if count is None:
+            top = (2 * np.pi * 1.6 * self.measured.frequency.max()) ** 2
+            count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
+        chosen = np.arange(first, min(first + count, len(values)))
+        read = reading(self.measured, total)
+        rows = self._rows(total, read.points)
+        shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
+        by = self._by_factors(total, values, vectors, chosen, factors, rows, read.points) if factors else []
+        shift = 1.0 + total.slope * (self.measured.level or 0.0)
+        slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
+        frequency = (
+            shift * slowing * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
+        )
+        # what a layer carries along is modal mass
+        level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
+        return Prediction(
+            frequency,
+            self._damping(total, values[chosen], vectors[:, chosen]),
+            level * read.product(shapes["w"], shapes["w"]),
+            level * self._slopes(shapes, read),
+            level * self._sensor_slopes(shapes, read),
+            np.stack([b[0] for b in by], axis=-1) if by else np.zeros((len(chosen), 0)),
+            level[:, :, None] * np.stack([_change(shapes["w"], b[1], read) for b in by], axis=-1)
+            if by
+            else np.zeros((len(self.measured.seen), len(chosen), 0)),
+            vectors[:, chosen],
+        )
+
+    @cached_property
+    def nominal_rows(self) -> dict[str, FloatArray]:
+        """Displacement and slopes of the basis at the test points, each (n_points, r)."""
+        return self.reduced.rows(self.measured.points, self.measured.directions)
+
+    def _rows(self, state: State, places: FloatArray | None = None) -> dict[str, FloatArray]:
+        """Return the rows of the basis at places, the test's points where none are given."""
+        stretch = state.factors.get("length", 1.0)
+        elsewhere = places is not None and len(places) > len(self.measured.points)
+        if stretch == 1.0 and not elsewhere:
+            return self.nominal_rows
+        points = np.array(places if elsewhere else self.measured.points)
+        points[:, 0] = (points[:, 0] + self.growth * (stretch - 1)) / stretch
+        rows = self.reduced.rows(points, self._directions(len(points)))
+        return {n: m / stretch if n == "wx" else m for n, m in rows.items()}
+
+    def _directions(self, count: int) -> FloatArray | None:
+        told = self.measured.directions
+        return None if told is None else told[np.minimum(np.arange(count), len(told) - 1)]
+
+    @property
+    def growth(self) -> float:
+        """How far x = 0 moves per unit of stretch so that points keep their distance from the free end [m]."""
+        clamped = {edge for edge in self.spec.clamped if edge[0] == "x"}
+        share = {frozenset({"x0"}): 1.0, frozenset({"x1"}): 0.0}.get(frozenset(clamped), 0.5)
+        return share * self.spec.length
+
+    def _slopes(self, shapes: dict[str, FloatArray], read: Reading) -> FloatArray:
+        names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
+        bare = read.hit[:, None] < 0
+        seen = shapes["w"][read.seen]
+        slopes = [np.where(bare, shapes[n][read.seen], seen * shapes[n][read.hit]) for n in names]
+        return np.stack(slopes)
+
+    def _sensor_slopes(self, shapes: dict[str, FloatArray], read: Reading) -> FloatArray:
+        names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
+        return np.stack([read.product(shapes[n], shapes["w"]) for n in names])
+
+    def _by_factors(
+        self,
+        state: State,
+        values: FloatArray,
+        vectors: FloatArray,
+        chosen: IntArray,
+        names: Sequence[str],
+        rows: dict[str, FloatArray],
+        places: FloatArray,
+    ) -> list[tuple[FloatArray, FloatArray]]:
+        """Return derivatives of ln f and of the shapes at the points by the logarithms of factors."""
+        modes = vectors[:, chosen]
+        lam = values[chosen]
+        terms = [
+            (term, (vectors.T @ (matrix @ modes)) * (-lam if term.kind == "mass" else 1.0))
+            for term, matrix in self.reduced.scaled_terms(state)
+        ]
+        gap = lam[None, :] - values[:, None]
+        near = np.abs(gap) < 1e-9 * np.abs(lam).max()
+        apart = np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
+        n = vectors.shape[0]
+        basis = rows["w"][:, :n] @ vectors
+        own = np.arange(len(chosen))
+        found = []
+        for name in names:
+            whole = np.zeros((len(values), len(chosen)))
+            heavier = np.zeros(len(chosen))
+            for term, part in terms:
+                if power := term.powers.get(name, 0.0):
+                    whole += power * part
+                    if term.kind == "mass":
+                        heavier -= power * part[chosen, own] / np.where(lam == 0, 1.0, lam)
+            weights = apart * whole
+            weights[chosen, own] = -0.5 * heavier
+            change = basis @ weights
+            if name == "length":
+                shift = (self.growth - places[:, :1]) * np.ones((1, n))
+                change = change + (shift * rows["wx"][:, :n]) @ modes
+            found.append((whole[chosen, own] / (2 * np.maximum(lam, 1e-12)), change))
+        return found
+
+    def _damping(self, state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
+        """Return modal damping ratios: what is expected of the specimen, plus what the state adds."""
+        omega = np.sqrt(np.maximum(values, 1e-12))
+        if not self.expects(state):
+            return np.asarray(np.full(len(values), np.nan))
+        viscous, structural = self._damping_matrices(state)
+        c = np.sum(vectors * (viscous @ vectors), axis=0)
+        d = np.sum(vectors * (structural @ vectors), axis=0) if structural.any() else np.zeros(len(values))
+        slow = layer_slowing(state, values, vectors)
+        rate = c + modal_losses(state, values, vectors)
+        added = d / (2 * omega**2) + self._ratios(state, len(values)) + state.decay / (slow * omega)
+        return np.asarray(slow * rate / (2 * omega) + added)
+
+    def expects(self, state: State) -> bool:
+        """Whether model, regions or the state say what damping to expect."""
+        own = any(v is not None for r in self.spec.regions for v in (r.alpha, r.beta, r.loss_factor))
+        told = bool(state.damping) or bool(state.dampers) or state.ratios is not None
+        return self.spec.damping.known or own or told
+
+    def _damping_matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
+        """Return C and D; damping matrices in the state replace what the model expects."""
+        expected = Damping() if state.damping else self.spec.damping
+        return damping_matrices(self.reduced, expected, state)
+
+    def _ratios(self, state: State, count: int) -> FloatArray:
+        """Return the damping ratios that state or modeller give mode by mode, the last for all above [-]."""
+        given = self._given(state)
+        if given is None:
+            return np.zeros(count)
+        return np.asarray(given, dtype=float)[np.minimum(np.arange(count), len(given) - 1)]
+
+    def _given(self, state: State) -> tuple[float, ...] | None:
+        if state.ratios is not None:
+            return state.ratios
+        return None if state.damping else self.spec.damping.ratios or None
+
+    def matrices(self, state: State = NOMINAL) -> Matrices:
+        """Return K, M, C and D of a state on top of ``base``; modal ratios enter C through the state's own modes.
+
+        Parameters
+        ----------
+        state : State
+            Departure from the nominal model, under the predictor's own theory.
+        """
+        total = self.base.plus(state)
+        stiffness, mass = self.reduced.matrices(total)
+        viscous, structural = self._damping_matrices(total)
+        modal = any(loss.power not in (0.0, -1.0) for loss in total.losses)
+        if self._given(total) is not None or modal:
+            values, vectors = linalg.eigh(stiffness, mass)
+            first = self.reduced.structure.rigid_modes
+            rates = np.zeros(len(values))
+            omega = np.sqrt(np.maximum(values[first:], 0))
+            rates[first:] = 2 * self._ratios(total, len(values) - first) * omega
+            rates[first:] += modal_losses(total, values[first:], vectors[:, first:])
+            momenta = mass @ vectors
+            slowing = np.ones(len(values))
+            slowing[first:] = layer_slowing(total, values[first:], vectors[:, first:])
+            mass = mass + (momenta * (slowing**-2 - 1)) @ momenta.T
+            viscous = viscous + (momenta * rates) @ momenta.T
+        return Matrices(stiffness, mass, viscous, structural, self.reduced.structure.rigid_modes)
+
+    def complex_modes(self, state: State = NOMINAL) -> ComplexModes:
+        """Return the damped modes of a state, exact for damping that is not proportional."""
+        return complex_modes(self.matrices(state), rigid=self.reduced.structure.rigid_modes)
+
+    def point_rows(self, state: State = NOMINAL) -> FloatArray:
+        """Return the rows of the basis at the points of the test, shape (n_points, r)."""
+        total = self.base.plus(state)
+        return self._rows(total)["w"][:, : self.reduced.ranks[total.released]]
+
+    def point_slopes(self, state: State = NOMINAL) -> FloatArray:
+        """Return the slopes of those rows along the in-plane axes, shape (dim, n_points, r)."""
+        total = self.base.plus(state)
+        rows, size = self._rows(total), self.reduced.ranks[total.released]
+        names = [n for n in ("wx", "wy")[: self.measured.points.shape[1]] if n in rows]
+        return np.array([rows[n][:, :size] for n in names]).reshape(len(names), -1, size)
+
+    def frf_rows(self, state: State = NOMINAL) -> tuple[FloatArray, FloatArray]:
+        """Return the rows of the basis at the response and at the force of every FRF, each (n_frf, r)."""
+        rows = self.point_rows(state)
+        return rows[self.measured.seen], rows[self.measured.hit]
+
+    def receptance(self, laplace: ComplexArray, state: State = NOMINAL) -> ComplexArray:
+        """Return the model's receptances for the FRFs of the test, shape (n_frf, n_lines) [m/N].
+
+        Parameters
+        ----------
+        laplace : (n_lines,) complex array
+            Where in the Laplace plane, i omega + sigma [1/s].
+        state : State
+            Departure from the nominal model, on top of ``base``; its gain multiplies the FRFs, and its decay is
+            that of a window beside what ``laplace`` holds.
+        """
+        total = self.base.plus(state)
+        if total.theory is not None and total.theory != self.spec.theory:
+            return self.under(total.theory).receptance(laplace, replace(state, theory=None))
+        seen, hit = self.frf_rows(state)
+        return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
+
+
+def _change(shape: FloatArray, change: FloatArray, read: Reading) -> FloatArray:
+    """Return the change of the constants that a change of the shapes makes, both (n_points, n_modes)."""
+    left, right = shape[read.seen], shape[read.hit]
+    d_left, d_right = change[read.seen], change[read.hit]
+    return np.asarray(np.where(read.hit[:, None] < 0, d_left, d_left * right + left * d_right))

@@ -1,0 +1,1 @@
+"""The problem of one specimen: a test, a model, and everything that is doubted about either."""

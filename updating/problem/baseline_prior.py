@@ -1,0 +1,160 @@
+"""What a baseline test has already said: of the tolerances, and of how the model's shapes miss.
+
+The same specimen was tested before the effect was there. What tolerances did to that test they do to this one,
+so only the difference of the sensitivities is left in doubt; and what the model's modal constants missed then
+they miss now, in proportion to the level of the mode. Modes are carried over by their overlap, so that a mode
+that mixes two of the baseline takes its share of each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.models.state import NOMINAL
+from updating.prediction.matching import match
+from updating.prediction.predict import Prediction, Predictor
+from updating.problem.same_places import same_rows
+from updating.test_data.measured import Measured
+
+CARRIED = 0.3
+"""How far what the model missed in the baseline may miss differently now, relative to what it missed [-]."""
+
+EXTRAPOLATED = 0.01
+"""Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Before:
+    """A baseline beside the model that was corrected by it.
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The corrected model, looked at from the points of the test; the correction is its last addition.
+    measured : Measured
+        The test.
+    baseline : Measured
+        The baseline's modes.
+    order : (n_baseline,) int array
+        Rank of each baseline mode's partner, for data without shapes.
+    factors : sequence of str
+        Factors with a tolerance.
+    """
+
+    predictor: Predictor
+    measured: Measured
+    baseline: Measured
+    order: IntArray
+    factors: Sequence[str]
+
+    @cached_property
+    def prediction(self) -> Prediction:
+        """The corrected model's modes at the baseline's points, in the order of the baseline."""
+        looking = self.predictor.looking(self.baseline, self.predictor.additions[-1:])
+        prediction = looking.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
+        return prediction.select(match(self.baseline, prediction, self.order))
+
+    @cached_property
+    def _uneven(self) -> FloatArray:
+        """That part of the correction of ln f which is no common factor, shape (n_baseline,) [-]."""
+        base = self.baseline
+        plain = self.predictor.looking(base, ())
+        prediction = plain.predict(at_least=int(self.order.max()) + 3)
+        prediction = prediction.select(match(base, prediction, self.order))
+        correction = np.log(base.frequency / prediction.frequency)
+        return np.asarray(correction - np.median(correction))
+
+    @cached_property
+    def relative_variance(self) -> FloatArray:
+        """Variance of what the baseline says of ln f, shape (n_baseline,) [-].
+
+        It holds identification, re-mounting, and a share of that part of the correction which is no common
+        factor: a model that missed some modes more than others has wrong shapes, too.
+        """
+        base = self.baseline
+        noise = (base.frequency_sigma / base.frequency) ** 2 + base.repeatability**2
+        return np.asarray(noise + (CARRIED * self._uneven) ** 2)
+
+    def seen(self, now: Prediction) -> FloatArray:
+        """Return how much of each present mode the baseline's modes make up together, (n_modes,) [-]."""
+        return np.asarray(np.clip(self._overlap(now).sum(axis=1), 0.0, 1.0))
+
+    def shares(self, now: Prediction) -> FloatArray:
+        """Return how much each baseline mode has of what they make up of a present one, (n_modes, n_baseline) [-]."""
+        overlap = self._overlap(now)
+        return np.asarray(overlap / np.maximum(overlap.sum(axis=1, keepdims=True), 1e-12))
+
+    def _overlap(self, now: Prediction) -> FloatArray:
+        """Return the squares of the modal overlaps, (n_modes, n_baseline) [-]."""
+        kept, found = self._last
+        if kept is now:
+            return found
+        before = self.prediction.vectors
+        n = min(len(now.vectors), len(before))
+        mass = self.predictor.once("nominal mass", lambda: self.predictor.reduced.matrices(NOMINAL)[1])
+        momenta = mass[:n, :n] @ before[:n]
+        own = np.sum(now.vectors[:n] * (mass[:n, :n] @ now.vectors[:n]), axis=0)
+        norm = np.outer(own, np.sum(before[:n] * momenta, axis=0))
+        overlap = np.asarray((now.vectors[:n].T @ momenta) ** 2 / np.maximum(norm, 1e-300))
+        self._remembered[:] = [(now, overlap)]
+        return overlap
+
+    @cached_property
+    def _remembered(self) -> list[tuple[Prediction | None, FloatArray]]:
+        """The overlap asked for last: every channel of a comparison asks for the same."""
+        return [(None, np.zeros((0, 0)))]
+
+    @property
+    def _last(self) -> tuple[Prediction | None, FloatArray]:
+        return self._remembered[0]
+
+    def frequency(self, now: Prediction) -> tuple[FloatArray, FloatArray]:
+        """Return variance of and sensitivities already known in ln f of the present modes.
+
+        Returns
+        -------
+        variance : (n_modes,) array [-]
+        known : (n_modes, n_factors) array [-]
+        """
+        shares, seen = self.shares(now), self.seen(now)
+        beyond = (1 - seen) * (np.var(self._uneven) + EXTRAPOLATED**2)
+        known = seen[:, None] * (shares @ self.prediction.log_frequency_by)
+        return shares @ self.relative_variance + beyond, known
+
+    @cached_property
+    def _rows(self) -> tuple[IntArray, IntArray]:
+        """Rows of the test and of the baseline with the same two points, in either order."""
+        return same_rows(self.measured, self.baseline)
+
+    def shapes(self, now: Prediction) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return what the baseline says the present constants miss.
+
+        Returns
+        -------
+        missed : (n_frf, n_modes) array
+            To be added to the prediction [1/kg].
+        variance : (n_frf, n_modes) array
+            Its variance [1/kg^2].
+        known : (n_frf, n_modes, n_factors) array
+            Sensitivities already known [1/kg].
+        """
+        here, there = self._rows
+        missed, variance = np.zeros_like(now.constants), np.zeros_like(now.constants)
+        known = np.zeros_like(now.constants_by)
+        if not (self.measured.absolute and self.baseline.absolute and len(here)):
+            return missed, variance, known
+        predicted = self.prediction.constants[there]
+        error = self.baseline.constants[there] - predicted
+        level = np.linalg.norm(now.constants[here], axis=0)[:, None] / np.linalg.norm(predicted, axis=0)
+        weights = self.shares(now) * level
+        missed[here] = error @ weights.T
+        variance[here] = (
+            self.baseline.constants_sigma[there] ** 2 @ (weights**2).T + (CARRIED * missed[here]) ** 2
+        )
+        known[here] = np.einsum("fkp,mk->fmp", self.prediction.constants_by[there], weights)
+        return missed, variance, known

@@ -1,0 +1,152 @@
+"""A set of effects, as one function from prior quantiles to a state of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.effects import Effect, Parameter, Variant
+from updating.effects.base import Values
+from updating.models.spec import Theory
+from updating.models.state import State, combine
+from updating.prediction.predict import Predictor
+
+MIDDLE = 0.5
+"""Quantile that stands in for a parameter that a variant fixes."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """What a candidate leaves in doubt beside its parameters.
+
+    Parameters
+    ----------
+    fidelity : float
+        How far its idealisation may be off, relative to the shift it makes [-].
+    damping : float
+        How far it leaves damping in doubt: 1 sigma of ln zeta [-].
+    """
+
+    fidelity: float = 0.0
+    damping: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One explanation: no effect, a single one, or several at once.
+
+    Parameters
+    ----------
+    effects : tuple of Effect
+        The effects; empty is 'only the tolerances'.
+    theory : str, optional
+        Theory the model is put on because the nominal one is known to fall short.
+    chosen : tuple of Variant
+        The form of each effect; empty is the plain form of all.
+    """
+
+    effects: tuple[Effect, ...] = ()
+    theory: Theory | None = None
+    chosen: tuple[Variant, ...] = ()
+
+    @property
+    def forms(self) -> tuple[Variant, ...]:
+        """The form of each effect."""
+        return self.chosen or (Variant(),) * len(self.effects)
+
+    @property
+    def log_weight(self) -> float:
+        """Logarithm of the prior share of these forms [-]."""
+        return float(np.sum(np.log([form.weight for form in self.forms]))) if self.effects else 0.0
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects."""
+        return tuple(effect.name for effect in self.effects)
+
+    def doubt_on(self, predictor: Predictor) -> Doubt:
+        """Return what they leave in doubt on a specimen and its test."""
+        fidelity = max((effect.fidelity_on(predictor) for effect in self.effects), default=0.0)
+        return Doubt(fidelity, max((effect.damping_doubt for effect in self.effects), default=0.0))
+
+    def stage(self, predictor: Predictor) -> Predictor:
+        """Return the predictor the effects act on."""
+        theory = self.theory
+        if theory is None and "shear" in self.names:
+            theory = "timoshenko"
+        if theory is None or predictor.spec.kind != "beam":  # of several specimens, beams alone have another
+            return predictor
+        return predictor.under(theory)
+
+    def parameters(self, predictor: Predictor) -> tuple[tuple[str, Parameter], ...]:
+        """Return the parameters that are searched, as (effect.parameter, prior)."""
+        return tuple(
+            (f"{effect.name}.{p.name}", p)
+            for effect, form in zip(self.effects, self.forms, strict=True)
+            for p in _free(effect, form, predictor)
+        )
+
+    def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
+        """Take prior quantiles to values, by effect.parameter."""
+        stage = self.stage(predictor)
+        return {f"{e.name}.{n}": v for e, part in self.split(stage, coordinates) for n, v in part.items()}
+
+    def split(self, stage: Predictor, coordinates: Sequence[float]) -> list[tuple[Effect, Values]]:
+        """Return the values of each effect's parameters at prior quantiles, on the predictor they act on."""
+        parts: list[tuple[Effect, Values]] = []
+        start = 0
+        for effect, form in zip(self.effects, self.forms, strict=True):
+            quantiles = []
+            for parameter in effect.parameters(stage):
+                fixed = parameter.name in form.values
+                quantiles.append(MIDDLE if fixed else coordinates[start])
+                start += not fixed
+            parts.append((effect, effect.settled(stage, {**effect.values(stage, quantiles), **form.values})))
+        return parts
+
+    def state(self, predictor: Predictor, coordinates: Sequence[float]) -> State:
+        """Return the state of the model at prior quantiles."""
+        stage = self.stage(predictor)
+        return self.assemble(stage, self.split(stage, coordinates))
+
+    def assemble(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
+        """Return the state of the model at values of the effects' parameters."""
+        theory = State(theory=self.theory if stage.spec.kind == "beam" else None)
+        return combine([*(effect.state(stage, values) for effect, values in parts), theory])
+
+    def locations(
+        self, predictor: Predictor, coordinates: Sequence[float], *, channel: str | None = None
+    ) -> tuple[tuple[float, float, float], ...]:
+        """Return where the effects sit, those of one channel or all [m]."""
+        stage = self.stage(predictor)
+        acting = [(e, v) for e, v in self.split(stage, coordinates) if channel in (None, e.channel)]
+        return tuple(place for effect, values in acting for place in effect.locations(stage, values))
+
+    def derived(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, tuple[float, str]]:
+        """Return derived quantities by effect.name, as (value, unit)."""
+        stage = self.stage(predictor)
+        return {
+            f"{effect.name}.{n}": v
+            for effect, values in self.split(stage, coordinates)
+            for n, v in effect.derived(stage, values).items()
+        }
+
+    def starts(self, predictor: Predictor) -> list[FloatArray]:
+        """Return prior quantiles to start a search from: every combination of the effects' own."""
+        stage = self.stage(predictor)
+        own = [_starts(e, form, stage) for e, form in zip(self.effects, self.forms, strict=True)]
+        return [np.concatenate([*map(np.asarray, s), []]) for s in product(*own)]
+
+
+def _free(effect: Effect, form: Variant, predictor: Predictor) -> list[Parameter]:
+    return [p for p in effect.parameters(predictor) if p.name not in form.values]
+
+
+def _starts(effect: Effect, form: Variant, stage: Predictor) -> list[tuple[float, ...]]:
+    free = [p.name not in form.values for p in effect.parameters(stage)]
+    own = [tuple(u for u, is_free in zip(s, free, strict=True) if is_free) for s in effect.starts(stage)]
+    return list(dict.fromkeys(own))

@@ -1,0 +1,166 @@
+"""What has to be sure before a gap is explained: that model and data are good enough to speak of one.
+
+A model that is coarser, or a theory that is simpler, than the noise allows shows a gap of its own, and a search would
+find some effect for it. How far mesh and theory are off, :mod:`updating.problem.theory_error` estimates.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.models.spec import Spec
+from updating.prediction.predict import Predictor
+from updating.problem.theory_error import Shortfall, discrepancy, shortfall
+from updating.test_data.measured import Measured
+
+FEW_MODES = 3
+"""With fewer modes little can be told apart."""
+
+SKIPPED = 4.0
+"""By how much a missing mode must lower the scatter of the frequency ratios before it is suspected [-]."""
+
+UNLIKE = 0.02
+"""Scatter of the frequency ratios, relative, below which nothing is suspected [-]."""
+
+__all__ = [
+    "Shortfall",
+    "discrepancy",
+    "missing_mode",
+    "on_convergence",
+    "on_levels",
+    "on_modes",
+    "remarks_on",
+    "shortfall",
+]
+
+
+def on_convergence(predictor: Predictor, measured: Measured, order: IntArray) -> list[str]:
+    """Return remarks where mesh or theory are off by more than the noise of the frequencies.
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The model.
+    measured : Measured
+        The test, its modes those of ``order``.
+    order : (n_modes,) int array
+        Rank of each mode among the model's.
+    """
+    return remarks_on(shortfall(predictor, order), measured, predictor.spec)
+
+
+def remarks_on(found: Shortfall, measured: Measured, spec: Spec) -> list[str]:
+    """Return what a shortfall that was worked out already says beside the noise; see `on_convergence`."""
+    if not found.known:
+        return ["imported matrices cannot be refined: whether they have converged is not examined"]
+    noise = np.hypot(measured.frequency_sigma / measured.frequency, measured.repeatability)
+    remarks = []
+    worst = int(np.argmax(np.abs(found.mesh) / noise))
+    if abs(found.mesh[worst]) > noise[worst]:
+        remarks.append(
+            f"the mesh alone moves mode {worst + 1} by {_percent(found.mesh[worst])}, more than the noise of "
+            f"{_percent(noise[worst])}: use more elements"
+        )
+    worst = int(np.argmax(np.abs(found.theory) / noise))
+    if abs(found.theory[worst]) > noise[worst]:
+        remarks.append(
+            f"{spec.theory} theory leaves out shear and rotary inertia: some {_percent(found.theory[worst])} in mode "
+            f"{worst + 1}, more than the noise of {_percent(noise[worst])}" + _advice(spec)
+        )
+    return remarks
+
+
+def _advice(spec: Spec) -> str:
+    if spec.kind == "beam":
+        return '; theory = "timoshenko" has them'
+    return "; along free edges this softens modes that twist, and is no effect to be named"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * abs(share):.2g} %"
+
+
+def on_modes(measured: Measured, predicted: FloatArray, order: IntArray | None = None) -> list[str]:
+    """Return remarks on too few modes and, where only frequencies are known, on a mode that seems to be missing.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test.
+    predicted : (n,) array
+        The model's frequencies from the lowest, at least one more than the test has [Hz].
+    order : (n_modes,) int array, optional
+        Rank of the model mode of each measured one; left out, its own. Where the pairing has left modes out already,
+        no more is said of it.
+    """
+    count = len(measured.frequency)
+    remarks = []
+    if count < FEW_MODES:
+        remarks.append(f"only {count} mode{'s' * (count > 1)} paired: little can be told apart")
+    if measured.has_shapes or (order is not None and np.any(order != np.arange(count))):
+        return remarks
+    skipped = missing_mode(measured.frequency, predicted)
+    if skipped is not None:
+        remarks.append(
+            f"without shapes, modes are paired by rank; from mode {skipped + 1} on they fit far better as if the test "
+            f"had missed the model's mode {skipped + 1} at {predicted[skipped]:.4g} Hz: check that none is missing"
+        )
+    return remarks
+
+
+def missing_mode(test: FloatArray, model: FloatArray) -> int | None:
+    """Return after how many modes one seems to be missing in a sequence of frequencies, or None.
+
+    Parameters
+    ----------
+    test : (n,) array
+        Measured frequencies [Hz].
+    model : (m,) array
+        The model's from the lowest [Hz].
+
+    Returns
+    -------
+    int or None
+        Rank of the model mode that the test skipped: leaving it out lowers the scatter of the ratios of frequency
+        about their mean to a quarter. A factor common to all modes does not count: it is what is looked for.
+    """
+    count = len(test)
+    if count < FEW_MODES or len(model) <= count:
+        return None
+    plain = float(np.std(np.log(test / model[:count])))
+    ranks = np.arange(count)[None, :] + (np.arange(count)[None, :] >= np.arange(1, count)[:, None])
+    scatter = np.std(np.log(test[None, :] / model[ranks]), axis=1)
+    best = int(np.argmin(scatter))
+    suspect = plain > UNLIKE and plain > SKIPPED * scatter[best]
+    return best + 1 if suspect else None
+
+
+def on_levels(measured: Measured, *, fluid: bool) -> list[str]:
+    """Return a remark where frequencies follow the force of the hits beyond chance.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test.
+    fluid : bool
+        Whether the structure is in a fluid that was taken to be still.
+    """
+    if measured.slope is None or measured.slope_sigma is None or not measured.level:
+        return []
+    known = np.isfinite(measured.slope) & (measured.slope_sigma > 0)
+    if not known.any():
+        return []
+    weight = 1 / measured.slope_sigma[known] ** 2
+    slope, sigma = float(weight @ measured.slope[known] / weight.sum()), float(1 / np.sqrt(weight.sum()))
+    chi = float(np.sum(weight * measured.slope[known] ** 2))
+    beyond = chi > known.sum() + 4.5 * np.sqrt(2.0 * known.sum())
+    if abs(slope) < 4 * sigma and not beyond:
+        return []
+    size = 100 * slope * measured.level
+    told = f"frequencies follow the force of the hits: {size:+.2g} % on average at {measured.level:.3g} N"
+    if fluid:
+        return [
+            f"{told}; so the fluid is not still, or a joint is not linear: added mass for small motion is at its limit"
+        ]
+    return [f"{told}: the structure is not linear at the level of this test; hit more softly"]

@@ -1,0 +1,1 @@
+"""What a test measured, in the coordinates of the model."""

@@ -1,0 +1,81 @@
+"""How a test reads a structure: which points each FRF really joins, and by what factor its level is off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.models.state import State
+from updating.test_data.measured import Measured
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """The FRFs of a test as a state of the measurement has them.
+
+    Parameters
+    ----------
+    points : (n_points, dim) array
+        Places that are read: the test's points, and behind them those that were really hit or seen [m].
+    seen, hit : (n_frf,) int arrays
+        Which of them each FRF joins; ``hit`` is -1 where only a shape is known.
+    gain : (n_frf,) array
+        Factor of the measured level over the true one [-].
+    """
+
+    points: FloatArray
+    seen: IntArray
+    hit: IntArray
+    gain: FloatArray
+
+    def product(self, at_seen: FloatArray, at_hit: FloatArray) -> FloatArray:
+        """Multiply what is read at the responses with what is read at the forces; 1 where there is none.
+
+        Parameters
+        ----------
+        at_seen, at_hit : (n_points, ...) arrays
+            A quantity at the places.
+
+        Returns
+        -------
+        (n_frf, ...) array
+        """
+        bare = (self.hit < 0).reshape(-1, *[1] * (at_hit.ndim - 1))
+        return np.asarray(at_seen[self.seen] * np.where(bare, 1.0, at_hit[self.hit]))
+
+
+def reading(measured: Measured, state: State) -> Reading:
+    """Return what a test reads under a state of its measurement."""
+    ends = {"seen": measured.seen.copy(), "hit": measured.hit.copy()}
+    for role, a, b in state.exchanged:
+        told = ends[role]
+        ends[role] = np.where(told == a, b, np.where(told == b, a, told))
+    gain = np.full(len(measured.seen), level_of(state.gain, measured))
+    stated = {"seen": measured.seen, "hit": measured.hit}
+    for (role, point), factor in state.point_gains.items():
+        gain[stated[role] == point] *= factor
+    points = [measured.points]
+    for i, ((role, point), away) in enumerate(state.moved.items()):
+        dim = measured.points.shape[1]
+        points.append((measured.points[point] + np.resize(np.asarray([*away, 0.0, 0.0]), 3)[:dim])[None, :])
+        ends[role] = np.where(ends[role] == point, len(measured.points) + i, ends[role])
+    return Reading(np.concatenate(points), ends["seen"], ends["hit"], gain)
+
+
+def level_of(gain: float, measured: Measured) -> float:
+    """Return by what factor a gain of the FRFs changes the constants: that of shapes is its root [-]."""
+    return float(np.sqrt(gain)) if measured.bare and len(measured.hit) else gain
+
+
+def roving(measured: Measured) -> Literal["seen", "hit"]:
+    """Return the end that was moved from point to point: the hammer, or the sensor."""
+    seen, hit = np.unique(measured.seen), np.unique(measured.hit[measured.hit >= 0])
+    return "seen" if len(seen) > len(hit) else "hit"
+
+
+def fixed_sensors(measured: Measured) -> IntArray:
+    """Return the points whose sensors stayed while the hammer went round."""
+    return np.unique(measured.seen) if roving(measured) == "hit" else np.zeros(0, dtype=np.int64)

@@ -1,0 +1,51 @@
+"""Mode shapes and modal constants as data: residuals with independent errors, and their sensitivities.
+
+As shapes the constants of each mode are free of a factor; as constants they have their level, which the
+calibration's error is part of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.update.data.specimen import Look, Specimen
+
+
+def shape_residual(specimen: Specimen, look: Look) -> FloatArray:
+    """Return measured minus computed constants, as shapes with the best factor per mode, whitened (n,) [-]."""
+    white, test = specimen.errors, specimen.measured.constants
+    if specimen.level:
+        computed = look.prediction.constants
+        return white((test - computed * specimen.measured.same_signs(computed)).ravel())
+    span, _ = _factors(specimen, look)
+    measured = white(test.ravel())
+    return np.asarray(measured - span @ (span.T @ measured))
+
+
+def shape_slopes(specimen: Specimen, values: Sequence[float], look: Look) -> FloatArray:
+    """Return the derivatives of the computed constants by the coordinates, whitened, (n, n_knobs) [-].
+
+    The factors per mode are projected out (Golub and Pereyra 1973, with Kaufman's simplification).
+    """
+    slopes = specimen.shape_slopes(values, look)
+    if specimen.level:
+        slopes = slopes * specimen.measured.same_signs(look.prediction.constants)[:, None]
+        return specimen.errors(slopes.reshape(-1, slopes.shape[2]))
+    span, factor = _factors(specimen, look)
+    scaled = specimen.errors((slopes * factor[None, :, None]).reshape(-1, slopes.shape[2]))
+    return np.asarray(scaled - span @ (span.T @ scaled))
+
+
+def _factors(specimen: Specimen, look: Look) -> tuple[FloatArray, FloatArray]:
+    """Return an orthonormal basis of what the factors can do, (n, n_modes), and the best factors (n_modes,) [-]."""
+    shape = look.prediction.constants
+    size = np.maximum(np.linalg.norm(shape, axis=0), 1e-300)
+    rows, modes = shape.shape
+    block = np.zeros((rows, modes, modes))
+    block[:, np.arange(modes), np.arange(modes)] = shape / size
+    span, triangle = np.linalg.qr(specimen.errors(block.reshape(-1, modes)))
+    best = np.linalg.solve(triangle, span.T @ specimen.errors(specimen.measured.constants.ravel()))
+    return span, np.asarray(best / size)

@@ -1,0 +1,282 @@
+"""One specimen in an update: its test, its model, its knobs, and what the knobs do to its frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.models.reduced import Reduced
+from updating.models.structure import FieldStructure
+from updating.prediction.matching import mac_of_constants, match
+from updating.prediction.predict import Prediction, Predictor
+from updating.test_data.chain import level_of
+from updating.test_data.measured import Measured
+from updating.update.data.shape_errors import constant_errors
+from updating.update.data.whitening import Whitening
+from updating.update.parameters.affine import Affine, affine, eligible
+from updating.update.parameters.basis import WIDE, extended, update_basis
+from updating.update.parameters.parameters import Knob, Panel
+from updating.update.parameters.sensitivity import log_frequency_by
+
+STEP = 1e-4
+"""Step of the differences, relative to the width of a parameter's range [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """A specimen at one setting of its knobs.
+
+    Parameters
+    ----------
+    frequency : (n_modes,) array
+        Frequencies of the partners of the measured modes [Hz].
+    partner : (n_modes,) int array
+        Which of the model's elastic modes they are, from 0.
+    prediction : Prediction
+        The partners.
+    """
+
+    frequency: FloatArray
+    partner: IntArray
+    prediction: Prediction
+
+
+@dataclass(frozen=True, eq=False)
+class Specimen:
+    """A test, its model and the parameters to be updated.
+
+    Parameters
+    ----------
+    title : str
+        For tables.
+    predictor : Predictor
+        The model, accepted effects included, as seen from the test's points.
+    measured : Measured
+        The measured modes that have a partner.
+    number : (n_modes,) int array
+        Their numbers in the test, from 1.
+    order : (n_modes,) int array
+        Rank of each one's partner, for data without shapes.
+    panel : Panel
+        The knobs.
+    warnings : tuple of str
+        What was left out.
+    correction : (n_modes,) array
+        Ratio of the full model's frequencies to the reduced model's [-].
+    level : bool
+        Whether the measured constants are data with their level, not up to a factor per mode.
+    near : Prediction, optional
+        Partners in a model nearer to the test than the nominal one, by which misplaced points and calibration are
+        judged.
+    """
+
+    title: str
+    predictor: Predictor
+    measured: Measured
+    number: IntArray
+    order: IntArray
+    panel: Panel
+    warnings: tuple[str, ...]
+    correction: FloatArray
+    level: bool = False
+    near: Prediction | None = None
+
+    def look(self, values: Sequence[float]) -> Look:
+        """Evaluate the model, and find the partner of every measured mode by MAC."""
+        if self.affine is None:
+            prediction = self.predictor.predict(self.panel.state(self.predictor, values))
+        else:
+            prediction = self._quick(self.affine, np.log(values))
+        partner = match(self.measured, prediction, self.order)
+        chosen = prediction.select(partner)
+        return Look(chosen.frequency * self.correction, partner, chosen)
+
+    def _quick(self, model: Affine, logs: FloatArray) -> Prediction:
+        """Predict the lowest modes with no more than an update by factors needs."""
+        values, vectors = model.eigen(logs, self.rigid + self.count)
+        vectors = vectors[:, self.rigid :]
+        frequency = np.sqrt(np.maximum(values[self.rigid :], 0.0)) / (2 * np.pi)
+        shape = self.shape_rows[:, : len(vectors)] @ vectors
+        hit = np.where(self.measured.hit[:, None] < 0, 1.0, shape[self.measured.hit])
+        constants = self._gain * shape[self.measured.seen] * hit
+        nothing = np.zeros((0, *constants.shape))
+        return Prediction(
+            frequency, np.full(len(frequency), np.nan), constants, nothing, nothing,
+            np.zeros((len(frequency), 0)), np.zeros((*constants.shape, 0)), vectors,
+        )  # fmt: skip
+
+    @cached_property
+    def affine(self) -> Affine | None:
+        """The model as a function of its factors, where all knobs are factors."""
+        base = self.predictor.base
+        if not eligible(self.panel.knobs) or base.released or base.theory is not None:
+            return None
+        return affine(self.predictor.reduced, self.panel.knobs, base)
+
+    @cached_property
+    def shape_rows(self) -> FloatArray:
+        """Displacement of the basis at the test points, (n_points, r)."""
+        if not len(self.measured.points):
+            return np.zeros((0, self.predictor.reduced.basis.shape[1]))
+        return self.predictor.nominal_rows["w"]
+
+    @cached_property
+    def rigid(self) -> int:
+        """Number of rigid-body modes."""
+        return self.predictor.reduced.structure.rigid_modes
+
+    @cached_property
+    def count(self) -> int:
+        """Number of elastic modes among which partners are looked for."""
+        return max(len(self.nominal_modes.frequency), int(self.order.max()) + 4)
+
+    @cached_property
+    def nominal_modes(self) -> Prediction:
+        """The modes of the model before the update."""
+        return self.predictor.predict()
+
+    def slopes(self, values: Sequence[float], at: Look) -> FloatArray:
+        """Return d ln f / d coordinate, (n_modes, n_knobs): Eqs. 16 and 17 for factors, differences for the rest."""
+        if self.affine is not None:
+            eigenvalue = (2 * np.pi * at.prediction.frequency) ** 2
+            return self.affine.slopes(np.log(values), eigenvalue, at.prediction.vectors)
+        columns = [
+            self._analytic(knob, values, i, at) if knob.factor is not None else self._difference(i, values)
+            for i, knob in enumerate(self.panel.knobs)
+        ]
+        return np.stack(columns, axis=1)
+
+    def _analytic(self, knob: Knob, values: Sequence[float], index: int, at: Look) -> FloatArray:
+        total = self.predictor.base.plus(self.panel.state(self.predictor, values))
+        by = log_frequency_by(self.predictor.reduced, total, at.prediction, str(knob.factor), knob.regions)
+        return by * knob.chain(values[index])
+
+    def _ends(self, index: int, values: Sequence[float]) -> tuple[Look, Look, float]:
+        """Look on both sides of a knob's setting; return how far apart in its coordinate."""
+        knob = self.panel.knobs[index]
+        here, step = knob.coordinate(values[index]), STEP * knob.span()
+        ends = [max(here - step, knob.coordinate(knob.low)), min(here + step, knob.coordinate(knob.high))]
+        moved = [[*values[:index], knob.value(end), *values[index + 1 :]] for end in ends]
+        return self.look(moved[0]), self.look(moved[1]), ends[1] - ends[0]
+
+    def _difference(self, index: int, values: Sequence[float]) -> FloatArray:
+        low, high, apart = self._ends(index, values)
+        return np.asarray((np.log(high.frequency) - np.log(low.frequency)) / apart)
+
+    def _shape_difference(self, index: int, values: Sequence[float], at: Look) -> FloatArray:
+        low, high, apart = self._ends(index, values)
+        here = at.prediction.constants
+        # shapes without a reference come with the solver's sign
+        ends = [
+            k.prediction.constants * np.sign(np.sum(k.prediction.constants * here, axis=0))
+            for k in (low, high)
+        ]
+        return np.asarray((ends[1] - ends[0]) / apart)
+
+    @cached_property
+    def nominal(self) -> Look:
+        """The model before the update: every factor 1, and no effect that the modeller has not accepted."""
+        prediction = self.nominal_modes
+        partner = match(self.measured, prediction, self.order)
+        return Look(prediction.frequency[partner], partner, prediction.select(partner))
+
+    def mac(self, look: Look) -> FloatArray:
+        """Return the MAC of every pair, nan where no shapes were measured [-]."""
+        if not self.measured.has_shapes:
+            return np.full(len(self.number), np.nan)
+        return np.diag(mac_of_constants(self.measured, look.prediction)).copy()
+
+    def shape_slopes(self, values: Sequence[float], at: Look) -> FloatArray:
+        """Return the derivatives of the partners' constants by the coordinates, (n_frf, n_modes, n_knobs) [1/kg]."""
+        model = self.affine
+        if model is None:
+            columns = [self._shape_difference(i, values, at) for i in range(len(self.panel.knobs))]
+            return np.stack(columns, axis=-1)
+        turned = model.turns(np.log(values), at.partner, self.rigid)
+        here, change = self.shape_rows @ at.prediction.vectors, self.shape_rows @ turned
+        # the solver's sign of a shape is of no account in a product of two components of the same solution
+        flip = self._signs(model, values, at)
+        change = change * flip
+        seen, hit, bare = self.measured.seen, self.measured.hit, self.measured.hit < 0
+        both = change[:, seen] * here[hit] + here[seen] * change[:, hit]
+        slopes = np.where(bare[:, None], change[:, seen], both)
+        return np.asarray(np.moveaxis(self._gain * slopes, 0, -1))
+
+    @property
+    def _gain(self) -> float:
+        """Factor by which the measured level is off in what the model has accepted [-]."""
+        return level_of(self.predictor.base.gain, self.measured)
+
+    def _signs(self, model: Affine, values: Sequence[float], at: Look) -> FloatArray:
+        vectors = model.eigen(np.log(values), model.rank)[1][:, at.partner + self.rigid]
+        return np.asarray(np.sign(np.sum(vectors * at.prediction.vectors, axis=0)))
+
+    @cached_property
+    def errors(self) -> Whitening:
+        """Covariance of the measured constants, calibration included where their level is data."""
+        at = self.nominal.prediction if self.near is None else self.near
+        turned = any(knob.effect == "calibration_gain" for knob in self.panel.knobs)
+        return constant_errors(
+            self.measured, at, self.measured.level_sigma if self.level and not turned else 0.0
+        )
+
+    def settled(self, values: Sequence[float], look: Look) -> Specimen:
+        """Return the same specimen with its errors judged by the model at some values of its knobs."""
+        count = int(look.partner.max()) + 1
+        near = self.predictor.predict(self.panel.state(self.predictor, values), count=count)
+        other = self._with(replace(self, near=near.select(look.partner)))
+        other.__dict__.pop("errors", None)
+        return other
+
+    def corrected(self, factor: FloatArray) -> Specimen:
+        """Return the same specimen with other corrections of the reduced model's frequencies (n_modes,) [-]."""
+        return self._with(replace(self, correction=factor))
+
+    def enriched(self, modes: FloatArray) -> Specimen | None:
+        """Return the same specimen with modes of the full model (n_dofs, n) in its basis, or None if it has no own."""
+        structure = self.predictor.reduced.structure
+        if self.affine is None or self.affine.rank >= structure.unknowns:
+            return None
+        return self._on(extended(self.predictor.reduced, modes))
+
+    def around(self, values: Sequence[float]) -> Specimen:
+        """Return the same specimen on a basis that is good far around some values of its knobs."""
+        structure = self.predictor.reduced.structure
+        plain = self.affine is not None and self.affine.rank < structure.unknowns
+        if not plain or self.predictor.additions or not isinstance(structure, FieldStructure):
+            return self
+        highest, count = float(self.measured.frequency.max()), len(self.measured.frequency)
+        state = self.panel.state(self.predictor, values)
+        return self._on(
+            update_basis(structure, self.panel.knobs, highest=highest, count=count, state=state, answers=WIDE)
+        )
+
+    def _on(self, reduced: Reduced) -> Specimen:
+        """Return the same specimen on another basis."""
+        own = replace(self.predictor)
+        own.__dict__["reduced"] = reduced
+        other = replace(self, predictor=own, correction=np.ones(len(self.number)))
+        other.__dict__.update(nominal=self.nominal, rigid=self.rigid, count=self.count)
+        other.__dict__.update({"errors": self.errors} if self.measured.has_shapes else {})
+        return other
+
+    def redrawn(self, frequency: FloatArray, constants: FloatArray | None = None) -> Specimen:
+        """Return the same specimen with other measured frequencies [Hz] and constants [1/kg]."""
+        own = self.measured.constants if constants is None else constants
+        return self._with(replace(self, measured=replace(self.measured, frequency=frequency, constants=own)))
+
+    def _with(self, other: Specimen) -> Specimen:
+        """Hand on what was worked out and stays."""
+        kept = ("errors", "affine", "shape_rows", "rigid", "count", "nominal_modes", "nominal")
+        other.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
+        return other
+
+    @property
+    def relative_variance(self) -> FloatArray:
+        """Variance of the measured frequencies, re-mounting scatter included, relative [-]."""
+        test = self.measured
+        return np.asarray((test.frequency_sigma / test.frequency) ** 2 + test.repeatability**2)

@@ -1,0 +1,1 @@
+"""The parameters of an update, and fast models and sensitivities for them."""

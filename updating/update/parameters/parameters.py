@@ -1,0 +1,354 @@
+"""What can be turned in a model, by the names of the study file: ``E``, ``root.E``, ``length``, ``sensor_mass``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from acquisition.errors import StudyError
+from updating.effects import LIBRARY, Effect
+from updating.models.damping import WHOLE
+from updating.models.spec import Region, Spec
+from updating.models.state import State
+from updating.prediction.predict import Predictor
+from updating.tolerances import Tolerances
+
+UNITS = {"E": "Pa", "density": "kg/m^3", "thickness": "m", "width": "m"}
+"""Properties that a factor of the whole structure can scale, and their units."""
+
+REGIONAL = {"E": "Pa", "density": "kg/m^3", "thickness": "m", "area": "m^2", "inertia": "m^4"}
+"""Properties that a factor of one region can scale, and their units; the last two of beams."""
+
+DAMPERS = {"alpha": "1/s", "beta": "s", "loss_factor": "-"}
+"""Coefficients of damping, of the whole or of one region, and their units."""
+
+DAMPING = ("exponential_window",)
+"""Effects that are nothing but damping."""
+
+MIDDLING = 0.01
+"""Damping ratio that sets the scale of the coefficients of damping [-]."""
+
+MOST = 50.0
+"""Upper bound of a coefficient of damping, in that scale [-]."""
+
+FACTOR_RANGE = (0.05, 20.0)
+"""Bounds of every factor [-]."""
+
+UNTOLD = np.log(2.0)
+"""1-sigma scale of the logarithm of a factor of which the study says no tolerance [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Knob:
+    """One parameter of one specimen, and how it enters the model.
+
+    The solution runs in a *coordinate*: the logarithm of a factor, the value itself for other parameters,
+    its logarithm where the prior range spans more than three decades.
+
+    Parameters
+    ----------
+    name : str
+        Name as the user writes it.
+    unit : str
+        Unit of the reported value.
+    nominal : float
+        What a factor multiplies [unit]; 1 for parameters that are no factor.
+    start, low, high : float
+        Start and bounds of the factor or the value.
+    doubt : float
+        1-sigma scale of the coordinate, by tolerance or prior range.
+    tolerated : bool
+        Whether ``doubt`` is a tolerance of the study, and regularises.
+    log : bool
+        Whether the coordinate is a logarithm.
+    factor : str, optional
+        Factor of the model that it is; None for an effect and for damping.
+    damper : str, optional
+        Coefficient of damping that it is.
+    regions : tuple of int
+        Regions that it acts on, all of one name; empty for the whole structure.
+    effect, parameter : str
+        Effect and its parameter, empty for a factor.
+    reach : float
+        How far the stretched length goes per unit of the value, for ``length`` [1/m]; else 0.
+    """
+
+    name: str
+    unit: str
+    nominal: float
+    start: float
+    low: float
+    high: float
+    doubt: float
+    tolerated: bool
+    log: bool
+    factor: str | None = None
+    damper: str | None = None
+    regions: tuple[int, ...] = ()
+    effect: str = ""
+    parameter: str = ""
+    reach: float = 0.0
+
+    @property
+    def is_factor(self) -> bool:
+        """Whether the value is a nominal value times a factor."""
+        return self.factor is not None and not self.effect
+
+    @property
+    def damps(self) -> bool:
+        """Whether it is a matter of damping alone."""
+        return self.damper is not None or self.effect in DAMPING
+
+    def coordinate(self, value: float) -> float:
+        """Take a factor or value to its coordinate."""
+        return float(np.log(max(value, 1e-300))) if self.log else float(value)
+
+    def value(self, coordinate: float) -> float:
+        """Take a coordinate to the factor or value."""
+        return float(np.exp(coordinate)) if self.log else float(coordinate)
+
+    def chain(self, value: float) -> float:
+        """Return d ln(factor) / d coordinate, for knobs that are a factor of the model."""
+        return 1.0 if self.log else self.reach / (1 + self.reach * value)
+
+    def span(self) -> float:
+        """Return the width of the bounds in the coordinate."""
+        return self.coordinate(self.high) - self.coordinate(self.low)
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """All knobs of one specimen.
+
+    Parameters
+    ----------
+    knobs : tuple of Knob
+        The parameters to be updated.
+    fixed : mapping of str to mapping
+        Values of parameters that stay, by effect: those of effects only some of whose parameters are updated.
+    """
+
+    knobs: tuple[Knob, ...]
+    fixed: Mapping[str, Mapping[str, float]] = field(default_factory=lambda: MappingProxyType({}))
+
+    def state(self, predictor: Predictor, values: Sequence[float]) -> State:
+        """Return the departure from the nominal model at given factors and values."""
+        state = State()
+        effects: dict[str, dict[str, float]] = {}
+        for knob, value in zip(self.knobs, values, strict=True):
+            if knob.effect:
+                effects.setdefault(knob.effect, dict(self.fixed.get(knob.effect, {})))[knob.parameter] = value
+            elif knob.damper is not None:
+                where = knob.regions or (WHOLE,)
+                state = state.plus(State(dampers={(i, knob.damper): value for i in where}))
+            elif knob.regions:
+                state = state.plus(State(regional={(i, str(knob.factor)): value for i in knob.regions}))
+            else:
+                state = state.plus(State(factors={str(knob.factor): value}))
+        for name, given in effects.items():
+            state = state.plus(LIBRARY[name].state(predictor, given))
+        return state
+
+    def effects(self, values: Sequence[float]) -> dict[str, dict[str, float]]:
+        """Return the values of the effects among the knobs, by effect."""
+        found: dict[str, dict[str, float]] = {}
+        for knob, value in zip(self.knobs, values, strict=True):
+            if knob.effect:
+                found.setdefault(knob.effect, dict(self.fixed.get(knob.effect, {})))[knob.parameter] = value
+        return found
+
+
+def build_panel(
+    names: Sequence[str],
+    predictor: Predictor,
+    tolerances: Tolerances,
+    fixed: Mapping[str, Mapping[str, float]],
+) -> Panel:
+    """Find the knobs that names stand for.
+
+    Parameters
+    ----------
+    names : sequence of str
+        ``E``, ``density``, ``thickness``, ``width``, ``alpha``, ``beta``, ``loss_factor``; ``region.property``,
+        where regions of one name are turned together; ``effect`` (all its parameters) or ``effect.parameter``.
+    predictor : Predictor
+        The specimen.
+    tolerances : Tolerances
+        The modeller's doubts.
+    fixed : mapping
+        Values of effects' parameters that are not updated.
+
+    Raises
+    ------
+    StudyError
+        If a name means nothing, stands twice, or cannot be examined on this specimen.
+    """
+    knobs: list[Knob] = []
+    for name in names:
+        knobs += _knobs(name, predictor, tolerances)
+    if not knobs:
+        raise StudyError('update: no parameters; name some, for instance parameters = ["E"]')
+    seen = [knob.name for knob in knobs]
+    if twice := sorted({n for n in seen if seen.count(n) > 1}):
+        raise StudyError(f"update: parameter {twice[0]!r} stands twice; name each once")
+    panel = Panel(tuple(knobs), fixed)
+    _check_complete(panel, predictor)
+    return panel
+
+
+def _check_complete(panel: Panel, predictor: Predictor) -> None:
+    """See that every effect with a knob has all its parameters."""
+    for name, given in panel.effects([k.start for k in panel.knobs]).items():
+        missing = {p.name for p in LIBRARY[name].parameters(predictor) if p.default is None} - set(given)
+        if missing:
+            raise StudyError(
+                f"update: {name} also needs {', '.join(sorted(missing))}; update them too or give their values in "
+                f"[[model.effect]]"
+            )
+
+
+def _knobs(name: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob]:
+    spec = predictor.spec
+    head, _, tail = name.rpartition(".") if "." in name else (name, "", "")
+    places = tuple(i for i, region in enumerate(spec.regions) if region.name == head)
+    if places and tail in DAMPERS:
+        return [_damper(name, tail, predictor, places)]
+    if places and tail:
+        return [_regional(name, places, tail, spec, tolerances)]
+    if name in DAMPERS:
+        return [_damper(name, name, predictor, ())]
+    if head in UNITS and tail in ("", "factor"):
+        return [_whole(head, spec, tolerances)]
+    if head in LIBRARY:
+        return _effect(name, LIBRARY[head], tail, predictor, tolerances)
+    known = ", ".join([*UNITS, *DAMPERS, *(n for n in LIBRARY if n not in UNITS)])
+    own = list(dict.fromkeys(region.name for region in spec.regions))
+    raise StudyError(
+        f"update: no parameter {name!r}; known are {known}, and region.E, region.density, region.thickness, "
+        f"region.area, region.inertia, region.alpha ... with the regions {', '.join(own[:4])}"
+        + ("..." if len(own) > 4 else "")
+    )
+
+
+def _whole(name: str, spec: Spec, tolerances: Tolerances) -> Knob:
+    _check_scales(name, name, spec)
+    nominal = {
+        "E": spec.material.E,
+        "density": spec.material.density,
+        "thickness": spec.thickness,
+        "width": spec.width,
+    }[name]
+    return _factor(
+        name, _unit(UNITS[name], nominal, spec), nominal, tolerances.factors.get(name, 0.0), name, ()
+    )
+
+
+def _regional(name: str, places: tuple[int, ...], prop: str, spec: Spec, tolerances: Tolerances) -> Knob:
+    if prop not in REGIONAL or (prop in ("area", "inertia") and spec.kind != "beam"):
+        choice = ", ".join(n for n in REGIONAL if spec.kind == "beam" or n not in ("area", "inertia"))
+        raise StudyError(
+            f"update: {name}: a region has no {prop!r} to update; use {choice}, {', '.join(DAMPERS)}"
+        )
+    _check_scales(name, prop, spec, regional=True)
+    region = spec.regions[places[0]]
+    own = getattr(region, prop)
+    nominal = float(_general(prop, region, spec) if own is None else own)
+    return _factor(
+        name, _unit(REGIONAL[prop], nominal, spec), nominal, tolerances.factors.get(prop, 0.0), prop, places
+    )
+
+
+def _unit(unit: str, nominal: float, spec: Spec) -> str:
+    """Return the unit of a property; a factor has none where no material of imported matrices is told."""
+    return "-" if spec.imported is not None and nominal == 1.0 else unit
+
+
+def _check_scales(name: str, prop: str, spec: Spec, *, regional: bool = False) -> None:
+    """See that a factor means something to imported matrices."""
+    obstacle = None if spec.imported is None else spec.imported.obstacle(prop, regional=regional)
+    if obstacle is not None:
+        raise StudyError(f"update: {name}: {obstacle}")
+
+
+def _general(prop: str, region: Region, spec: Spec) -> float:
+    """Return what a region has of a property that it does not give itself."""
+    thickness = spec.thickness if region.thickness is None else region.thickness
+    return {
+        "E": spec.material.E,
+        "density": spec.material.density,
+        "thickness": spec.thickness,
+        "area": spec.width * thickness,
+        "inertia": spec.width * thickness**3 / 12,
+    }[prop]
+
+
+def _damper(name: str, coefficient: str, predictor: Predictor, places: tuple[int, ...]) -> Knob:
+    """Return a coefficient of damping, never negative, on the scale that gives a per cent within the test's band."""
+    spec = predictor.spec
+    given = getattr(spec.damping, coefficient)
+    if places:
+        own = getattr(spec.regions[places[0]], coefficient)
+        given = given if own is None else own
+    omega = 2 * np.pi * predictor.measured.frequency
+    scale = MIDDLING * {"alpha": 2 * omega.min(), "beta": 2 / omega.max(), "loss_factor": 2.0}[coefficient]
+    return Knob(
+        name, DAMPERS[coefficient], 1.0, float(given or 0.0), 0.0, MOST * scale, scale, tolerated=False,
+        log=False, damper=coefficient, regions=places,
+    )  # fmt: skip
+
+
+def _factor(
+    name: str, unit: str, nominal: float, tolerance: float, factor: str, regions: tuple[int, ...]
+) -> Knob:
+    low, high = FACTOR_RANGE
+    doubt = tolerance or UNTOLD
+    return Knob(
+        name, unit, nominal, 1.0, low, high, doubt, tolerance > 0, log=True, factor=factor, regions=regions
+    )
+
+
+def _effect(name: str, effect: Effect, tail: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob]:
+    obstacle = effect.why_not(predictor)
+    if obstacle is not None:
+        raise StudyError(f"update: {effect.name} cannot be updated: {obstacle}")
+    parameters = effect.parameters(predictor)
+    told = [
+        p for p in parameters if p.default is None
+    ]  # what has a default is updated only where it is named
+    chosen = [p for p in parameters if p.name == tail] if tail else told
+    if not chosen:
+        own = ", ".join(p.name for p in parameters) or "none"
+        raise StudyError(f"update: {effect.name} has no parameter {tail!r} (it has: {own})")
+    alone = len(told) == 1 and chosen == told
+    knobs = []
+    for p in chosen:
+        low, high = (p.low, p.high) if effect.channel != "mass" or p.name != "mass" else (0.0, p.high)
+        log = p.log and low > 0 and (p.name == "factor" or high > 1e3 * low)
+        start = (
+            1.0 if p.name in ("factor", "gain") else (0.0 if low <= 0 <= high else float(np.sqrt(low * high)))
+        )
+        width = np.log(high / low) if log else high - low
+        knob = Knob(
+            effect.name if alone else f"{effect.name}.{p.name}",
+            p.unit, 1.0, start, low, high, float(width / np.sqrt(12)), False, log,
+            effect=effect.name, parameter=p.name,
+        )  # fmt: skip
+        knobs.append(_told(knob, predictor.spec, tolerances))
+    return knobs
+
+
+def _told(knob: Knob, spec: Spec, tolerances: Tolerances) -> Knob:
+    """Give the extension of the length its tolerance, and its place among the model's factors."""
+    if knob.effect != "length":
+        return knob
+    tolerance = tolerances.factors.get("length", 0.0) * spec.length
+    return replace(
+        knob,
+        factor="length",
+        reach=1 / spec.length,
+        doubt=tolerance or knob.doubt,
+        tolerated=tolerance > 0,
+    )

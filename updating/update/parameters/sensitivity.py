@@ -1,0 +1,57 @@
+"""Sensitivities of eigenvalues, paper A Eqs. 16 and 17, for factors of the whole model and of its regions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.models.reduced import Reduced
+from updating.models.state import State
+from updating.prediction.predict import Prediction
+
+
+def log_frequency_by(
+    reduced: Reduced, state: State, prediction: Prediction, factor: str, regions: tuple[int, ...] = ()
+) -> FloatArray:
+    """Return d ln f / d ln factor of the modes of a prediction, shape (n_modes,) [-].
+
+    d lambda = phi^T dK phi - lambda phi^T dM phi with mass-normalised phi (Eqs. 16, 17), and
+    d ln f = d lambda / (2 lambda).
+
+    Parameters
+    ----------
+    reduced : Reduced
+        The model.
+    state : State
+        Where the prediction was made, everything included.
+    prediction : Prediction
+        The modes.
+    factor : str
+        E, density, thickness, width or length.
+    regions : tuple of int
+        Regions on which the factor acts; empty is the whole structure.
+    """
+    stiffness, mass = change_by(reduced, state, factor, regions)
+    n = len(stiffness)
+    vectors = prediction.vectors[:n]
+    k = np.einsum("ir,ij,jr->r", vectors, stiffness, vectors)
+    m = np.einsum("ir,ij,jr->r", vectors, mass, vectors)
+    eigenvalue = (2 * np.pi * prediction.frequency) ** 2
+    return np.asarray((k / eigenvalue - m) / 2)
+
+
+def change_by(
+    reduced: Reduced, state: State, factor: str, regions: tuple[int, ...]
+) -> tuple[FloatArray, FloatArray]:
+    """Return dK and dM per unit of the logarithm of a factor of some regions, of all where none is named [SI]."""
+    if not regions:
+        return reduced.log_sensitivity(state, factor)
+    n = reduced.ranks[state.released]
+    change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
+    for term, parts in zip(reduced.structure.terms, reduced.parts, strict=True):
+        power = term.powers.get(factor, 0.0)
+        for region in regions if power else ():
+            own = {name: value for (index, name), value in state.regional.items() if index == region}
+            scale = term.scale(state.factors) * term.scale(own)
+            change[term.kind] += power * scale * parts[region][:n, :n]
+    return change["stiffness"], change["mass"]

@@ -1,0 +1,81 @@
+"""What nobody should believe of an update: nothing left to test it by, pairs that are none, mirrored places."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from updating.effects.box import mirror_images
+from updating.prediction.assignment import mac_of_constants
+from updating.update.data.specimen import Look, Specimen
+from updating.update.data.system import System
+from updating.update.solve import Solution
+
+POOR_MAC = 0.9
+"""MAC of a pair after an update under which it may be no pair, or something that no parameter turns is wrong. With the
+distance from 1 doubled, a body in the wrong place goes unseen [-]."""
+
+
+def doubts(system: System, solution: Solution, dof: int) -> Iterator[str]:
+    """Say what the numbers of an update do not show.
+
+    Parameters
+    ----------
+    system : System
+        What was solved.
+    solution : Solution
+        The parameters, and the specimens with them.
+    dof : int
+        Data less parameters that no tolerance holds [-].
+    """
+    if dof <= 0:
+        yield untested(system.count, len(system.knobs))
+    for specimen, look, index in zip(system.specimens, solution.looks, system.index, strict=True):
+        yield from _poor_pairs(specimen, look)
+        if not system.shapes:
+            knobs = specimen.panel.knobs
+            at = [k.value(float(t)) for k, t in zip(knobs, solution.theta[index], strict=True)]
+            yield from _mirrored(specimen, at)
+
+
+def untested(data: int, parameters: int) -> str:
+    """Return what to say where no degree of freedom is left."""
+    return (
+        f"nothing is tested: {data} data and {parameters} parameters leave no degree of freedom, a wrong model would "
+        "meet the data as well; name fewer parameters, or give more modes, or shapes as data"
+    )
+
+
+def _poor_pairs(specimen: Specimen, look: Look) -> Iterator[str]:
+    """Name the pairs whose shapes do not agree, by the channels by which modes were paired."""
+    test = specimen.measured
+    if not test.has_shapes:
+        return
+    mac = np.diag(mac_of_constants(test, look.prediction, test.trusted))
+    poor = np.flatnonzero(mac < POOR_MAC)
+    if len(poor):
+        named = ", ".join(f"{specimen.number[i]} (MAC {mac[i]:.2f})" for i in poor[:6].tolist())
+        yield (
+            f"{specimen.title}: the updated model's shape is not that of test mode {named}{', ...' * (len(poor) > 6)}: "
+            "pairs may be mistaken, or something is wrong that no parameter turns; `diagnose` the study"
+        )
+
+
+def _mirrored(specimen: Specimen, values: list[float]) -> Iterator[str]:
+    """Name places that have a mirror image which frequencies do not tell from them, known masses left aside."""
+    spec = replace(specimen.predictor.spec, masses=())
+    found: dict[str, dict[str, float]] = {}
+    for knob, value in zip(specimen.panel.knobs, values, strict=True):
+        if knob.effect and knob.parameter in ("x", "y"):
+            found.setdefault(knob.effect, {})[knob.parameter] = value
+    for effect, at in found.items():
+        here = (at.get("x", 0.0), at.get("y", 0.0), 0.0)
+        for x, y, _ in mirror_images(spec, here)[1:]:
+            where = {"x": x, "y": y}
+            image = ", ".join(f"{axis} = {where[axis]:.4g} m" for axis in at)
+            yield (
+                f"{effect}: the structure is alike from both ends, so that frequencies hardly tell its place from "
+                f"the mirror image at {image}; compare shapes, or give the place"
+            )
