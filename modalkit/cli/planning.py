@@ -149,12 +149,12 @@ def _separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
 
 def _from_when(now: Outlook) -> str:
     """Return the effects that need to be largest, against what is asked about, to be told."""
-    hard = sorted(now.limits, key=lambda name: -now.limits[name].told / now.limits[name].clear)[:_LINES]
+    hard = sorted(now.limits, key=lambda name: -now.limits[name].separated / now.limits[name].clear)[:_LINES]
     words = []
     for name in hard:
         limit = now.limits[name]
         never = f"{name} at no severity ({limit.nearest} does the same)"
-        words.append(said(now, name, limit.told) or never)
+        words.append(said(now, name, limit.separated) or never)
     return f"Late:    told from all others only from here on: {'; '.join(words)}."
 
 
@@ -180,7 +180,7 @@ def _thresholds(now: Outlook) -> pd.DataFrame:
     """Return the limits in words, those after the first without what they begin alike with."""
     rows = []
     for name, limit in now.limits.items():
-        sizes = (limit.seen, limit.told, limit.sure, limit.clear)
+        sizes = (limit.seen, limit.separated, limit.sure, limit.clear)
         words = [said(now, name, q) or "never" for q in sizes]
         alike = _alike([w.split() for w in words if w != "never"])
         rest = [w if w == "never" else " ".join(w.split()[alike:]) for w in words[1:]]

@@ -12,7 +12,7 @@ from acquisition.display import counted
 from modalkit.cli.common import check_folder, out, read_by, show_figures, show_table, working
 from modalkit.cli.options import Figures
 from modalkit.output.destinations import check_outputs, uff_of
-from modalkit.rig import Options
+from modalkit.simulation.setup import Options
 from modalkit.simulation.simulate import SimulatedTest, simulate_test
 from modalkit.study.named_effects import parse_effect
 from modalkit.study.read import read_study

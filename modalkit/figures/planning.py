@@ -100,14 +100,14 @@ def _thresholds(axes: Axes, now: Outlook, after: Outlook | None) -> None:
     tidy(axes, x="severity over the one that is asked about (right) [-]", grid="x")
     axes.set_xscale("log")
     rows = np.arange(len(now.names))
-    seen, told = _over_clear(now, "seen"), _over_clear(now, "told")
+    seen, told = _over_clear(now, "seen"), _over_clear(now, "separated")
     axes.hlines(rows, seen, told, color=FAINT, linewidth=5.0, zorder=2)
     axes.scatter(seen, rows, s=42, facecolor="white", edgecolor=BLUE, linewidth=1.4, zorder=3, label="seen")
     never = told >= _MOST
     axes.scatter(told[~never], rows[~never], s=46, color=BLUE, zorder=4, label="told from all others")
     axes.scatter(told[never], rows[never], s=46, marker=">", color=BLUE, zorder=4, clip_on=False)
     if after is not None:
-        then = _over_clear(after, "told")
+        then = _over_clear(after, "separated")
         axes.scatter(
             then, rows + 0.28, s=30, marker="|", color=GREEN, linewidth=2.2, zorder=4, label="with the advice"
         )

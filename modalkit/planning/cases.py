@@ -78,7 +78,7 @@ def choose(now: Outlook, advice: Advice | None, count: int, rng: np.random.Gener
     """
     after = now if advice is None else advice.after
     table = after.thresholds
-    hard = [str(name) for name in (table["told"] / table["clear"]).sort_values(ascending=False).index]
+    hard = [str(name) for name in (table["separated"] / table["clear"]).sort_values(ascending=False).index]
     first = [n for pair in (advice.separates if advice else ()) for n in pair if n != NONE]
     first, others = _possible(first, now, after), _possible(hard, now, after)
     others = [name for name in others if name not in first]

@@ -41,11 +41,11 @@ def _outlook(look: Outlook) -> dict[str, Any]:
             {
                 "effect": name,
                 "seen_from": said(look, name, limit.seen),
-                "told_from": said(look, name, limit.told),
+                "separated_from": said(look, name, limit.separated),
                 "sure_from": said(look, name, limit.sure),
                 "sure": _number(limit.sure),
                 "seen": _number(limit.seen),
-                "told": _number(limit.told),
+                "separated": _number(limit.separated),
                 "asked": said(look, name, limit.clear),
                 "nearest": limit.nearest,
                 "nearest_sigma": _number(limit.sigma),
@@ -55,7 +55,7 @@ def _outlook(look: Outlook) -> dict[str, Any]:
         ],
         "classes": [list(group) for group in look.classes],
         "unseen": list(look.unseen),
-        "told_share": look.told_share,
+        "separated_share": look.told_share,
     }
 
 

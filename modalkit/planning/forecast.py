@@ -28,7 +28,7 @@ class Limit:
 
     Parameters
     ----------
-    seen, told, sure : float
+    seen, separated, sure : float
         Severity from which it is seen, told from all others by 3 sigma, and by 5; infinite for never [SI].
     clear : float
         Severity that is asked about [SI].
@@ -39,7 +39,7 @@ class Limit:
     """
 
     seen: float
-    told: float
+    separated: float
     sure: float
     clear: float
     nearest: str
@@ -118,7 +118,7 @@ class Outlook:
     def worth(self) -> float:
         """Share of pairs told, and beside it how low thresholds are on a logarithmic scale, as one number [-]."""
         table = self.thresholds
-        depth = np.log(np.clip(table["clear"] / table["told"], 1 / _CAP, _CAP))
+        depth = np.log(np.clip(table["clear"] / table["separated"], 1 / _CAP, _CAP))
         near = np.clip(list(self.pairs.values()), 0.1, SEEN) / SEEN
         return float(self.told_share + np.mean(depth) / np.log(_CAP) + np.mean(near))
 
@@ -131,7 +131,7 @@ def _limit(one: Distances) -> Limit:
     )
     return Limit(
         seen=one.threshold(one.sigma[0]),
-        told=one.threshold(one.nearest),
+        separated=one.threshold(one.nearest),
         sure=one.threshold(one.nearest, SURE),
         clear=family.clear,
         nearest=rival,
@@ -228,7 +228,9 @@ def _advice(change: Change, now: Outlook, look: Callable[[Design], Outlook]) -> 
         if shown(now, name) < SEEN <= shown(after, name):
             newly.append((name, NONE))
     old, new = now.thresholds, after.thresholds
-    ratio = np.clip(old["told"], None, _CAP * old["clear"]) / np.clip(new["told"], None, _CAP * old["clear"])
+    ratio = np.clip(old["separated"], None, _CAP * old["clear"]) / np.clip(
+        new["separated"], None, _CAP * old["clear"]
+    )
     factor = float(np.exp(np.mean(np.log(ratio))))
     return Advice(change, after, tuple(newly), factor, after.worth - now.worth)
 

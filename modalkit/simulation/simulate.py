@@ -13,8 +13,10 @@ from acquisition import FrfSet, HammerTest, estimate_frfs, hammer_test, judge_hi
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.display import Displayed
 from acquisition.errors import InputError
-from modalkit.rig import SAMPLING, Options, Rig, rig_of_data, rig_of_model
 from modalkit.simulation.damping import damped_spec
+from modalkit.simulation.measured import rig_of_data
+from modalkit.simulation.planned import rig_of_model
+from modalkit.simulation.setup import SAMPLING, Options, Rig
 from modalkit.simulation.systems import known_sensors, remounted, systems
 from modalkit.study.named_effects import EffectValues, check_effect, departure, said
 from modalkit.study.read import Study, read_study

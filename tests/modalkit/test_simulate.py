@@ -13,7 +13,8 @@ import pytest
 from acquisition import Dof, read_uff, write_uff
 from acquisition.errors import InputError, StudyError
 from modalkit.cli.demonstrate import sample
-from modalkit.rig import Options, spaced
+from modalkit.simulation.planned import spaced
+from modalkit.simulation.setup import Options
 from modalkit.simulation.simulate import prepare, simulate_test
 from modalkit.study.named_effects import parse_effect
 from modalkit.study.read import read_study

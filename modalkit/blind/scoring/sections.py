@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from modalkit.blind.scoring import said, stated
+from modalkit.blind.scoring import answered, stated
 from modalkit.blind.scoring.score import Score
 from modalkit.blind.scoring.section import Section
 
 _MAKERS: tuple[Callable[[Score], Section], ...] = (
-    said.headline_section,
-    said.groups_section,
-    said.effects_section,
-    said.pairs_section,
-    said.unknowable_section,
-    said.taken_for_section,
-    said.abstention_section,
+    answered.headline_section,
+    answered.groups_section,
+    answered.effects_section,
+    answered.pairs_section,
+    answered.unknowable_section,
+    answered.taken_for_section,
+    answered.abstention_section,
     stated.calibration_section,
     stated.cover_section,
     stated.severity_section,
@@ -24,7 +24,7 @@ _MAKERS: tuple[Callable[[Score], Section], ...] = (
     stated.channels_section,
     stated.closing_section,
     stated.silence_section,
-    said.rates_section,
+    answered.rates_section,
 )
 
 
