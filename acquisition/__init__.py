@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from acquisition.geometry import Geometry
     from acquisition.hits.hammer import HammerTest, Hits
     from acquisition.hits.quality import judge_hits
-    from acquisition.hits.splitting import looks_long, propose_trigger, split_hits
+    from acquisition.hits.splitting import holds_several_hits, propose_trigger, split_hits
     from acquisition.hits.verdicts import (
         ForceRange,
         HitVerdict,
@@ -74,10 +74,10 @@ __all__ = [
     "force_range",
     "hammer_test",
     "hits_table",
+    "holds_several_hits",
     "installed_readers",
     "judge_hits",
     "layout_from",
-    "looks_long",
     "modal_system",
     "propose_trigger",
     "random_error",
@@ -121,7 +121,7 @@ load_on_demand(
         ".frfs.scatter": "HitGroup HitScatter variance_of_groups",
         ".frfs.sensor_mass": "remove_sensor_mass",
         ".frfs.spectra": "ESTIMATORS Estimator",
-        ".hits.splitting": "looks_long propose_trigger split_hits",
+        ".hits.splitting": "holds_several_hits propose_trigger split_hits",
         ".synthetic": "HammerPlan ModalSystem hammer_test modal_system",
         ".uff": "DatasetInfo UffContent read_functions read_uff write_uff",
         ".hits.verdicts": "ForceRange HitVerdict decide force_range hits_table rejected_points verdicts_of",

@@ -42,8 +42,8 @@ class Dof:
         found = _WRITTEN.fullmatch(text.strip().upper())
         if found is None:
             raise InputError(f"{text!r} is no degree of freedom; write node, sign and axis, as 12+Z or 3-X")
-        node, sign, letter = found.groups()
-        code = next(code for code, name in _LETTERS.items() if name == letter)
+        node, sign, character = found.groups()
+        code = next(code for code, name in _LETTERS.items() if name == character)
         return cls(int(node), -code if sign == "-" else code)
 
     @property

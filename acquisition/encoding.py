@@ -26,8 +26,8 @@ def not_utf8(path: Path, content: bytes) -> str | None:
         if not _TEXT.issuperset(content):
             return None
         line = content[: error.start].count(b"\n") + 1
-        letter = content[error.start : error.start + 1].decode("cp1252", errors="replace")
-        what = f"line {line} holds {letter!r} in another encoding, probably Latin-1 (Windows-1252)"
+        character = content[error.start : error.start + 1].decode("cp1252", errors="replace")
+        what = f"line {line} holds {character!r} in another encoding, probably Latin-1 (Windows-1252)"
         return _message(path, what, "WINDOWS-1252")
     return None
 
@@ -37,7 +37,7 @@ def _is_text_in_utf16(content: bytes) -> bool:
         text = content.decode("utf-16")
     except UnicodeDecodeError:
         return False
-    return all(letter.isprintable() or letter.isspace() for letter in text) and "\n" in text
+    return all(character.isprintable() or character.isspace() for character in text) and "\n" in text
 
 
 def _message(path: Path, what: str, encoding: str) -> str:

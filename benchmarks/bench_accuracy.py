@@ -50,11 +50,11 @@ class Truth:
         return np.asarray(-self.poles.real / np.abs(self.poles))
 
 
-def draw(seed: int, *, above: bool = True, apart: float | None = None) -> Truth:
-    """Draw shapes; point 4 moves in every mode. ``apart`` sets the pair's relative distance."""
+def draw(seed: int, *, above: bool = True, separation: float | None = None) -> Truth:
+    """Draw shapes; point 4 moves in every mode. ``separation`` sets the pair's relative distance."""
     hertz = HERTZ.copy()
-    if apart is not None:
-        hertz[6] = hertz[5] * (1 + apart)
+    if separation is not None:
+        hertz[6] = hertz[5] * (1 + separation)
     damping = DAMPING
     if above:
         hertz, damping = np.append(hertz, ABOVE), np.append(damping, ABOVE_DAMPING)
@@ -101,11 +101,11 @@ def tried(frfs: FrfSet, low: float, order: int) -> ModalModel | None:
         return None
 
 
-def found(seeds: int, *, references: tuple[int, ...] = (4,), apart: float | None = None) -> None:
+def found(seeds: int, *, references: tuple[int, ...] = (4,), separation: float | None = None) -> None:
     """Count runs in which all modes are found, with their shapes, and none is invented."""
     good, total, missed, invented = 0, 0, 0, 0
     for seed, noise, low in _grid(seeds):
-        truth = draw(seed, above=seed % 2 == 0, apart=apart)
+        truth = draw(seed, above=seed % 2 == 0, separation=separation)
         frfs = measure(truth, (low, 1000.0), noise, seed, references=references)
         wanted = within(truth, low)
         for order in ORDERS:
@@ -236,7 +236,7 @@ def main() -> None:
         case "found":
             found(chosen.seeds)
         case "references":
-            found(chosen.seeds, references=three, apart=0.002)
+            found(chosen.seeds, references=three, separation=0.002)
         case "coverage":
             coverage(chosen.seeds)
         case "coverage-references":

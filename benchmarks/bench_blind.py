@@ -24,7 +24,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from modalkit.blind import Plan, diagnosers, draw_trial, run_blind, write_trial
+from modalkit.blind import DrawRanges, diagnosers, draw_trial, run_blind, write_trial
 from modalkit.blind.answer import read_answer
 from modalkit.blind.shrunk import true_shrinkage
 from modalkit.workers.cluster import Ended, connected
@@ -32,7 +32,7 @@ from modalkit.workers.cluster import Ended, connected
 CORES = (2, 16, 64, 256, 1024, 4096)
 
 
-def floor(seed: int, trials: int, plan: Plan) -> dict[str, float]:
+def floor(seed: int, trials: int, plan: DrawRanges) -> dict[str, float]:
     """Seconds per trial of what cannot be left out, and of the rest that is timed alone."""
     spent = dict.fromkeys(("draw", "simulation", "diagnosis", "shrinkage"), 0.0)
     with diagnosers(1) as diagnose, tempfile.TemporaryDirectory() as name:
@@ -54,7 +54,7 @@ def floor(seed: int, trials: int, plan: Plan) -> dict[str, float]:
     return spent
 
 
-def cold_and_warm(seed: int, plan: Plan) -> tuple[float, float]:
+def cold_and_warm(seed: int, plan: DrawRanges) -> tuple[float, float]:
     """Seconds of one and the same diagnosis as a command of its own, and in a warm process."""
     with tempfile.TemporaryDirectory() as name, diagnosers(1) as diagnose:
         study = write_trial(draw_trial(seed, 0, plan=plan), Path(name))
@@ -68,7 +68,7 @@ def cold_and_warm(seed: int, plan: Plan) -> tuple[float, float]:
     return times[1] - times[0], times[2] - times[1]
 
 
-def per_trial(seed: int, trials: int, plan: Plan, workers: int) -> float:
+def per_trial(seed: int, trials: int, plan: DrawRanges, workers: int) -> float:
     """Seconds per trial of a run with warm processes."""
     with diagnosers(workers) as diagnose:
         run_blind(workers, seed, plan=plan, diagnose=diagnose, workers=workers)  # until all is loaded
@@ -116,7 +116,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kinds", default="beam,plate")
     given = parser.parse_args()
-    plan = Plan(kinds=tuple(given.kinds.split(",")))
+    plan = DrawRanges(kinds=tuple(given.kinds.split(",")))
 
     parts = floor(given.seed, given.trials, plan)
     least = parts["simulation"] + parts["diagnosis"]

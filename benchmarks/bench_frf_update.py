@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 from time import process_time
 
 import numpy as np
-from bench_recovery import Specimen, draw, said
+from bench_recovery import Specimen, draw, statement
 from scipy.sparse.linalg import splu
 
 from acquisition import Dof, EstimationError, Geometry, HammerPlan, ModalSystem, estimate_frfs, hammer_test
@@ -148,8 +148,8 @@ def test_of(drawn: Damped, rng: np.random.Generator, noise: float) -> tuple[Case
     geometry = Geometry(tuple(range(1, len(z) + 1)), np.hstack([case.points, z]))
     frfs = estimate_frfs(hammer_test(system, plan, rng=rng, geometry=geometry))
     model = identify(frfs, band=(0.6 * frequency[0], top))
-    told = {"repeatability": REMOUNTING, "position_sigma": 0.0, "calibration": 1e-3}
-    measured = measured_from_identified(model, Axes(), case.spec, **told)
+    stated = {"repeatability": REMOUNTING, "position_sigma": 0.0, "calibration": 1e-3}
+    measured = measured_from_identified(model, Axes(), case.spec, **stated)
     tolerances = Tolerances({"E": TOLERANCE, "density": TOLERANCE})
     return Case("specimen", case.spec, measured, None, tolerances), measured_frfs(model, measured)
 
@@ -195,12 +195,12 @@ def coverage(seeds: int, *, theory: bool, verbose: bool) -> None:
     for name, parts in kinds.items():
         pooled = np.concatenate(parts)
         print(
-            f"{name}: covered by 95 % intervals {said(np.abs(pooled) < 1.96)}, "
+            f"{name}: covered by 95 % intervals {statement(np.abs(pooled) < 1.96)}, "
             f"median |pull| {np.median(np.abs(pooled)):.2f}"
         )
     pooled = np.concatenate([np.concatenate(parts) for parts in kinds.values()])
     print(
-        f"both: {said(np.abs(pooled) < 1.96)}; without a result {lost}, not converged {unconverged} of {seeds}"
+        f"both: {statement(np.abs(pooled) < 1.96)}; without a result {lost}, not converged {unconverged} of {seeds}"
     )
 
 

@@ -232,7 +232,7 @@ def interval(hits: int, trials: int) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def said(within: np.ndarray) -> str:
+def statement(within: np.ndarray) -> str:
     """Write a coverage with its interval."""
     low, high = interval(int(within.sum()), len(within))
     return f"{100 * within.mean():.1f} % of {len(within)} ({100 * low:.1f} to {100 * high:.1f} %)"
@@ -250,8 +250,8 @@ def named(seed: int) -> bool:
     rng = np.random.default_rng([2027, seed])
     specimen = draw(rng)
     result = update(test_of(specimen, rng), parameters=["E", "density"])
-    told = result.determinability
-    couplings = [] if told is None else [set(c.parameters) for c in told.couplings if c.determined]
+    stated = result.determinability
+    couplings = [] if stated is None else [set(c.parameters) for c in stated.couplings if c.determined]
     return set(result.undetermined) == {"E", "density"} and {"E", "density"} in couplings
 
 
@@ -292,10 +292,10 @@ def main() -> None:
             )
     pooled = np.concatenate(every)
     print(
-        f"covered by 95 % intervals, all parameters: {said(np.concatenate(within))}; "
+        f"covered by 95 % intervals, all parameters: {statement(np.concatenate(within))}; "
         f"r.m.s. pull {np.sqrt(np.mean(pooled**2)):.2f}"
     )
-    print(f"  of these, determined by the data: {said(np.concatenate(determined))}")
+    print(f"  of these, determined by the data: {statement(np.concatenate(determined))}")
     print(f"  specimens without a result: {lost} of {chosen.seeds}; with several solutions: {several}")
     pairs = np.array([named(seed) for seed in range(max(1, chosen.seeds // 4))])
     print(f"E and density of everything named as a pair: {pairs.sum()} of {len(pairs)}")

@@ -54,11 +54,11 @@ def theirs(frfs: FrfSet, path: Path) -> None:
 
 def bare(frfs: FrfSet, path: Path) -> None:
     """The same bytes with nothing around them."""
-    beside = path.with_suffix(".part")
-    with beside.open("wb") as out:
+    partial = path.with_suffix(".part")
+    with partial.open("wb") as out:
         for values in frfs.values:
             out.write(values.data)
-    os.replace(beside, path)  # noqa: PTH105
+    os.replace(partial, path)  # noqa: PTH105
 
 
 def main() -> None:

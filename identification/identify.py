@@ -118,8 +118,8 @@ def _identified(
         why = "once the modes named are dropped" if drop else "in the band: what was found is a background"
         raise EstimationError(f"{frfs.source}: no mode is left {why}; widen the band")
     result = _assemble(data, fitted, errors, modes, chart, limits, points_rejected)
-    said = (*_struck(struck), *uninformed_modes(frfs, result.modal.frequency))
-    return replace(result, warnings=result.warnings + said) if said else result
+    statement = (*_struck(struck), *uninformed_modes(frfs, result.modal.frequency))
+    return replace(result, warnings=result.warnings + statement) if statement else result
 
 
 def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tuple[str, ...]]:
@@ -167,19 +167,19 @@ class _Errors:
     """How far the poles of a fit may err: (n_poles, 2, 2) of (ln frequency, damping ratio)."""
 
     factors: NoiseFactors
-    apart: Disagreement
+    separation: Disagreement
     poles: FloatArray
 
     @classmethod
     def of(cls, fitted: Fitted, modes: BoolArray) -> _Errors:
         factors = covariance.noise_factors(fitted.frfs, fitted, modes)
-        apart = covariance.disagreement(fitted, factors)
-        return cls(factors, apart, covariance.pole_statistics(fitted, factors, apart))
+        separation = covariance.disagreement(fitted, factors)
+        return cls(factors, separation, covariance.pole_statistics(fitted, factors, separation))
 
     def clear(self, fitted: Fitted) -> BoolArray:
         """Tell which poles have constants that no noise makes, (n_poles,), however little is known of their damping."""
         size = np.abs(fitted.fit.linear.residues * 2.0 * fitted.fit.poles.imag)
-        own = covariance.own_errors(fitted, self.factors, self.apart)
+        own = covariance.own_errors(fitted, self.factors, self.separation)
         return np.asarray(np.mean((size / own) ** 2, axis=0) > _CLEAR**2)
 
 
@@ -197,16 +197,16 @@ def _assemble(
     sign = signs(data)
     poles: ComplexArray = fit.poles[own]
     constants = sign[:, None] * fit.linear.residues[:, own] * 2j * poles.imag
-    factors, apart, spread = errors.factors, errors.apart, errors.poles[own]
-    sigma = covariance.constant_statistics(fitted, factors, apart)[:, own]
+    factors, separation, spread = errors.factors, errors.separation, errors.poles[own]
+    sigma = covariance.constant_statistics(fitted, factors, separation)[:, own]
     alone = _alone(data, fitted, own, sigma) * np.sqrt(factors.shapes[own])
     shared = covariance.shared_errors(fitted, factors)[:, own]
-    noise = covariance.own_errors(fitted, factors, apart)[:, own]
+    noise = covariance.own_errors(fitted, factors, separation)[:, own]
     if fitted.held is not None:
         noise = np.sqrt(np.maximum(alone**2 - np.sum(shared**2, axis=2), noise**2))
     shapes = mode_shapes(data, constants, alone)
-    scatter = np.sqrt(apart.scatter[own, 1, 1])
-    said = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
+    scatter = np.sqrt(separation.scatter[own, 1, 1])
+    statement = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
     return ModalModel(
         modal=_modal_data(data, poles, spread, shapes),
@@ -225,7 +225,7 @@ def _assemble(
         band=band,
         frfs=data,
         chart=chart,
-        warnings=shapes.warnings + _warnings(fitted, poles) + said,
+        warnings=shapes.warnings + _warnings(fitted, poles) + statement,
         points_rejected=points_rejected,
         carried=None if fitted.frfs is data else fitted.frfs,
     )

@@ -262,15 +262,15 @@ def opinion_warnings(frfs: FrfSet, band: tuple[float, float]) -> tuple[str, ...]
         Lowest and highest frequency [Hz].
     """
     lower, upper = _lower(frfs, band), min(band[1], float(frfs.frequency[-1]))
-    told = []
+    stated = []
     if lower > 0.2 * upper:
-        told.append(
+        stated.append(
             f"sdypy-EMA sees nothing under {lower:g} Hz here, more than a fifth of {upper:g} Hz: there it loses and "
             "shifts modes; give it FRFs from lower frequencies on"
         )
     if lower <= 0:
-        told.append("sdypy-EMA is given the line at 0 Hz: there it loses modes; start above 0 Hz")
-    return tuple(told)
+        stated.append("sdypy-EMA is given the line at 0 Hz: there it loses modes; start above 0 Hz")
+    return tuple(stated)
 
 
 def _lower(frfs: FrfSet, band: tuple[float, float]) -> float:

@@ -61,7 +61,7 @@ if TYPE_CHECKING:
     from modalkit.workflow.diagnosis import diagnose_studies
     from modalkit.workflow.existing import Modes
     from modalkit.workflow.identification import Processed, read
-    from modalkit.workflow.processing_options import Handling
+    from modalkit.workflow.processing_options import ProcessingOptions
     from modalkit.workflow.update import update_studies
     from updating import Case, Diagnosis, diagnose, register
     from updating.correlation.correlate import correlate
@@ -74,13 +74,13 @@ __all__ = [
     "FrfSet",
     "Geometry",
     "HammerTest",
-    "Handling",
     "InputError",
     "ModalData",
     "ModalModel",
     "ModalkitError",
     "Modes",
     "Processed",
+    "ProcessingOptions",
     "Session",
     "Study",
     "StudyError",
@@ -128,7 +128,7 @@ load_on_demand(
         ".workflow.existing": "Modes",
         ".figures": "draw",
         ".workflow.update": "update_studies",
-        ".workflow.processing_options": "Handling",
+        ".workflow.processing_options": "ProcessingOptions",
         ".workflow.case": "Session open_study",
         ".workflow.identification": "Processed read",
         ".output.modes": "write_modes",

@@ -43,12 +43,12 @@ def behind() -> tuple[FloatArray, FloatArray]:
     spec = Spec("beam", LENGTH, 0.0305, 0.0047625, (53,), ("x0",), "timoshenko", Material(210e9, 7850.0, 0.3))
     points, nothing = _points(), np.full(1, np.nan)
     n = len(points)
-    looking = Measured(
+    own_predictor = Measured(
         frequency=np.array([500.0]), frequency_sigma=nothing, damping=nothing, damping_sigma=nothing,
         points=points[:, None], nodes=tuple(range(1, n + 1)), seen=np.arange(n), hit=np.full(n, -1),
         constants=np.ones((n, 1)), constants_sigma=np.ones((n, 1)), absolute=False,
     )  # fmt: skip
-    found = Predictor(spec, looking).predict(count=MODES)
+    found = Predictor(spec, own_predictor).predict(count=MODES)
     return found.frequency, found.constants
 
 

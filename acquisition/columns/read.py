@@ -226,9 +226,9 @@ def _even_rate(time: FloatArray, block: Block) -> float:
 def _points(records: Sequence[_Record], layout: Layout) -> tuple[Hits, ...]:
     lengths = {len(r.force): r.where for r in records}
     if len(lengths) > 1:
-        told = "; ".join(f"{where}: {n} samples" for n, where in sorted(lengths.items())[:3])
+        known = "; ".join(f"{where}: {n} samples" for n, where in sorted(lengths.items())[:3])
         raise InputError(
-            f"records of different lengths ({told}); add samples = {min(lengths)} to {layout.source}"
+            f"records of different lengths ({known}); add samples = {min(lengths)} to {layout.source}"
         )
     keys = dict.fromkeys((r.reference, r.responses) for r in records)
     groups = {key: [r for r in records if (r.reference, r.responses) == key] for key in keys}

@@ -185,8 +185,8 @@ def kept_hits(test: HammerTest, verdicts: Sequence[HitVerdict] | None = None) ->
         If no hit is left at any point.
     """
     kept = []
-    for point, told in zip(test.points, verdicts_of(test, verdicts or ()), strict=True):
-        mask = np.array([verdict is None or verdict.used for verdict in told], dtype=np.bool_)
+    for point, stated in zip(test.points, verdicts_of(test, verdicts or ()), strict=True):
+        mask = np.array([verdict is None or verdict.used for verdict in stated], dtype=np.bool_)
         if mask.any():
             kept.append((point, mask))
     if not kept:

@@ -34,7 +34,7 @@ class _Found:
     starts: tuple[int, ...]
 
 
-def looks_long(test: HammerTest) -> bool:
+def holds_several_hits(test: HammerTest) -> bool:
     """Tell whether records hold several well-separated hits each, so that `split_hits` is called for.
 
     The usual record must hold at least two hits of comparable force. A double hit does not make a record long, nor
@@ -138,11 +138,11 @@ def split_hits(
             f"end; {ELSE}"
         )
     count = sum(p.count for p in points)
-    said = (
+    statement = (
         f"{test.source}: long records were split into {count} hits of {length / test.rate:.4g} s "
         f"(trigger {level:.3g} N, {lead / test.rate:.3g} s before it)"
     )
-    return replace(test, points=points), (said, *messages)
+    return replace(test, points=points), (statement, *messages)
 
 
 def _too_short(test: HammerTest, lead: int, length: int, proposed: bool) -> str:
@@ -167,9 +167,9 @@ def _groups(wave: FloatArray, level: float, rate: float) -> list[int]:
     if len(starts) < 2:
         return [int(s) for s in starts]
     gaps = np.diff(starts) / rate
-    apart = gaps[gaps >= BOUNCE]
+    separate = gaps[gaps >= BOUNCE]
     near = max(0.1 * float(gaps.max()), CROWDED * len(wave) / rate)
-    together = min(BOUNCE, 0.3 * float(np.median(apart)) if len(apart) else near)
+    together = min(BOUNCE, 0.3 * float(np.median(separate)) if len(separate) else near)
     return [int(s) for s in starts[np.concatenate([[True], gaps >= together])]]
 
 

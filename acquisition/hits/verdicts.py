@@ -96,16 +96,16 @@ def verdicts_of(test: HammerTest, verdicts: Sequence[HitVerdict]) -> list[list[H
     verdicts : sequence of HitVerdict
         On all of its hits, or on some.
     """
-    told: dict[Dof, list[HitVerdict]] = {}
+    stated: dict[Dof, list[HitVerdict]] = {}
     for verdict in verdicts:
-        told.setdefault(verdict.point, []).append(verdict)
+        stated.setdefault(verdict.point, []).append(verdict)
     count = dict.fromkeys((p.reference for p in test.points), 0)
     for point in test.points:
         count[point.reference] += point.count
     seen = dict.fromkeys(count, 0)
     answer: list[list[HitVerdict | None]] = []
     for point in test.points:
-        there, first = told.get(point.reference, []), seen[point.reference]
+        there, first = stated.get(point.reference, []), seen[point.reference]
         numbers = {v.hit: v for v in there}
         if len(there) == count[point.reference]:
             ordered = sorted(there, key=lambda v: v.hit) if len(numbers) == len(there) else there
@@ -150,8 +150,8 @@ def decide(
             reasons = v.reasons if v.used else (*v.reasons, "used by the user's decision")
             decided.append(replace(v, used=True, reasons=reasons))
         elif name in unwanted:
-            said = "left out by the user" + ("" if v.used else ", who agrees")
-            decided.append(replace(v, used=False, reasons=(*v.reasons, said)))
+            statement = "left out by the user" + ("" if v.used else ", who agrees")
+            decided.append(replace(v, used=False, reasons=(*v.reasons, statement)))
         else:
             decided.append(v)
     return tuple(decided)

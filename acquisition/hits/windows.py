@@ -102,8 +102,8 @@ def _offset_before(hits: Hits) -> FloatArray:
         count = quiet.shape[-1]
         if count >= QUIET:
             mean = quiet.mean(axis=-1, dtype=np.float64)
-            heard = np.abs(mean) > 3 * quiet.std(axis=-1, dtype=np.float64) / np.sqrt(count)
-            offset[number, :, 0] = np.where(heard, mean, 0.0)
+            above_noise = np.abs(mean) > 3 * quiet.std(axis=-1, dtype=np.float64) / np.sqrt(count)
+            offset[number, :, 0] = np.where(above_noise, mean, 0.0)
     return offset
 
 
@@ -153,7 +153,7 @@ def state_window(
         return test, ()
     messages: tuple[str, ...] = ()
     if on is None:
-        on, messages = _heard(test, decay)
+        on, messages = _above_noise(test, decay)
     if on == "both":
         return replace(test, decay=decay), messages
     window = np.exp(-decay * (np.arange(test.samples) / test.rate - origin))
@@ -163,7 +163,7 @@ def state_window(
     return replace(test, points=points, decay=decay), messages
 
 
-def _heard(test: HammerTest, decay: float) -> tuple[Literal["both", "responses"], tuple[str, ...]]:
+def _above_noise(test: HammerTest, decay: float) -> tuple[Literal["both", "responses"], tuple[str, ...]]:
     """Return which records were windowed, as the noise of the force tells, and what to say of it."""
     seen = force_noise_decay(test)
     if seen is None or seen >= 0.5 * decay:
@@ -185,8 +185,8 @@ def force_noise_decay(test: HammerTest) -> float | None:
     test : HammerTest
         Records as they were stored.
     """
-    heard = _rates(test)
-    return None if heard is None else heard[0]
+    above_noise = _rates(test)
+    return None if above_noise is None else above_noise[0]
 
 
 def unstated_window(test: HammerTest) -> float | None:
@@ -242,13 +242,13 @@ def _rate(wave: FloatArray, rate: float) -> tuple[float, float, float, int] | No
     step = float(steps[steps > 0].min(initial=np.inf))
     if level[0] < 3 * step and level[0] < 1e-3 * wave.max():
         return None
-    heard = level > max(step, 1e-6 * float(wave.max())) if step < level[0] / 30 else level > 3 * step
-    count = int(heard.sum())
+    above_noise = level > max(step, 1e-6 * float(wave.max())) if step < level[0] / 30 else level > 3 * step
+    count = int(above_noise.sum())
     if count < 3:
         return None
-    time = (np.arange(10) * parts.shape[1] / rate)[heard]
-    line = np.polyfit(time, np.log(level[heard]), 1)
-    left = np.log(level[heard]) - np.polyval(line, time)
+    time = (np.arange(10) * parts.shape[1] / rate)[above_noise]
+    line = np.polyfit(time, np.log(level[above_noise]), 1)
+    left = np.log(level[above_noise]) - np.polyval(line, time)
     scatter = max(float(left @ left) / (count - 2), 0.5 / parts.shape[1])
     spread = float(((time - time.mean()) ** 2).sum())
     return -float(line[0]), float(np.ptp(time)) ** 2, scatter / spread, count - 2

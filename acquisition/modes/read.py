@@ -124,8 +124,8 @@ def _geometry(points: pd.DataFrame, dofs: dict[str, Dof], path: Path) -> Geometr
         return Geometry.empty()
     places: dict[int, tuple[float, ...]] = {}
     for name, point in dofs.items():
-        told = numbers(points[name], name, path)
-        by_axis = dict(zip(points.index, told.tolist(), strict=True))
+        stated = numbers(points[name], name, path)
+        by_axis = dict(zip(points.index, stated.tolist(), strict=True))
         place = tuple(by_axis.get(axis, 0.0) for axis in ("x", "y", "z"))
         if not np.isfinite(place).all():
             raise InputError(f"{path}: column {name!r} lacks a coordinate in the rows x, y, z; give it in m")
@@ -142,14 +142,16 @@ def _table(path: Path) -> pd.DataFrame:
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
     except UnicodeDecodeError as error:
-        said = (
+        statement = (
             not_utf8(path, path.read_bytes())
             or f"{path}: binary data, no table of modes; give a .csv of text"
         )
-        raise InputError(said) from error
+        raise InputError(statement) from error
     except (ValueError, pd.errors.ParserError) as error:
-        said = " ".join(str(error).split())
-        raise InputError(f"{path}: is no table of columns separated by {NAMES[separator]} ({said})") from None
+        statement = " ".join(str(error).split())
+        raise InputError(
+            f"{path}: is no table of columns separated by {NAMES[separator]} ({statement})"
+        ) from None
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise InputError(f"{path}: lines have more values than the header has names; name every column")
     nameless = [

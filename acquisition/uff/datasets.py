@@ -182,11 +182,11 @@ def _read_block(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
     if number == 58:
         return _read_58(here, info, finds)
     if number == 164:
-        found, remark = read_units(here.body)
-        remark = remark if here.block.closed else "its closing delimiter -1 is missing"
+        found, note = read_units(here.body)
+        note = note if here.block.closed else "its closing delimiter -1 is missing"
         plain = found.length == 1 and found.force == 1
         text = "SI" if plain else f"1 m = {found.length:g}, 1 N = {found.force:g} in the file's units"
-        return replace(info, description=text, message=remark)
+        return replace(info, description=text, message=note)
     if not here.block.closed:
         raise InputError("its closing delimiter -1 is missing: the file is cut off here")
     if number in (15, 2411):
@@ -196,9 +196,9 @@ def _read_block(here: _Here, info: DatasetInfo, finds: Finds) -> DatasetInfo:
         finds.systems.update(systems)
         return replace(info, description=f"{len(systems)} coordinate systems")
     if number in (82, 2412):
-        lines, remark = read_lines(number, here.body)
+        lines, note = read_lines(number, here.body)
         finds.lines.append(lines)
-        return replace(info, description=f"{len(lines)} lines", message=remark)
+        return replace(info, description=f"{len(lines)} lines", message=note)
     if number in (55, 2414):
         return _read_mode(here, info, finds)
     if number == 151:

@@ -81,11 +81,11 @@ def read_functions(path: Path | str) -> tuple[Function58, ...]:
 class _Report:
     """How much has been done, in bytes; each byte is met twice, when it is checked and when it is kept."""
 
-    tell: Callable[[float], None] | None
+    report_progress: Callable[[float], None] | None
     total: int
     passed: int = 0
     kept: int = 0
-    told: float = -1.0
+    reported: float = -1.0
 
     def checked(self, count: int) -> None:
         """Take note of bytes that were found and checked."""
@@ -104,9 +104,9 @@ class _Report:
 
     def _say(self, fraction: float) -> None:
         """Tell a fraction that is a thousandth more than the last one, and never less."""
-        if self.tell is not None and (fraction >= self.told + 1e-3 or fraction == 1):
-            self.told = fraction
-            self.tell(fraction)
+        if self.report_progress is not None and (fraction >= self.reported + 1e-3 or fraction == 1):
+            self.reported = fraction
+            self.report_progress(fraction)
 
 
 def _size(path: Path) -> int:
@@ -141,7 +141,7 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
     records = [
         replace(m, response=nodes.turn(m.response), reference=nodes.turn(m.reference)) for m in records
     ]
-    remark = turned(nodes, [d for m in finds.records for d in (m.response, m.reference)])
+    note = turned(nodes, [d for m in finds.records for d in (m.response, m.reference)])
     times = [m for m in records if m.function_type == 1]
     has_force = any(m.quantity == "force" for m in times)
     tests, lost, broken = (
@@ -155,15 +155,15 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
     modal = join_modes(solved, nodes.geometry) if solved else None
     taken = {m.stated.place: describe(m) for m in solved}
     infos = tuple(replace(info, description=taken.get(info.place, info.description)) for info in finds.infos)
-    told = [_told(info, broken.get(info.place)) for info in finds.infos if info.message and info.line]
-    remarks = [remark] if remark else []
+    reported = [_stated(info, broken.get(info.place)) for info in finds.infos if info.message and info.line]
+    notes = [note] if note else []
     warnings = dict.fromkeys(
-        [*told, *finds.warnings, *copies, *nodes.remarks, *remarks, *lost, *odd, *doubts]
+        [*reported, *finds.warnings, *copies, *nodes.notes, *notes, *lost, *odd, *doubts]
     )
     return UffContent(tests, frfs, modal, nodes.geometry, infos, tuple(warnings), finds.title)
 
 
-def _told(info: DatasetInfo, hit: str | None) -> str:
+def _stated(info: DatasetInfo, hit: str | None) -> str:
     """Say what is wrong with a data set, and which hit goes with it, in one line."""
     left_out = "it is left out" if hit is None else f"it is left out and {hit} with it"
     end = "" if info.ok else f"; {left_out}, export it again if it is needed"

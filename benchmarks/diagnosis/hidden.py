@@ -213,10 +213,10 @@ def _draw_drag(rng: np.random.Generator, s: Specimen, k: float) -> Values:
 
 
 def _draw_fluid(rng: np.random.Generator, s: Specimen, k: float) -> Values:
-    told = s.environment.fluid_density
+    stated = s.environment.fluid_density
     return {
-        "fluid_density": float(told * rng.uniform(0.985, 1.015))
-        if told
+        "fluid_density": float(stated * rng.uniform(0.985, 1.015))
+        if stated
         else float(rng.choice([780.0, 998.0, 1025.0]))
     }
 

@@ -55,7 +55,7 @@ def run_trial(
         where = traceback.extract_tb(error.__traceback__)[-1]
         what = f"{type(error).__name__}: {error} ({where.filename.split('/')[-1]}:{where.lineno})"
         return row | {"verdict": "failed", "error": what, "sets": [], "seconds": time.perf_counter() - start}
-    row |= {"seconds": round(time.perf_counter() - start, 2)} | _told(trial, found)
+    row |= {"seconds": round(time.perf_counter() - start, 2)} | _stated(trial, found)
     shrink = found.shrink
     closed = truly_closed(trial.case, trial.again, kept, shrink.metric, shrink.floor / 100)
     return row | {"truly_closed": closed}
@@ -67,7 +67,7 @@ def _library(trial: Trial) -> Sequence[Effect]:
     return [effect for name, effect in LIBRARY.items() if name not in gone]
 
 
-def _told(trial: Trial, found: Diagnosis) -> dict[str, Any]:
+def _stated(trial: Trial, found: Diagnosis) -> dict[str, Any]:
     top = found.ranking[0] if found.ranking else None
     row: dict[str, Any] = {
         "verdict": found.verdict,
@@ -119,8 +119,8 @@ def _severity(trial: Trial, found: Diagnosis) -> dict[str, Any]:
         for n, v in true.items()
         if n in estimates and n not in vague
     }
-    told = {n: [e.value, e.low95, e.high95] for n, e in estimates.items()}
-    return {"covered": inside, "estimates": told, "place_error": _place_error(trial, found)}
+    stated = {n: [e.value, e.low95, e.high95] for n, e in estimates.items()}
+    return {"covered": inside, "estimates": stated, "place_error": _place_error(trial, found)}
 
 
 def _place_error(trial: Trial, found: Diagnosis) -> float | None:

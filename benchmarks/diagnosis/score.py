@@ -112,11 +112,11 @@ def _others(rows: Sequence[Row]) -> Iterable[str]:
     if away:
         near = share(away, lambda a: a < 0.05)
         yield f"- place: median error {100 * np.median(away):.1f} % of the span, within 5 % in {near} %"
-    told = [r for r in rows if answered(r) and None not in (r.get("closed"), r.get("truly_closed"))]
-    apart = [r["closed"] - r["truly_closed"] for r in told]
-    if apart:
-        near = share(apart, lambda a: abs(a) <= 10)
-        yield f"- shrinkage predicted less true: median {np.median(apart):+.1f} points, within 10 in {near} %"
+    stated = [r for r in rows if answered(r) and None not in (r.get("closed"), r.get("truly_closed"))]
+    separation = [r["closed"] - r["truly_closed"] for r in stated]
+    if separation:
+        near = share(separation, lambda a: abs(a) <= 10)
+        yield f"- shrinkage predicted less true: median {np.median(separation):+.1f} points, within 10 in {near} %"
 
 
 def by_effect(rows: Sequence[Row]) -> str:

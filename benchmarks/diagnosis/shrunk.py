@@ -51,7 +51,7 @@ def truly_closed(
         Noise floor in that channel [-].
     """
     found = kept["found"]
-    best = next((row.explanation for row in found.weighed if row.names), None)
+    best = next((row.explanation for row in found.compared if row.names), None)
     if best is None or metric not in CHANNELS:
         return None
     problem = engine.pose(replace(case, measured=again))[0]

@@ -22,22 +22,22 @@ def uninformed_modes(frfs: FrfSet, frequency: FloatArray) -> tuple[str, ...]:
     frequency : (n_modes,) array
         Frequencies found [Hz].
     """
-    coherent, said = best_coherence(frfs), []
+    coherent, statement = best_coherence(frfs), []
     if coherent is not None:
         lost = frequency[np.interp(frequency, frfs.frequency, coherent) < LOST]
         if len(lost):
-            said.append(
+            statement.append(
                 f"mode(s) at {_named(lost)} lie where no FRF has a coherence over {LOST:g}: the force left nothing "
                 "there, and what is found may be noise; leave them out with drop, or end the band below"
             )
     filtered = frequency[frequency > _passed(frfs)]
     if len(filtered):
-        said.append(
+        statement.append(
             f"mode(s) at {_named(filtered)} lie above {_passed(frfs):.4g} Hz, the sampling rate over {PASSED:g}, where "
             "the filter before the converter falls: what is folded back from beyond half the rate may pass for a mode; "
             "sample faster, or leave them out with drop"
         )
-    return tuple(said)
+    return tuple(statement)
 
 
 def _named(frequency: FloatArray) -> str:

@@ -9,7 +9,7 @@ from acquisition.frfs.frf import FrfSet
 from identification.fit.drift import Drift, carried_over, estimate_drift
 from identification.fit.equations.refine import Fit, refine
 from identification.fit.noise.weights import search_weights
-from identification.fit.search.completion import without_halves
+from identification.fit.search.completion import without_split_modes
 from identification.fit.search.split_modes import clusters
 
 _ROUNDS, _STEPS = 4, 12
@@ -62,7 +62,7 @@ def _round(
     after = refine(moved, fit.poles, weights, powers=powers, iterations=_STEPS)
     if after.cost > _WORTH * before.cost:
         return None
-    return moved, without_halves(moved, after), new
+    return moved, without_split_modes(moved, after), new
 
 
 def distinct(poles: ComplexArray) -> BoolArray:

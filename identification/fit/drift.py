@@ -159,8 +159,12 @@ def _from_scores(
     np.add.at(information, label, 2.0 * normal)
     omega = fit.poles.imag / (2 * np.pi)
     within = (omega >= frfs.frequency[0]) & (omega <= frfs.frequency[-1])
-    fading = inflation(weights.fade, decay_over_record(frfs, fit.poles))[2][within].max(initial=1.0)
-    common = _common_variance(pulls @ within / fading, within @ information @ within / fading)
+    window_shaped_noise = inflation(weights.fade, decay_over_record(frfs, fit.poles))[2][within].max(
+        initial=1.0
+    )
+    common = _common_variance(
+        pulls @ within / window_shaped_noise, within @ information @ within / window_shaped_noise
+    )
     each = np.zeros(n_modes)
     if (own & within).any():
         each = _own_variances(pulls, information, own & within, common)

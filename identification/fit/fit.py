@@ -21,7 +21,14 @@ from identification.fit.noise import window_shaped
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights, search_weights
 from identification.fit.poly_reference import RankOne, hold_to_rank_one, sorted_frfs
 from identification.fit.search import manual_selection
-from identification.fit.search.completion import COARSE, SHORT, completed, halves, pruned, without_halves
+from identification.fit.search.completion import (
+    COARSE,
+    SHORT,
+    completed,
+    find_split_mode,
+    pruned,
+    without_split_modes,
+)
 
 _LONG = 40
 _FINE = 1e-10
@@ -112,14 +119,14 @@ def fit_modes(
     weights = search_weights(frfs, fit)
     fit = refine(frfs, fit.poles, weights, powers=ladder[0], iterations=SHORT, tolerance=COARSE)
     fit = pruned(frfs, fit, weights, band, iterations=SHORT, tolerance=COARSE)
-    data, fit, drift = aligned(frfs, without_halves(frfs, fit))
+    data, fit, drift = aligned(frfs, without_split_modes(frfs, fit))
     fit = completed(data, fit, band, ladder)
     if drift.variance.any():
-        data, fit, drift = aligned(frfs, without_halves(data, fit), drift)
+        data, fit, drift = aligned(frfs, without_split_modes(data, fit), drift)
     fit = _without_broad(data, fit, band, ladder)
-    fitted = _weighted(frfs, without_halves(data, fit), drift, band)
-    while halves(fitted.frfs, fitted.fit) is not None:
-        fit = without_halves(fitted.frfs, fitted.fit)
+    fitted = _weighted(frfs, without_split_modes(data, fit), drift, band)
+    while find_split_mode(fitted.frfs, fitted.fit) is not None:
+        fit = without_split_modes(fitted.frfs, fitted.fit)
         fitted = _weighted(frfs, fit, fitted.drift, band)
     data = fitted.frfs
     return _held(data, _with_added(data, fitted, add, band), band)

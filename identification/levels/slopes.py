@@ -140,9 +140,9 @@ def _of_hit(
     """Return shifts of (ln f, zeta) of each mode in one hit, (n_modes, 2), and their variances."""
     pairs = list(zip(frfs.responses, frfs.references, strict=True))
     kept = [i for i, pair in enumerate(pairs) if pair in rows]
-    data, told = frfs.select(kept), np.array([rows[pairs[i]] for i in kept])
-    of_lines = weights.lines if len(weights.lines) == 1 else weights.full[told].mean(axis=0, keepdims=True)
-    level = weights.level[told] if len(weights.lines) == 1 else np.ones(len(told))
+    data, stated = frfs.select(kept), np.array([rows[pairs[i]] for i in kept])
+    of_lines = weights.lines if len(weights.lines) == 1 else weights.full[stated].mean(axis=0, keepdims=True)
+    level = weights.level[stated] if len(weights.lines) == 1 else np.ones(len(stated))
     moved, covariance = _moved_poles(model, data, Weights(level, of_lines))
     poles, size = model.poles, np.abs(model.poles)
     frequency = np.stack([poles.real, poles.imag], axis=1) / size[:, None] ** 2
@@ -214,11 +214,11 @@ def _line(
     def within(values: FloatArray) -> FloatArray:
         return np.asarray(values - member @ ((member.T @ (weight * values)) / total))
 
-    apart = within(np.broadcast_to(levels[:, None], shifts.shape))
+    disagreement = within(np.broadcast_to(levels[:, None], shifts.shape))
     about = within(shifts)
-    power = np.sum(weight * apart**2, axis=0)
-    slope = np.sum(weight * apart * about, axis=0) / power
-    left = about - slope * apart
+    power = np.sum(weight * disagreement**2, axis=0)
+    slope = np.sum(weight * disagreement * about, axis=0) / power
+    left = about - slope * disagreement
     freedom = len(levels) - len(np.unique(point)) - 1
     scale = np.sum(weight * left**2, axis=0) / freedom
     wider = stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)

@@ -121,8 +121,8 @@ def correlate(test: ModalData, model: ModalData, *, min_mac: float = _MIN_MAC) -
     if len(shared.dofs) < 2:
         values = np.full((len(test), len(model)), np.nan)
         pairs = pair(test.frequency, model.frequency)
-        told = f"{len(shared.dofs)} degrees of freedom in common: paired by frequency alone"
-        return Correlation(test, model, shared.dofs, values, pairs, (), (told,))
+        stated = f"{len(shared.dofs)} degrees of freedom in common: paired by frequency alone"
+        return Correlation(test, model, shared.dofs, values, pairs, (), (stated,))
     values = mac(shared.first, shared.second)
     groups = _groups(test, model, (shared.first, shared.second), values, min_mac)
     priced = values.copy()
@@ -151,14 +151,14 @@ def _groups(
 
 
 def _notes(groups: tuple[Subspace, ...], n_dofs: int) -> tuple[str, ...]:
-    told = []
+    stated = []
     for group in groups:
         ours, theirs = (", ".join(str(i + 1) for i in side) for side in (group.test, group.model))
-        told.append(
+        stated.append(
             f"test modes {ours} and model modes {theirs} span the same space (largest angle {group.angle:.0f} "
             "degrees), but are mixed differently: close modes are, after the smallest change; their single MACs mean "
             "nothing"
         )
     if n_dofs < 4:
-        told.append(f"{n_dofs} degrees of freedom in common: a high MAC says little")
-    return tuple(told)
+        stated.append(f"{n_dofs} degrees of freedom in common: a high MAC says little")
+    return tuple(stated)

@@ -67,6 +67,6 @@ def _polished(roots: ComplexArray, coefficients: ComplexArray) -> ComplexArray |
         if not np.abs(roots).max(initial=0.0) < 1.0:
             return None
         if np.abs(step).max(initial=0.0) < _REST:
-            apart: FloatArray = np.abs(roots[:, None] - roots) + 2.0 * np.eye(len(roots))
-            return roots if apart.min(initial=2.0) > 1e3 * _REST else None
+            disagreement: FloatArray = np.abs(roots[:, None] - roots) + 2.0 * np.eye(len(roots))
+            return roots if disagreement.min(initial=2.0) > 1e3 * _REST else None
     return None

@@ -97,7 +97,7 @@ def about_drive_points(
     plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray
 ) -> tuple[str, ...]:
     """Say where a drive point contradicts a passive structure; parameters as for :func:`contradicted`."""
-    told = []
+    stated = []
     for i in _measured(plan, column):
         frf = plan.index[i, column[i]]
         value, spread = constants[0][frf], np.maximum(constants[1][frf], 1e-300)
@@ -105,27 +105,27 @@ def about_drive_points(
         negative = value.real < -_CERTAIN * spread
         wrong = np.flatnonzero(negative) + 1
         if len(wrong):
-            told.append(_negative(str(plan.rows[i]), wrong, np.any(value.real > _CERTAIN * spread)))
+            stated.append(_negative(str(plan.rows[i]), wrong, np.any(value.real > _CERTAIN * spread)))
         doubt = spread / np.maximum(np.abs(value), 1e-300)
         late = np.flatnonzero((doubt < 1.0 / _CERTAIN) & (angle - 3.0 * doubt > _DELAYED) & ~negative) + 1
         if len(late):
-            told.append(
+            stated.append(
                 f"the modal constant of the drive point {plan.rows[i]} is turned by up to "
                 f"{np.degrees(angle[late - 1].max()):.0f} degrees in mode(s) {_listed(late)}: strongly complex modes, "
                 "or a delay between the channels"
             )
-    return tuple(told)
+    return tuple(stated)
 
 
 def _negative(point: str, wrong: IntArray, others: np.bool_) -> str:
     """Say what a negative drive-point constant means: a passive structure has none."""
-    said = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
+    statement = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
     if others:
         return Consequential(
-            f"{said} and a positive one in others: hit and sensor cannot have been at one place, so it gives the mode "
+            f"{statement} and a positive one in others: hit and sensor cannot have been at one place, so it gives the mode "
             "shapes no scale; check the node numbers"
         )
-    return Consequential(f"{said}: check the direction signs of hammer and sensor")
+    return Consequential(f"{statement}: check the direction signs of hammer and sensor")
 
 
 def _listed(numbers: IntArray) -> str:

@@ -56,14 +56,14 @@ def mode_shapes(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> Sha
     column[false] = -1
     if np.all(column < 0):
         factors = _disagreement(values, weight, start, bonds=1)
-        told = (*lost, *about, *(() if len(false) else (notes.no_drive_point(frfs),)))
-        return _shapes(plan, _times(factors, size), scaled=False, warnings=told)
+        stated = (*lost, *about, *(() if len(false) else (notes.no_drive_point(frfs),)))
+        return _shapes(plan, _times(factors, size), scaled=False, warnings=stated)
     scaled, certainty = _scaled(start, weight, column)
     polished = symmetric(values, weight, scaled, column, steps=_STEPS if len(plan.columns) > 1 else 0)
     factors = _where(_sane(polished, scaled) & (certainty >= _CERTAIN), polished, scaled)
     factors = _disagreement(values, weight, factors, bonds=int(np.sum(column >= 0)))
-    told = (*lost, *about, *notes.about_scale(plan, column, certainty))
-    return _shapes(plan, _times(factors, np.sqrt(size)), scaled=True, warnings=told)
+    stated = (*lost, *about, *notes.about_scale(plan, column, certainty))
+    return _shapes(plan, _times(factors, np.sqrt(size)), scaled=True, warnings=stated)
 
 
 def _tied_together(plan: Arrangement) -> tuple[Arrangement, tuple[str, ...]]:

@@ -37,23 +37,23 @@ def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactor
     pole = pole * common_factors(frfs, fit, fitted.weights, fitted.variance, fitted.residual)
     shape = fit.linear.residues.shape
     noise = NoiseFactors(pole, np.broadcast_to(free, shape), np.ones(len(pole)), np.broadcast_to(held, shape))
-    told = hit_factors(frfs, fit, fitted.weights, modes, noise)
-    if told is None:
+    stated = hit_factors(frfs, fit, fitted.weights, modes, noise)
+    if stated is None:
         return NoiseFactors(misfit * noise.poles, misfit * noise.constants, noise.shapes, misfit * noise.held)
-    poles, constants = np.maximum(told.poles, misfit), np.maximum(told.constants, misfit)
-    return NoiseFactors(poles, constants, told.shapes, np.maximum(told.held, misfit))
+    poles, constants = np.maximum(stated.poles, misfit), np.maximum(stated.constants, misfit)
+    return NoiseFactors(poles, constants, stated.shapes, np.maximum(stated.held, misfit))
 
 
-def pole_statistics(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
+def pole_statistics(fitted: Fitted, factors: NoiseFactors, separation: Disagreement) -> FloatArray:
     """Return the covariance of (ln frequency, damping ratio) of every mode, shape (n_modes, 2, 2) [-].
 
     First-order propagation from (Re p, Im p): f = |p| / 2 pi, zeta = -Re p / |p|; with what FRFs that disagree,
-    ``apart``, add.
+    ``separation``, add.
     """
     poles = fitted.fit.poles
     full = pole_covariance(fitted.fit).reshape(len(poles), 2, len(poles), 2)
     own = np.einsum("rarb->rab", full)
-    own = own * factors.poles[:, None, None] + apart.mean
+    own = own * factors.poles[:, None, None] + separation.mean
     a, b, size = poles.real, poles.imag, np.abs(poles)
     jacobian = np.stack(
         [
@@ -65,22 +65,22 @@ def pole_statistics(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) 
     return np.asarray(np.einsum("rab,rbc,rdc->rad", jacobian, own, jacobian))
 
 
-def constant_statistics(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
+def constant_statistics(fitted: Fitted, factors: NoiseFactors, separation: Disagreement) -> FloatArray:
     """Return the standard deviation of each modal constant's real part, shape (n_frf, n_modes) [1/kg].
 
     Where FRFs disagree on a pole, each constant bears the scatter of its own FRF's pole about the common one.
     """
     noise = constant_variance(fitted.fit) * factors.constants
-    return np.asarray(np.sqrt(noise + _shifted(fitted, apart)))
+    return np.asarray(np.sqrt(noise + _shifted(fitted, separation)))
 
 
-def _shifted(fitted: Fitted, apart: Disagreement) -> FloatArray:
+def _shifted(fitted: Fitted, separation: Disagreement) -> FloatArray:
     """Return the variance of each constant by the scatter of its FRF's own pole, (n_frf, n_modes) [1/kg^2]."""
     fit = fitted.fit
     n = len(fit.poles)
     gain = fit.pole_gain[:, 1 : 2 * n : 2].reshape(-1, n, n, 2)
     own = np.einsum("jnna->jna", gain)
-    shift = np.einsum("jna,jnab,jnb->jn", own, apart.each, own)
+    shift = np.einsum("jna,jnab,jnb->jn", own, separation.each, own)
     return np.asarray((2.0 * fit.poles.imag) ** 2 * np.maximum(shift, 0.0))
 
 
@@ -100,11 +100,11 @@ def shared_errors(fitted: Fitted, factors: NoiseFactors) -> FloatArray:
     return np.asarray(-2.0 * fit.poles.imag[:, None] * moved)
 
 
-def own_errors(fitted: Fitted, factors: NoiseFactors, apart: Disagreement) -> FloatArray:
+def own_errors(fitted: Fitted, factors: NoiseFactors, separation: Disagreement) -> FloatArray:
     """Return the standard deviation of each constant's real part with the poles known, (n_frf, n_modes) [1/kg]."""
     fit = fitted.fit
     held = (2.0 * fit.poles.imag) ** 2 * fit.linear_inverse[:, 1 : 2 * len(fit.poles) : 2]
-    return np.asarray(np.sqrt(held * factors.held + _shifted(fitted, apart)))
+    return np.asarray(np.sqrt(held * factors.held + _shifted(fitted, separation)))
 
 
 def disagreement(fitted: Fitted, factors: NoiseFactors) -> Disagreement:

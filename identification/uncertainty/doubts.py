@@ -61,18 +61,18 @@ def _tones(frfs: FrfSet, poles: ComplexArray, others: ComplexArray) -> tuple[str
     """Name modes narrower than a tenth of a line, and tones that were taken for no mode."""
     width = -2.0 * (poles.real - frfs.decay) / (2 * np.pi)
     narrow = np.flatnonzero(width < _NARROW * frfs.df)
-    told = []
+    stated = []
     pure = np.abs(others[-others.real < _UNDAMPED * np.abs(others)]) / (2 * np.pi)
     pure = pure[(pure > frfs.frequency[0]) & (pure < frfs.frequency[-1])]
-    apart = np.abs(2 * np.pi * pure[:, None] - poles.imag[None, :]) / np.abs(poles.real)[None, :]
-    pure = pure[(apart > _SKIRT).all(axis=1)]
+    disagreement = np.abs(2 * np.pi * pure[:, None] - poles.imag[None, :]) / np.abs(poles.real)[None, :]
+    pure = pure[(disagreement > _SKIRT).all(axis=1)]
     if len(pure):
         named = ", ".join(f"{f:.5g} Hz" for f in pure)
-        told.append(f"a tone at {named} that does not decay{_hum(frfs, pure)} was taken for no mode")
+        stated.append(f"a tone at {named} that does not decay{_hum(frfs, pure)} was taken for no mode")
     if not len(narrow):
-        return tuple(told)
+        return tuple(stated)
     return (
-        *told,
+        *stated,
         f"mode(s) {_numbers(narrow)} are narrower than a tenth of the line "
         f"spacing{_hum(frfs, np.abs(poles[narrow]) / (2 * np.pi))}: a tone, or leakage of records "
         "that end too early; leave them out with drop if they are none",
@@ -123,14 +123,14 @@ def _in_one_frf(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> tup
     modes = np.arange(constants.shape[1])
     alone = power[most, modes] > _ALONE * power.sum(axis=0)
     alone &= np.abs(constants[most, modes]) > _MANY_SIGMA * sigma[most, modes]
-    told = []
+    stated = []
     for row in np.unique(most[alone]):
         which = np.flatnonzero(alone & (most == row))
-        told.append(
+        stated.append(
             f"mode(s) {_numbers(which)} show in the FRF {frfs.responses[row]}/{frfs.references[row]} alone: does it "
             "belong to this test?"
         )
-    return tuple(told)
+    return tuple(stated)
 
 
 def _not_reciprocal(frfs: FrfSet) -> tuple[str, ...]:

@@ -66,7 +66,7 @@ class _Sums:
         The same with the poles held.
     rows : (n_rows,) int array
         Which FRFs.
-    joint, apart : (n_modes,) arrays
+    joint, disagreement : (n_modes,) arrays
         Sums of squares of what it moves a shape's components by: as it is, and as if the FRFs were moved
         independently.
     """
@@ -76,7 +76,7 @@ class _Sums:
     held: FloatArray
     rows: IntArray
     joint: FloatArray
-    apart: FloatArray
+    disagreement: FloatArray
 
 
 def factors(
@@ -121,8 +121,8 @@ def factors(
 
 def _of_shapes(groups: list[_Sums]) -> FloatArray:
     """Return the variance of shape components over that of independent constants, 1 or more."""
-    joint, apart = sum(g.joint for g in groups), sum(g.apart for g in groups)
-    return np.asarray(np.maximum(_ratio(np.asarray(joint), np.asarray(apart)), 1.0))
+    joint, disagreement = sum(g.joint for g in groups), sum(g.disagreement for g in groups)
+    return np.asarray(np.maximum(_ratio(np.asarray(joint), np.asarray(disagreement)), 1.0))
 
 
 def _moved(
@@ -151,9 +151,9 @@ def _moved(
     steps = gradient.reshape(hits, 2 * n) @ inverse
     gain = fit.pole_gain[rows, 1 : 2 * n : 2]
     own, by_poles = alone[:, :, 1 : 2 * n : 2], np.einsum("jnp,hp->hjn", gain, steps)
-    joint, apart = _shared(own + by_poles, residues.imag * weights.level[rows, None], point[rows])
+    joint, disagreement = _shared(own + by_poles, residues.imag * weights.level[rows, None], point[rows])
     both = np.sum(own**2 + 2.0 * own * by_poles, axis=0)
-    return _Sums(steps, both, np.sum(own**2, axis=0), rows, joint, apart)
+    return _Sums(steps, both, np.sum(own**2, axis=0), rows, joint, disagreement)
 
 
 def _shared(moved: FloatArray, share: FloatArray, point: IntArray) -> tuple[FloatArray, FloatArray]:

@@ -77,7 +77,7 @@ def lines_together(frfs: FrfSet, fitted: Fitted, density: FloatArray) -> FloatAr
         weight = 2.0 * np.maximum(1.0 - lag / (lags + 1.0), 0.0)
         mean = share[:, : share.shape[1] - lag] @ _correlation(white, lag) / (share @ power)
         together += weight * mean
-        expected += weight * _of_fading(fitted.weights.fade, lag)
+        expected += weight * _of_window_shaped_noise(fitted.weights.fade, lag)
     values = len(white) / np.sum(share**2, axis=1)
     chance = _SURE * np.sqrt(4.0 / 3.0 * lags / values)
     ratio = together / expected
@@ -90,6 +90,6 @@ def _correlation(white: ComplexArray, lag: int) -> FloatArray:
     return np.asarray(np.mean((white[:, :last].conj() * white[:, lag:]).real, axis=0))
 
 
-def _of_fading(fade: float, lag: int) -> float:
+def _of_window_shaped_noise(fade: float, lag: int) -> float:
     """Return the correlation over a lag [-] of noise that fades along the record (`fit.noise.window_shaped`)."""
     return 0.0 if fade == 0.0 else 1.0 / (1.0 + (np.pi * lag / fade) ** 2)

@@ -213,9 +213,9 @@ def run_part(found: Found, run: RunCommand) -> Part:
             run(found.path.parent, ["part", found.path.name, "--json", str(out)])
             return Part(found.name, found.digest, json.loads(out.read_text(encoding="utf-8")), None)
         except EstimationError as error:
-            said = str(error).removeprefix("`modalkit part` ended with code 2: ")
-            said = said.removeprefix(f"{found.path.name}: ")
-            return Part(found.name, found.digest, None, said)
+            statement = str(error).removeprefix("`modalkit part` ended with code 2: ")
+            statement = statement.removeprefix(f"{found.path.name}: ")
+            return Part(found.name, found.digest, None, statement)
         except (OSError, ValueError) as error:
             return Part(found.name, found.digest, None, f"no readable result: {error}")
 

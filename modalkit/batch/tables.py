@@ -148,7 +148,7 @@ def _causes(part: Part) -> list[dict[str, Any]]:
     cause = diagnosis["cause"]
     rows = []
     for rank, row in enumerate(cause["ranking"], start=1):
-        told = {
+        stated = {
             "study": part.name,
             "rank": rank,
             "effects": " + ".join(row["effects"]),
@@ -156,5 +156,5 @@ def _causes(part: Part) -> list[dict[str, Any]]:
             "named": row["effects"] in cause["sets"],
             "plausible": row["plausible"],
         }
-        rows += [told | parameter for parameter in _parameters(row) or [{}]]
+        rows += [stated | parameter for parameter in _parameters(row) or [{}]]
     return rows

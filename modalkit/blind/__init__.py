@@ -10,15 +10,15 @@ from modalkit.blind.scoring.score import Score, score
 from modalkit.blind.seal import Seal, open_seal, seal
 from modalkit.blind.store import Checked, Store, check_store
 from modalkit.blind.trial import Trial, Truth, draw_trial, write_trial
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 
 __all__ = [
     "BlindResult",
     "Checked",
     "Diagnose",
     "Diagnoser",
+    "DrawRanges",
     "Outcome",
-    "Plan",
     "Score",
     "Seal",
     "Store",

@@ -120,7 +120,7 @@ class Answer:
             "cause": {
                 "verdict": self.verdict,
                 "sets": [sorted(s) for s in self.sets],
-                "ranking": [_row_json(row, told=row.effects in self.sets) for row in self.ranking],
+                "ranking": [_row_json(row, stated=row.effects in self.sets) for row in self.ranking],
             },
             "shrink": {
                 "metric": self.metric,
@@ -179,13 +179,13 @@ def _read(document: Mapping[str, Any]) -> Answer:
 
 
 def _row(row: Mapping[str, Any]) -> Row:
-    told = {n: p for n, p in row["parameters"].items() if not isinstance(p["value"], str)}
-    points = {n: p["value"] for n, p in told.items() if _is_points(p)}
+    stated = {n: p for n, p in row["parameters"].items() if not isinstance(p["value"], str)}
+    points = {n: p["value"] for n, p in stated.items() if _is_points(p)}
     return Row(
         effects=frozenset(row["effects"]),
         probability=float(row["probability"]),
         fit=_number(row.get("fit_p_value")),
-        parameters={n: _estimate(p) for n, p in told.items() if n not in points},
+        parameters={n: _estimate(p) for n, p in stated.items() if n not in points},
         points={n: _points(value) for n, value in points.items()},
     )
 
@@ -207,13 +207,13 @@ def _number(value: Any) -> float:
     return NAN if value is None else float(value)
 
 
-def _row_json(row: Row, *, told: bool) -> dict[str, Any]:
+def _row_json(row: Row, *, stated: bool) -> dict[str, Any]:
     points = {name: {"value": list(value), "unit": "node"} for name, value in row.points.items()}
     return {
         "effects": sorted(row.effects),
         "probability": row.probability,
         "fit_p_value": _or_none(row.fit),
-        "parameters": {n: _estimate_json(e) for n, e in row.parameters.items()} | points if told else {},
+        "parameters": {n: _estimate_json(e) for n, e in row.parameters.items()} | points if stated else {},
     }
 
 

@@ -9,15 +9,15 @@ from acquisition.errors import EstimationError
 from modalkit.blind.diagnoser import Diagnose, diagnose_by
 from modalkit.blind.outcome import Outcome
 from modalkit.blind.run import Announce, run_trial
-from modalkit.simulator.drawing.ranges import Plan
-from modalkit.workers.cluster import Ended, connected, keeper, tell
+from modalkit.simulator.drawing.ranges import DrawRanges
+from modalkit.workers.cluster import Ended, announce_event, connected, keeper
 
 
 def cluster_outcomes(
     indices: Sequence[int],
     *,
     seed: int,
-    plan: Plan,
+    plan: DrawRanges,
     scheduler: str,
     publish: Announce,
     diagnose: Diagnose | None = None,
@@ -68,11 +68,11 @@ def cluster_outcomes(
         )
 
 
-def _task(name: str, index: int, seed: int, plan: Plan, diagnose: Diagnose | None) -> str:
+def _task(name: str, index: int, seed: int, plan: DrawRanges, diagnose: Diagnose | None) -> str:
     """Run a trial on a worker machine; runs there."""
 
     def publish(trial: int, commitment: str) -> None:
-        tell(name, {"trial": trial, "commitment": commitment})
+        announce_event(name, {"trial": trial, "commitment": commitment})
 
     use = diagnose or diagnose_by(keeper(name).run)
     outcome = run_trial(seed, index, diagnose=use, plan=plan, announce=publish)

@@ -73,12 +73,12 @@ class Outcome:
         KeyError, TypeError, ValueError
             If something is missing or of another kind.
         """
-        said, shrunk = document["document"], document["shrinkage"]
+        text, shrunk = document["document"], document["shrinkage"]
         return cls(
             index=document["index"],
             truth=Truth.from_json(json.loads(document["statement"])),
-            answer=None if said is None else read_answer(said),
-            document=said,
+            answer=None if text is None else read_answer(text),
+            document=text,
             failure=document["failure"],
             sealed=Seal(document["statement"], document["salt"]),
             seconds=float(document["seconds"]),

@@ -18,7 +18,7 @@ from modalkit.blind.seal import open_seal, seal
 from modalkit.blind.shrunk import true_shrinkage
 from modalkit.blind.store import Store
 from modalkit.blind.trial import Truth, draw_trial, write_trial
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.workers.pool import in_flight
 
 Announce = Callable[[int, str], None]
@@ -40,12 +40,17 @@ class BlindResult:
     """
 
     seed: int
-    plan: Plan = field(default_factory=Plan)
+    plan: DrawRanges = field(default_factory=DrawRanges)
     outcomes: tuple[Outcome, ...] = ()
 
 
 def run_trial(
-    seed: int, index: int, *, diagnose: Diagnose, plan: Plan | None = None, announce: Announce | None = None
+    seed: int,
+    index: int,
+    *,
+    diagnose: Diagnose,
+    plan: DrawRanges | None = None,
+    announce: Announce | None = None,
 ) -> Outcome:
     """Run one trial from the draw to the opened seal.
 
@@ -65,7 +70,7 @@ def run_trial(
     Outcome
         With the failure's message in place of an answer where the diagnosis failed.
     """
-    trial = draw_trial(seed, index, plan=plan or Plan())
+    trial = draw_trial(seed, index, plan=plan or DrawRanges())
     sealed = seal(trial.truth.to_json())
     commitment = sealed.commitment
     if announce is not None:
@@ -90,7 +95,7 @@ def run_blind(
     trials: int,
     seed: int,
     *,
-    plan: Plan | None = None,
+    plan: DrawRanges | None = None,
     workers: int = 1,
     scheduler: str | None = None,
     store: Path | None = None,
@@ -143,7 +148,7 @@ def run_blind(
         from modalkit.workers.cluster import check_scheduler
 
         check_scheduler(scheduler)
-    plan = plan or Plan()
+    plan = plan or DrawRanges()
     outcomes: dict[int, Outcome] = {}
 
     def came(outcome: Outcome) -> None:
@@ -174,7 +179,7 @@ def run_blind(
 def _running(
     indices: Sequence[int],
     seed: int,
-    plan: Plan,
+    plan: DrawRanges,
     workers: int,
     scheduler: str | None,
     diagnose: Diagnose | None,

@@ -12,7 +12,7 @@ from acquisition.arrays import FloatArray
 from modalkit.blind.answer import Answer, Row
 from modalkit.blind.trial import Trial
 from modalkit.simulator.bodies.complex_modes import ComplexModes
-from modalkit.simulator.hidden import SECRETS
+from modalkit.simulator.hidden import HIDDEN_EFFECTS
 from modalkit.simulator.matching import match
 from modalkit.simulator.scene import Scene, nominal_scene
 from modalkit.simulator.setup import Setup
@@ -71,7 +71,7 @@ def true_shrinkage(trial: Trial, answer: Answer) -> Shrinkage | None:
     added = put_in(nominal_scene(trial.scene.setup), row)
     if added is None:
         return None
-    metric = "damping" if all(SECRETS[n].metric == "damping" for n in row.effects) else "frequency"
+    metric = "damping" if all(HIDDEN_EFFECTS[n].metric == "damping" for n in row.effects) else "frequency"
     if "shear" not in row.effects:
         added = _as_modelled(added)
     errors = _errors(trial, added, metric)
@@ -101,15 +101,17 @@ def put_in(scene: Scene, row: Row) -> Scene | None:
     Scene or None
         None where the rig lacks one of them, or the answer lacks a number it needs.
     """
-    for name in sorted(row.effects, key=list(SECRETS).index if row.effects <= set(SECRETS) else str):
-        secret = SECRETS.get(name)
-        if secret is None or not secret.in_library:
+    for name in sorted(
+        row.effects, key=list(HIDDEN_EFFECTS).index if row.effects <= set(HIDDEN_EFFECTS) else str
+    ):
+        hidden_effect = HIDDEN_EFFECTS.get(name)
+        if hidden_effect is None or not hidden_effect.in_library:
             return None
         values = _values(name, row)
         try:
             if not all(np.all(np.isfinite(v)) for v in values.values()):
                 return None
-            scene = secret.act(scene, _as_box(values) if name == "local_stiffness" else values)
+            scene = hidden_effect.act(scene, _as_box(values) if name == "local_stiffness" else values)
         except KeyError:
             return None
     return scene
@@ -118,7 +120,9 @@ def put_in(scene: Scene, row: Row) -> Scene | None:
 def _values(name: str, row: Row) -> dict[str, Any]:
     prefix = f"{name}."
     found: dict[str, Any] = {
-        key.removeprefix(prefix): said.value for key, said in row.parameters.items() if key.startswith(prefix)
+        key.removeprefix(prefix): statement.value
+        for key, statement in row.parameters.items()
+        if key.startswith(prefix)
     }
     for key, points in row.points.items():
         if key.startswith(prefix):

@@ -16,7 +16,7 @@ from acquisition.errors import InputError, ModalkitError
 from modalkit import __version__
 from modalkit.blind.outcome import Outcome
 from modalkit.blind.seal import SALT_BYTES, open_seal
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.workers.journal import Journal, read_journal
 
 SCHEMA = "modalkit.blindrun/1"
@@ -43,7 +43,7 @@ class Store:
         If it stands there and is not to be resumed, belongs to another run, or was changed.
     """
 
-    def __init__(self, path: Path, *, seed: int, plan: Plan, resume: bool = False) -> None:
+    def __init__(self, path: Path, *, seed: int, plan: DrawRanges, resume: bool = False) -> None:
         """Open the file, and begin it where it is new."""
         self._journal = Journal(path, resume=resume)
         try:
@@ -52,7 +52,7 @@ class Store:
             self._journal.close()
             raise
 
-    def _begin(self, path: Path, seed: int, plan: Plan) -> dict[int, Outcome]:
+    def _begin(self, path: Path, seed: int, plan: DrawRanges) -> dict[int, Outcome]:
         lines = self._journal.found
         if not lines:
             self._journal.append(_header(seed, plan))
@@ -171,7 +171,7 @@ def _opened(where: str, index: int, document: Mapping[str, Any], commitment: str
     return outcome
 
 
-def _header(seed: int, plan: Plan) -> dict[str, Any]:
+def _header(seed: int, plan: DrawRanges) -> dict[str, Any]:
     salt = secrets.token_hex(SALT_BYTES)
     return {
         "schema": SCHEMA,
@@ -181,7 +181,7 @@ def _header(seed: int, plan: Plan) -> dict[str, Any]:
     }
 
 
-def _plain(plan: Plan) -> dict[str, Any]:
+def _plain(plan: DrawRanges) -> dict[str, Any]:
     content: dict[str, Any] = json.loads(json.dumps(asdict(plan)))
     return content
 
@@ -209,7 +209,7 @@ def _check_seed(path: Path, header: Mapping[str, Any], seed: int) -> None:
         raise InputError(f"{path}: begun with another seed than {seed}; give --seed as that run told it")
 
 
-def _check_run(path: Path, header: Mapping[str, Any], seed: int, plan: Plan) -> None:
+def _check_run(path: Path, header: Mapping[str, Any], seed: int, plan: DrawRanges) -> None:
     """Refuse a store of another version, plan or seed: its outcomes are not those of this run."""
     if header["version"] != __version__:
         raise InputError(
@@ -218,9 +218,9 @@ def _check_run(path: Path, header: Mapping[str, Any], seed: int, plan: Plan) -> 
         )
     now = _plain(plan)
     for name in sorted(now.keys() | header["plan"].keys()):
-        was, told = header["plan"].get(name), now.get(name)
-        if was != told:
+        was, stated = header["plan"].get(name), now.get(name)
+        if was != stated:
             raise InputError(
-                f"{path}: begun with {name} = {was}, now it is {told}; resume with the options it was begun with"
+                f"{path}: begun with {name} = {was}, now it is {stated}; resume with the options it was begun with"
             )
     _check_seed(path, header, seed)

@@ -11,12 +11,12 @@ import numpy as np
 
 from acquisition.errors import StudyError
 from modalkit.blind.visibility import visibility
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
-from modalkit.simulator.hidden import Secret, Values
+from modalkit.simulator.hidden import HiddenEffect, Values
 from modalkit.simulator.hidden.choose import (
     checked,
-    choose_secrets,
+    choose_hidden_effects,
     choose_sort,
     draw_strength,
     right_answers,
@@ -28,7 +28,7 @@ from modalkit.simulator.setup import Setup
 from modalkit.simulator.study_file import study_text
 
 _ATTEMPTS = 5000
-_EVERYTHING = Plan()
+_EVERYTHING = DrawRanges()
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class Trial:
     before: Scene
 
 
-def draw_trial(seed: int, index: int, *, plan: Plan = _EVERYTHING) -> Trial:
+def draw_trial(seed: int, index: int, *, plan: DrawRanges = _EVERYTHING) -> Trial:
     """Draw a trial; the same arguments always give the same one.
 
     Parameters
@@ -147,62 +147,62 @@ def draw_trial(seed: int, index: int, *, plan: Plan = _EVERYTHING) -> Trial:
     """
     choose, build, specimen = np.random.default_rng([seed, index]).spawn(3)
     sort = choose_sort(choose, checked(plan))
-    setup, secrets = _setup_and_secrets(build, choose, sort, plan)
-    level, severity = draw_strength(choose, plan) if secrets else ("none", 0.0)
-    values = [secret.draw(choose, setup, severity) for secret in secrets]
-    if secrets and not any(secret.graded for secret in secrets):
+    setup, hidden_effects = _setup_and_hidden_effects(build, choose, sort, plan)
+    level, severity = draw_strength(choose, plan) if hidden_effects else ("none", 0.0)
+    values = [hidden_effect.draw(choose, setup, severity) for hidden_effect in hidden_effects]
+    if hidden_effects and not any(hidden_effect.graded for hidden_effect in hidden_effects):
         level, severity = "clear", 1.0
     before = draw_scene(setup, specimen)
     scene = before
-    for secret, drawn in zip(secrets, values, strict=True):
-        scene = secret.act(scene, drawn)
-    truth = _truth(plan, secrets, values, scene, before, (level, severity))
+    for hidden_effect, drawn in zip(hidden_effects, values, strict=True):
+        scene = hidden_effect.act(scene, drawn)
+    truth = _truth(plan, hidden_effects, values, scene, before, (level, severity))
     return Trial(seed, index, truth, scene, before)
 
 
-def _setup_and_secrets(
-    build: np.random.Generator, choose: np.random.Generator, sort: str, plan: Plan
-) -> tuple[Setup, tuple[Secret, ...]]:
+def _setup_and_hidden_effects(
+    build: np.random.Generator, choose: np.random.Generator, sort: str, plan: DrawRanges
+) -> tuple[Setup, tuple[HiddenEffect, ...]]:
     for _ in range(_ATTEMPTS):
         setup = draw_setup(build, plan=plan)
         if lacks_shear(setup) and (
             sort not in ("single", "pair") or "shear" not in (plan.effects or ("shear",))
         ):
             setup = replace(setup, theory="timoshenko")
-        secrets = choose_secrets(choose, setup, sort, plan)
-        if secrets is not None:
-            return setup, secrets
+        hidden_effects = choose_hidden_effects(choose, setup, sort, plan)
+        if hidden_effects is not None:
+            return setup, hidden_effects
     raise StudyError(
         f"no specimen in {_ATTEMPTS} draws can have {', '.join(plan.effects)}; name more effects"
     )
 
 
 def _truth(
-    plan: Plan,
-    secrets: Sequence[Secret],
+    plan: DrawRanges,
+    hidden_effects: Sequence[HiddenEffect],
     values: Sequence[Values],
     scene: Scene,
     before: Scene,
     strength: tuple[str, float],
 ) -> Truth:
     setup = scene.setup
-    named = list(zip(secrets, values, strict=True))
-    without = tuple(s.name for s in secrets if s.in_library) if plan.leave_out else ()
+    named = list(zip(hidden_effects, values, strict=True))
+    without = tuple(s.name for s in hidden_effects if s.in_library) if plan.leave_out else ()
     return Truth(
         kind=setup.kind,
-        effects=tuple(s.name for s in secrets),
+        effects=tuple(s.name for s in hidden_effects),
         parameters={
             f"{s.name}.{key}": float(value) if isinstance(value, np.floating) else value
             for s, drawn in named
             for key, value in drawn.items()
             if not isinstance(value, str)
         },
-        accepted=right_answers(secrets, values, setup, without),
-        in_library=all(s.in_library for s in secrets),
+        accepted=right_answers(hidden_effects, values, setup, without),
+        in_library=all(s.in_library for s in hidden_effects),
         without=without,
         severity=strength[1],
         level=strength[0],
-        visibility=visibility(scene, _plain(before, secrets)),
+        visibility=visibility(scene, _plain(before, hidden_effects)),
         size=setup.size,
         places=tuple(place for s, drawn in named for place in s.places(setup, drawn)),
         baseline=setup.baseline,
@@ -211,9 +211,9 @@ def _truth(
     )
 
 
-def _plain(before: Scene, secrets: Sequence[Secret]) -> Scene:
+def _plain(before: Scene, hidden_effects: Sequence[HiddenEffect]) -> Scene:
     """Return the specimen as the model would have it if nothing were hidden."""
-    return before.with_body(shear=False) if any(s.name == "shear" for s in secrets) else before
+    return before.with_body(shear=False) if any(s.name == "shear" for s in hidden_effects) else before
 
 
 def gap_percent(scene: Scene) -> float:

@@ -12,7 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from acquisition.display import counted
 from acquisition.errors import InputError
-from modalkit.blind import BlindResult, Plan, check_store, run_blind, score
+from modalkit.blind import BlindResult, DrawRanges, check_store, run_blind, score
 from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, show_figures
 from modalkit.cli.options import Figures
 from modalkit.cli.scores import MARKDOWN, score_figures, show_score, write_markdown
@@ -102,8 +102,8 @@ def blind(
         return plan_study(
             study, trials=trials or 0, seed=own_seed, workers=workers, json=json, figures=figures
         )
-    known = Plan()
-    plan = Plan(kinds=_names(kinds) or known.kinds, effects=_names(effects), leave_out=leave_out)
+    known = DrawRanges()
+    plan = DrawRanges(kinds=_names(kinds) or known.kinds, effects=_names(effects), leave_out=leave_out)
     result = _run(
         60 if trials is None else trials, _seed(seed, store, resume), plan, workers, scheduler, store, resume
     )
@@ -165,7 +165,7 @@ def _seed(seed: int | None, store: Path | None, resume: bool) -> int:
 def _run(
     trials: int,
     seed: int,
-    plan: Plan,
+    plan: DrawRanges,
     workers: int,
     scheduler: str | None,
     store: Path | None,

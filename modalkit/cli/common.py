@@ -53,13 +53,13 @@ def reading(then: str = "reading") -> Iterator[Callable[[float], None]]:
     with Progress(*columns, console=progress, transient=True, disable=not progress.is_terminal) as bar:
         task = bar.add_task("reading", total=1.0)
 
-        def told(part: float) -> None:
+        def stated(part: float) -> None:
             if part >= 1.0:
                 bar.update(task, description=then, total=None)
             else:
                 bar.update(task, completed=part)
 
-        yield told
+        yield stated
 
 
 def read_by(files: Sequence[Path], *more: Path | None) -> Iterator[Path]:

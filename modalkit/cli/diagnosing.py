@@ -24,7 +24,7 @@ from modalkit.cli.options import Figures
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.library import effects_record, effects_table
 from modalkit.output.records import diagnosis_record
-from modalkit.output.summary import letter, separated
+from modalkit.output.summary import separated, summary_text
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
@@ -97,7 +97,7 @@ def _draw(diagnosis: Diagnosis, sessions: list[Session], report: Path | None, fi
 def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     """Print a diagnosis: five lines, then the tables."""
     out.print(diagnosis.title, style="bold", markup=False)
-    for line in letter(diagnosis):
+    for line in summary_text(diagnosis):
         out.print(line, markup=False)
     out.print()
     digits = {"test [Hz]": 3, "model [Hz]": 3, "error [%]": 3, "sigma [%]": 3, "MAC": 3}

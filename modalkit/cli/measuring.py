@@ -13,8 +13,8 @@ from acquisition import (
     InputError,
     StudyError,
     UffContent,
+    holds_several_hits,
     judge_hits,
-    looks_long,
     reciprocity,
     write_uff,
 )
@@ -45,7 +45,7 @@ from modalkit.cli.options import (
     Use,
     Window,
     WindowOn,
-    handling,
+    processing,
 )
 from modalkit.cli.showing import (
     save_modes,
@@ -59,7 +59,7 @@ from modalkit.output.modes import modes_kind
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.files import Progress, read_files
 from modalkit.workflow.identification import Processed, numbered, read, read_frfs, stated
-from modalkit.workflow.processing_options import Handling
+from modalkit.workflow.processing_options import ProcessingOptions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -84,7 +84,7 @@ def inspect(
     every: Annotated[bool, typer.Option("--all", help="a row for every data set")] = False,
 ) -> None:
     """List what is in a file, and what is wrong with it."""
-    said = Handling(decay=decay)
+    statement = ProcessingOptions(decay=decay)
     with reading() as progress:
         content = read_files(files, layout=layout, progress=progress)
     out.print(named_files(files) + (f": {content.title}" if content.title else ""), markup=False)
@@ -92,10 +92,10 @@ def inspect(
         show_table(content.table() if every else _in_short(content))
     out.print("usable: " + ("; ".join(_usable(content)) or "nothing"))
     with working("judging the hits"):
-        long = [looks_long(test) for test in content.tests]
+        long = [holds_several_hits(test) for test in content.tests]
         single = [test for test, several_hits in zip(content.tests, long, strict=True) if not several_hits]
         warnings: list[str] = []
-        judged = numbered([judge_hits(stated(test, said, warnings)) for test in single])
+        judged = numbered([judge_hits(stated(test, statement, warnings)) for test in single])
     if any(long):
         out.print("records hold several hits each; they are split when they are used")
     for verdicts in judged:
@@ -170,7 +170,7 @@ def frf(
     """Turn hits into FRFs with coherence, and write them as UFF."""
     check_outputs((output, uff_of("frfs")), reads=read_by(files, layout))
     check_folder(figures)
-    said = handling(
+    statement = processing(
         decay=decay,
         window_on=window_on,
         window=window,
@@ -181,7 +181,7 @@ def frf(
         sensors=sensor_mass,
     )
     with reading("averaging the hits") as progress:
-        processed = read_frfs(files, handling=said, progress=progress)
+        processed = read_frfs(files, processing=statement, progress=progress)
     show_hits(processed.hits)
     show_table(processed.frfs.table(), "FRFs")
     show_rejected(processed.hits)
@@ -220,7 +220,7 @@ def identify(
         (json, json_of("modalkit.modes/1")), (output, modes_kind(output)), reads=read_by(files, layout)
     )
     check_folder(figures)
-    said = handling(
+    statement = processing(
         decay=decay,
         window_on=window_on,
         window=window,
@@ -231,7 +231,7 @@ def identify(
         sensors=sensor_mass,
     )
     with reading("identifying") as progress:
-        processed, model = _identified(files, said, band, order, (add or (), drop or ()), progress)
+        processed, model = _identified(files, statement, band, order, (add or (), drop or ()), progress)
     if isinstance(model, Modes) or processed is None:
         show_modes(model)
     else:
@@ -248,7 +248,7 @@ def identify(
 
 def _identified(
     files: list[Path],
-    said: Handling,
+    statement: ProcessingOptions,
     band: tuple[float, float] | None,
     order: int | None,
     named: tuple[Sequence[float], Sequence[float]],
@@ -260,10 +260,10 @@ def _identified(
         from modalkit.study.read import read_study
         from modalkit.workflow.case import process
 
-        if said != Handling():
+        if statement != ProcessingOptions():
             raise StudyError(f"{files[0]}: a study says in [test] how its files are treated; write it there")
         return process(read_study(files[0]), band=band, order=order, add=add, drop=drop, progress=progress)
-    found = read(files, handling=said, progress=progress)
+    found = read(files, processing=statement, progress=progress)
     if not isinstance(found, Modes):
         return found, found.identify(band=band, order=order, add=add, drop=drop)
     if order is not None or add or drop:

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, cast
 import typer
 
 from acquisition import ESTIMATORS, Estimator, InputError
-from modalkit.workflow.processing_options import Handling, hit_name, sensor_mass
+from modalkit.workflow.processing_options import ProcessingOptions, hit_name, sensor_mass
 
 
 def quantity(unit: str) -> Callable[[object], object]:
@@ -65,7 +65,7 @@ SensorMass = Annotated[
 ]
 
 
-def handling(
+def processing(
     *,
     decay: float,
     window_on: str | None,
@@ -75,7 +75,7 @@ def handling(
     leave: list[str] | None,
     layout: Path | None,
     sensors: list[str] | None,
-) -> Handling:
+) -> ProcessingOptions:
     """Return what the options say.
 
     Raises
@@ -85,7 +85,7 @@ def handling(
     """
     if window_on not in (None, "both", "responses"):
         raise InputError(f"--window-on {window_on}: write both or responses")
-    return Handling(
+    return ProcessingOptions(
         decay=decay,
         window_on=cast("Literal['both', 'responses'] | None", window_on),
         window=window,

@@ -12,10 +12,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from modalkit.cli.common import out, progress, show_figures, show_table, working
 from modalkit.output.whole import write_json
-from modalkit.planning import Advice, Forecast, Outlook, Told, forecast
-from modalkit.planning.document import said, to_json
+from modalkit.planning import Advice, Forecast, KnownTest, TestForecast, forecast
+from modalkit.planning.document import statement, to_json
 from modalkit.planning.effects import NOT_FORECAST
-from modalkit.planning.from_study import told_by
+from modalkit.planning.from_study import known_test_of
 from modalkit.planning.separability import CLASS, NONE, SEEN, SURE
 from modalkit.planning.trials import Check, check
 from modalkit.planning.writing import noise_for, write_case
@@ -48,9 +48,9 @@ def plan_study(
     """
     own = read_study(study)
     with working("reading the test"):
-        told = told_by(own)
+        known_test = known_test_of(own)
     with working("solving the rig's own body"):
-        found = forecast(told)
+        found = forecast(known_test)
     show_note(own.name, found)
     show_tables(found)
     document = to_json(found)
@@ -67,17 +67,17 @@ def plan_study(
 def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:
     """Run trials whose channels are as noisy as makes the constants as uncertain as told."""
     with working("matching the noise"):
-        noise = _noise(found.told) if found.told.shapes else None
+        noise = _noise(found.known_test) if found.known_test.shapes else None
     columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=progress) as bar:
         task = bar.add_task("trials", total=(2 if _followed(found) else 1) * trials)
         return check(found, trials, seed, noise=noise, workers=workers, progress=lambda: bar.advance(task))
 
 
-def _noise(told: Told) -> float:
+def _noise(known_test: KnownTest) -> float:
     with tempfile.TemporaryDirectory(prefix="test-") as folder:
-        trial = told_by(read_study(write_case(None, told, Path(folder), seed=[0])))
-    return noise_for(float(np.median(told.shape)), float(np.median(trial.shape)), told.setup)
+        trial = known_test_of(read_study(write_case(None, known_test, Path(folder), seed=[0])))
+    return noise_for(float(np.median(known_test.shape)), float(np.median(trial.shape)), known_test.setup)
 
 
 def _figures(found: Forecast) -> dict[str, Any]:
@@ -88,12 +88,12 @@ def _figures(found: Forecast) -> dict[str, Any]:
 
 def show_note(name: str, found: Forecast) -> None:
     """Print what a colleague would say in ten lines."""
-    told = found.told
+    known_test = found.known_test
     out.print(name, style="bold", markup=False)
     for line in note(found):
         out.print(line, markup=False)
-    out.print(f"Taken:   {'; '.join(told.said)}", markup=False)
-    left = [*told.left_out, *[f"{key} ({why})" for key, why in NOT_FORECAST.items()]]
+    out.print(f"Taken:   {'; '.join(known_test.statement)}", markup=False)
+    left = [*known_test.left_out, *[f"{key} ({why})" for key, why in NOT_FORECAST.items()]]
     out.print(f"Not in:  {'; '.join(left)}; pairs of effects", markup=False)
     out.print()
 
@@ -105,7 +105,7 @@ def _followed(found: Forecast) -> bool:
 def note(found: Forecast) -> list[str]:
     """Return the forecast in a few sentences."""
     now = found.now
-    lines = [_tells(now), *_cannot(now), _from_when(now)]
+    lines = [_separates(now), *_cannot(now), _from_when(now)]
     if _followed(found):
         lines.append(_best(found.advice[0]))
     else:
@@ -113,13 +113,13 @@ def note(found: Forecast) -> list[str]:
     return lines
 
 
-def _tells(now: Outlook) -> str:
+def _separates(now: TestForecast) -> str:
     pairs = list(now.pairs.values())
-    apart = sum(value >= SEEN for value in pairs)
-    return f"Tells:   {apart} of {len(pairs)} pairs of effects apart, each effect as strong as asked about below."
+    separately = sum(value >= SEEN for value in pairs)
+    return f"Tells:   {separately} of {len(pairs)} pairs of effects apart, each effect as strong as asked about below."
 
 
-def _cannot(now: Outlook) -> list[str]:
+def _cannot(now: TestForecast) -> list[str]:
     lines, groups = [], [" = ".join(group) for group in now.classes]
     if groups:
         lines.append(
@@ -147,14 +147,14 @@ def _separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
     return [f"shows {a}" if b == NONE else f"{a} from {b}" for a, b in pairs]
 
 
-def _from_when(now: Outlook) -> str:
+def _from_when(now: TestForecast) -> str:
     """Return the effects that need to be largest, against what is asked about, to be told."""
     hard = sorted(now.limits, key=lambda name: -now.limits[name].separated / now.limits[name].clear)[:_LINES]
     words = []
     for name in hard:
         limit = now.limits[name]
         never = f"{name} at no severity ({limit.nearest} does the same)"
-        words.append(said(now, name, limit.separated) or never)
+        words.append(statement(now, name, limit.separated) or never)
     return f"Late:    told from all others only from here on: {'; '.join(words)}."
 
 
@@ -176,17 +176,17 @@ def show_tables(found: Forecast) -> None:
     show_table(_changes(found), "What a change buys", digits={"times smaller": 2, "share told": 3})
 
 
-def _thresholds(now: Outlook) -> pd.DataFrame:
+def _thresholds(now: TestForecast) -> pd.DataFrame:
     """Return the limits in words, those after the first without what they begin alike with."""
     rows = []
     for name, limit in now.limits.items():
         sizes = (limit.seen, limit.separated, limit.sure, limit.clear)
-        words = [said(now, name, q) or "never" for q in sizes]
+        words = [statement(now, name, q) or "never" for q in sizes]
         alike = _alike([w.split() for w in words if w != "never"])
         rest = [w if w == "never" else " ".join(w.split()[alike:]) for w in words[1:]]
         keys = ("seen from", "told from", "surely from", "asked about")
-        told = dict(zip(keys, (words[0], *rest), strict=True))
-        rows.append({"effect": name, **told, "nearest": f"{limit.nearest} ({limit.sigma:.1f})"})
+        known_test = dict(zip(keys, (words[0], *rest), strict=True))
+        rows.append({"effect": name, **known_test, "nearest": f"{limit.nearest} ({limit.sigma:.1f})"})
     return pd.DataFrame(rows)
 
 
@@ -196,7 +196,7 @@ def _alike(words: list[list[str]]) -> int:
     return same.index(False) if False in same else 0
 
 
-def _separations(now: Outlook) -> pd.DataFrame:
+def _separations(now: TestForecast) -> pd.DataFrame:
     """Return the matrix with short names as columns, in whole sigma above ten."""
 
     def cell(value: float) -> str:
@@ -223,7 +223,7 @@ def _changes(found: Forecast) -> pd.DataFrame:
                 "change": one.change.measure,
                 "newly separates": _some(_separated(one.separates)) or "-",
                 "times smaller": one.factor,
-                "share told": one.after.told_share,
+                "share told": one.after.separated_share,
             }
             for one in found.advice
         ]

@@ -81,12 +81,12 @@ def _show(made: SimulatedTest) -> None:
     ]
     if rows:
         show_table(pd.DataFrame(rows), "In it, beyond the study's model")
-    plan = made.rig.plan
+    plan = made.test_setup.plan
     count = sum(len(test.points) for test in made.tests)
     out.print(
         f"{counted(plan.hits, 'hit')} at each of {counted(count, 'point')}, "
-        f"{counted(len(dict.fromkeys(made.rig.responses)), 'response')} ({plan.form}); "
-        f"{plan.samples} samples at {plan.rate:g} Hz, band {made.rig.band[0]:g} to {made.rig.band[1]:g} Hz."
+        f"{counted(len(dict.fromkeys(made.test_setup.responses)), 'response')} ({plan.form}); "
+        f"{plan.samples} samples at {plan.rate:g} Hz, band {made.test_setup.band[0]:g} to {made.test_setup.band[1]:g} Hz."
     )
     noise = (
         f"{plan.response_noise:g} of each record"
@@ -102,5 +102,5 @@ def _show(made: SimulatedTest) -> None:
     )
     table = made.table()
     show_table(table, f"{counted(len(table), 'mode')} in the band", digits=dict.fromkeys(table.columns, 4))
-    for remark in made.remarks:
-        out.print(f"note: {remark}", markup=False)
+    for note in made.notes:
+        out.print(f"note: {note}", markup=False)

@@ -115,12 +115,12 @@ def _draw(size: Axes, turn: Axes, panel: Panel) -> None:
     tidy(turn, x="frequency [Hz]", y="phase [°]")
     size.set_yscale("log")
     for curve in panel.curves:
-        look = LOOKS[curve.part]
+        evaluation = LOOKS[curve.part]
         magnitude = np.where(np.abs(curve.values) > 0, np.abs(curve.values), np.nan)
-        size.plot(panel.frequency, magnitude, label=curve.label, **look)  # type: ignore[arg-type]
+        size.plot(panel.frequency, magnitude, label=curve.label, **evaluation)  # type: ignore[arg-type]
         angle = panel.highest - np.mod(panel.highest - np.degrees(np.angle(curve.values)), 360.0)
         jump = np.append(np.abs(np.diff(angle)) > 180, False)
-        turn.plot(panel.frequency, np.where(jump, np.nan, angle), **look)  # type: ignore[arg-type]
+        turn.plot(panel.frequency, np.where(jump, np.nan, angle), **evaluation)  # type: ignore[arg-type]
     measured = np.abs(panel.curves[0].values)
     measured = measured[measured > 0]
     size.set_ylim(float(np.percentile(measured, 0.3)) / 3, float(measured.max()) * 4)

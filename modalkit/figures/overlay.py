@@ -71,11 +71,11 @@ def chosen_frfs(both: CorrelatedFrfs, count: int) -> dict[int, str]:
     order = np.argsort(-both.frac, kind="stable")
     pairs = zip(both.measured.responses, both.measured.references, strict=True)
     drive = [i for i, (r, f) in enumerate(pairs) if (r.node, r.axis) == (f.node, f.axis)]
-    told = [(i, "drive point") for i in drive[:1]]
-    told += [(int(order[0]), "best FRAC"), (int(order[-1]), "worst FRAC")]
-    told += [(int(order[k]), "") for k in np.linspace(0, len(order) - 1, count).round().astype(int)]
+    stated = [(i, "drive point") for i in drive[:1]]
+    stated += [(int(order[0]), "best FRAC"), (int(order[-1]), "worst FRAC")]
+    stated += [(int(order[k]), "") for k in np.linspace(0, len(order) - 1, count).round().astype(int)]
     chosen: dict[int, str] = {}
-    for row, why in told:
+    for row, why in stated:
         if row in chosen:
             chosen[row] = ", ".join(filter(None, (chosen[row], why)))
         elif len(chosen) < max(count, 1):

@@ -30,7 +30,7 @@ from modalkit.figures.style import (
     text_width,
     tidy,
 )
-from modalkit.planning import Forecast, Outlook
+from modalkit.planning import Forecast, TestForecast
 from modalkit.planning.separability import CLASS, NONE, SEEN
 
 _ROW = 0.3
@@ -95,17 +95,17 @@ def _plain(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _thresholds(axes: Axes, now: Outlook, after: Outlook | None) -> None:
+def _thresholds(axes: Axes, now: TestForecast, after: TestForecast | None) -> None:
     """Draw a bar from the severity that is seen to the one that is told, over the one asked about."""
     tidy(axes, x="severity over the one that is asked about (right) [-]", grid="x")
     axes.set_xscale("log")
     rows = np.arange(len(now.names))
-    seen, told = _over_clear(now, "seen"), _over_clear(now, "separated")
-    axes.hlines(rows, seen, told, color=FAINT, linewidth=5.0, zorder=2)
+    seen, known_test = _over_clear(now, "seen"), _over_clear(now, "separated")
+    axes.hlines(rows, seen, known_test, color=FAINT, linewidth=5.0, zorder=2)
     axes.scatter(seen, rows, s=42, facecolor="white", edgecolor=BLUE, linewidth=1.4, zorder=3, label="seen")
-    never = told >= _MOST
-    axes.scatter(told[~never], rows[~never], s=46, color=BLUE, zorder=4, label="told from all others")
-    axes.scatter(told[never], rows[never], s=46, marker=">", color=BLUE, zorder=4, clip_on=False)
+    never = known_test >= _MOST
+    axes.scatter(known_test[~never], rows[~never], s=46, color=BLUE, zorder=4, label="told from all others")
+    axes.scatter(known_test[never], rows[never], s=46, marker=">", color=BLUE, zorder=4, clip_on=False)
     if after is not None:
         then = _over_clear(after, "separated")
         axes.scatter(
@@ -126,14 +126,14 @@ def _thresholds(axes: Axes, now: Outlook, after: Outlook | None) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, frameon=False, fontsize=SMALL)
 
 
-def _over_clear(look: Outlook, name: str) -> FloatArray:
+def _over_clear(evaluation: TestForecast, name: str) -> FloatArray:
     """Return severities over those asked about, within the axes [-]."""
-    each = [getattr(limit, name) / limit.clear for limit in look.limits.values()]
+    each = [getattr(limit, name) / limit.clear for limit in evaluation.limits.values()]
     shown: FloatArray = np.clip(np.array(each, dtype=float), _LEAST, _MOST)
     return shown
 
 
-def _separations(axes: Axes, now: Outlook, names: list[str]) -> None:
+def _separations(axes: Axes, now: TestForecast, names: list[str]) -> None:
     values = now.matrix[names].to_numpy(float)
     axes.pcolormesh(
         np.clip(values, 0, _FULL),

@@ -104,8 +104,8 @@ def quantity(estimate: ParameterEstimate) -> str:
     if low is None or high is None or not isinstance(value, float):
         return str(estimate)
     factor, unit = _unit(estimate.unit, max(abs(value), abs(high)))
-    told, bottom, top = (_digits(factor * v) for v in (value, low, high))
-    return f"{told}{' ' + unit if unit else ''} [{bottom}, {top}]"
+    stated, bottom, top = (_digits(factor * v) for v in (value, low, high))
+    return f"{stated}{' ' + unit if unit else ''} [{bottom}, {top}]"
 
 
 def _unit(unit: str, size: float) -> tuple[float, str]:
@@ -128,8 +128,8 @@ def parameters(row: Ranked) -> str:
     parts = []
     for name, estimate in row.parameters.items():
         bound = " at its bound" if estimate.at_bound else ""
-        said = name.rpartition(".")[2].replace("_", " ")
-        parts.append(f"{said} {quantity(estimate)}{bound}")
+        statement = name.rpartition(".")[2].replace("_", " ")
+        parts.append(f"{statement} {quantity(estimate)}{bound}")
     return ", ".join(parts)
 
 
@@ -163,8 +163,8 @@ def _detail(diagnosis: Diagnosis) -> tuple[str, str]:
     if row is None:
         return "", ""
     if len(row.parameters) == 1:
-        said = quantity(next(iter(row.parameters.values())))
-        value, _, interval = said.partition(" [")
+        statement = quantity(next(iter(row.parameters.values())))
+        value, _, interval = statement.partition(" [")
         whole = f"(95 %: {interval.replace(', ', ' to ').replace(']', ')')}".replace(" ", NO_BREAK)
         return "", f": {value.replace(' ', NO_BREAK)} {whole}"
     seated = diagnosis.where.location is not None and len(row.effects) == 1

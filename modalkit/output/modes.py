@@ -88,13 +88,13 @@ def write_modes(
         raise InputError(
             f"{path}: a data set of modes needs their shapes, which these have not; write them as .csv or .json"
         )
-    said = modes.warnings if warnings is None else warnings
+    statement = modes.warnings if warnings is None else warnings
     ending = path.suffix.lower()
     if ending == ".csv":
         write_text(path, modes_csv(modes.modal))
     elif ending == ".json":
         from modalkit.output.records import modes_record
 
-        write_json(path, modes_record(modes, hits, said))
+        write_json(path, modes_record(modes, hits, statement))
     else:
         write_uff(path, modal=modes.modal, geometry=modes.modal.geometry, title=title)

@@ -25,12 +25,12 @@ def size(estimate: ParameterEstimate) -> str:
         value, low, high = (times * v for v in (value, low, high))
     else:
         unit = estimate.unit
-    said = "" if unit in {"-", "node"} else f" {unit}"
-    return f"{number(value)}{said} ({number(low)} to {number(high)})"
+    statement = "" if unit in {"-", "node"} else f" {unit}"
+    return f"{number(value)}{statement} ({number(low)} to {number(high)})"
 
 
 def place(at: tuple[float, float, float]) -> str:
     """Return a place in millimetres; on a beam, y and z are zero and left out."""
     x, y, z = at
-    said = [f"x = {1000 * x:.0f}"] + [f"{n} = {1000 * v:.0f}" for n, v in (("y", y), ("z", z)) if v]
-    return ", ".join(said) + " mm"
+    statement = [f"x = {1000 * x:.0f}"] + [f"{n} = {1000 * v:.0f}" for n, v in (("y", y), ("z", z)) if v]
+    return ", ".join(statement) + " mm"

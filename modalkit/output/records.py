@@ -167,7 +167,7 @@ def _gap_record(diagnosis: Diagnosis) -> dict[str, Any]:
 
 def _ranked_record(row: Ranked, *, named: bool) -> dict[str, Any]:
     """Return a row of the ranking; points and sensors stand in the rows of the answer alone, numbers in all."""
-    told = {n: e for n, e in row.parameters.items() if named or not isinstance(e.value, tuple | str)}
+    stated = {n: e for n, e in row.parameters.items() if named or not isinstance(e.value, tuple | str)}
     return {
         "effects": row.effects,
         "probability": row.probability,
@@ -180,7 +180,7 @@ def _ranked_record(row: Ranked, *, named: bool) -> dict[str, Any]:
                 "high95": e.high95,
                 "at_bound": e.at_bound,
             }
-            for name, e in told.items()
+            for name, e in stated.items()
         },
         "plausible": row.plausible,
         "fit_p_value": row.p_value,

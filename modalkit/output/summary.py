@@ -33,7 +33,7 @@ LIKELY = 0.5
 """A region is named if it holds so much of the probability [-]."""
 
 
-def letter(diagnosis: Diagnosis) -> list[str]:
+def summary_text(diagnosis: Diagnosis) -> list[str]:
     """Return five lines: what, where, how far, how sure, what next."""
     return [
         f"Cause:   {_cause(diagnosis)}",
@@ -60,9 +60,9 @@ def _cause(diagnosis: Diagnosis) -> str:
         names = diagnosis.sets[0]
         summary = " ".join(LIBRARY[n].sentence(_stated(diagnosis, n)) for n in names if n in LIBRARY)
         return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
-    said = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
+    statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     exact = _equal(diagnosis)
-    return f"{said}; {exact.partition(':')[0]}" if exact else said
+    return f"{statement}; {exact.partition(':')[0]}" if exact else statement
 
 
 def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
@@ -88,7 +88,7 @@ def _values(diagnosis: Diagnosis) -> str:
     row = _row(diagnosis, diagnosis.sets[0])
     if row is None:
         return ""
-    told = []
+    stated = []
     for name, estimate in row.parameters.items():
         effect, _, parameter = name.partition(".")
         shape = estimate.low95 is None and not isinstance(estimate.value, str | tuple)
@@ -96,10 +96,10 @@ def _values(diagnosis: Diagnosis) -> str:
             continue
         bare = parameter.replace("_", " ")
         whose = f"{effect} " if parameter == "factor" and len(row.effects) > 1 else ""
-        told.append(
+        stated.append(
             f"{whose}{bare} {size(estimate)}" + (", the end of its range" if estimate.at_bound else "")
         )
-    text = f"({'; '.join(told[:SHOWN])}; 95 % in brackets)" if told else ""
+    text = f"({'; '.join(stated[:SHOWN])}; 95 % in brackets)" if stated else ""
     return (
         text
         if row.plausible
@@ -109,14 +109,14 @@ def _values(diagnosis: Diagnosis) -> str:
 
 def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
     """Return a set of effects, with its size where it is one number."""
-    row, said = _row(diagnosis, names), " + ".join(names)
+    row, statement = _row(diagnosis, names), " + ".join(names)
     if row is None or len(row.parameters) != 1 or len(names) > 1:
-        return said
+        return statement
     (estimate,) = row.parameters.values()
     if not isinstance(estimate.value, float):
-        return said
+        return statement
     bare = size(estimate).partition(" (")[0]
-    return f"{said} ({'x ' if estimate.unit == '-' else ''}{bare})"
+    return f"{statement} ({'x ' if estimate.unit == '-' else ''}{bare})"
 
 
 def _where(diagnosis: Diagnosis) -> str:
@@ -267,5 +267,5 @@ def separated(test: NextTest) -> str:
 
 
 def _either(sets: list[tuple[str, ...]]) -> str:
-    said = [" + ".join(names) for names in sets]
-    return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
+    statement = [" + ".join(names) for names in sets]
+    return statement[0] if len(statement) == 1 else f"{', '.join(statement[:-1])} and {statement[-1]}"

@@ -92,22 +92,22 @@ def _by_frfs(update: Update) -> dict[str, Any] | None:
 
 
 def _determinability(update: Update) -> dict[str, Any] | None:
-    told = update.determinability
-    if told is None:
+    stated = update.determinability
+    if stated is None:
         return None
     return {
-        "singular_values": [_number(v) for v in told.singular_values],
-        "alone": [_number(v) for v in told.alone],
+        "singular_values": [_number(v) for v in stated.singular_values],
+        "alone": [_number(v) for v in stated.alone],
         "couplings": [
             {
                 "parameters": list(c.parameters),
                 "determined": list(c.determined),
                 "sigma": [_number(v) for v in c.sigma],
             }
-            for c in told.couplings
+            for c in stated.couplings
         ],
-        "subset": list(told.subset),
-        "explained": [_number(v) for v in told.explained],
+        "subset": list(stated.subset),
+        "explained": [_number(v) for v in stated.explained],
     }
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from modalkit.planning.family import Family
-from modalkit.planning.forecast import Advice, Outlook
+from modalkit.planning.forecast import Advice, TestForecast
 from modalkit.planning.separability import CLASS, EQUAL, NONE, SURE, Distances, at_severity, crossing
-from modalkit.simulator.hidden import SECRETS, Values
+from modalkit.simulator.hidden import HIDDEN_EFFECTS, Values
 from modalkit.simulator.setup import Setup
 
 
@@ -52,17 +52,19 @@ class Case:
     def accepted(self, setup: Setup) -> frozenset[str]:
         """Return names that are right answers."""
         values = self.values
-        return frozenset((self.family.name, *SECRETS[self.family.name].equals(setup, values)))
+        return frozenset((self.family.name, *HIDDEN_EFFECTS[self.family.name].equals(setup, values)))
 
     @property
-    def said(self) -> str:
+    def statement(self) -> str:
         """Severity in words."""
         name = self.family.name
-        told = {key: value for key, value in self.values.items() if value}
-        return ", ".join(f"{key} {value:.3g}" for key, value in told.items()) or name
+        known_test = {key: value for key, value in self.values.items() if value}
+        return ", ".join(f"{key} {value:.3g}" for key, value in known_test.items()) or name
 
 
-def choose(now: Outlook, advice: Advice | None, count: int, rng: np.random.Generator) -> tuple[Case, ...]:
+def choose(
+    now: TestForecast, advice: Advice | None, count: int, rng: np.random.Generator
+) -> tuple[Case, ...]:
     """Return cases about the thresholds: half are effects that the advice newly tells apart, then others in turn.
 
     Parameters
@@ -87,7 +89,7 @@ def choose(now: Outlook, advice: Advice | None, count: int, rng: np.random.Gener
     return tuple(_case(_found(now, name), _found(after, name), rng) for name in names)
 
 
-def _possible(names: Sequence[str], now: Outlook, after: Outlook) -> list[str]:
+def _possible(names: Sequence[str], now: TestForecast, after: TestForecast) -> list[str]:
     """Return names once each, without those that a baseline has too."""
     kept = dict.fromkeys(names)
     return [n for n in kept if not (after.design.baseline and _found(now, n).curve.family.always)]
@@ -97,8 +99,8 @@ def _in_turn(names: Sequence[str], count: int) -> list[str]:
     return [names[i % len(names)] for i in range(count)]
 
 
-def _found(look: Outlook, name: str) -> Distances:
-    return look.found[look.names.index(name)]
+def _found(evaluation: TestForecast, name: str) -> Distances:
+    return evaluation.found[evaluation.names.index(name)]
 
 
 def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:

@@ -145,11 +145,11 @@ def _baseline(design: Design) -> Change:
 
 def _measured_sizes(design: Design) -> Iterator[Change]:
     known = {"thickness": MICROMETER, "width": MICROMETER, "density": MASS_KNOWN}
-    told = dict(zip(TOLERANCES, design.tolerances, strict=True))
-    better = {name: min(known.get(name, sigma), sigma) for name, sigma in told.items()}
-    if better == told:
+    known_test = dict(zip(TOLERANCES, design.tolerances, strict=True))
+    better = {name: min(known.get(name, sigma), sigma) for name, sigma in known_test.items()}
+    if better == known_test:
         return
-    words = [f"{name} to {100 * value:g} %" for name, value in known.items() if told[name] > value]
+    words = [f"{name} to {100 * value:g} %" for name, value in known.items() if known_test[name] > value]
     yield Change(
         "sizes",
         f"weigh and gauge the specimen: {', '.join(words)}",

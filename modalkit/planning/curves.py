@@ -45,7 +45,7 @@ class Curve:
 
     @property
     def _spread(self) -> bool:
-        return len(self.family.sites) > _CUBIC and not self.family.apart
+        return len(self.family.sites) > _CUBIC and not self.family.separately
 
     @cached_property
     def cloud(self) -> FloatArray:

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.linalg
 
 from acquisition.arrays import FloatArray, IntArray
-from modalkit.planning.known import Told
+from modalkit.planning.known import KnownTest
 from modalkit.planning.responses import TOLERANCES, Stations
 
 _UNKNOWN = 30.0
@@ -56,15 +56,15 @@ class Design:
     baseline: bool
 
 
-def present(told: Told) -> Design:
+def present(known_test: KnownTest) -> Design:
     """Return the test as it is told.
 
     Parameters
     ----------
-    told : Told
+    known_test : Told
         The test.
     """
-    setup = told.setup
+    setup = known_test.setup
     hit = tuple(i for i in range(len(setup.points)) if setup.drive or i != setup.sensor)
     return Design(
         stations=hit,
@@ -75,9 +75,9 @@ def present(told: Told) -> Design:
         position_sigma=setup.position_sigma,
         tolerances=tuple(float(getattr(setup.tolerances, name)) for name in TOLERANCES),
         damping=setup.tolerances.damping,
-        damping_known=told.damping_known,
-        shapes=told.shapes,
-        absolute=told.absolute,
+        damping_known=known_test.damping_known,
+        shapes=known_test.shapes,
+        absolute=known_test.absolute,
         baseline=setup.baseline,
     )
 
@@ -102,14 +102,14 @@ def columns(design: Design, stations: Stations) -> IntArray:
     return np.concatenate(parts)
 
 
-def whitener(design: Design, told: Told, stations: Stations) -> FloatArray:
+def whitener(design: Design, known_test: KnownTest, stations: Stations) -> FloatArray:
     """Return W with ``W @ data`` of unit covariance, tolerances and all other doubts counted in.
 
     Parameters
     ----------
     design : Design
         The test.
-    told : Told
+    known_test : Told
         How well each kind of datum is known.
     stations : Stations
         The rig's own sensitivities.
@@ -121,7 +121,7 @@ def whitener(design: Design, told: Told, stations: Stations) -> FloatArray:
         tolerances nor doubts in level and damping.
     """
     size = len(stations.nominal)
-    doubts = [_own_noise(design, told, stations) * (np.sqrt(2.0) if design.baseline else 1.0)]
+    doubts = [_own_noise(design, known_test, stations) * (np.sqrt(2.0) if design.baseline else 1.0)]
     if not design.baseline:
         named = zip(TOLERANCES, design.tolerances, strict=True)
         systematic = [sigma * stations.tolerances[name] for name, sigma in named]
@@ -138,10 +138,12 @@ def whitener(design: Design, told: Told, stations: Stations) -> FloatArray:
     return np.asarray(scipy.linalg.solve_triangular(lower, np.eye(len(lower)), lower=True))
 
 
-def _own_noise(design: Design, told: Told, stations: Stations) -> FloatArray:
+def _own_noise(design: Design, known_test: KnownTest, stations: Stations) -> FloatArray:
     """Return what is new with every test, one column per independent cause."""
     n, count = stations.modes, len(stations.x)
-    frequency, damping, shape = (_one_more(v) for v in (told.frequency, told.damping, told.shape))
+    frequency, damping, shape = (
+        _one_more(v) for v in (known_test.frequency, known_test.damping, known_test.shape)
+    )
     diagonal = np.concatenate(
         [
             np.hypot(design.noise * frequency, design.repeatability),

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from modalkit.planning.effects import NOT_FORECAST
-from modalkit.planning.forecast import Advice, Forecast, Outlook
+from modalkit.planning.forecast import Advice, Forecast, TestForecast
 
 SCHEMA = "modalkit.plan/1"
 
@@ -26,36 +26,36 @@ def to_json(found: Forecast) -> dict[str, Any]:
     """
     return {
         "schema": SCHEMA,
-        "said": list(found.told.said),
-        "left_out": list(found.told.left_out),
-        "not_forecast": [*NOT_FORECAST, *found.told.without],
-        "now": _outlook(found.now),
+        "said": list(found.known_test.statement),
+        "left_out": list(found.known_test.left_out),
+        "not_forecast": [*NOT_FORECAST, *found.known_test.without],
+        "now": _test_forecast(found.now),
         "advice": [_advice(one) for one in found.advice],
     }
 
 
-def _outlook(look: Outlook) -> dict[str, Any]:
-    matrix = look.matrix
+def _test_forecast(evaluation: TestForecast) -> dict[str, Any]:
+    matrix = evaluation.matrix
     return {
         "effects": [
             {
                 "effect": name,
-                "seen_from": said(look, name, limit.seen),
-                "separated_from": said(look, name, limit.separated),
-                "sure_from": said(look, name, limit.sure),
+                "seen_from": statement(evaluation, name, limit.seen),
+                "separated_from": statement(evaluation, name, limit.separated),
+                "sure_from": statement(evaluation, name, limit.sure),
                 "sure": _number(limit.sure),
                 "seen": _number(limit.seen),
                 "separated": _number(limit.separated),
-                "asked": said(look, name, limit.clear),
+                "asked": statement(evaluation, name, limit.clear),
                 "nearest": limit.nearest,
                 "nearest_sigma": _number(limit.sigma),
                 "sigma": {str(rival): _number(value) for rival, value in matrix.loc[name].items()},
             }
-            for name, limit in look.limits.items()
+            for name, limit in evaluation.limits.items()
         ],
-        "classes": [list(group) for group in look.classes],
-        "unseen": list(look.unseen),
-        "separated_share": look.told_share,
+        "classes": [list(group) for group in evaluation.classes],
+        "unseen": list(evaluation.unseen),
+        "separated_share": evaluation.separated_share,
     }
 
 
@@ -66,13 +66,13 @@ def _advice(one: Advice) -> dict[str, Any]:
         "worth": one.worth,
         "threshold_factor": one.factor,
         "separates": [list(pair) for pair in one.separates],
-        "then": _outlook(one.after),
+        "then": _test_forecast(one.after),
     }
 
 
-def said(look: Outlook, name: str, q: float) -> str | None:
+def statement(evaluation: TestForecast, name: str, q: float) -> str | None:
     """Return a severity in words; None where there is none that is told."""
-    family = look.found[look.names.index(name)].curve.family
+    family = evaluation.found[evaluation.names.index(name)].curve.family
     return family.say(q) if math.isfinite(q) else None
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from modalkit.planning.family import Family, Maker
-from modalkit.planning.known import Told
+from modalkit.planning.known import KnownTest
 from modalkit.planning.local import LAYERS, LOCAL, POINTS
 from modalkit.planning.whole import DAMPING, WHOLE
 
@@ -16,19 +16,19 @@ NOT_FORECAST = {
 """Effects that the forecast leaves out, and why."""
 
 
-def families(told: Told) -> tuple[Family, ...]:
+def families(known_test: KnownTest) -> tuple[Family, ...]:
     """Return all effects that a test is asked about.
 
     Parameters
     ----------
-    told : Told
+    known_test : Told
         The test.
     """
     makers: tuple[Maker, ...] = (*WHOLE, *LOCAL)
-    if told.damping_known or told.setup.baseline:
+    if known_test.damping_known or known_test.setup.baseline:
         makers += (*DAMPING, *LAYERS)
-    if told.shapes:
+    if known_test.shapes:
         makers += POINTS
-    made = [maker(told.setup) for maker in makers]
-    hidden = told.without if told.shapes else (*told.without, "calibration_gain")
+    made = [maker(known_test.setup) for maker in makers]
+    hidden = known_test.without if known_test.shapes else (*known_test.without, "calibration_gain")
     return tuple(one for one in made if one is not None and one.name not in hidden)

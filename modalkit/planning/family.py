@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from modalkit.simulator.hidden import SECRETS, Values
+from modalkit.simulator.hidden import HIDDEN_EFFECTS, Values
 from modalkit.simulator.scene import Scene
 from modalkit.simulator.setup import Setup
 
@@ -34,7 +34,7 @@ class Family:
         ``say(q)`` is the severity in physical units, as in 'a sensor heavier than ...'.
     places : (n,) array
         Where it may sit [m], or which of its forms it takes; empty where there is but one.
-    apart : bool
+    separately : bool
         Whether places are forms of which none is between two others.
     always : bool
         Whether it was there from the start, so that a baseline of the same specimen has it too.
@@ -49,7 +49,7 @@ class Family:
     clear: float
     say: Callable[[float], str]
     places: FloatArray = field(default_factory=lambda: np.zeros(0))
-    apart: bool = False
+    separately: bool = False
     always: bool = False
     graded: bool = True
 
@@ -65,7 +65,7 @@ class Family:
         place : float
             Where [m], or which form.
         """
-        return SECRETS[self.name].act(scene, self.values(q, place)) if q else scene
+        return HIDDEN_EFFECTS[self.name].act(scene, self.values(q, place)) if q else scene
 
     @property
     def grid(self) -> FloatArray:

@@ -15,7 +15,7 @@ from modalkit.planning.changes import Change, changes
 from modalkit.planning.curves import Curve, solve_curve
 from modalkit.planning.design import Design, present
 from modalkit.planning.effects import families
-from modalkit.planning.known import Told
+from modalkit.planning.known import KnownTest
 from modalkit.planning.responses import Stations
 from modalkit.planning.separability import CLASS, EQUAL, NONE, SEEN, SURE, Distances, distances
 
@@ -47,7 +47,7 @@ class Limit:
 
 
 @dataclass(frozen=True, eq=False)
-class Outlook:
+class TestForecast:
     """What one test tells.
 
     Parameters
@@ -101,15 +101,15 @@ class Outlook:
     def classes(self) -> tuple[tuple[str, ...], ...]:
         """Groups of effects that all lie less than 2 sigma from each other, those of one effect left out."""
         names, pairs = list(self.names), self.pairs
-        apart = np.zeros((len(names), len(names)))
+        separately = np.zeros((len(names), len(names)))
         for (a, b), sigma in pairs.items():
-            apart[names.index(a), names.index(b)] = apart[names.index(b), names.index(a)] = sigma
-        label = fcluster(linkage(squareform(apart), "complete"), CLASS, "distance")
+            separately[names.index(a), names.index(b)] = separately[names.index(b), names.index(a)] = sigma
+        label = fcluster(linkage(squareform(separately), "complete"), CLASS, "distance")
         groups = [tuple(n for n, own in zip(names, label, strict=True) if own == g) for g in np.unique(label)]
         return tuple(g for g in groups if len(g) > 1)
 
     @property
-    def told_share(self) -> float:
+    def separated_share(self) -> float:
         """Share of the pairs of effects that are 3 sigma apart or more [-]."""
         values = np.array(list(self.pairs.values()))
         return float(np.mean(values >= SEEN)) if len(values) else 1.0
@@ -120,7 +120,7 @@ class Outlook:
         table = self.thresholds
         depth = np.log(np.clip(table["clear"] / table["separated"], 1 / _CAP, _CAP))
         near = np.clip(list(self.pairs.values()), 0.1, SEEN) / SEEN
-        return float(self.told_share + np.mean(depth) / np.log(_CAP) + np.mean(near))
+        return float(self.separated_share + np.mean(depth) / np.log(_CAP) + np.mean(near))
 
 
 def _limit(one: Distances) -> Limit:
@@ -158,7 +158,7 @@ class Advice:
     """
 
     change: Change
-    after: Outlook
+    after: TestForecast
     separates: tuple[tuple[str, str], ...]
     factor: float
     worth: float
@@ -170,7 +170,7 @@ class Forecast:
 
     Parameters
     ----------
-    told : Told
+    known_test : Told
         The test.
     curves : tuple of Curve
         The effects.
@@ -180,18 +180,18 @@ class Forecast:
         Changes, the most worth first.
     """
 
-    told: Told
+    known_test: KnownTest
     curves: tuple[Curve, ...]
-    now: Outlook
+    now: TestForecast
     advice: tuple[Advice, ...]
 
 
-def forecast(told: Told, *, progress: Callable[[str], None] | None = None) -> Forecast:
+def forecast(known_test: KnownTest, *, progress: Callable[[str], None] | None = None) -> Forecast:
     """Forecast a test with the rig's own bodies.
 
     Parameters
     ----------
-    told : Told
+    known_test : Told
         The test.
     progress : callable, optional
         Called with what is being done.
@@ -202,26 +202,26 @@ def forecast(told: Told, *, progress: Callable[[str], None] | None = None) -> Fo
         What it tells apart now, and what each change would bring.
     """
     say = progress or (lambda _: None)
-    stations, curves = Stations(told.setup), []
-    for family in families(told):
+    stations, curves = Stations(known_test.setup), []
+    for family in families(known_test):
         say(f"solving {family.name}")
         curves.append(solve_curve(family, stations))
     kept = tuple(curves)
 
-    def look(design: Design, *, fine: bool = True) -> Outlook:
-        return Outlook(design, distances(kept, design, told, stations, fine=fine))
+    def forecast_of(design: Design, *, fine: bool = True) -> TestForecast:
+        return TestForecast(design, distances(kept, design, known_test, stations, fine=fine))
 
-    design = present(told)
-    now = look(design)
+    design = present(known_test)
+    now = forecast_of(design)
     say("weighing changes")
-    tried = changes(design, stations, lambda d: look(d, fine=False).worth)
-    found = [_advice(change, now, look) for change in tried]
+    tried = changes(design, stations, lambda d: forecast_of(d, fine=False).worth)
+    found = [_advice(change, now, forecast_of) for change in tried]
     found.sort(key=lambda one: -one.worth)
-    return Forecast(told, kept, now, tuple(found))
+    return Forecast(known_test, kept, now, tuple(found))
 
 
-def _advice(change: Change, now: Outlook, look: Callable[[Design], Outlook]) -> Advice:
-    after = _with_what_was_there(look(change.design), now)
+def _advice(change: Change, now: TestForecast, forecast_of: Callable[[Design], TestForecast]) -> Advice:
+    after = _with_what_was_there(forecast_of(change.design), now)
     before, then = now.pairs, after.pairs
     newly = [pair for pair in before if before[pair] < SEEN <= then[pair] and not _equal(pair)]
     for name in now.names:
@@ -235,18 +235,18 @@ def _advice(change: Change, now: Outlook, look: Callable[[Design], Outlook]) -> 
     return Advice(change, after, tuple(newly), factor, after.worth - now.worth)
 
 
-def shown(look: Outlook, name: str) -> float:
+def shown(forecast_of: TestForecast, name: str) -> float:
     """Return by how many sigma an effect, clear, stands off none [-]."""
-    return float(look.found[look.names.index(name)].clear_of(NONE))
+    return float(forecast_of.found[forecast_of.names.index(name)].clear_of(NONE))
 
 
 def _equal(pair: tuple[str, str]) -> bool:
     return pair in EQUAL or pair[::-1] in EQUAL
 
 
-def _with_what_was_there(after: Outlook, now: Outlook) -> Outlook:
+def _with_what_was_there(after: TestForecast, now: TestForecast) -> TestForecast:
     """Leave the effects that were always there as they are: a baseline has them too, so that they cancel."""
     if not after.design.baseline or now.design.baseline:
         return after
     pairs = zip(after.found, now.found, strict=True)
-    return Outlook(after.design, tuple(b if b.curve.family.always else a for a, b in pairs))
+    return TestForecast(after.design, tuple(b if b.curve.family.always else a for a, b in pairs))

@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from modalkit.planning import Told, by_default
+from modalkit.planning import KnownTest, by_default
 from modalkit.simulator.setup import Setup, Tolerances
 from modalkit.study.read import Study
 from modalkit.workflow.case import open_study
@@ -31,11 +31,11 @@ class _Layout:
     points: FloatArray
     sensor: int
     drive: bool
-    said: tuple[str, ...]
+    statement: tuple[str, ...]
     left_out: tuple[str, ...] = ()
 
 
-def told_by(study: Study) -> Told:
+def known_test_of(study: Study) -> KnownTest:
     """Return a study's test as the forecast takes it.
 
     Parameters
@@ -62,7 +62,7 @@ def told_by(study: Study) -> Told:
     without = ("fluid_added_mass", "fluid_damping") if _in_gas(study) else ()
     shapes = test is None or test.has_shapes
     has_damping = test is None or bool(np.isfinite(test.damping).any())
-    return Told(
+    return KnownTest(
         setup,
         frequency,
         damping,
@@ -71,7 +71,7 @@ def told_by(study: Study) -> Told:
         shapes=shapes,
         absolute=test is None or test.absolute,
         without=without,
-        said=(*layout.said, *words, *known),
+        statement=(*layout.statement, *words, *known),
         left_out=tuple(left_out),
     )
 
@@ -91,8 +91,8 @@ def _refuse(study: Study, spec: Spec) -> None:
 
 
 def _in_gas(study: Study) -> bool:
-    told = study.surroundings().fluid_density
-    return told is not None and told < GAS
+    known_test = study.surroundings().fluid_density
+    return known_test is not None and known_test < GAS
 
 
 def _planned(study: Study, spec: Spec) -> _Layout:
@@ -106,17 +106,17 @@ def _planned(study: Study, spec: Spec) -> _Layout:
     table = study.test
     points = np.array(table.points) if table.points else _even(spec)
     free_end = 0.0 if tuple(spec.clamped) == ("x1",) else spec.length
-    seat = table.sensor if table.sensor is not None else points[np.argmin(np.abs(points - free_end))]
-    off = [x for x in (*points, seat) if not 0 <= x <= spec.length]
+    sensor_at = table.sensor if table.sensor is not None else points[np.argmin(np.abs(points - free_end))]
+    off = [x for x in (*points, sensor_at) if not 0 <= x <= spec.length]
     if off:
         raise StudyError(
             f"{study.path}: [test] points: {off[0]:g} m is off the beam, which reaches from 0 to {spec.length:g} m"
         )
-    every = np.unique([*points, seat])
-    drive = bool(np.isclose(points, seat).any())
+    every = np.unique([*points, sensor_at])
+    drive = bool(np.isclose(points, sensor_at).any())
     whence = "as planned" if table.points else "by default, since no data and no [test] points say where"
-    said = f"{len(points)} points hit, the sensor at {1e3 * seat:.0f} mm ({whence})"
-    return _Layout(every, int(np.argmin(np.abs(every - seat))), drive, (said,))
+    statement = f"{len(points)} points hit, the sensor at {1e3 * sensor_at:.0f} mm ({whence})"
+    return _Layout(every, int(np.argmin(np.abs(every - sensor_at))), drive, (statement,))
 
 
 def _even(spec: Spec) -> FloatArray:
@@ -129,8 +129,8 @@ def _layout(spec: Spec, test: Measured) -> _Layout:
     """Return where it was hit and seen: one sensor and a roving hammer, or the other way round."""
     if not len(test.points):
         even = _even(spec)
-        said = f"the data have no points; where the advice needs them: {_POINTS}, evenly spaced"
-        return _Layout(even, len(even) - 1, True, (said,))
+        statement = f"the data have no points; where the advice needs them: {_POINTS}, evenly spaced"
+        return _Layout(even, len(even) - 1, True, (statement,))
     x, seen, hit = test.points[:, 0], test.seen, test.hit
     left_out: list[str] = []
     if (hit < 0).any():
@@ -148,8 +148,8 @@ def _layout(spec: Spec, test: Measured) -> _Layout:
     drive = bool((mine == sensor).any())
     own = int(np.flatnonzero(order == sensor)[0])
     among = ", drive point among them" if drive else ""
-    said = f"{len(mine)} points hit, the sensor at {1e3 * x[sensor]:.0f} mm{among}"
-    return _Layout(x[order], own, drive, (said,), tuple(left_out))
+    statement = f"{len(mine)} points hit, the sensor at {1e3 * x[sensor]:.0f} mm{among}"
+    return _Layout(x[order], own, drive, (statement,), tuple(left_out))
 
 
 def _setup(
@@ -220,27 +220,33 @@ def _band(study: Study, spec: Spec, test: Measured | None) -> tuple[int, tuple[f
     )  # fmt: skip
     omega, _ = beam.real_modes(12 + beam.rigid_modes)
     hertz = omega[beam.rigid_modes :] / (2 * np.pi)
-    told = study.test.band
+    known_test = study.test.band
     if test is not None:
         modes = len(test.frequency)
-    elif told is not None:
-        modes = max(int(np.sum(hertz < told[1])), 2)
+    elif known_test is not None:
+        modes = max(int(np.sum(hertz < known_test[1])), 2)
     else:
         modes = 5
     modes = min(modes, 11)
-    band = told or (float(f"{0.25 * hertz[0]:.2g}"), float(f"{1.2 * hertz[modes - 1]:.3g}"))
+    band = known_test or (float(f"{0.25 * hertz[0]:.2g}"), float(f"{1.2 * hertz[modes - 1]:.3g}"))
     return modes, (float(band[0]), float(band[1])), np.asarray(2 * np.pi * hertz[:modes])
 
 
 def _rayleigh(spec: Spec, test: Measured | None, omega: FloatArray) -> tuple[float, float, str]:
     """Return alpha [1/s] and beta [s] of the rig, and where they come from."""
-    told = spec.damping
-    if told.alpha is not None or told.beta is not None:
-        return told.alpha or 0.0, told.beta or 0.0, "damping as the model expects it"
-    if told.ratios is not None:
-        ratios, words = np.array(told.ratios[: len(omega)]), "damping near the ratios that the model expects"
-    elif told.loss_factor is not None:
-        ratios, words = np.full(len(omega), told.loss_factor / 2), "damping near the model's loss factor"
+    known_test = spec.damping
+    if known_test.alpha is not None or known_test.beta is not None:
+        return known_test.alpha or 0.0, known_test.beta or 0.0, "damping as the model expects it"
+    if known_test.ratios is not None:
+        ratios, words = (
+            np.array(known_test.ratios[: len(omega)]),
+            "damping near the ratios that the model expects",
+        )
+    elif known_test.loss_factor is not None:
+        ratios, words = (
+            np.full(len(omega), known_test.loss_factor / 2),
+            "damping near the model's loss factor",
+        )
     elif test is not None and np.isfinite(test.damping).all():
         ratios, words = (
             test.damping,

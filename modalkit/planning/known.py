@@ -20,7 +20,7 @@ SHAPE_SIGMA = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
+class KnownTest:
     """A test as the forecast takes it.
 
     Parameters
@@ -38,7 +38,7 @@ class Told:
         Whether those carry absolute level; otherwise they are shapes, up to a factor per mode.
     without : tuple of str
         Effects that are not asked about.
-    said : tuple of str
+    statement : tuple of str
         Where each figure comes from.
     left_out : tuple of str
         What the study says and the rig cannot do.
@@ -52,7 +52,7 @@ class Told:
     shapes: bool = True
     absolute: bool = True
     without: tuple[str, ...] = ()
-    said: tuple[str, ...] = ()
+    statement: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
 
 

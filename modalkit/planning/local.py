@@ -83,7 +83,7 @@ def _strayed(setup: Setup) -> Family:
         _CLEAR_ERROR * setup.length,
         lambda q: f"a point off by more than {short(1e3 * abs(q))} mm",
         np.array([i for i in range(len(setup.points)) if setup.drive or i != setup.sensor], dtype=float),
-        apart=True,
+        separately=True,
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from modalkit.planning.curves import Curve
 from modalkit.planning.design import Design, columns, whitener
-from modalkit.planning.known import Told
+from modalkit.planning.known import KnownTest
 from modalkit.planning.responses import Stations
 
 NONE = "none"
@@ -146,7 +146,7 @@ def crossing(q: FloatArray, sigma: FloatArray, level: float) -> float:
 
 
 def distances(
-    curves: Sequence[Curve], design: Design, told: Told, stations: Stations, *, fine: bool = True
+    curves: Sequence[Curve], design: Design, known_test: KnownTest, stations: Stations, *, fine: bool = True
 ) -> tuple[Distances, ...]:
     """Return how far every effect is from every other in a test.
 
@@ -156,7 +156,7 @@ def distances(
         The effects.
     design : Design
         The test.
-    told : Told
+    known_test : Told
         How well data are known.
     stations : Stations
         What the data are.
@@ -164,7 +164,7 @@ def distances(
         Whether surfaces are interpolated between the severities and places that were solved.
     """
     have = columns(design, stations)
-    white = whitener(design, told, stations)
+    white = whitener(design, known_test, stations)
     clouds = [(curve.cloud if fine else curve.data)[..., have] @ white.T for curve in curves]
     out = []
     for i, curve in enumerate(curves):

@@ -17,7 +17,7 @@ from modalkit.blind.answer import Answer, read_answer
 from modalkit.blind.diagnoser import Diagnose, diagnosers
 from modalkit.planning.cases import Case, choose
 from modalkit.planning.forecast import Advice, Forecast
-from modalkit.planning.known import Told
+from modalkit.planning.known import KnownTest
 from modalkit.planning.separability import SEEN, SURE
 from modalkit.planning.writing import write_case
 
@@ -70,7 +70,7 @@ class Tried:
         return any(len(s) == 1 and s <= self.right for s in answer.sets)
 
     @property
-    def said(self) -> str:
+    def statement(self) -> str:
         """The answer in words."""
         if self.answer is None:
             return f"failed: {self.failure}"
@@ -90,11 +90,11 @@ class Tried:
         """Return a line of the table."""
         return {
             "effect": self.case.family.name,
-            "severity": self.case.said,
+            "severity": self.case.statement,
             "test": "advice followed" if self.followed else "as it is",
             "forecast": self.forecast,
             "sigma": self.sigma,
-            "answered": self.said,
+            "answered": self.statement,
             "right": "yes" if self.named else "in the class" if self.kept else "no",
         }
 
@@ -182,19 +182,19 @@ def check(
         The process that diagnoses is given the study and the raw hits, and nothing else.
     """
     advice = next((one for one in found.advice if one.worth > 0), None)
-    told = found.told
+    known_test = found.known_test
     if noise is not None:
-        told = replace(told, setup=replace(told.setup, noise=noise))
+        known_test = replace(known_test, setup=replace(known_test.setup, noise=noise))
     cases = choose(found.now, advice, count, np.random.default_rng([seed, 0]))
-    wanted = [(case, False, told) for case in cases]
+    wanted = [(case, False, known_test) for case in cases]
     if advice is not None:
         design = advice.change.design
-        setup = advice.change.follow(told.setup)
-        followed = replace(told, setup=setup, shapes=design.shapes, absolute=design.absolute)
+        setup = advice.change.follow(known_test.setup)
+        followed = replace(known_test, setup=setup, shapes=design.shapes, absolute=design.absolute)
         wanted += [(case, True, followed) for case in cases]
     with diagnosers(workers) as diagnose, ThreadPoolExecutor(workers) as pool:
 
-        def one(job: tuple[int, tuple[Case, bool, Told]]) -> Tried:
+        def one(job: tuple[int, tuple[Case, bool, KnownTest]]) -> Tried:
             index, (case, follows, own) = job
             tried = _try(case, follows, own, [seed, 1 + index % len(cases)], diagnose)
             if progress is not None:
@@ -204,12 +204,12 @@ def check(
         return Check(advice, tuple(pool.map(one, enumerate(wanted))))
 
 
-def _try(case: Case, followed: bool, told: Told, seed: list[int], diagnose: Diagnose) -> Tried:
+def _try(case: Case, followed: bool, known_test: KnownTest, seed: list[int], diagnose: Diagnose) -> Tried:
     """Draw specimen and test, hide the case, and have it diagnosed; the same draws with and without the advice."""
-    setup = told.setup
+    setup = known_test.setup
     right = case.accepted(setup)
     with tempfile.TemporaryDirectory(prefix="test-", ignore_cleanup_errors=True) as name:
-        study = write_case(case, told, Path(name), seed=seed)
+        study = write_case(case, known_test, Path(name), seed=seed)
         try:
             answer = read_answer(diagnose(study, ()))
         except (ModalkitError, OSError) as error:

@@ -102,13 +102,13 @@ def _gain(setup: Setup) -> Family:
 
 
 def _fluid(setup: Setup) -> Family:
-    told = setup.environment
+    known_test = setup.environment
     return Family(
         "fluid_added_mass",
         lambda q, _: {"fluid_density": q},
         0.0,
-        2000.0 if told is None else told,
-        told or 998.0,
+        2000.0 if known_test is None else known_test,
+        known_test or 998.0,
         lambda q: f"a fluid denser than {short(q)} kg/m3",
     )
 
@@ -160,7 +160,7 @@ def _uniform(setup: Setup) -> Family:
         1.5,
         lambda q: f"damping {short(1 + q)} times that expected in the middle",
         np.arange(3.0),
-        apart=True,
+        separately=True,
     )
 
 

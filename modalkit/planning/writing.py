@@ -7,21 +7,21 @@ from pathlib import Path
 import numpy as np
 
 from modalkit.planning.cases import Case
-from modalkit.planning.known import Told
+from modalkit.planning.known import KnownTest
 from modalkit.simulator.measurement import record
 from modalkit.simulator.scene import Scene, draw_scene
 from modalkit.simulator.setup import Setup
 from modalkit.simulator.study_file import study_text
 
 
-def write_case(case: Case | None, told: Told, folder: Path, *, seed: list[int]) -> Path:
+def write_case(case: Case | None, known_test: KnownTest, folder: Path, *, seed: list[int]) -> Path:
     """Draw a specimen within the tolerances, hide a case in it, and write raw hits and study.
 
     Parameters
     ----------
     case : Case or None
         What is hidden; None for nothing.
-    told : Told
+    known_test : Told
         The test.
     folder : Path
         An empty one.
@@ -34,16 +34,16 @@ def write_case(case: Case | None, told: Told, folder: Path, *, seed: list[int]) 
         The study file.
     """
     build, first, second = np.random.default_rng(seed).spawn(3)
-    before = draw_scene(told.setup, build)
+    before = draw_scene(known_test.setup, build)
     scene = before if case is None else case.family.act(before, case.q, case.place)
-    return write_scene(scene, before, told, folder, rngs=(first, second))
+    return write_scene(scene, before, known_test, folder, rngs=(first, second))
 
 
 _OF_RECORDS = ("exponential_window",)
 
 
 def write_scene(
-    scene: Scene, before: Scene, told: Told, folder: Path, *, rngs: tuple[np.random.Generator, np.random.Generator]
+    scene: Scene, before: Scene, known_test: KnownTest, folder: Path, *, rngs: tuple[np.random.Generator, np.random.Generator]
 ) -> Path:  # fmt: skip
     """Write the files of a test, with modes alone where the user's data are no more.
 
@@ -51,25 +51,25 @@ def write_scene(
     ----------
     scene, before : Scene
         The rig with and without what is hidden.
-    told : Told
+    known_test : Told
         The test.
     folder : Path
         An empty one.
     rngs : two of numpy.random.Generator
         For the test and its baseline.
     """
-    setup = told.setup
+    setup = known_test.setup
     text = study_text(setup, test_file="test.uff", baseline_file="baseline.uff")
-    if not told.damping_known:
+    if not known_test.damping_known:
         text = _without_damping(text)
     names = [("test", scene, rngs[0]), *([("baseline", before, rngs[1])] if setup.baseline else [])]
     for name, one, rng in names:
-        if told.shapes:
+        if known_test.shapes:
             record(one, folder / f"{name}.uff", rng=rng)
         else:
-            _write_modes(one, told, folder / f"{name}.csv", rng)
+            _write_modes(one, known_test, folder / f"{name}.csv", rng)
             text = text.replace(f'files = ["{name}.uff"]', f'modes = "{name}.csv"')
-    if not told.shapes:
+    if not known_test.shapes:
         text = _without_records(text)
     study = folder / "study.toml"
     study.write_text(text, encoding="utf-8")
@@ -88,11 +88,11 @@ def _without_damping(text: str) -> str:
     return "\n".join([*lines[:start], *lines[end:]]) + "\n"
 
 
-def _write_modes(scene: Scene, told: Told, path: Path, rng: np.random.Generator) -> None:
+def _write_modes(scene: Scene, known_test: KnownTest, path: Path, rng: np.random.Generator) -> None:
     """Write frequencies as they would be identified after mounting anew."""
-    setup = told.setup
+    setup = known_test.setup
     modes = scene.elastic().take(slice(0, setup.modes))
-    known = np.resize(told.frequency, setup.modes)
+    known = np.resize(known_test.frequency, setup.modes)
     off = np.hypot(known, setup.repeatability) * rng.standard_normal(setup.modes)
     hertz = modes.frequency * (1 + off)
     lines = [f"{f:.8g},{f * s:.3g}" for f, s in zip(hertz, known, strict=True)]

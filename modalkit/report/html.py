@@ -46,10 +46,12 @@ def text(value: object) -> str:
 
 def element(tag: str, *inside: str | Raw, **attributes: str) -> Raw:
     """Return an element; plain text inside it is escaped, ``class_`` is written as ``class``."""
-    told = "".join(
+    stated = "".join(
         f' {k.rstrip("_").replace("_", "-")}="{escape(v, quote=True)}"' for k, v in attributes.items() if v
     )
-    return Raw(f"<{tag}{told}>{''.join(i.markup if isinstance(i, Raw) else text(i) for i in inside)}</{tag}>")
+    return Raw(
+        f"<{tag}{stated}>{''.join(i.markup if isinstance(i, Raw) else text(i) for i in inside)}</{tag}>"
+    )
 
 
 def joined(*parts: Raw) -> Raw:
@@ -102,15 +104,15 @@ def _class(column: Column) -> str:
 
 
 def _cell(value: Cell | Raw, column: Column, *, first: bool) -> Raw:
-    said: str | Raw
+    statement: str | Raw
     if isinstance(value, Raw):
-        said = value
+        statement = value
     elif value is None or (isinstance(value, float) and math.isnan(value)):
-        said = "–"
+        statement = "–"
     elif isinstance(value, int | float) and column.write is not None:
-        said = column.write(float(value))
+        statement = column.write(float(value))
     else:
-        said = str(value)
+        statement = str(value)
     if first:
-        return element("th", said, scope="row", class_=_class(column))
-    return element("td", said, class_=_class(column))
+        return element("th", statement, scope="row", class_=_class(column))
+    return element("td", statement, class_=_class(column))

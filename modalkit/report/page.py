@@ -16,10 +16,10 @@ from modalkit.report.sections import (
     not_examined,
     the_causes,
     the_gap,
-    the_letter,
     the_next_test,
     the_place,
     the_shrinkage,
+    the_summary,
     the_warnings,
 )
 from modalkit.report.svg import inline_svg
@@ -54,7 +54,7 @@ def diagnosis_report(
             "header",
             element("h1", diagnosis.title or "Diagnosis"),
             element("p", answer(diagnosis), class_="answer"),
-            the_letter(diagnosis),
+            the_summary(diagnosis),
         ),
         _section("How large the gap is", _figures(shown, "gap"), the_gap(diagnosis)),
         _section("Where it sits", _figures(shown, "localisation"), the_place(diagnosis)),

@@ -27,8 +27,8 @@ def provenance(sessions: Sequence[Session], when: datetime) -> Raw:
     when : datetime
         Date of the report.
     """
-    said = f"Written {when.isoformat(sep=' ', timespec='seconds')} by {_versions()}."
-    parts = [element("p", said)]
+    statement = f"Written {when.isoformat(sep=' ', timespec='seconds')} by {_versions()}."
+    parts = [element("p", statement)]
     for session in sessions:
         study = session.study
         parts += [_files(study), element("h3", f"The study file {study.path.name}"), _text(study.path)]

@@ -8,7 +8,7 @@ import pandas as pd
 
 from acquisition.display import counted
 from modalkit.figures.words import METRICS, chance, gap_size, percent, quantity, share
-from modalkit.output.summary import letter, separated
+from modalkit.output.summary import separated, summary_text
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import Ranked
@@ -28,9 +28,9 @@ def _signed(value: float, digits: int) -> str:
     return f"{round(value, digits) + 0.0:.{digits}f}".replace("-", "−")
 
 
-def the_letter(diagnosis: Diagnosis) -> Raw:
+def the_summary(diagnosis: Diagnosis) -> Raw:
     """Return the five lines."""
-    lines = dict(line.partition(":")[::2] for line in letter(diagnosis))
+    lines = dict(line.partition(":")[::2] for line in summary_text(diagnosis))
     return definitions({k: v.strip() for k, v in lines.items()}, class_=f"letter {diagnosis.verdict}")
 
 
@@ -61,11 +61,11 @@ def _mode_table(modes: pd.DataFrame, name: str, several: bool) -> Raw:
         [int(mode), *(row[c.name] for c in columns[1:])]  # type: ignore[call-overload]
         for mode, row in modes.iterrows()
     ]
-    said = (
+    statement = (
         f"{f'{name}: modes' if several else 'Modes'} of the test and of the model as it stands. Error is model minus "
         "test, over test; sigma is what the test is known to."
     )
-    return table(said, columns, rows)
+    return table(statement, columns, rows)
 
 
 def the_place(diagnosis: Diagnosis) -> Raw:
@@ -93,18 +93,26 @@ def the_place(diagnosis: Diagnosis) -> Raw:
 
 def _places(diagnosis: Diagnosis) -> Raw:
     """Return the places with their spread: those of the most probable explanation."""
-    seats = diagnosis.where.seats
-    if not seats or diagnosis.verdict not in {"named", "class"} or not diagnosis.ranking:
+    likely_places = diagnosis.where.likely_places
+    if not likely_places or diagnosis.verdict not in {"named", "class"} or not diagnosis.ranking:
         return Raw("")
-    used = [k for k in range(3) if k == 0 or any(seat.place[k] or seat.spread[k] for seat in seats)]
+    used = [
+        k
+        for k in range(3)
+        if k == 0 or any(likely_place.place[k] or likely_place.spread[k] for likely_place in likely_places)
+    ]
     columns = [
         Column("place", lambda value: f"{value:.0f}"),
         *(Column(f"{'xyz'[k]} [m]") for k in used),
         Column("probability", share),
     ]
     rows: list[list[Cell | Raw]] = [
-        [i + 1, *(_spread(seat.place[k], seat.spread[k]) for k in used), seat.probability]
-        for i, seat in enumerate(seats)
+        [
+            i + 1,
+            *(_spread(likely_place.place[k], likely_place.spread[k]) for k in used),
+            likely_place.probability,
+        ]
+        for i, likely_place in enumerate(likely_places)
     ]
     whose = " + ".join(diagnosis.ranking[0].effects)
     return table(
@@ -125,16 +133,16 @@ def _zones(diagnosis: Diagnosis) -> Raw:
     values = [zone.probability for zone in where.zones]
     if max(values) - min(values) < ALIKE:
         return element("p", f"All {len(values)} zones are alike: {share(values[0])} each.")
-    said = "Zones and the probability that the cause sits in each."
+    statement = "Zones and the probability that the cause sits in each."
     if where.zones_by == "regions":
-        said = (
+        statement = (
             "Zones as if one of them alone were changed: nothing explains the gap, so this is a hint at most."
         )
     columns = [Column("zone"), Column("centre [m]"), Column("probability", share)]
     used = [k for k in range(3) if any(zone.center[k] for zone in where.zones)]
     centre = [", ".join(f"{'xyz'[k]} = {_signed(z.center[k], 3)}" for k in used) for z in where.zones]
     return table(
-        said, columns, [[z.name, c, z.probability] for z, c in zip(where.zones, centre, strict=True)]
+        statement, columns, [[z.name, c, z.probability] for z, c in zip(where.zones, centre, strict=True)]
     )
 
 
@@ -171,13 +179,13 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     cells: list[list[Cell | Raw]] = [_explanation(row) for row in shown]
     cells.append(["(tolerances and noise alone)", alone, diagnosis.p_value, "", ""])
     marked = [r.effects in diagnosis.sets for r in shown]
-    said = {
+    statement = {
         "named": "The shaded row is the answer.",
         "class": "The shaded rows are the answer: one of them, these data cannot tell which.",
         "unknown": "None of them explains the gap.",
         "none": "There is no gap that would need one of them.",
     }[diagnosis.verdict]
-    parts = [table(f"Explanations, most probable first. {said}", columns, cells, marked=marked)]
+    parts = [table(f"Explanations, most probable first. {statement}", columns, cells, marked=marked)]
     if len(rows) > len(shown):
         left = sum(r.probability for r in rows if r not in shown)
         parts.append(element("p", f"{len(rows) - len(shown)} more, together {share(left)}.", class_="quiet"))
@@ -186,25 +194,25 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
 
 
 def _explanation(row: Ranked) -> list[Cell | Raw]:
-    told = []
+    stated = []
     for name, estimate in row.parameters.items():
         if estimate.low95 is None and isinstance(estimate.value, int | float) and ".point" not in name:
             continue  # which form of the effect it is
         bound = ", at the end of its range" if estimate.at_bound else ""
-        said = name if len(row.effects) > 1 else name.partition(".")[2]
-        told.append(f"{said} = {quantity(estimate)}{bound}")
+        statement = name if len(row.effects) > 1 else name.partition(".")[2]
+        stated.append(f"{statement} = {quantity(estimate)}{bound}")
     if not row.plausible and not any(e.at_bound for e in row.parameters.values()):
-        told.append("(hardly believable)")
+        stated.append("(hardly believable)")
     near = [" + ".join(names) for names in row.equivalents[:3]]
     if len(row.equivalents) > len(near):
         near.append(f"{len(row.equivalents) - len(near)} more")
-    return [" + ".join(row.effects), row.probability, row.p_value, "\n".join(told), "\n".join(near)]
+    return [" + ".join(row.effects), row.probability, row.p_value, "\n".join(stated), "\n".join(near)]
 
 
 def _known(name: str) -> Raw:
     effect = LIBRARY[name]
-    said = f"{effect.summary} {effect.footprint} To separate it: {effect.separated_by}."
-    return element("p", element("strong", name), f": {said}")
+    statement = f"{effect.summary} {effect.footprint} To separate it: {effect.separated_by}."
+    return element("p", element("strong", name), f": {statement}")
 
 
 def the_shrinkage(diagnosis: Diagnosis) -> Raw:
@@ -219,14 +227,14 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
         rows.append([f"runner-up: {name}", None, shrink.held_runner_up])
     best = " + ".join(diagnosis.ranking[0].effects) if diagnosis.ranking else "best explanation"
     rows += [[best, shrink.after, shrink.held_after], ["noise of the test", None, shrink.floor]]
-    said = f"R.m.s. {METRICS[metric]} gap; held out: each mode predicted from all others."
+    statement = f"R.m.s. {METRICS[metric]} gap; held out: each mode predicted from all others."
 
     def size(value: float) -> str:
         return gap_size(value, metric)
 
     columns = [Column("explanation"), Column("on fitted data", size), Column("on modes held out", size)]
     marked = [False] * (len(rows) - 2) + [diagnosis.verdict in {"named", "class"}, False]
-    parts = [table(said, columns, rows, marked=marked)]
+    parts = [table(statement, columns, rows, marked=marked)]
     if (points := shrink.points) is not None:
         parts.append(
             element(
@@ -238,15 +246,15 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
     if shrink.closed is not None and diagnosis.verdict in {"named", "class"}:
         closed = shrink.closed
         interval = f"(95 %: {closed.low95:.0f} to {closed.high95:.0f} %)"
-        said = f"Of what can be closed, {closed.value:.0f} % closes {interval}."
-        parts.append(element("p", said))
+        statement = f"Of what can be closed, {closed.value:.0f} % closes {interval}."
+        parts.append(element("p", statement))
     return joined(*parts)
 
 
 def the_next_test(diagnosis: Diagnosis) -> Raw:
     """Return what to measure next."""
     if not diagnosis.next_test:
-        last = letter(diagnosis)[-1].partition(":")[2].strip()
+        last = summary_text(diagnosis)[-1].partition(":")[2].strip()
         return element("p", last[:1].upper() + last[1:] + ".")
     rows: list[list[Cell | Raw]] = []
     for test in diagnosis.next_test:

@@ -33,8 +33,8 @@ def damped_spec(study: Study, session: Session | None) -> tuple[Spec, tuple[str,
         return with_ratios(Predictor(spec, predictor.measured), ratios).spec, (
             "damping: the identified ratios, their median where no mode was identified",
         )
-    said = f"damping: neither model nor test says any; {100 * UNKNOWN_DAMPING:g} % for every mode"
-    return with_ratios(Predictor(spec, predictor.measured), np.array([UNKNOWN_DAMPING])).spec, (said,)
+    statement = f"damping: neither model nor test says any; {100 * UNKNOWN_DAMPING:g} % for every mode"
+    return with_ratios(Predictor(spec, predictor.measured), np.array([UNKNOWN_DAMPING])).spec, (statement,)
 
 
 def _ratios(predictor: Predictor) -> FloatArray | None:

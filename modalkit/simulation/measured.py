@@ -21,7 +21,7 @@ from modalkit.simulation.setup import (
     SAMPLING,
     TRIGGER,
     Options,
-    Rig,
+    TestSetup,
 )
 from modalkit.workflow.case import Session
 
@@ -32,7 +32,7 @@ QUIET = 0.1
 """The share of the lines whose noise counts: hits beside the point add to the others in proportion to the FRF [-]."""
 
 
-def rig_of_data(session: Session, options: Options) -> Rig:
+def rig_of_data(session: Session, options: Options) -> TestSetup:
     """Return the rig that a study's FRFs or hits were measured on."""
     assert session.processed is not None
     assert session.identified is not None
@@ -40,11 +40,11 @@ def rig_of_data(session: Session, options: Options) -> Rig:
     assert test.rows is not None
     assert test.signs is not None
     rows = test.rows.tolist()
-    remarks: list[str] = []
-    plan = _plan_of(session, options, remarks)
+    notes: list[str] = []
+    plan = _plan_of(session, options, notes)
     if session.identified.points_rejected:
-        remarks.append(f"not hit again: {'; '.join(session.identified.points_rejected)}")
-    return Rig(
+        notes.append(f"not hit again: {'; '.join(session.identified.points_rejected)}")
+    return TestSetup(
         test,
         tuple(frfs.responses[i] for i in rows),
         tuple(frfs.references[i] for i in rows),
@@ -52,11 +52,11 @@ def rig_of_data(session: Session, options: Options) -> Rig:
         frfs.geometry,
         session.identified.band,
         plan,
-        tuple(remarks),
+        tuple(notes),
     )
 
 
-def _plan_of(session: Session, options: Options, remarks: list[str]) -> HammerPlan:
+def _plan_of(session: Session, options: Options, notes: list[str]) -> HammerPlan:
     """Return how the structure was hit: from the records where they are there, else from the FRFs' lines."""
     processed, study = session.processed, session.study
     assert processed is not None
@@ -89,7 +89,7 @@ def _plan_of(session: Session, options: Options, remarks: list[str]) -> HammerPl
         decay=decay,
         form=form,
     )
-    noisy = _with_noise(plan, frfs, options, remarks)
+    noisy = _with_noise(plan, frfs, options, notes)
     rate, samples = options.rate or rate, options.samples or samples
     return replace(noisy, rate=rate, samples=samples, pre_trigger=_trigger(frfs, width, samples / rate))
 
@@ -115,12 +115,12 @@ def _force_noise(session: Session) -> float:
     return float(np.median(np.concatenate(levels)))
 
 
-def _with_noise(plan: HammerPlan, frfs: FrfSet, options: Options, remarks: list[str]) -> HammerPlan:
+def _with_noise(plan: HammerPlan, frfs: FrfSet, options: Options, notes: list[str]) -> HammerPlan:
     """Return the plan with the noise of the responses: as told, else as the coherence has it, else usual."""
     if options.noise is not None:
         return replace(plan, response_noise=options.noise)
     if frfs.coherence is None or (frfs.averages is not None and frfs.averages.min() < 2):
-        remarks.append(
+        notes.append(
             f"the test's FRFs have no coherence over several hits: noise of {RESPONSE_NOISE:g} of the largest response"
         )
         return replace(plan, response_noise=RESPONSE_NOISE)

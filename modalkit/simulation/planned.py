@@ -19,7 +19,7 @@ from modalkit.simulation.setup import (
     SAMPLING,
     TRIGGER,
     Options,
-    Rig,
+    TestSetup,
 )
 from modalkit.study.read import Study
 from updating import Measured, Predictor, Spec
@@ -33,7 +33,7 @@ DECAYED, LONGEST = 6.0, 65536
 """Records last until the slowest mode has decayed by this exponent, in no more samples [-]."""
 
 
-def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: Options) -> Rig:
+def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: Options) -> TestSetup:
     """Return a rig for a study without hits: at the points of its shapes if any, else at evenly spaced ones.
 
     The sensor sits where the modeller knows of a mass, else at the point where the faintest mode of the band is
@@ -50,14 +50,14 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
     options : Options
         What the user says.
     """
-    axes, remarks = study.axes(study.test), []
+    axes, notes = study.axes(study.test), []
     if measured is not None and len(measured.points):
         points, nodes, directions = measured.points, measured.nodes, measured.directions
-        remarks.append(f"the study has no hits: the hammer goes to the {len(points)} points of its shapes")
+        notes.append(f"the study has no hits: the hammer goes to the {len(points)} points of its shapes")
     else:
         points, directions = spaced(spec, options.points), None
         nodes = tuple(range(1, len(points) + 1))
-        remarks.append(f"the study has no points: the hammer goes to {len(points)}, evenly spaced")
+        notes.append(f"the study has no points: the hammer goes to {len(points)}, evenly spaced")
     frequency = np.zeros(0) if measured is None else measured.frequency
     blank = _blank(points, nodes, directions, 0)
     modes = natural_modes(simulated(Predictor(spec, blank)))
@@ -65,11 +65,11 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
     inside = (modes.frequency > band[0]) & (modes.frequency < band[1])
     sensor = _sensor(spec, points, modes.shapes[:, inside])
     names, geometry = _named(points, nodes, directions, axes)
-    remarks.append(f"the sensor sits at {names[sensor]}")
+    notes.append(f"the sensor sits at {names[sensor]}")
     slowest = float(np.min((modes.damping * 2 * np.pi * modes.frequency)[inside], initial=np.inf))
     plan = _usual_plan(band, slowest + study.test.exponential_window, options)
     plan = replace(plan, position_sigma=study.test.position_sigma, decay=study.test.exponential_window)
-    return Rig(
+    return TestSetup(
         _blank(points, nodes, directions, sensor),
         (names[sensor],) * len(points),
         names,
@@ -77,7 +77,7 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
         geometry,
         band,
         plan,
-        tuple(remarks),
+        tuple(notes),
     )
 
 

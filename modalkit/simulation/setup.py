@@ -53,7 +53,7 @@ class Options:
 
 
 @dataclass(frozen=True, eq=False)
-class Rig(Displayed):
+class TestSetup(Displayed):
     """A test without its data.
 
     Parameters
@@ -70,7 +70,7 @@ class Rig(Displayed):
         What is looked at [Hz].
     plan : HammerPlan
         How it is hit.
-    remarks : tuple of str
+    notes : tuple of str
         What was not the study's.
     """
 
@@ -81,4 +81,4 @@ class Rig(Displayed):
     geometry: Geometry
     band: tuple[float, float]
     plan: HammerPlan
-    remarks: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()

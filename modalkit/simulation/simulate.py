@@ -16,16 +16,16 @@ from acquisition.errors import InputError
 from modalkit.simulation.damping import damped_spec
 from modalkit.simulation.measured import rig_of_data
 from modalkit.simulation.planned import rig_of_model
-from modalkit.simulation.setup import SAMPLING, Options, Rig
+from modalkit.simulation.setup import SAMPLING, Options, TestSetup
 from modalkit.simulation.systems import known_sensors, remounted, systems
-from modalkit.study.named_effects import EffectValues, check_effect, departure, said
+from modalkit.study.named_effects import EffectValues, check_effect, departure, statement
 from modalkit.study.read import Study, read_study
 from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.joining import together
 from updating import Predictor, Spec
 from updating.models.state import State
 from updating.simulation import damped_modes, simulated
-from updating.test_data.chain import reading
+from updating.test_data.chain import measurement_chain
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,20 +40,20 @@ class SimulatedTest(Displayed):
         Raw hits; points that share their responses are one test.
     effects : tuple of (name, values)
         What is in the model beyond the study's own.
-    rig : Rig
+    test_setup : Rig
         How it was tested.
     poles : (n_modes,) complex array
         Poles in the band as a test without noise would find them: unknown windows included [rad/s].
-    remarks : tuple of str
+    notes : tuple of str
         What was not the study's, and what the user ought to know.
     """
 
     title: str
     tests: tuple[HammerTest, ...]
     effects: tuple[EffectValues, ...]
-    rig: Rig
+    test_setup: TestSetup
     poles: ComplexArray
-    remarks: tuple[str, ...]
+    notes: tuple[str, ...]
 
     def table(self) -> pd.DataFrame:
         """Return one row per mode of the band: frequency [Hz] and damping ratio [%]."""
@@ -64,17 +64,25 @@ class SimulatedTest(Displayed):
     def frfs(self) -> FrfSet:
         """Average the hits to FRFs, as the program does with any, up to the end of the usable lines."""
         sets = [estimate_frfs(test, verdicts=judge_hits(test)) for test in self.tests]
-        return together(sets).band(0.0, self.rig.plan.rate / SAMPLING)
+        return together(sets).band(0.0, self.test_setup.plan.rate / SAMPLING)
 
     def write(self, path: Path | str, *, as_frfs: bool = False) -> None:
         """Write a universal file of raw hits, or of FRFs with their coherence; whole or not at all."""
         if as_frfs:
             write_uff(
-                path, frfs=self.frfs(), geometry=self.rig.geometry, title=self.title, precision="single"
+                path,
+                frfs=self.frfs(),
+                geometry=self.test_setup.geometry,
+                title=self.title,
+                precision="single",
             )
         else:
             write_uff(
-                path, tests=self.tests, geometry=self.rig.geometry, title=self.title, precision="single"
+                path,
+                tests=self.tests,
+                geometry=self.test_setup.geometry,
+                title=self.title,
+                precision="single",
             )
 
     def _headline(self) -> str:
@@ -91,19 +99,19 @@ class Prepared(Displayed):
         The study.
     nominal : Predictor
         Its model with some damping, seen from the points of the rig; accepted effects are not in it yet.
-    rig : Rig
+    test_setup : Rig
         How it is hit.
     options : Options
         What the user said in place of the study.
-    remarks : tuple of str
+    notes : tuple of str
         What was not the study's.
     """
 
     study: Study
     nominal: Predictor
-    rig: Rig
+    test_setup: TestSetup
     options: Options
-    remarks: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 def prepare(study: Study, options: Options | None = None) -> Prepared:
@@ -122,14 +130,14 @@ def prepare(study: Study, options: Options | None = None) -> Prepared:
     StudyError
         If the study has no model.
     """
-    told = options or Options()
+    given = options or Options()
     session = None
     if study.test.files or study.test.modes is not None:
         session = open_study(study, with_baseline=False)
-    spec, remarks = damped_spec(study, session)
-    rig = _rig(study, spec, session, told)
-    nominal = Predictor(spec, rig.measured, study.surroundings())
-    return Prepared(study, nominal, rig, told, (*rig.remarks, *remarks))
+    spec, notes = damped_spec(study, session)
+    test_setup = _rig(study, spec, session, given)
+    nominal = Predictor(spec, test_setup.measured, study.surroundings())
+    return Prepared(study, nominal, test_setup, given, (*test_setup.notes, *notes))
 
 
 def simulate_test(
@@ -159,36 +167,43 @@ def simulate_test(
     """
     study = read_study(study) if isinstance(study, Path | str) else study
     ready = study if isinstance(study, Prepared) else prepare(study, options)
-    rig, nominal, rng = ready.rig, ready.nominal, np.random.default_rng(seed)
+    test_setup, nominal, rng = ready.test_setup, ready.nominal, np.random.default_rng(seed)
     whole: tuple[EffectValues, ...] = (*ready.study.accepted(), *effects)
     for i, (name, values) in enumerate(whole):
         own = i < len(whole) - len(effects)
         check_effect(nominal, name, values, where="[[model.effect]]" if own else "--effect")
-    departures = [*known_sensors(ready.study, rig), *(departure(name, values) for name, values in whole)]
-    state = nominal.looking(nominal.measured, (*nominal.additions, *departures)).base
-    model = simulated(nominal, *departures, points=_places(rig, state))
+    departures = [
+        *known_sensors(ready.study, test_setup),
+        *(departure(name, values) for name, values in whole),
+    ]
+    state = nominal.for_test(nominal.measured, (*nominal.additions, *departures)).base
+    model = simulated(nominal, *departures, points=_places(test_setup, state))
     modes = damped_modes(model.hung())
     factors, level = np.ones(len(modes.poles)), 1.0
     if ready.options.remount:
         factors, level = _mounting(ready.study, len(factors), rng)
-    plan = replace(rig.plan, decay=rig.plan.decay + model.decay, gain=rig.plan.gain * model.gain * level)
-    title = f"simulated, {ready.study.name}: {said(effects)}; seed {seed}"
+    plan = replace(
+        test_setup.plan,
+        decay=test_setup.plan.decay + model.decay,
+        gain=test_setup.plan.gain * model.gain * level,
+    )
+    title = f"simulated, {ready.study.name}: {statement(effects)}; seed {seed}"
     tests = [
-        hammer_test(remounted(system, factors), plan, rng=rng, geometry=rig.geometry)
-        for system in systems(model.hung(), rig, state)
+        hammer_test(remounted(system, factors), plan, rng=rng, geometry=test_setup.geometry)
+        for system in systems(model.hung(), test_setup, state)
     ]
     poles = modes.poles * factors - model.decay
-    inside = (poles.imag > 2 * np.pi * rig.band[0]) & (poles.imag < 2 * np.pi * rig.band[1])
-    remarks = ready.remarks
+    inside = (poles.imag > 2 * np.pi * test_setup.band[0]) & (poles.imag < 2 * np.pi * test_setup.band[1])
+    notes = ready.notes
     if model.rigid:
-        remarks = (*remarks, f"free: hung on cords, rigid-body modes at {_listed(poles[: model.rigid])} Hz")
-    stated = tuple(replace(test, decay=rig.plan.decay, source=title) for test in tests)
-    return SimulatedTest(title, stated, tuple(effects), replace(rig, plan=plan), poles[inside], remarks)
+        notes = (*notes, f"free: hung on cords, rigid-body modes at {_listed(poles[: model.rigid])} Hz")
+    stated = tuple(replace(test, decay=test_setup.plan.decay, source=title) for test in tests)
+    return SimulatedTest(title, stated, tuple(effects), replace(test_setup, plan=plan), poles[inside], notes)
 
 
-def _places(rig: Rig, state: State) -> FloatArray | None:
+def _places(test_setup: TestSetup, state: State) -> FloatArray | None:
     """Return all places from which the model is seen where some are not those stated [m]."""
-    return reading(rig.measured, state).points if state.moved else None
+    return measurement_chain(test_setup.measured, state).points if state.moved else None
 
 
 def _mounting(study: Study, count: int, rng: np.random.Generator) -> tuple[FloatArray, float]:
@@ -197,7 +212,7 @@ def _mounting(study: Study, count: int, rng: np.random.Generator) -> tuple[Float
     return scatter, float(np.exp(study.test.calibration * rng.standard_normal()))
 
 
-def _rig(study: Study, spec: Spec, session: Session | None, options: Options) -> Rig:
+def _rig(study: Study, spec: Spec, session: Session | None, options: Options) -> TestSetup:
     if session is not None and session.processed is not None:
         if options.points is not None:
             raise InputError(

@@ -10,43 +10,45 @@ import numpy as np
 from acquisition import Dof, ModalSystem
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from modalkit.simulation.setup import Rig
+from modalkit.simulation.setup import TestSetup
 from modalkit.study.read import Study
 from updating import Predictor
 from updating.models.state import NOMINAL, State
 from updating.simulation import Simulated, modal_system
-from updating.test_data.chain import reading
+from updating.test_data.chain import measurement_chain
 
 
-def systems(model: Simulated, rig: Rig, state: State = NOMINAL) -> list[ModalSystem]:
+def systems(model: Simulated, test_setup: TestSetup, state: State = NOMINAL) -> list[ModalSystem]:
     """Return the poles and residues between the points, one system for all points that share their responses.
 
     Parameters
     ----------
     model : Simulated
-        The model; where points were misplaced, seen from all places of :func:`updating.test_data.chain.reading`.
-    rig : Rig
+        The model; where points were misplaced, seen from all places of :func:`updating.test_data.chain.measurement_chain`.
+    test_setup : Rig
         How it is hit.
     state : State
         What is wrong with the measurement of single points: signs, labels, places; and the delay.
     """
-    read = reading(rig.measured, replace(state, gain=1.0))
-    heard: dict[Dof, dict[Dof, int]] = {}
-    for row, (response, reference) in enumerate(zip(rig.responses, rig.references, strict=True)):
-        heard.setdefault(reference, {})[response] = row
+    read = measurement_chain(test_setup.measured, replace(state, gain=1.0))
+    rows_of: dict[Dof, dict[Dof, int]] = {}
+    for row, (response, reference) in enumerate(
+        zip(test_setup.responses, test_setup.references, strict=True)
+    ):
+        rows_of.setdefault(reference, {})[response] = row
     groups: dict[tuple[Dof, ...], list[Dof]] = {}
-    for reference, own in heard.items():
+    for reference, own in rows_of.items():
         groups.setdefault(tuple(own), []).append(reference)
     found = []
     for responses, references in groups.items():
-        rows = np.array([[heard[at][seen] for at in references] for seen in responses])
+        rows = np.array([[rows_of[at][seen] for at in references] for seen in responses])
         system = modal_system(
             model,
             seen=read.seen[rows[:, 0]],
             hit=read.hit[rows[0]],
             responses=responses,
             points=references,
-            signs=rig.signs[rows] * read.gain[rows],
+            signs=test_setup.signs[rows] * read.gain[rows],
         )
         found.append(_late(system, state.delay))
     return found
@@ -69,7 +71,7 @@ def remounted(system: ModalSystem, factors: FloatArray) -> ModalSystem:
     )
 
 
-def known_sensors(study: Study, rig: Rig) -> list[Callable[[Predictor], State]]:
+def known_sensors(study: Study, test_setup: TestSetup) -> list[Callable[[Predictor], State]]:
     """Return the masses that the study takes out of its FRFs again, to be put on the model before.
 
     Raises
@@ -77,12 +79,12 @@ def known_sensors(study: Study, rig: Rig) -> list[Callable[[Predictor], State]]:
     StudyError
         If one sits at no point of the test.
     """
-    return [_carrying(rig, name, mass) for name, mass in study.test.sensor_masses.items()]
+    return [_carrying(test_setup, name, mass) for name, mass in study.test.sensor_masses.items()]
 
 
-def _carrying(rig: Rig, name: str, mass: float) -> Callable[[Predictor], State]:
+def _carrying(test_setup: TestSetup, name: str, mass: float) -> Callable[[Predictor], State]:
     node = Dof.of(name).node
-    if node not in rig.measured.nodes:
+    if node not in test_setup.measured.nodes:
         raise StudyError(f"[test] sensor_masses: {name} is no point of the test")
-    place = rig.measured.points[[rig.measured.nodes.index(node)]]
+    place = test_setup.measured.points[[test_setup.measured.nodes.index(node)]]
     return lambda predictor: State(mass=(mass * predictor.reduced.unit_mass(place),))

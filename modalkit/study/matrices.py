@@ -113,7 +113,7 @@ def _regions(model: ModelTable, imported: Imported) -> tuple[Region, ...]:
         return (Region("all", *_sides(imported, imported.extents)),)
     found = []
     for i, table in enumerate(model.region):
-        told = table.model_dump()
+        stated = table.model_dump()
         if table.x is None:
             box = imported.box(i)
             if box is None:
@@ -121,10 +121,10 @@ def _regions(model: ModelTable, imported: Imported) -> tuple[Region, ...]:
                     f"[[model.region]] {table.name!r} needs x, or a part of the stiffness or mass of its own"
                 )
             along, across = _sides(imported, box)
-            told["x"], told["y"] = along, told["y"] or across
-        if given := [key for key in ("thickness", "area", "inertia") if told[key] is not None]:
+            stated["x"], stated["y"] = along, stated["y"] or across
+        if given := [key for key in ("thickness", "area", "inertia") if stated[key] is not None]:
             raise StudyError(f"[[model.region]] {table.name!r}: imported matrices know no {', '.join(given)}")
-        found.append(Region(**told))
+        found.append(Region(**stated))
     return tuple(found)
 
 

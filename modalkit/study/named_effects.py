@@ -46,19 +46,19 @@ def parse_effect(text: str, kind: str = "beam") -> tuple[str, dict[str, Any]]:
         raise InputError(f"--effect {text}: there is no effect {name!r}; {meant}")
     values: dict[str, Any] = {}
     for entry in filter(None, (part.strip() for part in rest.split(","))):
-        parameter, equals, told = (part.strip() for part in entry.partition("="))
+        parameter, equals, stated = (part.strip() for part in entry.partition("="))
         if parameter in values:
             raise InputError(f"--effect {text}: {parameter} stands twice")
         if parameter in LIBRARY[name].labels:
-            values[parameter] = _points(text, parameter, told)
+            values[parameter] = _points(text, parameter, stated)
             continue
         if parameter == "channel" and LIBRARY[name].of_sensor:
-            values[parameter] = _sensor(text, told)
+            values[parameter] = _sensor(text, stated)
             continue
         try:
-            values[parameter] = _value(told, name, parameter, kind)
+            values[parameter] = _value(stated, name, parameter, kind)
         except ValueError as error:
-            if equals and told[:1].isdigit():
+            if equals and stated[:1].isdigit():
                 raise InputError(f"--effect {text}: {parameter}: {error}") from error
             equals = ""
         if not equals or not np.isfinite(values[parameter]):
@@ -66,27 +66,27 @@ def parse_effect(text: str, kind: str = "beam") -> tuple[str, dict[str, Any]]:
     return name, values
 
 
-def _value(told: str, name: str, parameter: str, kind: str) -> float:
+def _value(stated: str, name: str, parameter: str, kind: str) -> float:
     """Return a number in SI units."""
     try:
-        return float(told)
+        return float(stated)
     except ValueError:
-        return float(si_value(told, unit_of(name, parameter, kind)))
+        return float(si_value(stated, unit_of(name, parameter, kind)))
 
 
-def _points(text: str, label: str, told: str) -> Any:
+def _points(text: str, label: str, stated: str) -> Any:
     """Return the node numbers written 3 or 3/4."""
     try:
-        found = [int(part) for part in told.split("/")]
+        found = [int(part) for part in stated.split("/")]
         return nodes(label, found if label == SOME or len(found) > 1 else found[0])
     except (ValueError, StudyError) as error:
         wanted = f"{label}=3/4" if label == SOME else f"{label}=3"
-        raise InputError(f"--effect {text}: {told!r} are no node numbers; write {wanted}") from error
+        raise InputError(f"--effect {text}: {stated!r} are no node numbers; write {wanted}") from error
 
 
-def _sensor(text: str, told: str) -> str:
+def _sensor(text: str, stated: str) -> str:
     try:
-        return sensor(told)
+        return sensor(stated)
     except StudyError as error:
         raise InputError(f"--effect {text}: {error}") from error
 
@@ -106,8 +106,8 @@ def check_effect(
     labels = labels_of(effect, values)
     needed = {*labels, *(p.name for p in takes.values() if p.default is None)}
     if not needed <= set(values) <= {*takes, *labels}:
-        told = [f"{label} (node numbers)" for label in effect.labels]
-        wanted = ", ".join([*told, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"
+        stated = [f"{label} (node numbers)" for label in effect.labels]
+        wanted = ", ".join([*stated, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"
         raise StudyError(f"{where} {name}: it takes {wanted}, found {', '.join(sorted(values)) or 'none'}")
     for label in labels - {"channel"}:
         given = values[label] if isinstance(values[label], tuple) else (values[label],)
@@ -121,7 +121,7 @@ def _as_tested(predictor: Predictor) -> Predictor:
     """Return the predictor of a test that found some modes with their damping, as one of the simulated data will."""
     test = predictor.measured
     frequency = test.frequency if len(test.frequency) else predictor.predict(count=5).frequency
-    return predictor.looking(replace(test, frequency=frequency, damping=np.full(len(frequency), 0.01)))
+    return predictor.for_test(replace(test, frequency=frequency, damping=np.full(len(frequency), 0.01)))
 
 
 def written(value: Any) -> str:
@@ -133,7 +133,7 @@ def written(value: Any) -> str:
     return f"{value:g}"
 
 
-def said(effects: Sequence[EffectValues]) -> str:
+def statement(effects: Sequence[EffectValues]) -> str:
     """Return effects as they are written on the command line."""
     parts = [
         name + (":" if values else "") + ",".join(f"{k}={written(v)}" for k, v in values.items())

@@ -76,9 +76,9 @@ def _guess(modulus: float, density: float) -> str | None:
     pairs = sorted(product(MODULI, MASSES), key=lambda pair: (pair[0] != "Pa") + (pair[1] != "kg/m^3"))
     for one, other in pairs:
         if _solid(modulus * MODULI[one], density * MASSES[other], USUAL_SPEEDS, USUAL_DENSITIES):
-            said = [f'E = "{modulus:g} {one}"'] if one != "Pa" else []
-            said += [f'density = "{density:g} {other}"'] if other != "kg/m^3" else []
-            return " and ".join(said) or None
+            statement = [f'E = "{modulus:g} {one}"'] if one != "Pa" else []
+            statement += [f'density = "{density:g} {other}"'] if other != "kg/m^3" else []
+            return " and ".join(statement) or None
     return None
 
 

@@ -161,8 +161,8 @@ class Study(Strict):
 
     def doubts(self) -> Tolerances:
         """Return the tolerances."""
-        told = self.tolerances.model_dump()
-        values = {name: value if value > NOTHING else 0.0 for name, value in told.items()}
+        stated = self.tolerances.model_dump()
+        values = {name: value if value > NOTHING else 0.0 for name, value in stated.items()}
         damping = values.pop("damping")
         return Tolerances(values, damping)
 

@@ -116,10 +116,10 @@ class MeasurementTable(Strict):
                 "what (docs/readers.md)"
             )
         useless = [key for key in OF_RECORDS if not (of_mat and key == "layout")]
-        told = [key for key in useless if getattr(self, key) != type(self).model_fields[key].default]
-        if told:
+        stated = [key for key in useless if getattr(self, key) != type(self).model_fields[key].default]
+        if stated:
             raise ValueError(
-                f"{', '.join(told)}: said of records or FRFs, but modes = {self.modes!r} are modes already; leave "
+                f"{', '.join(stated)}: said of records or FRFs, but modes = {self.modes!r} are modes already; leave "
                 "it out, and change the modes themselves if they need it"
             )
         return self

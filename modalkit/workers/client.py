@@ -165,8 +165,10 @@ class WarmProcess:
             elif answer["signal"] is not None:
                 died = f"ended by {_signal_name(answer['signal'])}"
             elif answer["code"] != 0:
-                said = answer["message"].removeprefix("modalkit: ") or "no message"
-                raise EstimationError(f"`modalkit {arguments[0]}` ended with code {answer['code']}: {said}")
+                statement = answer["message"].removeprefix("modalkit: ") or "no message"
+                raise EstimationError(
+                    f"`modalkit {arguments[0]}` ended with code {answer['code']}: {statement}"
+                )
             else:
                 return
         raise EstimationError(

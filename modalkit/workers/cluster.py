@@ -141,7 +141,7 @@ def keeper(name: str) -> Any:
     return get_worker().plugins[name]
 
 
-def tell(name: str, document: dict[str, Any]) -> None:
+def announce_event(name: str, document: dict[str, Any]) -> None:
     """Send a document from a task to the one who runs it, on the way of the results and before this one's."""
     from distributed import get_worker
 

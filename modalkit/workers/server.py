@@ -71,7 +71,7 @@ def _forked(request: Mapping[str, Any], requests: BinaryIO) -> dict[str, Any] | 
     if child == 0:
         _become(writing, Path(request["folder"]), request["arguments"])
     os.close(writing)
-    said, ended = _listen(reading, requests, time.monotonic() + float(request["timeout"]))
+    statement, ended = _listen(reading, requests, time.monotonic() + float(request["timeout"]))
     os.close(reading)
     if ended != "done":
         with contextlib.suppress(ProcessLookupError):
@@ -81,33 +81,33 @@ def _forked(request: Mapping[str, Any], requests: BinaryIO) -> dict[str, Any] | 
     code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     if ended == "alone":
         return None
-    return _answer(code, said.decode(errors="replace"), late=ended == "late")
+    return _answer(code, statement.decode(errors="replace"), late=ended == "late")
 
 
-def _answer(code: int, said: str, *, late: bool = False) -> dict[str, Any]:
+def _answer(code: int, statement: str, *, late: bool = False) -> dict[str, Any]:
     return {
         "code": code if code >= 0 else None,
         "signal": -code if code < 0 else None,
         "late": late,
-        "message": (said.strip().splitlines() or [""])[-1],
+        "message": (statement.strip().splitlines() or [""])[-1],
     }
 
 
 def _listen(reading: int, requests: BinaryIO, end: float) -> tuple[bytes, Literal["done", "late", "alone"]]:
     """Gather what a fork says until it is done, late, or nobody waits any more; keeps the last of it."""
-    said = b""
+    statement = b""
     while (left := end - time.monotonic()) > 0:
         ready, _, _ = select.select([reading, requests.fileno()], [], [], left)
         if (
             requests.fileno() in ready
         ):  # there is no further request before the answer: the other side has gone
-            return said, "alone"
+            return statement, "alone"
         if reading in ready:
             part = os.read(reading, 65536)
             if not part:
-                return said, "done"
-            said = (said + part)[-_LAST:]
-    return said, "late"
+                return statement, "done"
+            statement = (statement + part)[-_LAST:]
+    return statement, "late"
 
 
 def _become(saying: int, folder: Path, arguments: Sequence[str]) -> NoReturn:
@@ -136,11 +136,11 @@ def _command(folder: Path, arguments: Sequence[str]) -> int:
 
 def _here(request: Mapping[str, Any], _: BinaryIO) -> dict[str, Any]:
     """Run a command in this process, where there are no forks."""
-    home, words, said = Path.cwd(), sys.argv, io.StringIO()
+    home, words, statement = Path.cwd(), sys.argv, io.StringIO()
     try:
-        with contextlib.redirect_stderr(said):
+        with contextlib.redirect_stderr(statement):
             code = _command(Path(request["folder"]), request["arguments"])
     finally:
         os.chdir(home)
         sys.argv = words
-    return _answer(code, said.getvalue())
+    return _answer(code, statement.getvalue())

@@ -17,7 +17,7 @@ from identification import ModalModel, frf_health, level_dependence
 from modalkit.study.read import MeasurementTable, Study, read_study
 from modalkit.workflow.files import Progress
 from modalkit.workflow.identification import Processed, read_frfs
-from modalkit.workflow.processing_options import Handling
+from modalkit.workflow.processing_options import ProcessingOptions
 from updating import Case, Measured, measured_from_identified, measured_from_modes
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def _identified(
     drop: Sequence[float] = (),
     progress: Progress | None = None,
 ) -> tuple[Processed, ModalModel]:
-    handling = Handling(
+    processing = ProcessingOptions(
         decay=table.exponential_window,
         window_on=table.window_on,
         window=table.window,
@@ -165,7 +165,7 @@ def _identified(
         sensor_masses=tuple(table.sensor_masses.items()),
     )
     files = [study.file(f) for f in table.files]
-    processed = read_frfs(files, handling=handling, progress=progress)
+    processed = read_frfs(files, processing=processing, progress=progress)
     return processed, processed.identify(
         band=band or table.band, order=order, add=[*table.add, *add], drop=[*table.drop, *drop]
     )
@@ -242,10 +242,10 @@ def _with_levels(measured: Measured, processed: Processed, identified: ModalMode
 
     FRFs freed from the mass of a sensor are not those of single hits, so nothing is said of them.
     """
-    told = processed.handling
-    if told.sensor_masses or not processed.judged:
+    stated = processed.processing
+    if stated.sensor_masses or not processed.judged:
         return measured
-    windows = Windows(decay=told.window) if told.window else None
+    windows = Windows(decay=stated.window) if stated.window else None
     judged = [(j.test, j.verdicts) for j in processed.judged]
     found = level_dependence(identified, judged, windows=windows)
     if found is None:

@@ -38,12 +38,12 @@ def on_hits(judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]]]) -> list[s
         All tests of the files, with what was decided on their hits.
     """
     every = [v for _, verdicts in judged for v in verdicts]
-    remarks = []
+    notes = []
     lost = [str(point) for point in rejected_points(every)]
     if lost:
-        remarks.append(f"no hit is used at {_listed(lost)}: left out; accept hits by hand or hit again")
-    remarks += _single(judged)
-    return remarks + _dead(judged)
+        notes.append(f"no hit is used at {_listed(lost)}: left out; accept hits by hand or hit again")
+    notes += _single(judged)
+    return notes + _dead(judged)
 
 
 def _single(judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]]]) -> list[str]:
@@ -87,7 +87,7 @@ def on_coherence(frfs: FrfSet, judged: Sequence[tuple[HammerTest, Sequence[HitVe
         return []
     mean, count = np.asarray(frfs.coherence).mean(axis=1), np.asarray(frfs.averages)
     lacking = (1 - mean) * count / np.maximum(count - 1, 1)  # few averages make coherence too high
-    remarks: list[str] = []
+    notes: list[str] = []
     for row, response in enumerate(frfs.responses):
         rows = [i for i, dof in enumerate(frfs.responses) if dof == response and i != row]
         if len(rows) < OTHERS or lacking[row] < max(
@@ -99,8 +99,8 @@ def on_coherence(frfs: FrfSet, judged: Sequence[tuple[HammerTest, Sequence[HitVe
             f"the mean coherence of {where} is {mean[row]:.2f}, of the other FRFs of {response} {mean[rows].min():.2f} "
             f"to {mean[rows].max():.2f}: {_culprit(str(frfs.references[row]), judged)}"
         )
-        remarks.append(Consequential(text))
-    return remarks
+        notes.append(Consequential(text))
+    return notes
 
 
 def _culprit(point: str, judged: Sequence[tuple[HammerTest, Sequence[HitVerdict]]]) -> str:

@@ -19,8 +19,8 @@ from acquisition import (
     estimate_frfs,
     force_range,
     hits_table,
+    holds_several_hits,
     judge_hits,
-    looks_long,
     split_hits,
     state_window,
 )
@@ -33,7 +33,7 @@ from modalkit.workflow.hit_warnings import on_coherence, on_hits, on_window
 from modalkit.workflow.joining import together
 from modalkit.workflow.level_warnings import with_level_warning
 from modalkit.workflow.mixed import with_read
-from modalkit.workflow.processing_options import Handling
+from modalkit.workflow.processing_options import ProcessingOptions
 from modalkit.workflow.sensors import without_sensors
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from identification import ModalModel
 
-AS_READ = Handling()
+AS_READ = ProcessingOptions()
 SAME_DECAY = 1e-3  # relative difference of decays that are the same
 
 
@@ -79,7 +79,7 @@ class Processed(Displayed):
         FRFs, estimated from the hits or read.
     judged : tuple of Judged
         The hits they were estimated from; empty where the files held FRFs.
-    handling : Handling
+    processing : Handling
         What the user said.
     warnings : tuple of str
         What the user ought to know.
@@ -88,7 +88,7 @@ class Processed(Displayed):
     content: UffContent
     frfs: FrfSet
     judged: tuple[Judged, ...]
-    handling: Handling
+    processing: ProcessingOptions
     warnings: tuple[str, ...]
 
     @property
@@ -124,9 +124,9 @@ class Processed(Displayed):
     ) -> ModalModel:
         """Identify, and say whether frequencies follow the level of the hits."""
         model = self._identified(band, order, add, drop)
-        if self.handling.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
+        if self.processing.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
             return model
-        windows = Windows(decay=self.handling.window) if self.handling.window else None
+        windows = Windows(decay=self.processing.window) if self.processing.window else None
         return with_level_warning(model, [(j.test, j.verdicts) for j in self.judged], windows=windows)
 
     def _identified(
@@ -140,11 +140,11 @@ class Processed(Displayed):
         if reach is None:
             return identify(self.frfs, band=band, order=order, add=add, drop=drop)
         model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
-        said = Consequential(
+        statement = Consequential(
             f"the force is 20 dB down at {reach[1]:.4g} Hz: modes are looked for below that; give a band to go "
             "further"
         )
-        return replace(model, warnings=(*model.warnings, said))
+        return replace(model, warnings=(*model.warnings, statement))
 
     def _informed(
         self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
@@ -152,13 +152,13 @@ class Processed(Displayed):
         """Identify the modes of the part of a band in which the FRFs carry information."""
         from identification import at_cut_edge, identify, informed_band
 
-        within, said = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
+        within, statement = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
         if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
-            within, said = band, None
+            within, statement = band, None
         model = identify(self.frfs, band=within, order=order, add=add, drop=drop)
         if beyond := at_cut_edge(model.modal.frequency, within, band, self.frfs.df):
             model = identify(self.frfs, band=within, order=order, add=add, drop=[*drop, *beyond])
-        return model if said is None else replace(model, warnings=(*model.warnings, said))
+        return model if statement is None else replace(model, warnings=(*model.warnings, statement))
 
     def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
         """Return the band that the force reaches, if it ends before the lines do and no mode is named beyond."""
@@ -181,7 +181,7 @@ def read(
     *,
     decay: float = 0.0,
     layout: Path | str | None = None,
-    handling: Handling = AS_READ,
+    processing: ProcessingOptions = AS_READ,
     progress: Progress | None = None,
 ) -> Processed | Modes:
     """Read files as one test: hits are turned into FRFs; modes that exist already are taken as they are.
@@ -196,7 +196,7 @@ def read(
         themselves; short for ``Handling(decay=...)`` [1/s].
     layout : path, optional
         Layout of column text; short for ``Handling(layout=...)``.
-    handling : Handling
+    processing : Handling
         All that may be said of how records are treated.
     progress : function, optional
         Called with the part of the files that is read, from 0 to 1.
@@ -211,13 +211,13 @@ def read(
     InputError
         If the files hold nothing of that, or what is said of their treatment does not fit them.
     """
-    handling = _said(handling, decay, layout)
+    processing = _statement(processing, decay, layout)
     paths = [Path(p) for p in ([path] if isinstance(path, str | Path) else path)]
-    content = read_files(paths, layout=handling.layout, progress=progress)
+    content = read_files(paths, layout=processing.layout, progress=progress)
     modes = existing(content.modal, paths, content.title, content.warnings)
     if modes is None or content.tests or content.frfs is not None:
-        return _processed(content, paths, handling)
-    if replace(handling, layout=None) != AS_READ:
+        return _processed(content, paths, processing)
+    if replace(processing, layout=None) != AS_READ:
         raise InputError(
             f"{modes.source}: holds modes; decay, windows, hits, estimator and sensor masses are for hits and FRFs"
         )
@@ -225,7 +225,10 @@ def read(
 
 
 def read_frfs(
-    path: Path | str | Sequence[Path | str], *, handling: Handling = AS_READ, progress: Progress | None = None
+    path: Path | str | Sequence[Path | str],
+    *,
+    processing: ProcessingOptions = AS_READ,
+    progress: Progress | None = None,
 ) -> Processed:
     """Read files as `read` does, hits and FRFs only.
 
@@ -239,7 +242,7 @@ def read_frfs(
     InputError
         If the files hold neither.
     """
-    found = read(path, handling=handling, progress=progress)
+    found = read(path, processing=processing, progress=progress)
     if isinstance(found, Modes):
         raise InputError(
             f'{found.source}: holds modes, but neither raw hits nor FRFs; a study names them by modes = "..."'
@@ -247,93 +250,95 @@ def read_frfs(
     return found
 
 
-def _said(handling: Handling, decay: float, layout: Path | str | None) -> Handling:
+def _statement(processing: ProcessingOptions, decay: float, layout: Path | str | None) -> ProcessingOptions:
     """Return the handling with what was said beside it."""
-    handling = replace(handling, decay=decay) if decay else handling
-    handling = handling if layout is None else replace(handling, layout=Path(layout))
-    if handling.window_on is not None and not handling.decay:
+    processing = replace(processing, decay=decay) if decay else processing
+    processing = processing if layout is None else replace(processing, layout=Path(layout))
+    if processing.window_on is not None and not processing.decay:
         raise InputError(
-            f"a window on {handling.window_on} is told of without its decay; add --decay, or exponential_window in a "
+            f"a window on {processing.window_on} is told of without its decay; add --decay, or exponential_window in a "
             "study"
         )
-    return handling
+    return processing
 
 
-def _processed(content: UffContent, paths: Sequence[Path], handling: Handling) -> Processed:
+def _processed(content: UffContent, paths: Sequence[Path], processing: ProcessingOptions) -> Processed:
     warnings = list(content.warnings)
-    judged = _judged(content.tests, handling, warnings)
+    judged = _judged(content.tests, processing, warnings)
     if judged:
         warnings += on_hits([(j.test, j.verdicts) for j in judged])
-        frfs = _estimated(judged, handling)
+        frfs = _estimated(judged, processing)
         if content.frfs is not None:
-            frfs = with_read(frfs, content.frfs, content.tests, warnings, decay=handling.decay)
+            frfs = with_read(frfs, content.frfs, content.tests, warnings, decay=processing.decay)
     elif content.frfs is not None:
-        frfs = _as_read(content.frfs, handling, warnings)
+        frfs = _as_read(content.frfs, processing, warnings)
     else:
         names = named_files(paths)
         raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
     frfs = without_constant(frfs, warnings)
     warnings += [*identical(frfs), *on_coherence(frfs, [(j.test, j.verdicts) for j in judged])]
-    frfs = without_sensors(frfs, handling.sensor_masses, warnings)
-    return Processed(content, frfs, judged, handling, in_order(warnings))
+    frfs = without_sensors(frfs, processing.sensor_masses, warnings)
+    return Processed(content, frfs, judged, processing, in_order(warnings))
 
 
-def _as_read(frfs: FrfSet, handling: Handling, warnings: list[str]) -> FrfSet:
+def _as_read(frfs: FrfSet, processing: ProcessingOptions, warnings: list[str]) -> FrfSet:
     """Return FRFs that were read, with the window stated; what is said of hits has nothing to act on."""
-    said = {"--use": handling.use, "--leave": handling.leave, "--window": handling.window}
-    useless = [name for name, value in said.items() if value]
+    statement = {"--use": processing.use, "--leave": processing.leave, "--window": processing.window}
+    useless = [name for name, value in statement.items() if value]
     if useless:
         raise InputError(
             f"{frfs.source}: {', '.join(useless)} (or the same in a study) is for raw hits, but the files hold FRFs; "
             "leave it out or give the time records"
         )
-    if handling.estimator != "H1":
+    if processing.estimator != "H1":
         warnings.append(
-            f"{frfs.source}: the files hold FRFs, which stay as they are; estimator {handling.estimator} is not used"
+            f"{frfs.source}: the files hold FRFs, which stay as they are; estimator {processing.estimator} is not used"
         )
-    if handling.window_on == "responses":
+    if processing.window_on == "responses":
         warnings.append(
             f"{frfs.source}: the files hold FRFs; a window on the responses alone cannot be set right in them"
         )
-    if handling.decay and frfs.decay:
-        _check_decay(frfs.source, frfs.decay, handling.decay)
-    return replace(frfs, decay=handling.decay) if handling.decay and not frfs.decay else frfs
+    if processing.decay and frfs.decay:
+        _check_decay(frfs.source, frfs.decay, processing.decay)
+    return replace(frfs, decay=processing.decay) if processing.decay and not frfs.decay else frfs
 
 
-def _check_decay(source: str, stated: float, said: float) -> None:
-    if abs(stated - said) > SAME_DECAY * stated:
+def _check_decay(source: str, stated: float, statement: float) -> None:
+    if abs(stated - statement) > SAME_DECAY * stated:
         raise InputError(
-            f"{source}: the file states an exponential window of {stated:g} 1/s, but {said:g} 1/s is said; "
+            f"{source}: the file states an exponential window of {stated:g} 1/s, but {statement:g} 1/s is said; "
             "leave one out or mend the other"
         )
 
 
-def _judged(tests: Sequence[HammerTest], handling: Handling, warnings: list[str]) -> tuple[Judged, ...]:
+def _judged(
+    tests: Sequence[HammerTest], processing: ProcessingOptions, warnings: list[str]
+) -> tuple[Judged, ...]:
     """Split long records, state the window and judge the hits; decisions go to the test that has the hit."""
     split = []
     for test in tests:
         one = test
-        if looks_long(one):
-            one, said = split_hits(replace(one, decay=one.decay or handling.decay))
-            warnings += said
-        split.append(stated(one, handling, warnings))
+        if holds_several_hits(one):
+            one, statement = split_hits(replace(one, decay=one.decay or processing.decay))
+            warnings += statement
+        split.append(stated(one, processing, warnings))
     proposals = numbered([judge_hits(test) for test in split])
     every = tuple(v for verdicts in proposals for v in verdicts)
-    decided = iter(decide(every, use=handling.use, leave=handling.leave) if every else ())
+    decided = iter(decide(every, use=processing.use, leave=processing.leave) if every else ())
     return tuple(
         Judged(test, tuple(next(decided) for _ in verdicts))
         for test, verdicts in zip(split, proposals, strict=True)
     )
 
 
-def stated(test: HammerTest, handling: Handling, warnings: list[str]) -> HammerTest:
+def stated(test: HammerTest, processing: ProcessingOptions, warnings: list[str]) -> HammerTest:
     """Return a test with the window stated that is said to have been applied; one that nobody states is warned of.
 
     Parameters
     ----------
     test : HammerTest
         Records, one a hit.
-    handling : Handling
+    processing : Handling
         What the user says of the window.
     warnings : list of str
         What was found is added to it.
@@ -343,11 +348,11 @@ def stated(test: HammerTest, handling: Handling, warnings: list[str]) -> HammerT
     InputError
         If the file states another window.
     """
-    if handling.decay and test.decay:
-        _check_decay(test.source, test.decay, handling.decay)
-    elif handling.decay:
-        test, said = state_window(test, decay=handling.decay, on=handling.window_on)
-        warnings += said
+    if processing.decay and test.decay:
+        _check_decay(test.source, test.decay, processing.decay)
+    elif processing.decay:
+        test, statement = state_window(test, decay=processing.decay, on=processing.window_on)
+        warnings += statement
     else:
         warnings += on_window(test)
     return test
@@ -371,11 +376,11 @@ def numbered(tests: Sequence[tuple[HitVerdict, ...]]) -> list[tuple[HitVerdict, 
     return answer
 
 
-def _estimated(judged: Sequence[Judged], handling: Handling) -> FrfSet:
-    windows = Windows(decay=handling.window) if handling.window else None
+def _estimated(judged: Sequence[Judged], processing: ProcessingOptions) -> FrfSet:
+    windows = Windows(decay=processing.window) if processing.window else None
     return together(
         [
-            estimate_frfs(j.test, estimator=handling.estimator, verdicts=j.verdicts, windows=windows)
+            estimate_frfs(j.test, estimator=processing.estimator, verdicts=j.verdicts, windows=windows)
             for j in [j for j in judged if any(v.used for v in j.verdicts)] or judged[:1]
         ]
     )

@@ -61,11 +61,11 @@ def _check(first: FrfSet, other: FrfSet) -> None:
     if not same or other.form != first.form or other.decay != first.decay:
         raise InputError(
             f"{first.source}: the hits were recorded with different rates, lengths, quantities or windows "
-            f"({_told(first, durations[0])}; {_told(other, durations[1])}); process them as separate tests"
+            f"({_stated(first, durations[0])}; {_stated(other, durations[1])}); process them as separate tests"
         )
 
 
-def _told(one: FrfSet, duration: float) -> str:
+def _stated(one: FrfSet, duration: float) -> str:
     window = f", window of {one.decay:g} 1/s" if one.decay else ""
     points = list(dict.fromkeys(map(str, one.references)))
     where = ", ".join(points[:3]) + (", ..." if len(points) > 3 else "")

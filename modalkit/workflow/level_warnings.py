@@ -48,9 +48,9 @@ def with_level_warning(
     named = ", ".join(
         f"{model.modal.frequency[i]:.5g} Hz by {change[i]:+.2g} %" for i in np.flatnonzero(sure)
     )
-    said = (
+    statement = (
         f"frequencies follow the force of the hits, from {found.weakest:.3g} to {found.strongest:.3g} N: {named}. A "
         "joint that slips or closes does that, and one mode at two levels may pass for two; hit all points equally "
         "hard, and take modes that lie close together with unlike shapes with care"
     )
-    return replace(model, warnings=(*model.warnings, said))
+    return replace(model, warnings=(*model.warnings, statement))

@@ -15,7 +15,7 @@ HitName = tuple[str, int]
 
 
 @dataclass(frozen=True)
-class Handling:
+class ProcessingOptions:
     """How files become FRFs.
 
     Parameters

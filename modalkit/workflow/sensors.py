@@ -43,8 +43,8 @@ def without_sensors(frfs: FrfSet, masses: Sequence[tuple[str, float]], warnings:
             raise InputError(f"{frfs.source}: the mass of the sensor at {name} is given twice; give it once")
         given[dof] = mass
     result = remove_sensor_mass(frfs, mass=dict.fromkeys(there, 0.0) | given)
-    told = ", ".join(f"{1e3 * mass:g} g at {dof}" for dof, mass in given.items())
-    warnings.append(Consequential(f"the mass of the accelerometers was taken out of the FRFs: {told}"))
+    stated = ", ".join(f"{1e3 * mass:g} g at {dof}" for dof, mass in given.items())
+    warnings.append(Consequential(f"the mass of the accelerometers was taken out of the FRFs: {stated}"))
     return result
 
 

@@ -131,16 +131,16 @@ def _hits(session: Session) -> tuple[Judged, Processed, ModalModel] | None:
     processed, identified = session.processed, session.identified
     if processed is None or identified is None or len(processed.judged) != 1:
         return None
-    if processed.content.frfs is not None or processed.handling.sensor_masses:
+    if processed.content.frfs is not None or processed.processing.sensor_masses:
         return None
     return processed.judged[0], processed, identified
 
 
 def _drawn(judged: Judged, processed: Processed, rng: np.random.Generator, n: int) -> Iterator[FrfSet]:
-    handling = processed.handling
-    windows = Windows(decay=handling.window) if handling.window else None
+    processing = processed.processing
+    windows = Windows(decay=processing.window) if processing.window else None
     return bootstrap_frfs(
-        judged.test, rng=rng, n=n, estimator=handling.estimator, verdicts=judged.verdicts, windows=windows
+        judged.test, rng=rng, n=n, estimator=processing.estimator, verdicts=judged.verdicts, windows=windows
     )
 
 
@@ -149,12 +149,12 @@ def _frequencies(session: Session, rng: np.random.Generator, n: int) -> FloatArr
     if found is None:
         return None
     judged, processed, identified = found
-    handling = processed.handling
-    windows = Windows(decay=handling.window) if handling.window else None
+    processing = processed.processing
+    windows = Windows(decay=processing.window) if processing.window else None
     try:
         return redrawn_frequencies(
             identified, judged.test, rng=rng, n=n,
-            estimator=handling.estimator, verdicts=judged.verdicts, windows=windows,
+            estimator=processing.estimator, verdicts=judged.verdicts, windows=windows,
         )  # fmt: skip
     except EstimationError as error:
         raise EstimationError(f"--bootstrap: {error}") from error

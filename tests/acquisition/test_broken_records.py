@@ -18,7 +18,7 @@ from acquisition import (
     modal_system,
 )
 from acquisition.hits.checks import dead_from
-from acquisition.hits.splitting import looks_long
+from acquisition.hits.splitting import holds_several_hits
 
 SYSTEM = modal_system(
     frequency=np.array([60.0, 140.0, 300.0]),
@@ -122,7 +122,7 @@ def test_records_of_a_few_samples_are_too_short(rng, samples):
         ),
     )
     verdicts = judge_hits(short)
-    assert not looks_long(short) and not any(v.used for v in verdicts)
+    assert not holds_several_hits(short) and not any(v.used for v in verdicts)
     with pytest.raises(EstimationError, match=r"no usable hit.*6 of 6 refused for: too short"):
         estimate_frfs(short, verdicts=verdicts)
 

@@ -382,11 +382,11 @@ LVM_DAMAGE = [
 ]
 
 
-@pytest.mark.parametrize(("text", "said"), LVM_DAMAGE)
-def test_a_damaged_lvm_file_is_refused(tmp_path, text, said):
+@pytest.mark.parametrize(("text", "words"), LVM_DAMAGE)
+def test_a_damaged_lvm_file_is_refused(tmp_path, text, words):
     (tmp_path / "a.lvm").write_text(text)
     columns = [{"name": "force", "quantity": "force"}, {"name": "acc", "quantity": "acceleration"}]
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=words):
         read_columns(tmp_path / "a.lvm", layout_from({"column": columns}))
 
 

@@ -18,10 +18,10 @@ def test_latin_1_is_named_with_its_line_and_what_to_type(tmp_path: Path, read, e
     path.write_bytes(STUDY.encode("latin-1"))
     with pytest.raises(error) as raised:
         read(path)
-    said = str(raised.value)
-    assert "line 3 holds 'ü' in another encoding, probably Latin-1" in said
-    assert "iconv -f WINDOWS-1252 -t UTF-8 study.toml > study_utf8.toml" in said
-    assert "binary" not in said
+    message = str(raised.value)
+    assert "line 3 holds 'ü' in another encoding, probably Latin-1" in message
+    assert "iconv -f WINDOWS-1252 -t UTF-8 study.toml > study_utf8.toml" in message
+    assert "binary" not in message
 
 
 def test_utf_16_is_named(tmp_path: Path) -> None:

@@ -128,10 +128,10 @@ def test_verdicts_of_two_runs_at_one_point_do_not_mix():
     """A degree of freedom that was hit in two runs has two verdicts on its first hit."""
     (hits,) = noisy(2).points
     runs = replace(noisy(2), points=(hits, replace(hits, motion=2 * hits.motion)))
-    told = [verdict(n, n > 1) for n in range(1, 6)] + [verdict(n, True) for n in range(1, 6)]
-    frfs = estimate_frfs(runs, verdicts=told)
+    known = [verdict(n, n > 1) for n in range(1, 6)] + [verdict(n, True) for n in range(1, 6)]
+    frfs = estimate_frfs(runs, verdicts=known)
     assert frfs.averages.tolist() == [4, 4, 5, 5]
-    assert estimate_frfs(runs, verdicts=told[:1]).averages.tolist() == [4, 4, 5, 5]
+    assert estimate_frfs(runs, verdicts=known[:1]).averages.tolist() == [4, 4, 5, 5]
     assert estimate_frfs(runs, verdicts=[verdict(6, False)]).averages.tolist() == [5, 5, 4, 4]
 
 

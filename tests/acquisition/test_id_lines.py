@@ -18,9 +18,9 @@ from acquisition.uff.functions.id_lines import averages_of, decay_of
     ],
 )
 def test_a_misspelt_window_is_named_with_what_is_read(text: str) -> None:
-    decay, said = decay_of([text])
+    decay, message = decay_of([text])
     assert decay == 0.0
-    assert "not taken" in said and "'exponential window decay 8'" in said
+    assert "not taken" in message and "'exponential window decay 8'" in message
 
 
 def test_misspelt_averages_are_named_with_what_is_read() -> None:

@@ -167,7 +167,7 @@ def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("frequency,sigmo\n10.5,0.1\n", "column 'sigmo' is none known here, is 'sigma' meant"),
         ("frequency,sigma,x+Z\n10.5,0.1,1\n", "column 'x\\+Z' is none known"),
@@ -182,9 +182,9 @@ def test_what_is_wrong_with_points_and_ratios_is_said(tmp_path, text, word):
         ),
     ],
 )
-def test_a_damaged_table_of_modes_is_refused_in_one_line(tmp_path, text, said):
+def test_a_damaged_table_of_modes_is_refused_in_one_line(tmp_path, text, message):
     (tmp_path / "modes.csv").write_text(text)
-    with pytest.raises(InputError, match=said) as error:
+    with pytest.raises(InputError, match=message) as error:
         read_modes(tmp_path / "modes.csv")
     assert "\n" not in str(error.value)
 
@@ -195,9 +195,9 @@ def test_an_unknown_column_is_named_and_can_be_passed_over(tmp_path: Path) -> No
     path.write_text("frequency,sigma,temperature\n10.5,0.1,21.5\n")
     with pytest.raises(InputError) as refused:
         read_modes(path)
-    said = str(refused.value)
-    assert "'temperature'" in said and "damping_sigma" in said and "scaled" in said
-    assert "write 'note temperature' or delete it" in said
+    message = str(refused.value)
+    assert "'temperature'" in message and "damping_sigma" in message and "scaled" in message
+    assert "write 'note temperature' or delete it" in message
     path.write_text("frequency,sigma,note temperature,Note humidity [%]\n10.5,0.1,21.5,60\n")
     assert read_modes(path).frequency.tolist() == [10.5]
 

@@ -121,9 +121,9 @@ def test_a_hit_beside_the_point_is_an_outlier(rng):
 
 def test_undecayed_response_is_said_and_not_refused(rng):
     plan = HammerPlan(samples=1024)
-    told = judge_hits(hammer_test(SYSTEM, plan, rng=rng))
+    stated = judge_hits(hammer_test(SYSTEM, plan, rng=rng))
     windowed = judge_hits(hammer_test(SYSTEM, replace(plan, decay=20.0), rng=rng))
-    assert all(v.used and any("left at the end" in r for r in v.reasons) for v in told)
+    assert all(v.used and any("left at the end" in r for r in v.reasons) for v in stated)
     assert all(v.used and v.reasons == () for v in windowed)
 
 

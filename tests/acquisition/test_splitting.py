@@ -9,7 +9,7 @@ import pytest
 import scipy.signal
 
 from acquisition import Dof, HammerPlan, HammerTest, Hits, InputError, hammer_test, judge_hits, modal_system
-from acquisition.hits.splitting import looks_long, propose_trigger, split_hits
+from acquisition.hits.splitting import holds_several_hits, propose_trigger, split_hits
 
 RATE = 4096.0
 SYSTEM = modal_system(
@@ -43,7 +43,7 @@ TIMES = (1.0, 3.2, 5.1, 7.6, 9.9, 12.0)
 @pytest.mark.parametrize("offset", [0.0, -8.0])
 def test_every_hit_gets_a_record_with_its_own_samples(rng, offset):
     test, _ = long_test(rng, TIMES, offset=offset)
-    assert looks_long(test)
+    assert holds_several_hits(test)
     cut, messages = split_hits(test)
     (point,) = cut.points
     assert point.count == 6 and cut.samples < 1.9 * RATE and cut.samples > 1.8 * RATE
@@ -57,7 +57,7 @@ def test_every_hit_gets_a_record_with_its_own_samples(rng, offset):
         np.testing.assert_array_equal(
             point.motion[k], test.points[0].motion[0, :, start : start + cut.samples]
         )
-    assert not looks_long(cut)
+    assert not holds_several_hits(cut)
     assert all(v.used for v in judge_hits(cut))
 
 
@@ -73,11 +73,11 @@ def test_a_bounce_stays_one_hit_and_is_found_as_double(rng):
 def test_hits_too_close_to_each_other_or_to_the_end_are_said(rng):
     test, _ = long_test(rng, (1.0, 3.2, 3.7, 6.0, 8.0, 10.0, 13.5))
     cut, messages = split_hits(test)
-    told = "\n".join(messages[1:])
+    stated = "\n".join(messages[1:])
     assert cut.points[0].count == 4 and len(messages) == 4
-    assert "3.2 s was left out: the next hit follows after 0.5 s" in told
-    assert "3.7 s was left out: the hit 0.5 s before it still rings" in told
-    assert "13.5 s is too close to the end" in told
+    assert "3.2 s was left out: the next hit follows after 0.5 s" in stated
+    assert "3.7 s was left out: the hit 0.5 s before it still rings" in stated
+    assert "13.5 s is too close to the end" in stated
 
 
 def test_given_trigger_pre_and_duration_are_taken(rng):
@@ -98,10 +98,10 @@ def test_a_proposed_trigger_lies_between_noise_and_peaks(rng):
 def test_ordinary_records_are_not_long_even_with_a_late_double(rng):
     plan = HammerPlan(rate=RATE, samples=8192, hits=5, bad={(0, 2): "double"})
     test = hammer_test(SYSTEM, plan, rng=rng)
-    assert not looks_long(test)
+    assert not holds_several_hits(test)
     force = np.array(test.points[0].force)
     force[1] += 0.5 * np.roll(force[1], int(0.8 * RATE))
-    assert not looks_long(replace(test, points=(replace(test.points[0], force=force),)))
+    assert not holds_several_hits(replace(test, points=(replace(test.points[0], force=force),)))
 
 
 def test_what_cannot_be_split_says_why(rng):
@@ -158,7 +158,7 @@ def test_the_ringing_of_a_sharp_filter_is_not_several_hits(rng, kind, order, sam
                 top = int(wave.argmax())
                 tops, _ = scipy.signal.find_peaks(wave[top + 1 :])
                 highest = max(highest, float(wave[top + 1 :][tops].max() / wave[top]))
-            assert not looks_long(test)
+            assert not holds_several_hits(test)
             assert samples < 2048 or all(v.used for v in judge_hits(test))
     assert highest > 0.3  # so the lobes would count as hits of comparable force
 
@@ -182,7 +182,9 @@ def test_hits_through_a_sharp_filter_are_split_and_a_double_hit_is_found(rng, ki
         ),
     )
     test = through(row, kind, 8, 1 / 2.56)
-    assert looks_long(test) and split_hits(test)[0].points[0].count == 3  # the last ends with the record
+    assert (
+        holds_several_hits(test) and split_hits(test)[0].points[0].count == 3
+    )  # the last ends with the record
     late = int(0.05 * once.rate)
     double = replace(
         once,
@@ -197,7 +199,7 @@ def test_hits_through_a_sharp_filter_are_split_and_a_double_hit_is_found(rng, ki
     )
     test = through(double, kind, 8, 1 / 2.56)
     (verdict,) = judge_hits(test)
-    assert not looks_long(test) and "double hit: 4" in verdict.reasons[0]
+    assert not holds_several_hits(test) and "double hit: 4" in verdict.reasons[0]
 
 
 def test_records_that_are_all_double_hits_are_not_long(rng):
@@ -205,4 +207,4 @@ def test_records_that_are_all_double_hits_are_not_long(rng):
     test = hammer_test(SYSTEM, HammerPlan(rate=RATE, samples=8192, hits=4, bad=every), rng=rng)
     point = test.points[0]
     force = point.force + 0.4 * np.roll(point.force, 200, axis=-1)
-    assert not looks_long(replace(test, points=(replace(point, force=force),)))
+    assert not holds_several_hits(replace(test, points=(replace(point, force=force),)))

@@ -188,5 +188,5 @@ def test_a_sign_that_became_a_line_end_is_warned_of(tmp_path, rng, end, note):
     place = text.index(" -", text.index("NONE                 NONE", first) + 60)
     place = text.index(" -", place + 50)
     path.write_bytes((text[:place] + f" {end}" + text[place + 2 :]).encode())
-    said = [d.message for d in read_uff(path).datasets if d.message]
-    assert any(note in message for message in said)
+    words = [d.message for d in read_uff(path).datasets if d.message]
+    assert any(note in message for message in words)

@@ -140,8 +140,8 @@ def test_fault_of_one_header_costs_its_hit(tmp_path, good, name):
     assert same_numbers(content, test, (0, 2))
     (bad,) = [info for info in content.datasets if not info.ok]
     assert word in bad.message
-    (told,) = [w for w in content.warnings if bad.message in w]
-    assert told.startswith(f"broken.uff, data set 58 at line {bad.line}: ") and "\n" not in told
+    (stated,) = [w for w in content.warnings if bad.message in w]
+    assert stated.startswith(f"broken.uff, data set 58 at line {bad.line}: ") and "\n" not in stated
     lines = text.split(b"\n")
     assert lines[bad.line - 1].strip() == b"-1" and b"hit 2 at 1+Z: force" in lines[bad.line + 1]
 

@@ -379,8 +379,8 @@ def test_broken_data_set_is_reported_once(tmp_path, reread, rng):
     data = (tmp_path / "a.uff").read_bytes()
     content = reread(data.replace(b"        41         1", b"       410         1", 1))
     (info,) = [d for d in content.datasets if not d.ok]
-    (told,) = [w for w in content.warnings if str(info.line) in w]
-    assert "it is left out and hit 1 at 1+Z with it" in told
+    (given,) = [w for w in content.warnings if str(info.line) in w]
+    assert "it is left out and hit 1 at 1+Z with it" in given
 
 
 def chained(count: int, first: int = 0) -> bytes:

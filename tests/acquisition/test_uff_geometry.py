@@ -273,8 +273,8 @@ def test_complex_modes_of_2414(tmp_path):
 
 def test_one_mode_that_tells_decides_for_its_file(tmp_path):
     silent = mode55((-0.25, 40.0, 0, 0, 0, 0))
-    told = mode55((-0.5, 100.0, 0, 0, 0, 0), "FR=100.0:d=0.5")
-    content = read(tmp_path / "a.uff", silent, told)
+    stated = mode55((-0.5, 100.0, 0, 0, 0, 0), "FR=100.0:d=0.5")
+    content = read(tmp_path / "a.uff", silent, stated)
     assert content.modal is not None and np.allclose(content.modal.frequency, [40, 100], rtol=1e-4)
     assert not any("taken for" in w for w in content.warnings)
 

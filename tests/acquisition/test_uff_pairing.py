@@ -176,6 +176,6 @@ def test_single_precision_stays_and_double_stays(tmp_path):
 
 def test_progress_rises_to_one(tmp_path):
     write_uff(tmp_path / "a.uff", tests=some_test(40))
-    told: list[float] = []
-    read_uff(tmp_path / "a.uff", progress=told.append)
-    assert told == sorted(told) and told[-1] == 1.0 and len(told) > 10 and told[0] < 0.1
+    stated: list[float] = []
+    read_uff(tmp_path / "a.uff", progress=stated.append)
+    assert stated == sorted(stated) and stated[-1] == 1.0 and len(stated) > 10 and stated[0] < 0.1

@@ -187,8 +187,8 @@ def test_units_of_ratios(label, expected):
     ("code", "metre", "newton"), [(1, 1.0, 1.0), (5, 1e3, 1e3), (7, 39.37007874015748, 0.22480894309971)]
 )
 def test_unit_systems_by_code_alone(code, metre, newton):
-    units, remark = units_of(code, 0.0, 0.0)
-    assert (units.length, units.force) == (pytest.approx(metre), pytest.approx(newton)) and remark
+    units, note = units_of(code, 0.0, 0.0)
+    assert (units.length, units.force) == (pytest.approx(metre), pytest.approx(newton)) and note
 
 
 def test_acceleration_in_g_whatever_data_set_164_says():

@@ -83,8 +83,8 @@ def test_a_decision_meets_one_hit_of_one_run():
 def test_verdicts_on_some_hits_find_them_by_number():
     test = runs()
     some = [v for v in judge_hits(test) if v.hit in (7, 12)]
-    told = verdicts_of(test, some)
-    assert [[None if v is None else v.hit for v in run] for run in told] == [
+    stated = verdicts_of(test, some)
+    assert [[None if v is None else v.hit for v in run] for run in stated] == [
         [None] * 3,
         [None, None, None, 7, None],
         [None, None, None, 12, None],
@@ -125,12 +125,12 @@ def test_two_hits_that_disagree_are_both_noted():
 
 def test_two_hits_that_agree_are_not():
     """Random chains with noise of up to 1 % of the peak."""
-    said = []
+    message = []
     for seed in range(60):
         rng = np.random.default_rng(seed)
         test, _ = hit_cases.several(rng, hit_cases.setting(rng), None, hits=2)
-        said += [r for v in judge_hits(test) for r in v.reasons if "disagree" in r]
-    assert said == []
+        message += [r for v in judge_hits(test) for r in v.reasons if "disagree" in r]
+    assert message == []
 
 
 def test_the_force_range_is_that_of_the_used_hits():

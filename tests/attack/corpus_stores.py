@@ -11,7 +11,7 @@ import undetectable
 from family import Case, Family, written
 
 from modalkit.batch import run as batch_run
-from modalkit.blind import Plan, check_store
+from modalkit.blind import DrawRanges, check_store
 from modalkit.blind import store as store_module
 from modalkit.blind.answer import read_answer
 from modalkit.blind.outcome import Outcome
@@ -94,7 +94,7 @@ def _blind_store() -> bytes:
     """Return the store of a blind run of two trials and one that was never opened."""
 
     def write(path: Path) -> None:
-        with Store(path, seed=5, plan=Plan(kinds=("beam",))) as store:
+        with Store(path, seed=5, plan=DrawRanges(kinds=("beam",))) as store:
             for index in range(3):
                 truth = Truth(
                     "beam", ("E",), {"E.factor": 0.98}, (("E",),), True, (), 1.0, "clear", 5.0, (0.3,), (), False, True,

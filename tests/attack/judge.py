@@ -96,8 +96,8 @@ class Judge:
                 warnings.simplefilter("error")
                 found = self.family.reading(path)
         except ModalkitError as error:
-            said = str(error)
-            return ("long" if "\n" in said.strip() else "refused"), said
+            text = str(error)
+            return ("long" if "\n" in text.strip() else "refused"), text
         except Hang:
             return "hang", ""
         except MemoryError:

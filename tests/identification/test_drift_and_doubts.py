@@ -39,9 +39,9 @@ def test_a_drift_over_the_test_invents_no_mode(drift):
     assert any("differ from FRF to FRF" in w for w in model.warnings)
 
 
-@pytest.mark.parametrize("apart", [1.003, 1.005, 1.01])
-def test_two_modes_remain_two(apart):
-    truth = structure((70.0, 150.0, 150.0 * apart, 260.0), (0.004, 0.003, 0.003, 0.002), 13, seed=5)
+@pytest.mark.parametrize("separation", [1.003, 1.005, 1.01])
+def test_two_modes_remain_two(separation):
+    truth = structure((70.0, 150.0, 150.0 * separation, 260.0), (0.004, 0.003, 0.003, 0.002), 13, seed=5)
     frfs = truth.frfs(lines(df=0.25, high=350.0), column(13), noise=0.005, rng=np.random.default_rng(1))
     model = identify(frfs, band=(20.0, 340.0))
     assert len(model) == 4, model.table()

@@ -49,11 +49,11 @@ def test_lost_coherence_is_laid_to_its_mode() -> None:
     coherence = mode_coherence(found)
     assert coherence is not None
     assert coherence[0] > 0.98
-    said = " ".join(frf_health(found))
+    message = " ".join(frf_health(found))
     poor = np.flatnonzero(coherence < 0.9)
     assert len(poor)
     assert np.all(found.modal.frequency[poor] > 150)
-    assert f"mode(s) {', '.join(str(i + 1) for i in poor)}" in said
+    assert f"mode(s) {', '.join(str(i + 1) for i in poor)}" in message
 
 
 def test_without_coherence_nothing_is_said_of_it() -> None:
@@ -63,15 +63,15 @@ def test_without_coherence_nothing_is_said_of_it() -> None:
     assert frf_health(bare) == ()
 
 
-@pytest.mark.parametrize(("refused", "told"), [(1, False), (3, True)])
-def test_many_refused_hits_are_said_with_the_usual_reason(refused: int, told: bool) -> None:
+@pytest.mark.parametrize(("refused", "stated"), [(1, False), (3, True)])
+def test_many_refused_hits_are_said_with_the_usual_reason(refused: int, stated: bool) -> None:
     hits = [verdict(i + 1, "second hit" if i < refused else "") for i in range(6)]
-    said = frf_health(model(), hits)
-    assert bool(said) is told
-    assert all("second hit" in s and f"{refused} of 6" in s for s in said)
+    message = frf_health(model(), hits)
+    assert bool(message) is stated
+    assert all("second hit" in s and f"{refused} of 6" in s for s in message)
 
 
 def test_a_window_heavier_than_the_damping_is_said() -> None:
-    (said,) = frf_health(model(damping=0.004, windows=Windows(decay=60.0)))
-    assert "mode 1 has left" in said
+    (message,) = frf_health(model(damping=0.004, windows=Windows(decay=60.0)))
+    assert "mode 1 has left" in message
     assert frf_health(model(damping=0.02, windows=Windows(decay=1.0))) == ()

@@ -81,8 +81,8 @@ def test_drift_between_points_splits_no_mode_and_is_in_the_sigma(drift: float) -
     for seed in range(8):
         model = identify(roving(seed, drift))
         assert len(model) == len(HERTZ), (seed, model.table())
-        said = any("differ from FRF to FRF" in w for w in model.warnings)
-        assert said or drift == 0.0
+        message = any("differ from FRF to FRF" in w for w in model.warnings)
+        assert message or drift == 0.0
         frequency.append((model.modal.frequency - HERTZ) / model.modal.frequency_sigma)
         damping.append(model.modal.damping / ZETA - 1.0)
     assert np.sqrt(np.mean(np.square(frequency))) < 1.6  # all modes of a test err together: 8 values

@@ -72,45 +72,45 @@ def struck(
 def found(test: HammerTest, windows: Windows | None = None) -> LevelDependence:
     model = identify(estimate_frfs(test, windows=windows), band=BAND)
     assert len(model) == 4
-    told = level_dependence(model, [(test, ())], windows=windows)
-    assert told is not None
-    return told
+    dependence = level_dependence(model, [(test, ())], windows=windows)
+    assert dependence is not None
+    return dependence
 
 
 @pytest.mark.parametrize("windows", [None, Windows(decay=3.0)])
 def test_slopes_come_out_per_mode(windows: Windows | None) -> None:
     at = structure(SLOPES)
     test, true = struck(at, 3)
-    told = found(test, windows)
+    dependence = found(test, windows)
     # levels are the peaks of the records, which the filter before the converter changes by some per cent
-    scale = np.sum(told.levels * true) / np.sum(true**2)
+    scale = np.sum(dependence.levels * true) / np.sum(true**2)
     assert 0.9 < scale < 1.05
-    off = (told.slope - SLOPES / scale) / told.slope_sigma
+    off = (dependence.slope - SLOPES / scale) / dependence.slope_sigma
     assert np.abs(off).max() < 4
-    assert np.abs(SLOPES[[0, 1]] / told.slope_sigma[[0, 1]]).min() > 5, (
+    assert np.abs(SLOPES[[0, 1]] / dependence.slope_sigma[[0, 1]]).min() > 5, (
         "the test is too poor to mean anything"
     )
-    assert told.weakest < told.level < told.strongest
-    assert told.shifts.shape == (16, 4)
+    assert dependence.weakest < dependence.level < dependence.strongest
+    assert dependence.shifts.shape == (16, 4)
 
 
 def test_the_shift_of_a_hit_is_that_of_its_frequency() -> None:
     quiet = replace(PLAN, response_noise=1e-4, force_noise=0.0, adc_bits=None, samples=2048)
     test, true = struck(structure(SLOPES), 1, quiet)
-    told = found(test)
+    dependence = found(test)
     model = identify(estimate_frfs(test), band=BAND)
     exact = np.log(FREQUENCY) + SLOPES * true[:, None] - np.log(model.modal.frequency)
     assert np.abs(exact).max() > 10 * 2e-4
-    assert told.shifts == pytest.approx(exact, abs=2e-4)  # a fiftieth of a half-width
+    assert dependence.shifts == pytest.approx(exact, abs=2e-4)  # a fiftieth of a half-width
 
 
 def test_damping_has_a_slope_too() -> None:
     test, true = struck(structure(0.0, damping_slope=4e-5), 2)
-    told = found(test)
-    scale = np.sum(told.levels * true) / np.sum(true**2)
-    off = (told.damping_slope - 4e-5 / scale) / told.damping_slope_sigma
+    dependence = found(test)
+    scale = np.sum(dependence.levels * true) / np.sum(true**2)
+    off = (dependence.damping_slope - 4e-5 / scale) / dependence.damping_slope_sigma
     assert np.abs(off).max() < 4
-    assert (4e-5 / told.damping_slope_sigma).max() > 5
+    assert (4e-5 / dependence.damping_slope_sigma).max() > 5
 
 
 @pytest.mark.parametrize(("slope", "seeds"), [(0.0, 30), (-2e-5, 12)])
@@ -118,9 +118,9 @@ def test_intervals_cover(slope: float, seeds: int) -> None:
     scores = []
     for seed in range(seeds):
         test, true = struck(structure(slope, points=3), 100 + seed)
-        told = found(test)
-        scale = np.sum(told.levels * true) / np.sum(true**2)
-        scores.append((told.slope - slope / scale) / told.slope_sigma)
+        dependence = found(test)
+        scale = np.sum(dependence.levels * true) / np.sum(true**2)
+        scores.append((dependence.slope - slope / scale) / dependence.slope_sigma)
     inside = np.mean(np.abs(scores) < 1.96)
     count = 4 * seeds
     assert inside > 0.95 - 3.5 * np.sqrt(0.95 * 0.05 / count)
@@ -136,11 +136,11 @@ def test_drift_from_point_to_point_is_no_slope() -> None:
         test, _ = struck(at, 20 + i, replace(PLAN, peak=40.0 * (1 + i)))
         runs.append(replace(test, points=test.points[i : i + 1]))
     joined = replace(runs[0], points=tuple(r.points[0] for r in runs))
-    told = found(joined)
-    naive = np.polyfit(told.levels, told.shifts[:, 1], 1)[0]
+    dependence = found(joined)
+    naive = np.polyfit(dependence.levels, dependence.shifts[:, 1], 1)[0]
     assert naive > 5e-6
-    assert np.abs(told.slope / told.slope_sigma).max() < 4
-    assert told.slope_sigma[1] < naive
+    assert np.abs(dependence.slope / dependence.slope_sigma).max() < 4
+    assert dependence.slope_sigma[1] < naive
 
 
 def test_refused_hits_do_not_count() -> None:
@@ -149,9 +149,9 @@ def test_refused_hits_do_not_count() -> None:
     refused = sum(not v.used for v in verdicts)
     assert refused >= 2
     model = identify(estimate_frfs(test, verdicts=verdicts), band=BAND)
-    told = level_dependence(model, [(test, verdicts)])
-    assert told is not None
-    assert len(told.levels) == 16 - refused
+    dependence = level_dependence(model, [(test, verdicts)])
+    assert dependence is not None
+    assert len(dependence.levels) == 16 - refused
 
 
 @pytest.mark.parametrize(
@@ -172,8 +172,8 @@ def test_the_level_is_the_one_that_averages_stand_for() -> None:
         structure(-5e-5, points=1), 6, replace(PLAN, hits=12, response_noise=1e-4, level_scatter=0.5)
     )
     model = identify(estimate_frfs(test), band=BAND)
-    told = level_dependence(model, [(test, ())])
-    assert told is not None
-    stands_for = np.log(model.modal.frequency / FREQUENCY) / -5e-5 * np.mean(told.levels / true)
-    assert np.median(stands_for) == pytest.approx(told.level, rel=0.1)
-    assert told.level > 1.1 * told.levels.mean()
+    dependence = level_dependence(model, [(test, ())])
+    assert dependence is not None
+    stands_for = np.log(model.modal.frequency / FREQUENCY) / -5e-5 * np.mean(dependence.levels / true)
+    assert np.median(stands_for) == pytest.approx(dependence.level, rel=0.1)
+    assert dependence.level > 1.1 * dependence.levels.mean()

@@ -170,16 +170,16 @@ def test_neither_units_nor_order_nor_signs_change_the_scale(order, unit, referen
 def test_the_covariance_of_scaled_shapes_is_what_scatter_shows(truth, rng, references):
     pairs = columns_of(*references)
     clean, sigma = constants_of(truth, pairs), 0.003
-    found, said = [], []
+    found, message = [], []
     for _ in range(500):
         dirt = sigma * (rng.standard_normal(clean.shape) + 1j * rng.standard_normal(clean.shape))
         shapes = mode_shapes(frfs_of(truth, pairs), clean + dirt, np.full(clean.shape, sigma))
         sign = np.sign(np.sum(shapes.shapes.real * truth.shapes, axis=0))
         found.append(shapes.shapes.real * sign - truth.shapes)
-        said.append([shapes.covariance(r) for r in range(3)])
+        message.append([shapes.covariance(r) for r in range(3)])
         np.testing.assert_allclose(np.sqrt(np.diag(shapes.covariance(1))), shapes.sigma[:, 1], rtol=1e-9)
     for r in range(3):
-        seen, wanted = np.cov(np.array(found)[:, :, r].T), np.mean(said, axis=0)[r]
+        seen, wanted = np.cov(np.array(found)[:, :, r].T), np.mean(message, axis=0)[r]
         size = np.sqrt(np.diag(wanted))
         np.testing.assert_allclose(seen / np.outer(size, size), wanted / np.outer(size, size), atol=0.2)
 

@@ -14,9 +14,9 @@ from identification.fit.poly_reference import sorted_frfs
 REFERENCES = (4, 9, 17)
 
 
-def close_pair(apart: float, seed: int, n_points: int = 25):
-    """Return the benchmark structure, its pair ``apart`` (relative) from one another."""
-    hertz = tuple(402.0 * (1 + apart) if f == 405.5 else f for f in BENCH_HZ)
+def close_pair(separation: float, seed: int, n_points: int = 25):
+    """Return the benchmark structure, its pair ``separation`` (relative) from one another."""
+    hertz = tuple(402.0 * (1 + separation) if f == 405.5 else f for f in BENCH_HZ)
     return structure(hertz + ABOVE_HZ, BENCH_DAMPING + ABOVE_DAMPING, n_points, seed)
 
 

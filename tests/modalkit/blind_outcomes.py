@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from modalkit.blind import BlindResult, Outcome, Plan, Truth, seal
+from modalkit.blind import BlindResult, DrawRanges, Outcome, Truth, seal
 from modalkit.blind.answer import read_answer
 from modalkit.blind.shrunk import Shrinkage
 
@@ -82,15 +82,15 @@ def truth(*effects: str, visibility: float = 10.0, **more: Any) -> Truth:
 
 
 def outcome(
-    index: int, hidden: Truth, said: dict[str, Any] | None, shrinkage: Shrinkage | None = None
+    index: int, hidden: Truth, message: dict[str, Any] | None, shrinkage: Shrinkage | None = None
 ) -> Outcome:
     """Return an opened trial; None is a diagnosis that failed."""
     return Outcome(
         index=index,
         truth=hidden,
-        answer=None if said is None else read_answer(said),
-        document=said,
-        failure="EstimationError: broken" if said is None else None,
+        answer=None if message is None else read_answer(message),
+        document=message,
+        failure="EstimationError: broken" if message is None else None,
         sealed=seal(hidden.to_json()),
         seconds=0.1,
         shrinkage=shrinkage,
@@ -99,7 +99,7 @@ def outcome(
 
 def run_of(*pairs: tuple[Truth, dict[str, Any] | None], seed: int = 7) -> BlindResult:
     """Return a run of trials."""
-    return BlindResult(seed, Plan(), tuple(outcome(i, *pair) for i, pair in enumerate(pairs)))
+    return BlindResult(seed, DrawRanges(), tuple(outcome(i, *pair) for i, pair in enumerate(pairs)))
 
 
 NAMES = (
@@ -118,7 +118,7 @@ NAMES = (
 def honest_run(trials: int, seed: int, *, leave_out: bool = False) -> BlindResult:
     """Return a run whose probabilities are honest: the truth is drawn from the probabilities that are stated."""
     rng = np.random.default_rng(seed)
-    return BlindResult(seed, Plan(), tuple(_honest(i, rng, leave_out=leave_out) for i in range(trials)))
+    return BlindResult(seed, DrawRanges(), tuple(_honest(i, rng, leave_out=leave_out) for i in range(trials)))
 
 
 def _honest(index: int, rng: np.random.Generator, *, leave_out: bool) -> Outcome:
@@ -128,11 +128,11 @@ def _honest(index: int, rng: np.random.Generator, *, leave_out: bool) -> Outcome
     drawn = int(rng.choice(len(names), p=shares))
     rows = [(name,) for name in names]
     if kind == "none":
-        said = diagnosis("none", others=rows, shares=list(0.2 * shares), p_value=rng.random())
-        return outcome(index, truth(), said)
+        message = diagnosis("none", others=rows, shares=list(0.2 * shares), p_value=rng.random())
+        return outcome(index, truth(), message)
     if kind == "outside" or (leave_out and kind == "effect"):
         wrong = rng.random() < 0.3
-        said = diagnosis(
+        message = diagnosis(
             "named" if wrong else "unknown",
             *(rows[:1] if wrong else ()),
             others=rows[1:] if wrong else rows,
@@ -140,14 +140,14 @@ def _honest(index: int, rng: np.random.Generator, *, leave_out: bool) -> Outcome
             fit=0.02 * rng.random(),
         )
         hidden = truth(OUTSIDE[index % 2]) if kind == "outside" else truth(names[0], without=(names[0],))
-        return outcome(index, hidden, said)
+        return outcome(index, hidden, message)
     if kind == "pair":
         rows[drawn] = tuple(sorted((names[drawn], names[drawn - 1])))
     size = int(np.searchsorted(np.cumsum(shares), 0.95)) + 1
     x, true = 0.5 * rng.random(), float(np.exp(rng.normal()))
     error = 0.05 * rng.normal()
     value = true * (1 + error)
-    said = diagnosis(
+    message = diagnosis(
         "named" if size == 1 else "class",
         *rows[:size],
         others=rows[size:],
@@ -164,7 +164,7 @@ def _honest(index: int, rng: np.random.Generator, *, leave_out: bool) -> Outcome
     ))  # fmt: skip
     if kind != "pair":
         hidden = replace_parameters(hidden, {f"{names[drawn]}.size": true})
-    return outcome(index, hidden, said, Shrinkage("frequency", 5.0, 5.0 * np.sqrt(0.1), 5.0, 2.0))
+    return outcome(index, hidden, message, Shrinkage("frequency", 5.0, 5.0 * np.sqrt(0.1), 5.0, 2.0))
 
 
 def replace_parameters(hidden: Truth, parameters: dict[str, Any]) -> Truth:

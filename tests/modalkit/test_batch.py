@@ -136,9 +136,9 @@ def test_a_folder_in_tables_out(
     fleet, store = stored
     shutil.copy(store, tmp_path / f"table.{ending}.jsonl")
     assert modalkit(monkeypatch, "batch", fleet, "-o", table, "--json-dir", parts, "--resume") == 0
-    said = capsys.readouterr().out
-    assert "skipped: a_broken.toml: not a valid TOML file" in said
-    assert "skipped: misspelt.toml: unknown key test.file" in said
+    message = capsys.readouterr().out
+    assert "skipped: a_broken.toml: not a valid TOML file" in message
+    assert "skipped: misspelt.toml: unknown key test.file" in message
     read: Callable[[Path], pd.DataFrame] = pd.read_parquet if ending == "parquet" else pd.read_csv
     main = read(table).set_index("study")
     assert main.index.tolist() == NAMES[1:3]
@@ -248,10 +248,10 @@ def test_tables_are_written_all_or_none(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize(
-    ("name", "said"), [("table.xlsx", r"ends in \.csv or"), ("no/table.csv", "no such folder")]
+    ("name", "message"), [("table.xlsx", r"ends in \.csv or"), ("no/table.csv", "no such folder")]
 )
-def test_a_table_without_a_place_is_refused(tmp_path: Path, name: str, said: str) -> None:
-    with pytest.raises(InputError, match=said):
+def test_a_table_without_a_place_is_refused(tmp_path: Path, name: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         check_outputs(*table_places(tmp_path / name))
 
 

@@ -32,9 +32,9 @@ def test_malformed_diagnosis_is_refused(broken: dict[str, Any]) -> None:
 
 
 def test_rows_are_sorted_and_keep_their_own_parameters() -> None:
-    said = diagnosis("class", ("E",), ("density",), shares=[0.3, 0.6])
-    said["cause"]["ranking"][0]["parameters"] = {"E.factor": interval(1.2, 1.1, 1.3)}
-    answer = read_answer(said)
+    message = diagnosis("class", ("E",), ("density",), shares=[0.3, 0.6])
+    message["cause"]["ranking"][0]["parameters"] = {"E.factor": interval(1.2, 1.1, 1.3)}
+    answer = read_answer(message)
     assert [row.effects for row in answer.ranking] == [{"density"}, {"E"}]
     row = answer.row(["E"])
     assert row is not None and row.parameters["E.factor"].high == 1.3
@@ -60,7 +60,7 @@ def test_points_words_and_what_is_not_determined() -> None:
 
 
 def test_answer_goes_through_json_unchanged() -> None:
-    said = diagnosis(
+    message = diagnosis(
         "class",
         ("E",),
         ("polarity",),
@@ -69,7 +69,7 @@ def test_answer_goes_through_json_unchanged() -> None:
         closed=interval(90, 80, 99),
         channel="stiffness",
     )
-    first = read_answer(said).to_json()
+    first = read_answer(message).to_json()
     text = json.dumps(first, allow_nan=False)
     again = read_answer(json.loads(text))
     assert again.to_json() == first

@@ -15,22 +15,22 @@ from modalkit.blind.scoring.posterior import posterior
 
 
 def test_brier_and_log_score_by_hand() -> None:
-    said = diagnosis("class", ("E",), ("density",), others=[("length",)], shares=[0.6, 0.3, 0.05])
-    stated = posterior(read_answer(said), truth("density"))
+    message = diagnosis("class", ("E",), ("density",), others=[("length",)], shares=[0.6, 0.3, 0.05])
+    stated = posterior(read_answer(message), truth("density"))
     assert stated.brier == pytest.approx(0.6**2 + 0.7**2 + 0.05**2 + 0.05**2)
     assert stated.truth == pytest.approx(0.3)
-    forecasts = score(run_of((truth("density"), said))).forecasts
+    forecasts = score(run_of((truth("density"), message))).forecasts
     assert forecasts["log"].tolist() == pytest.approx([-np.log(0.3)])
 
 
 def test_smallest_set_that_holds_95_percent() -> None:
     shares = [0.6, 0.3, 0.06, 0.04]
     rows = [("E",), ("density",), ("length",), ("shear",)]
-    said = read_answer(diagnosis("class", *rows[:3], others=rows[3:], shares=shares))
-    assert posterior(said, truth("length")).credible() == (3, True)
-    assert posterior(said, truth("shear")).credible() == (3, False)
-    assert posterior(said, truth("shear")).credible(0.99) == (4, True)
-    assert posterior(said, truth("E")).credible(0.5) == (1, True)
+    message = read_answer(diagnosis("class", *rows[:3], others=rows[3:], shares=shares))
+    assert posterior(message, truth("length")).credible() == (3, True)
+    assert posterior(message, truth("shear")).credible() == (3, False)
+    assert posterior(message, truth("shear")).credible(0.99) == (4, True)
+    assert posterior(message, truth("E")).credible(0.5) == (1, True)
 
 
 def test_a_truth_that_was_not_compared_has_no_probability() -> None:

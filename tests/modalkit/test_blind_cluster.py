@@ -14,14 +14,14 @@ import blind_stub
 import pytest
 
 from acquisition.errors import InputError
-from modalkit.blind import Outcome, Plan, check_store, run_blind
+from modalkit.blind import DrawRanges, Outcome, check_store, run_blind
 from modalkit.blind.cluster import cluster_outcomes
 from modalkit.workers import cluster as cluster_module
 from modalkit.workers.cluster import Keeper
 
 distributed = pytest.importorskip("distributed")
 
-FAST = Plan(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
+FAST = DrawRanges(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -32,13 +32,13 @@ def cluster() -> Iterator[Any]:
         yield cluster
 
 
-def told(outcomes: Mapping[int, Outcome]) -> list[dict[str, Any]]:
+def stated(outcomes: Mapping[int, Outcome]) -> list[dict[str, Any]]:
     return [outcomes[i].to_json() | {"salt": "", "seconds": 0} for i in sorted(outcomes)]
 
 
 @pytest.fixture(scope="module")
 def alone() -> list[dict[str, Any]]:
-    return told({o.index: o for o in run_blind(6, 5, plan=FAST, diagnose=blind_stub.diagnose).outcomes})
+    return stated({o.index: o for o in run_blind(6, 5, plan=FAST, diagnose=blind_stub.diagnose).outcomes})
 
 
 def test_the_cluster_gives_what_one_machine_gives(
@@ -50,8 +50,8 @@ def test_the_cluster_gives_what_one_machine_gives(
     result = run_blind(
         6, 5, plan=FAST, scheduler=address, store=path, resume=True, diagnose=blind_stub.diagnose
     )
-    assert told({o.index: o for o in result.outcomes}) == alone
-    assert told(check_store(path, seed=5).outcomes) == alone
+    assert stated({o.index: o for o in result.outcomes}) == alone
+    assert stated(check_store(path, seed=5).outcomes) == alone
 
 
 def test_commitments_come_before_outcomes_and_a_lost_worker_loses_nothing(
@@ -69,7 +69,7 @@ def test_commitments_come_before_outcomes_and_a_lost_worker_loses_nothing(
         outcomes[outcome.index] = outcome
         while victims:
             os.kill(victims.pop(), signal.SIGKILL)
-    assert told(outcomes) == alone
+    assert stated(outcomes) == alone
 
 
 def worker_pids(cluster: Any) -> list[int]:

@@ -9,7 +9,7 @@ import pytest
 
 from acquisition import estimate_frfs
 from modalkit.blind.trial import draw_trial
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.measurement import bad_hits, hit_points, measure
 from modalkit.simulator.scene import Scene, draw_scene, nominal_scene
 from modalkit.simulator.setup import Setup
@@ -17,7 +17,7 @@ from modalkit.simulator.setup import Setup
 
 def plain() -> Setup:
     for index in range(20):
-        setup = draw_trial(12, index, plan=Plan(kinds=("beam",), effects=("none",))).scene.setup
+        setup = draw_trial(12, index, plan=DrawRanges(kinds=("beam",), effects=("none",))).scene.setup
         if setup.drive and setup.clamped:
             still = replace(setup, noise=1e-9, bits=24, repeatability=0.0, position_sigma=0.0)
             return replace(still, bad_hits=0.0, hits=5, window=0.0)
@@ -45,7 +45,7 @@ def test_bad_hits_come_in_all_kinds_as_often_as_said_and_leave_most_good() -> No
 
 
 def test_most_tests_have_bad_hits() -> None:
-    setups = [draw_trial(50, i, plan=Plan(kinds=("beam",))).scene.setup for i in range(40)]
+    setups = [draw_trial(50, i, plan=DrawRanges(kinds=("beam",))).scene.setup for i in range(40)]
     assert 0.4 < np.mean([s.bad_hits > 0 for s in setups]) < 0.9
     assert {s.hits for s in setups} == {3, 4, 5, 6}
     assert {s.bits for s in setups} == {16, 24}
@@ -89,7 +89,7 @@ def test_drift_moves_the_peaks_from_point_to_point() -> None:
 
 def test_levels_reach_the_records() -> None:
     """A joint that slips lowers the frequencies of hard hits, in the records themselves."""
-    plan = Plan(kinds=("beam",), effects=("joint_nonlinearity",), pairs=0.0, mild=0.0, strong=0.0)
+    plan = DrawRanges(kinds=("beam",), effects=("joint_nonlinearity",), pairs=0.0, mild=0.0, strong=0.0)
     trial = draw_trial(5, 0, plan=plan)
     setup = replace(
         trial.scene.setup, noise=1e-9, bits=24, bad_hits=0.0, repeatability=0.0, position_sigma=0.0
@@ -110,7 +110,7 @@ def test_levels_reach_the_records() -> None:
 
 
 def test_baseline_shares_marks_and_calibration_with_the_test_and_is_mounted_anew() -> None:
-    plan = Plan(kinds=("beam",), effects=("lumped_mass",), baseline=1.0)
+    plan = DrawRanges(kinds=("beam",), effects=("lumped_mass",), baseline=1.0)
     trial = draw_trial(6, 1, plan=plan)
     assert trial.truth.baseline
     np.testing.assert_array_equal(trial.before.marks, trial.scene.marks)

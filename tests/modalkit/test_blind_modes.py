@@ -14,7 +14,7 @@ from modalkit.blind.trial import draw_trial, write_trial
 from modalkit.simulator.bodies.beam.beam import Beam
 from modalkit.simulator.bodies.complex_modes import complex_modes
 from modalkit.simulator.bodies.parts import Attached
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.measurement import hammer_plan, measure, modal_system, remounting, scaled
 from modalkit.simulator.scene import Scene, nominal_scene
 from modalkit.simulator.setup import Setup
@@ -73,7 +73,7 @@ def test_remounting_scatters_frequencies_and_nothing_else() -> None:
 
 
 def plain_setup() -> Setup:
-    return draw_trial(4, 1, plan=Plan(kinds=("beam",), effects=("none",))).scene.setup
+    return draw_trial(4, 1, plan=DrawRanges(kinds=("beam",), effects=("none",))).scene.setup
 
 
 def quiet(scene: Scene) -> Scene:
@@ -86,7 +86,7 @@ def quiet(scene: Scene) -> Scene:
 
 @pytest.mark.parametrize("effect", ["none", "exponential_window", "time_delay", "swapped_points"])
 def test_records_hold_the_rigs_own_frf(effect: str) -> None:
-    plan = Plan(kinds=("beam",), effects=(effect,), pairs=0.0)
+    plan = DrawRanges(kinds=("beam",), effects=(effect,), pairs=0.0)
     scene = quiet(draw_trial(11, 2, plan=plan).scene).with_chain(gain=1.3)
     setup, chain = scene.setup, scene.chain
     test = measure(scene, rng=np.random.default_rng(5))
@@ -105,7 +105,7 @@ def test_records_hold_the_rigs_own_frf(effect: str) -> None:
 
 
 def test_files_hold_what_the_study_says_of_them(tmp_path: Path) -> None:
-    trial = draw_trial(17, 3, plan=Plan(kinds=("beam",), effects=("E",)))
+    trial = draw_trial(17, 3, plan=DrawRanges(kinds=("beam",), effects=("E",)))
     setup = trial.scene.setup
     study = tomllib.loads(write_trial(trial, tmp_path).read_text())
     content = read_uff([tmp_path / name for name in study["test"]["files"]])
@@ -125,14 +125,14 @@ def test_the_same_trial_writes_the_same_records(tmp_path: Path) -> None:
     for name in ("first", "second"):
         folder = tmp_path / name
         folder.mkdir()
-        write_trial(draw_trial(17, 3, plan=Plan(kinds=("beam",), effects=("E",))), folder)
+        write_trial(draw_trial(17, 3, plan=DrawRanges(kinds=("beam",), effects=("E",))), folder)
         contents.append(b"".join(p.read_bytes()[-5000:] for p in sorted(folder.iterdir())))
     assert contents[0] == contents[1]
 
 
 def test_records_are_long_enough() -> None:
     for index in range(6):
-        scene = draw_trial(21, index, plan=Plan(kinds=("beam",))).scene
+        scene = draw_trial(21, index, plan=DrawRanges(kinds=("beam",))).scene
         modes = scene.modes()
         plan = hammer_plan(scene, modes, np.random.default_rng(1))
         inside = (modes.frequency > scene.setup.band[0]) & (modes.frequency < scene.setup.band[1])

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from modalkit.blind.trial import draw_trial
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
-from modalkit.simulator.hidden import SECRETS
-from modalkit.simulator.hidden.choose import choose_secrets, right_answers
+from modalkit.simulator.hidden import HIDDEN_EFFECTS
+from modalkit.simulator.hidden.choose import choose_hidden_effects, right_answers
 
-PAIRS = Plan(kinds=("beam",), none=0.0, outside=0.0, pairs=1.0)
+PAIRS = DrawRanges(kinds=("beam",), none=0.0, outside=0.0, pairs=1.0)
 
 
 @pytest.fixture(scope="module")
@@ -23,24 +23,24 @@ def chosen() -> list[tuple[str, ...]]:
     rng = np.random.default_rng(4)
     found = []
     for _ in range(1500):
-        pair = choose_secrets(rng, draw_setup(rng, plan=PAIRS), "pair", PAIRS)
+        pair = choose_hidden_effects(rng, draw_setup(rng, plan=PAIRS), "pair", PAIRS)
         assert pair is not None
-        found.append(tuple(secret.name for secret in pair))
+        found.append(tuple(hidden_effect.name for hidden_effect in pair))
     return found
 
 
 def test_pairs_are_two_of_the_library_in_the_order_in_which_they_act(chosen: list[tuple[str, ...]]) -> None:
-    order = list(SECRETS)
+    order = list(HIDDEN_EFFECTS)
     for pair in chosen:
         assert len(set(pair)) == 2
-        assert all(SECRETS[name].in_library for name in pair)
+        assert all(HIDDEN_EFFECTS[name].in_library for name in pair)
         assert order.index(pair[0]) < order.index(pair[1])
 
 
 def test_what_cannot_be_together_is_not_drawn(chosen: list[tuple[str, ...]]) -> None:
     for first, second in chosen:
-        seats = SECRETS[first].seat, SECRETS[second].seat
-        assert "" in seats or seats[0] != seats[1]
+        exclusives = HIDDEN_EFFECTS[first].exclusive, HIDDEN_EFFECTS[second].exclusive
+        assert "" in exclusives or exclusives[0] != exclusives[1]
     never = {("section_scale", "calibration_gain"), ("uniform_damping", "exponential_window")}
     assert never.isdisjoint(chosen)
 
@@ -50,7 +50,9 @@ def test_pairs_come_from_all_that_physics_allows(chosen: list[tuple[str, ...]]) 
     assert len(counts) > 200
     assert counts.most_common(1)[0][1] < 25
     assert {name for pair in chosen for name in pair} == {
-        name for name, secret in SECRETS.items() if secret.in_library and name != "orthotropy"
+        name
+        for name, hidden_effect in HIDDEN_EFFECTS.items()
+        if hidden_effect.in_library and name != "orthotropy"
     }
 
 
@@ -59,8 +61,8 @@ def test_both_act_and_both_are_told() -> None:
         trial = draw_trial(7, index, plan=PAIRS)
         truth, setup = trial.truth, trial.scene.setup
         assert len(truth.effects) == 2
-        told = {name.split(".")[0] for name in truth.parameters}
-        assert told == set(truth.effects) - {"shear"}
+        stated = {name.split(".")[0] for name in truth.parameters}
+        assert stated == set(truth.effects) - {"shear"}
         assert tuple(sorted(truth.effects)) in truth.accepted
         assert all(tuple(sorted(names)) == names and len(names) == 2 for names in truth.accepted)
         assert lacks_shear(setup) == ("shear" in truth.effects)
@@ -69,18 +71,20 @@ def test_both_act_and_both_are_told() -> None:
 
 def test_equals_multiply_and_never_merge() -> None:
     setup = replace(draw_trial(1, 0, plan=PAIRS).scene.setup, sensor_mass=0.0)
-    secrets = [SECRETS["sensor_mass"], SECRETS["calibration_gain"]]
-    sets = right_answers(secrets, [{"mass": 0.01}, {"gain": 1.2}], setup)
+    hidden_effects = [HIDDEN_EFFECTS["sensor_mass"], HIDDEN_EFFECTS["calibration_gain"]]
+    sets = right_answers(hidden_effects, [{"mass": 0.01}, {"gain": 1.2}], setup)
     assert set(sets) == {
         ("calibration_gain", "sensor_mass"),
         ("calibration_gain", "lumped_mass"),
         ("section_scale", "sensor_mass"),
         ("lumped_mass", "section_scale"),
     }
-    left = right_answers(secrets, [{"mass": 0.01}, {"gain": 1.2}], setup, ["sensor_mass", "calibration_gain"])
+    left = right_answers(
+        hidden_effects, [{"mass": 0.01}, {"gain": 1.2}], setup, ["sensor_mass", "calibration_gain"]
+    )
     assert left == (("lumped_mass", "section_scale"),)
     at = setup.points[setup.sensor][0]
-    twice = [SECRETS["sensor_mass"], SECRETS["lumped_mass"]]
+    twice = [HIDDEN_EFFECTS["sensor_mass"], HIDDEN_EFFECTS["lumped_mass"]]
     merged = right_answers(twice, [{"mass": 0.01}, {"mass": 0.02, "x": at}], setup)
     assert merged == (("lumped_mass", "sensor_mass"),)
 

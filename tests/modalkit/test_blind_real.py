@@ -48,8 +48,8 @@ def case(**changes: Any) -> Case:
 
 def answer(verdict: str, *named: str, **rest: Any) -> Answer:
     rows = tuple(Row(s, 1.0 / len(named), parameters=rest.get("parameters", {})) for s in sets(*named))
-    told = sets(*named) if verdict in ("named", "class") else ()
-    return Answer(verdict, told, rows, locations=rest.get("locations", ()))
+    stated = sets(*named) if verdict in ("named", "class") else ()
+    return Answer(verdict, stated, rows, locations=rest.get("locations", ()))
 
 
 def document(verdict: str, *named: str, value: float = 998.0) -> dict[str, Any]:
@@ -90,7 +90,7 @@ def document(verdict: str, *named: str, value: float = 998.0) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    ("said", "grade"),
+    ("message", "grade"),
     [
         (answer("named", "fluid_added_mass"), "right"),
         (answer("named", "density"), "wrong"),
@@ -102,12 +102,12 @@ def document(verdict: str, *named: str, value: float = 998.0) -> dict[str, Any]:
         (answer("none"), "wrong"),
     ],
 )
-def test_the_rules_with_the_effect_in_the_library(said: Answer, grade: str) -> None:
-    assert judge(case(equivalent=sets("density")), said).grade == grade
+def test_the_rules_with_the_effect_in_the_library(message: Answer, grade: str) -> None:
+    assert judge(case(equivalent=sets("density")), message).grade == grade
 
 
 @pytest.mark.parametrize(
-    ("said", "grade"),
+    ("message", "grade"),
     [
         (answer("unknown", "clamp_rotation"), "right"),
         (answer("named", "density"), "right"),
@@ -117,24 +117,24 @@ def test_the_rules_with_the_effect_in_the_library(said: Answer, grade: str) -> N
         (answer("none"), "wrong"),
     ],
 )
-def test_the_rules_with_the_effect_left_out(said: Answer, grade: str) -> None:
+def test_the_rules_with_the_effect_left_out(message: Answer, grade: str) -> None:
     left_out = case(stands_in=sets("density")).left_out()
     assert left_out.removed == ("fluid_added_mass",)
-    assert judge(left_out, said).grade == grade
+    assert judge(left_out, message).grade == grade
 
 
 @pytest.mark.parametrize(
-    ("said", "grade"),
+    ("message", "grade"),
     [(answer("none"), "right"), (answer("unknown", "E"), "wrong"), (answer("named", "E"), "wrong")],
 )
-def test_where_nothing_is_missing_any_name_is_a_false_alarm(said: Answer, grade: str) -> None:
-    assert judge(case(accepted=(frozenset(),)), said).grade == grade
+def test_where_nothing_is_missing_any_name_is_a_false_alarm(message: Answer, grade: str) -> None:
+    assert judge(case(accepted=(frozenset(),)), message).grade == grade
 
 
 @pytest.mark.parametrize(("low", "high", "grade"), [(900.0, 1100.0, "right"), (1001.0, 1300.0, "partly")])
 def test_a_known_number_has_to_lie_in_the_interval(low: float, high: float, grade: str) -> None:
-    told = {"fluid_added_mass.fluid_density": Estimate((low + high) / 2, low, high)}
-    assert judge(case(facts=(WATER,)), answer("named", "fluid_added_mass", parameters=told)).grade == grade
+    stated = {"fluid_added_mass.fluid_density": Estimate((low + high) / 2, low, high)}
+    assert judge(case(facts=(WATER,)), answer("named", "fluid_added_mass", parameters=stated)).grade == grade
 
 
 @pytest.mark.parametrize(("x", "grade"), [(0.65, "right"), (0.1, "partly")])
@@ -262,7 +262,7 @@ def test_the_record_and_the_tables_of_the_docs_tell_the_same() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "unit", "value", "told"),
+    ("name", "unit", "value", "stated"),
     [
         ("length.extension", "m", 0.02668, "extension 26.7 mm (24 to 29.3)"),
         ("local_stiffness.x", "m", 1.11, "x 1.11 m (0.999 to 1.22)"),
@@ -270,21 +270,21 @@ def test_the_record_and_the_tables_of_the_docs_tell_the_same() -> None:
         ("E.factor", "-", 0.76, "factor 0.76 (0.684 to 0.836)"),
     ],
 )
-def test_sizes_are_told_in_handy_units(name: str, unit: str, value: float, told: str) -> None:
+def test_sizes_are_told_in_handy_units(name: str, unit: str, value: float, stated: str) -> None:
     effect = name.partition(".")[0]
 
     def diagnose(
         studies: Sequence[Path], shared: tuple[str, ...], without: tuple[str, ...]
     ) -> Mapping[str, Any]:
-        said = document("named", effect)
+        message = document("named", effect)
         size = {"value": value, "unit": unit, "low95": 0.9 * value, "high95": 1.1 * value, "at_bound": False}
-        said["cause"]["ranking"][0]["parameters"] = {name: size}
-        said["where"]["locations"] = [[0.5, 0.0, 0.0]]
-        return said
+        message["cause"]["ranking"][0]["parameters"] = {name: size}
+        message["where"]["locations"] = [[0.5, 0.0, 0.0]]
+        return message
 
     cases = [case(accepted=sets(effect)), case(accepted=sets(effect), places=((0.4, 0.6),))]
     rows = real_table(run_real(cases, SAMPLES, None, diagnose=diagnose))
-    assert list(rows["size (95 %)"]) == [told, f"{told}; at x = 500 mm"]
+    assert list(rows["size (95 %)"]) == [stated, f"{stated}; at x = 500 mm"]
 
 
 def test_the_docs_list_every_case() -> None:

@@ -14,9 +14,9 @@ import pytest
 from blind_stub import NONE
 
 from acquisition.errors import EstimationError, StudyError
-from modalkit.blind import BlindResult, Outcome, Plan, diagnosers, open_seal, run_blind, score
+from modalkit.blind import BlindResult, DrawRanges, Outcome, diagnosers, open_seal, run_blind, score
 
-FAST = Plan(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
+FAST = DrawRanges(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
 
 
 def always_none(study: Path, without: tuple[str, ...]) -> Mapping[str, Any]:
@@ -27,7 +27,7 @@ def broken(study: Path, without: tuple[str, ...]) -> Mapping[str, Any]:
     raise EstimationError("no modes in the band")
 
 
-def told(result: BlindResult) -> str:
+def stated(result: BlindResult) -> str:
     """Return all that a run says and does not depend on the clock or on chance: the scores, without salts."""
     records = [o.to_json() | {"seconds": 0, "salt": ""} for o in result.outcomes]
     table = score(result).to_json()
@@ -41,9 +41,9 @@ def told(result: BlindResult) -> str:
 def test_result_does_not_depend_on_workers() -> None:
     one, two = (run_blind(4, 5, plan=FAST, diagnose=always_none, workers=w) for w in (1, 2))
     assert [o.index for o in two.outcomes] == [0, 1, 2, 3]
-    assert told(one) == told(two)
+    assert stated(one) == stated(two)
     other = run_blind(4, 6, plan=FAST, diagnose=always_none)
-    assert told(other) != told(one)
+    assert stated(other) != stated(one)
 
 
 def test_a_constant_answer_is_right_where_nothing_is_hidden() -> None:
@@ -86,7 +86,7 @@ def test_what_is_left_out_is_handed_over() -> None:
         asked.append(without)
         return NONE
 
-    plan = Plan(kinds=("beam",), effects=("E",), pairs=0.0, outside=0.0, leave_out=True)
+    plan = DrawRanges(kinds=("beam",), effects=("E",), pairs=0.0, outside=0.0, leave_out=True)
     result = run_blind(1, 3, plan=plan, diagnose=keep)
     assert asked == [result.outcomes[0].truth.without]
     assert "E" in asked[0]
@@ -110,7 +110,7 @@ def test_the_folder_tells_nothing_and_is_gone_afterwards() -> None:
         texts.extend(p.read_bytes() for p in study.parent.iterdir())
         return NONE
 
-    plan = Plan(kinds=("beam",), effects=("clamp_rotation", "sensor_mass"), pairs=0.0, outside=0.0)
+    plan = DrawRanges(kinds=("beam",), effects=("clamp_rotation", "sensor_mass"), pairs=0.0, outside=0.0)
     run_blind(3, 424242, plan=plan, diagnose=curious)
     for folder, names in seen.items():
         assert set(names) <= {"study.toml", "test.uff", "baseline.uff"}
@@ -133,19 +133,19 @@ def test_a_diagnosis_that_looks_for_the_truth_does_not_find_it(
     seed, found = secrets.randbits(63), tmp_path / "found"
     with diagnosers(1, command=blind_stub.command("curious", found)) as diagnose:
         result = run_blind(3, seed, plan=FAST, diagnose=diagnose, store=tmp_path / "run.jsonl")
-    looks = [json.loads(line) for line in found.read_text().splitlines()]
-    assert len(looks) == 3
-    for number, (look, outcome) in enumerate(zip(looks, result.outcomes, strict=True)):
-        assert "study.toml" in look
-        assert str(seed) not in look
-        assert "4711-0815" not in look
-        assert outcome.sealed.salt not in look
-        assert outcome.sealed.statement not in look
+    evaluations = [json.loads(line) for line in found.read_text().splitlines()]
+    assert len(evaluations) == 3
+    for number, (evaluation, outcome) in enumerate(zip(evaluations, result.outcomes, strict=True)):
+        assert "study.toml" in evaluation
+        assert str(seed) not in evaluation
+        assert "4711-0815" not in evaluation
+        assert outcome.sealed.salt not in evaluation
+        assert outcome.sealed.statement not in evaluation
         if Path(
             "/proc/self/fd"
         ).is_dir():  # what was opened before may be seen, so it does look into the store
-            assert all(o.sealed.salt in look for o in result.outcomes[:number])
-            assert {int(w[3:]) for w in look.split("\n") if w.startswith("fd ")} <= {0, 1, 2, 3, 4}
+            assert all(o.sealed.salt in evaluation for o in result.outcomes[:number])
+            assert {int(w[3:]) for w in evaluation.split("\n") if w.startswith("fd ")} <= {0, 1, 2, 3, 4}
 
 
 def test_a_killed_diagnosing_process_loses_nothing(tmp_path: Path) -> None:
@@ -156,7 +156,7 @@ def test_a_killed_diagnosing_process_loses_nothing(tmp_path: Path) -> None:
     undisturbed, killed = run(), run("dies-once", tmp_path / "died")
     assert (tmp_path / "died").exists()
     assert all(o.failure is None for o in killed.outcomes)
-    assert told(undisturbed) == told(killed)
+    assert stated(undisturbed) == stated(killed)
 
 
 @pytest.mark.parametrize(("trials", "workers"), [(0, 1), (1, 0)])

@@ -12,7 +12,7 @@ import pytest
 from blind_outcomes import diagnosis, honest_run, interval, outcome, run_of, truth
 
 from acquisition.errors import InputError
-from modalkit.blind import BlindResult, Plan, Truth, score
+from modalkit.blind import BlindResult, DrawRanges, Truth, score
 from modalkit.blind.answer import read_answer
 from modalkit.blind.scoring.intervals import bootstrap, wilson
 from modalkit.blind.scoring.judge import commits, credit, holds, is_right, top_is_right
@@ -23,7 +23,7 @@ from modalkit.cli.scores import show_score, write_markdown
 
 
 @pytest.mark.parametrize(
-    ("hidden", "said", "right", "top"),
+    ("hidden", "message", "right", "top"),
     [
         (truth("E"), diagnosis("named", ("E",)), True, True),
         (truth("E"), diagnosis("named", ("density",)), False, False),
@@ -45,8 +45,8 @@ from modalkit.cli.scores import show_score, write_markdown
         (truth("taper", accepted=(("thickness",),)), diagnosis("named", ("thickness",)), True, True),
     ],
 )
-def test_judgement(hidden: Truth, said: dict[str, Any], right: bool, top: bool) -> None:
-    answer = read_answer(said)
+def test_judgement(hidden: Truth, message: dict[str, Any], right: bool, top: bool) -> None:
+    answer = read_answer(message)
     assert is_right(answer, hidden) == right
     assert top_is_right(answer, hidden) == top
 
@@ -170,57 +170,59 @@ def test_groups_split_what_is_asked() -> None:
 
 
 def test_places_take_the_nearest_of_mirrored_ones_and_the_first() -> None:
-    said = diagnosis("named", ("local_stiffness",), locations=[[0.4, 0, 0], [0.11, 0, 0]])
-    result = score(run_of((truth("local_stiffness", x=0.1, places=((0.1,),)), said)))
+    message = diagnosis("named", ("local_stiffness",), locations=[[0.4, 0, 0], [0.11, 0, 0]])
+    result = score(run_of((truth("local_stiffness", x=0.1, places=((0.1,),)), message)))
     assert result.places["nearest"].tolist() == pytest.approx([0.01 / 0.5])
     assert result.places["first"].tolist() == pytest.approx([0.3 / 0.5])
     assert result.places["places"].tolist() == [2]
 
 
 def test_places_of_plates_are_over_the_diagonal() -> None:
-    said = diagnosis("named", ("lumped_mass",), locations=[[0.13, 0.24, 0]])
+    message = diagnosis("named", ("lumped_mass",), locations=[[0.13, 0.24, 0]])
     hidden = truth("lumped_mass", places=((0.1, 0.2),), size=(0.3, 0.4), kind="plate")
-    assert score(run_of((hidden, said))).places["nearest"].tolist() == pytest.approx([0.1])
+    assert score(run_of((hidden, message))).places["nearest"].tolist() == pytest.approx([0.1])
 
 
 def test_severity_comes_from_the_row_of_the_hidden_effect() -> None:
-    said = diagnosis("class", ("density",), ("E",))
-    said["cause"]["ranking"][1]["parameters"] = {"E.factor": interval(1.32, 1.2, 1.4)}
-    said["cause"]["ranking"][0]["parameters"] = {"density.factor": interval(0.8, 0.7, 0.9)}
-    table = score(run_of((truth("E", factor=1.2), said))).severity
+    message = diagnosis("class", ("density",), ("E",))
+    message["cause"]["ranking"][1]["parameters"] = {"E.factor": interval(1.32, 1.2, 1.4)}
+    message["cause"]["ranking"][0]["parameters"] = {"density.factor": interval(0.8, 0.7, 0.9)}
+    table = score(run_of((truth("E", factor=1.2), message))).severity
     assert table["parameter"].tolist() == ["E.factor"]
     assert table["error"].tolist() == pytest.approx([0.1])
     assert table["covered"].tolist() == [True]
 
 
 def test_points_are_right_only_together() -> None:
-    said = diagnosis(
+    message = diagnosis(
         "named", ("polarity",), parameters={"polarity.points": {"value": [3, 2], "unit": "node"}}
     )
-    said["cause"]["ranking"][0]["parameters"]["polarity.points"] |= {"low95": None, "high95": None}
+    message["cause"]["ranking"][0]["parameters"]["polarity.points"] |= {"low95": None, "high95": None}
     table = score(
-        run_of((truth("polarity", points=[2, 3]), said), (truth("polarity", points=[2]), said))
+        run_of((truth("polarity", points=[2, 3]), message), (truth("polarity", points=[2]), message))
     ).points
     assert table["same"].tolist() == [True, False]
 
 
 def test_channel_may_be_that_of_an_equivalent() -> None:
-    said = [diagnosis("named", ("uniform_damping",), channel=c) for c in ("damping", "measurement", "mass")]
-    table = score(run_of(*((truth("exponential_window"), s) for s in said))).channels
+    message = [
+        diagnosis("named", ("uniform_damping",), channel=c) for c in ("damping", "measurement", "mass")
+    ]
+    table = score(run_of(*((truth("exponential_window"), s) for s in message))).channels
     assert table.set_index("channel").loc["all", ["count", "total"]].tolist() == [2, 3]
 
 
 def test_shrinkage_is_compared_where_both_speak_of_the_same() -> None:
-    said = diagnosis("named", ("E",), closed=interval(95.0, 90.0, 100.0))
+    message = diagnosis("named", ("E",), closed=interval(95.0, 90.0, 100.0))
     trials = (
         outcome(
-            0, truth("E"), said, Shrinkage("frequency", 5.0, 1.0, 4.0, 2.0)
+            0, truth("E"), message, Shrinkage("frequency", 5.0, 1.0, 4.0, 2.0)
         ),  # closes 96 %, above the band 75 %
-        outcome(1, truth("E"), said, Shrinkage("frequency", 5.0, 2.5, 4.0, 2.0)),  # closes 75 %
-        outcome(2, truth("E"), said, Shrinkage("damping", 5.0, 2.5, 4.0, 2.0)),
-        outcome(3, truth("E"), said),
+        outcome(1, truth("E"), message, Shrinkage("frequency", 5.0, 2.5, 4.0, 2.0)),  # closes 75 %
+        outcome(2, truth("E"), message, Shrinkage("damping", 5.0, 2.5, 4.0, 2.0)),
+        outcome(3, truth("E"), message),
     )
-    result = score(BlindResult(7, Plan(), trials))
+    result = score(BlindResult(7, DrawRanges(), trials))
     row = result.closing_summary.set_index("trials").loc["all"]
     assert row["mean_difference"] == pytest.approx((1 + 20) / 2)
     assert (row["count"], row["total"]) == (1, 2)
@@ -243,7 +245,7 @@ def test_json_is_strict_whole_and_can_be_scored_again() -> None:
 
 def test_score_of_nothing_is_refused() -> None:
     with pytest.raises(InputError, match="no trials"):
-        score(BlindResult(1, Plan(), ()))
+        score(BlindResult(1, DrawRanges(), ()))
 
 
 @pytest.mark.parametrize(
@@ -330,8 +332,8 @@ def test_better_answers_never_score_less() -> None:
 
 
 def test_several_hidden_places_are_compared_with_as_many() -> None:
-    said = diagnosis("named", ("polarity",), locations=[[0.2, 0, 0], [0.4, 0, 0], [0.3, 0, 0]])
-    table = score(run_of((truth("polarity", points=[1, 3], places=((0.4,), (0.2,))), said))).places
+    message = diagnosis("named", ("polarity",), locations=[[0.2, 0, 0], [0.4, 0, 0], [0.3, 0, 0]])
+    table = score(run_of((truth("polarity", points=[1, 3], places=((0.4,), (0.2,))), message))).places
     assert table[["nearest", "first"]].to_numpy().tolist() == [[0.0, 0.0]]
 
 

@@ -20,17 +20,25 @@ from modalkit.simulator.bodies.beam.water import (
 )
 from modalkit.simulator.bodies.complex_modes import ComplexModes, complex_modes
 from modalkit.simulator.bodies.parts import Absorber, Attached, Stretch
-from modalkit.simulator.drawing.ranges import Plan
-from modalkit.simulator.hidden import SECRETS
+from modalkit.simulator.drawing.ranges import DrawRanges
+from modalkit.simulator.hidden import HIDDEN_EFFECTS
 from modalkit.simulator.hidden.outside import gap_share
 from modalkit.simulator.scene import Scene, nominal_scene
 from modalkit.simulator.setup import Setup
 
 BEAM = Beam(0.0, 0.6, 0.03, 0.003, 210e9, 7850.0, alpha=2.0, beta=1e-6)
-INSIDE = [name for name, secret in SECRETS.items() if secret.in_library and name != "orthotropy"]
-OUTSIDE = [name for name, secret in SECRETS.items() if not secret.in_library and name != "skew_clamp"]
+INSIDE = [
+    name
+    for name, hidden_effect in HIDDEN_EFFECTS.items()
+    if hidden_effect.in_library and name != "orthotropy"
+]
+OUTSIDE = [
+    name
+    for name, hidden_effect in HIDDEN_EFFECTS.items()
+    if not hidden_effect.in_library and name != "skew_clamp"
+]
 LAMBDA = np.array([1.87510407, 4.69409113, 7.85475744, 10.99554073])
-CLEAR = Plan(kinds=("beam",), mild=0.0, strong=0.0, pairs=0.0)
+CLEAR = DrawRanges(kinds=("beam",), mild=0.0, strong=0.0, pairs=0.0)
 
 
 def hide(name: str, index: int = 0) -> Trial:
@@ -48,7 +56,7 @@ def cantilever() -> Setup:
 def put(name: str, setup: Setup, **values: Any) -> tuple[Scene, Scene]:
     """Return the rig as stated, and with an effect."""
     scene = nominal_scene(setup)
-    return scene, SECRETS[name].act(scene, values)
+    return scene, HIDDEN_EFFECTS[name].act(scene, values)
 
 
 def shifts(after: Scene, before: Scene, level: float | None = None) -> np.ndarray:
@@ -63,7 +71,7 @@ def of(beam: Beam, x: float = 0.6) -> ComplexModes:
 def test_the_rig_has_the_library_and_twelve_more() -> None:
     assert len(INSIDE) >= 23
     assert len(OUTSIDE) >= 12
-    assert all(SECRETS[name].seat != "" for name in ("section_scale", "calibration_gain"))
+    assert all(HIDDEN_EFFECTS[name].exclusive != "" for name in ("section_scale", "calibration_gain"))
 
 
 @pytest.mark.parametrize("name", INSIDE + OUTSIDE)
@@ -121,7 +129,7 @@ def test_length_lowers_by_its_square() -> None:
 def test_section_scale_is_a_gain_unless_the_sensor_tells() -> None:
     setup = replace(cantilever(), sensor_mass=0.0, repeatability=2e-4)
     for name, values in (("section_scale", {"factor": 1.4}), ("calibration_gain", {"gain": 0.7})):
-        equals = SECRETS[name].equals
+        equals = HIDDEN_EFFECTS[name].equals
         assert len(equals(setup, values)) == 1
         assert equals(replace(setup, sensor_mass=0.01 * setup.mass), values) == ()
     _, after = put("section_scale", setup, factor=1.25)
@@ -350,10 +358,10 @@ def test_points_reversed_exchanged_and_moved() -> None:
 def test_sensor_beside_a_mass_answers_to_both_names() -> None:
     setup = cantilever()
     (x,) = setup.points[setup.sensor]
-    equals = SECRETS["lumped_mass"].equals
+    equals = HIDDEN_EFFECTS["lumped_mass"].equals
     assert equals(setup, {"x": x + 0.002 * setup.length}) == ("sensor_mass",)
     assert equals(setup, {"x": x - 0.2 * setup.length}) == ()
-    assert SECRETS["sensor_mass"].equals(setup, {}) == ("lumped_mass",)
+    assert HIDDEN_EFFECTS["sensor_mass"].equals(setup, {}) == ("lumped_mass",)
     alpha = {"alpha": 2.0, "beta": 0.0, "loss_factor": 0.0}
-    assert SECRETS["uniform_damping"].equals(setup, alpha) == ("exponential_window",)
-    assert SECRETS["uniform_damping"].equals(setup, alpha | {"beta": 1e-6}) == ()
+    assert HIDDEN_EFFECTS["uniform_damping"].equals(setup, alpha) == ("exponential_window",)
+    assert HIDDEN_EFFECTS["uniform_damping"].equals(setup, alpha | {"beta": 1e-6}) == ()

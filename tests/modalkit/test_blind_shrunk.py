@@ -10,17 +10,17 @@ import pytest
 from modalkit.blind.answer import Answer, Estimate, Row
 from modalkit.blind.shrunk import put_in, true_shrinkage
 from modalkit.blind.trial import Trial, draw_trial
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.scene import nominal_scene
 
-CLEAR = Plan(kinds=("beam",), mild=0.0, strong=0.0, pairs=0.0, baseline=0.0)
+CLEAR = DrawRanges(kinds=("beam",), mild=0.0, strong=0.0, pairs=0.0, baseline=0.0)
 
 
 def hide(name: str, index: int = 0, *, baseline: float = 0.0) -> Trial:
     return draw_trial(19, index, plan=replace(CLEAR, effects=(name,), baseline=baseline))
 
 
-def said(*names: str, **values: float) -> Answer:
+def message(*names: str, **values: float) -> Answer:
     numbers = {key.replace("__", "."): Estimate(v) for key, v in values.items()}
     row = Row(frozenset(names), 0.97, parameters=numbers)
     return Answer("named", (row.effects,), (row,))
@@ -52,7 +52,7 @@ def test_the_truth_closes_the_gap_on_modes_it_was_not_fitted_to(name: str) -> No
 
 def test_nothing_hidden_and_little_said_leaves_what_tolerances_do() -> None:
     trial = hide("none")
-    found = true_shrinkage(trial, said("E", E__factor=1.0))
+    found = true_shrinkage(trial, message("E", E__factor=1.0))
     assert found is not None
     assert found.after_percent < 0.2 * found.before_percent  # the tolerances alone explain the scatter
 
@@ -60,7 +60,7 @@ def test_nothing_hidden_and_little_said_leaves_what_tolerances_do() -> None:
 def test_wrong_cause_closes_less_beyond_the_band() -> None:
     trial = hide("clamp_translation")
     right = true_shrinkage(trial, truly(trial))
-    wrong = true_shrinkage(trial, said("E", E__factor=0.9))
+    wrong = true_shrinkage(trial, message("E", E__factor=0.9))
     assert right is not None and wrong is not None
     assert right.beyond_after_percent < 0.5 * wrong.beyond_after_percent
 
@@ -70,9 +70,9 @@ def test_soft_place_counts_by_its_compliance(index: int) -> None:
     trial = hide("local_stiffness", index)  # a smooth dip, a box or a crack
     numbers = trial.truth.parameters
     place = {"x": numbers["local_stiffness.x"], "compliance": numbers["local_stiffness.compliance"]}
-    told = place | {"extent": 0.03 * trial.scene.setup.length, "loss": 0.5}
+    stated = place | {"extent": 0.03 * trial.scene.setup.length, "loss": 0.5}
     found = true_shrinkage(
-        trial, said("local_stiffness", **{f"local_stiffness__{k}": v for k, v in told.items()})
+        trial, message("local_stiffness", **{f"local_stiffness__{k}": v for k, v in stated.items()})
     )
     assert found is not None
     assert found.after_percent < 0.2 * found.before_percent  # though it is up to three times as long
@@ -80,7 +80,7 @@ def test_soft_place_counts_by_its_compliance(index: int) -> None:
 
 def test_an_answer_without_shear_gets_none() -> None:
     trial = hide("shear")  # a slender theory for a stocky beam
-    found = true_shrinkage(trial, said("calibration_gain", calibration_gain__gain=1.1))
+    found = true_shrinkage(trial, message("calibration_gain", calibration_gain__gain=1.1))
     right = true_shrinkage(trial, truly(trial))
     assert found is not None and right is not None
     assert right.beyond_after_percent < 0.1 * found.beyond_after_percent
@@ -110,7 +110,7 @@ def test_pair_needs_both() -> None:
     )
     both = true_shrinkage(trial, truly(trial))
     numbers = trial.truth.parameters
-    one = true_shrinkage(trial, said("E", E__factor=numbers["E.factor"]))
+    one = true_shrinkage(trial, message("E", E__factor=numbers["E.factor"]))
     assert both is not None and one is not None
     assert both.after_percent < 0.3 * one.after_percent
 
@@ -120,11 +120,11 @@ def test_pair_needs_both() -> None:
     [
         Answer("none", ()),
         Answer("unknown", ()),
-        said("gravity", gravity__g=9.8),
-        said("ground_spring", ground_spring__stiffness=3.0),
-        said("lumped_mass", lumped_mass__mass=0.1),
-        said("E", E__factor=float("nan")),
-        said("E", E__factor=0.0),
+        message("gravity", gravity__g=9.8),
+        message("ground_spring", ground_spring__stiffness=3.0),
+        message("lumped_mass", lumped_mass__mass=0.1),
+        message("E", E__factor=float("nan")),
+        message("E", E__factor=0.0),
     ],
 )
 def test_what_the_rig_cannot_put_in_has_no_shrinkage(answer: Answer) -> None:
@@ -137,8 +137,8 @@ def test_a_load_that_buckles_the_body_has_no_shrinkage(force: float) -> None:
     setup = trial.scene.setup
     ends = 4.0 if len(setup.clamped) == 2 else 0.25
     buckling = ends * setup.rigidity * (np.pi / setup.length) ** 2
-    assert true_shrinkage(trial, said("axial_load", axial_load__force=force * buckling)) is None
-    assert true_shrinkage(trial, said("axial_load", axial_load__force=-0.5 * buckling)) is not None
+    assert true_shrinkage(trial, message("axial_load", axial_load__force=force * buckling)) is None
+    assert true_shrinkage(trial, message("axial_load", axial_load__force=-0.5 * buckling)) is not None
 
 
 def test_points_and_labels_are_put_in() -> None:

@@ -20,9 +20,9 @@ from modalkit.simulator.bodies.plate.parts import PlateAttached
 from modalkit.simulator.bodies.plate.plate import Plate
 from modalkit.simulator.bodies.solid.solid import Cut, Solid, available
 from modalkit.simulator.bodies.solid.solid import deck as solid_deck
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup
-from modalkit.simulator.hidden import SECRETS
+from modalkit.simulator.hidden import HIDDEN_EFFECTS
 from modalkit.simulator.scene import nominal_scene
 from modalkit.study.read import read_study
 
@@ -109,11 +109,13 @@ def test_solid_plate_is_the_thick_plate() -> None:
     assert ours.slopes.shape == theirs.slopes.shape
 
 
-SOLIDS = Plan(kinds=("solid",))
+SOLIDS = DrawRanges(kinds=("solid",))
 
 
 @needs_ccx
-@pytest.mark.parametrize("name", ["none", *(n for n, secret in SECRETS.items() if secret.solid)])
+@pytest.mark.parametrize(
+    "name", ["none", *(n for n, hidden_effect in HIDDEN_EFFECTS.items() if hidden_effect.solid)]
+)
 def test_trial_hides_an_effect_in_bricks(name: str) -> None:
     trial = draw_trial(7, 0, plan=replace(SOLIDS, effects=(name,), strong=0.0, mild=0.0))
     truth, body = trial.truth, trial.scene.body
@@ -131,13 +133,13 @@ def test_trials_of_all_sorts_are_drawn() -> None:
     ]
     assert {len(trial.truth.effects) for trial in trials} == {0, 1, 2}
     assert not all(trial.truth.in_library for trial in trials)
-    assert all(SECRETS[name].solid for trial in trials for name in trial.truth.effects)
+    assert all(HIDDEN_EFFECTS[name].solid for trial in trials for name in trial.truth.effects)
 
 
 @needs_ccx
 def test_others_do_not_fit() -> None:
     setup = draw_setup(np.random.default_rng(1), plan=SOLIDS)
-    unfit = [name for name, secret in SECRETS.items() if not secret.fits(setup)]
+    unfit = [name for name, hidden_effect in HIDDEN_EFFECTS.items() if not hidden_effect.fits(setup)]
     assert {"axial_load", "fluid_added_mass", "clamp_rotation", "damping_patch", "shear"} <= set(unfit)
 
 
@@ -177,16 +179,18 @@ def test_right_answer_closes_the_gap() -> None:
 @needs_ccx
 def test_solids_are_drawn_as_often_as_plates() -> None:
     rng = np.random.default_rng(3)
-    kinds = Counter(draw_setup(rng, plan=Plan(kinds=("beam", "plate", "solid"))).kind for _ in range(60))
+    kinds = Counter(
+        draw_setup(rng, plan=DrawRanges(kinds=("beam", "plate", "solid"))).kind for _ in range(60)
+    )
     assert min(kinds["plate"], kinds["solid"]) > 2 and kinds["beam"] > 25
-    kinds = Counter(draw_setup(rng, plan=Plan(kinds=("plate", "solid"))).kind for _ in range(15))
+    kinds = Counter(draw_setup(rng, plan=DrawRanges(kinds=("plate", "solid"))).kind for _ in range(15))
     assert set(kinds) == {"plate", "solid"}
 
 
 def test_solids_are_refused_without_calculix(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
     with pytest.raises(StudyError, match=r"solids need CalculiX.*install calculix-ccx"):
-        draw_setup(np.random.default_rng(0), plan=Plan(kinds=("beam", "solid")))
+        draw_setup(np.random.default_rng(0), plan=DrawRanges(kinds=("beam", "solid")))
 
 
 def test_exponents_of_three_digits_are_read() -> None:

@@ -19,12 +19,12 @@ from blind_stub import NONE
 
 from acquisition.errors import InputError
 from modalkit import cli
-from modalkit.blind import Plan, check_store, run_blind
+from modalkit.blind import DrawRanges, check_store, run_blind
 from modalkit.blind import store as store_module
 from modalkit.cli import blinding
 from modalkit.workers.journal import Journal, read_journal
 
-FAST = Plan(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
+FAST = DrawRanges(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
 SEED = 5
 
 
@@ -86,11 +86,11 @@ def test_commitments_stand_before_outcomes_and_the_seed_nowhere(store: Path, mon
 def test_a_commitment_is_on_the_disk_when_the_diagnosis_begins(tmp_path: Path) -> None:
     path, seen = tmp_path / "run.jsonl", list[list[dict[str, Any]]]()
 
-    def look(study: Path, without: tuple[str, ...]) -> Mapping[str, Any]:
+    def seen_now(study: Path, without: tuple[str, ...]) -> Mapping[str, Any]:
         seen.append(read_journal(path)[0])
         return NONE
 
-    result = run_blind(2, SEED, plan=FAST, diagnose=look, store=path)
+    result = run_blind(2, SEED, plan=FAST, diagnose=seen_now, store=path)
     for lines, outcome in zip(seen, result.outcomes, strict=True):
         assert lines[-1] == {"trial": outcome.index, "commitment": outcome.sealed.commitment}
 
@@ -132,13 +132,13 @@ def test_a_store_is_not_overwritten_without_being_told(store: Path) -> None:
 def test_the_store_of_another_run_is_refused(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = store.read_bytes()
 
-    def resume(seed: int = SEED, plan: Plan = FAST) -> None:
+    def resume(seed: int = SEED, plan: DrawRanges = FAST) -> None:
         run_blind(3, seed, plan=plan, diagnose=always_none, store=store, resume=True)
 
     with pytest.raises(InputError, match="another seed than 6"):
         resume(seed=6)
     with pytest.raises(InputError, match=r"begun with leave_out = False, now it is True"):
-        resume(plan=Plan(kinds=("beam",), effects=FAST.effects, pairs=0.0, outside=0.0, leave_out=True))
+        resume(plan=DrawRanges(kinds=("beam",), effects=FAST.effects, pairs=0.0, outside=0.0, leave_out=True))
     monkeypatch.setattr(store_module, "__version__", "9.9")
     with pytest.raises(InputError, match=r"made by modalkit .*, this is 9\.9"):
         resume()
@@ -152,13 +152,13 @@ def test_two_runs_do_not_write_to_one_store(store: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "message"),
     [("", "holds nothing"), ("what?\n", "line 1: no JSON"), ("{}\n", "no store"), ("[]\n", "not a record")],
 )
-def test_what_is_no_store_is_refused(tmp_path: Path, content: str, said: str) -> None:
+def test_what_is_no_store_is_refused(tmp_path: Path, content: str, message: str) -> None:
     path = tmp_path / "run.jsonl"
     path.write_text(content)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=message):
         check_store(path)
     with pytest.raises(InputError, match=r"run\.jsonl: cannot be read"):
         check_store(tmp_path / "no" / "run.jsonl")
@@ -234,9 +234,9 @@ def test_an_untouched_store_passes_and_says_what_was_in_flight(
     with pytest.raises(SystemExit) as ended:
         cli.main()
     assert ended.value.code == 0
-    said = capsys.readouterr().out
-    assert "2 trials, each opened with the commitment published before it" in said
-    assert "ended before: 2" in said
+    message = capsys.readouterr().out
+    assert "2 trials, each opened with the commitment published before it" in message
+    assert "ended before: 2" in message
 
 
 RUN = """
@@ -293,7 +293,7 @@ def test_a_killed_command_goes_on(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["--resume"], "give the --store"),
         (["study.toml", "--real"], "STUDY and --real"),
@@ -312,7 +312,7 @@ def test_a_killed_command_goes_on(tmp_path: Path) -> None:
 def test_options_that_do_not_go_together_are_refused(
     store: Path,
     words: list[str],
-    said: str,
+    message: str,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -321,20 +321,20 @@ def test_options_that_do_not_go_together_are_refused(
     with pytest.raises(SystemExit) as ended:
         cli.main()
     assert ended.value.code == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not (store.parent / "new.jsonl").exists()
 
 
 def test_a_drawn_seed_is_told_before_the_run_where_it_will_be_needed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told: list[str] = []
-    monkeypatch.setattr(blinding.progress, "print", lambda text, **_: told.append(text))
+    stated: list[str] = []
+    monkeypatch.setattr(blinding.progress, "print", lambda text, **_: stated.append(text))
     first = blinding._seed(None, tmp_path / "run.jsonl", False)
-    assert str(first) in told[0]
+    assert str(first) in stated[0]
     assert 0 <= first < 2**63
     assert blinding._seed(None, None, False) != first
-    assert len(told) == 1
+    assert len(stated) == 1
     assert blinding._seed(7, tmp_path / "run.jsonl", True) == 7
 
 

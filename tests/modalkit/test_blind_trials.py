@@ -13,15 +13,15 @@ import scipy.stats
 
 from acquisition.errors import StudyError
 from modalkit.blind.trial import Trial, Truth, draw_trial
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
-from modalkit.simulator.hidden import SECRETS
-from modalkit.simulator.hidden.choose import choose_secrets, choose_sort, draw_strength
+from modalkit.simulator.hidden import HIDDEN_EFFECTS
+from modalkit.simulator.hidden.choose import choose_hidden_effects, choose_sort, draw_strength
 from modalkit.simulator.scene import draw_scene, nominal_scene
 from modalkit.simulator.setup import Setup
 from modalkit.simulator.study_file import study_text
 
-BEAMS = Plan(kinds=("beam",))
+BEAMS = DrawRanges(kinds=("beam",))
 
 
 def hide(name: str, index: int = 0, seed: int = 8) -> Trial:
@@ -42,14 +42,14 @@ def test_truth_survives_json() -> None:
 
 
 def test_plan_survives_json_and_is_checked() -> None:
-    plan = Plan(kinds=("beam",), effects=("E", "rib"), none=0.3, leave_out=True)
-    assert Plan.from_json(json.loads(json.dumps(plan.to_json()))) == plan
+    plan = DrawRanges(kinds=("beam",), effects=("E", "rib"), none=0.3, leave_out=True)
+    assert DrawRanges.from_json(json.loads(json.dumps(plan.to_json()))) == plan
     with pytest.raises(StudyError, match=r"kinds.*shell"):
-        Plan(kinds=("shell",))
+        DrawRanges(kinds=("shell",))
     with pytest.raises(StudyError, match=r"pairs = 1\.2"):
-        Plan(pairs=1.2)
+        DrawRanges(pairs=1.2)
     with pytest.raises(StudyError, match="more than 1"):
-        Plan(mild=0.7, strong=0.7)
+        DrawRanges(mild=0.7, strong=0.7)
 
 
 def test_unknown_effect_is_refused() -> None:
@@ -66,7 +66,7 @@ def test_nothing_hidden() -> None:
 
 
 def test_shares_of_sorts_and_strengths_are_the_plans() -> None:
-    rng, plan, count = np.random.default_rng(1), Plan(), 4000
+    rng, plan, count = np.random.default_rng(1), DrawRanges(), 4000
     sorts = Counter(choose_sort(rng, plan) for _ in range(count))
     levels = Counter(draw_strength(rng, plan)[0] for _ in range(count))
     for found, share in (
@@ -86,7 +86,7 @@ def draws() -> list[tuple[Setup, str]]:
     found = []
     for _ in range(2500):
         setup = draw_setup(rng, plan=plan)
-        chosen = choose_secrets(rng, setup, "single", plan)
+        chosen = choose_hidden_effects(rng, setup, "single", plan)
         assert chosen is not None
         found.append((setup, chosen[0].name))
     return found
@@ -94,7 +94,11 @@ def draws() -> list[tuple[Setup, str]]:
 
 def test_every_effect_comes_up_about_as_often(draws: list[tuple[Setup, str]]) -> None:
     counts = Counter(name for _, name in draws)
-    inside = [name for name, secret in SECRETS.items() if secret.in_library and secret.applies(draws[0][0])]
+    inside = [
+        name
+        for name, hidden_effect in HIDDEN_EFFECTS.items()
+        if hidden_effect.in_library and hidden_effect.applies(draws[0][0])
+    ]
     assert set(inside) <= set(counts)
     mean = len(draws) / len(counts)
     assert all(0.5 * mean < count < 1.7 * mean for count in counts.values())
@@ -136,7 +140,7 @@ def test_a_slender_theory_stands_only_where_it_fits_or_shear_is_hidden() -> None
         assert lacks_shear(setup) and not setup.baseline
     for setup in filter(lacks_shear, setups):
         for sort in ("single", "pair"):
-            chosen = choose_secrets(rng, setup, sort, BEAMS)
+            chosen = choose_hidden_effects(rng, setup, sort, BEAMS)
             assert chosen is not None and "shear" in [s.name for s in chosen]
 
 
@@ -168,8 +172,8 @@ def test_study_states_the_setup_and_nothing_else(index: int) -> None:
     assert study["test"]["calibration"] == setup.calibration
     assert ("baseline" in study) == setup.baseline
     assert ("environment" in study) == (setup.environment is not None)
-    told = [] if not setup.sensor_mass else [list(setup.points[setup.sensor])]
-    assert [mass["at"] for mass in study["model"].get("mass", [])] == told
+    given = [] if not setup.sensor_mass else [list(setup.points[setup.sensor])]
+    assert [mass["at"] for mass in study["model"].get("mass", [])] == given
     words = ("bad", "peak", "hits", *(name for name in trial.truth.effects if name != "density"))
     assert not any(word in text for word in words if word not in ("E", "thickness", "length"))
     assert set(study["model"]) <= {
@@ -198,12 +202,12 @@ def test_leaving_out_takes_the_true_effect_away() -> None:
     assert (rib.without, rib.accepted, rib.in_library) == ((), (), False)
 
 
-PLATES = Plan(kinds=("plate",))
+PLATES = DrawRanges(kinds=("plate",))
 
 
 def test_plates_are_drawn_as_often_as_said() -> None:
     rng = np.random.default_rng(3)
-    kinds = Counter(draw_setup(rng, plan=Plan(plates=0.3)).kind for _ in range(120))
+    kinds = Counter(draw_setup(rng, plan=DrawRanges(plates=0.3)).kind for _ in range(120))
     assert scipy.stats.binomtest(kinds["plate"], 120, 0.3).pvalue > 1e-4
 
 
@@ -240,7 +244,7 @@ def test_plates_move_the_way_they_must(name: str, values: dict[str, float]) -> N
     )
     setup = replace(setup, sensor_mass=0.0)
     before = nominal_scene(setup)
-    after = SECRETS[name].act(before, values)
+    after = HIDDEN_EFFECTS[name].act(before, values)
     moved = after.elastic().frequency[: setup.modes] / before.elastic().frequency[: setup.modes] - 1
     if name == "E":
         np.testing.assert_allclose(moved, 0.1, rtol=1e-4)

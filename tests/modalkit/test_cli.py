@@ -129,7 +129,7 @@ def test_effects_lists_the_names_of_the_contract(run: Run, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["identify", "nowhere.uff"], "nowhere.uff"),
         (["diagnose", "nowhere.toml"], "nowhere.toml"),
@@ -138,9 +138,9 @@ def test_effects_lists_the_names_of_the_contract(run: Run, tmp_path: Path) -> No
         (["identify", "BEAM", "--json", "no/such/folder/x.json", "--band", "5", "500"], "x.json"),
     ],
 )
-def test_a_mistake_is_one_line_and_code_2(run: Run, arguments: list[str], said: str) -> None:
+def test_a_mistake_is_one_line_and_code_2(run: Run, arguments: list[str], message: str) -> None:
     code, _, err = run(*[beam() if a == "BEAM" else a for a in arguments])
     assert code == 2
-    assert said in err
+    assert message in err
     assert "Traceback" not in err
     assert len(err.strip().splitlines()) == 1

@@ -73,8 +73,8 @@ def test_an_frf_far_less_coherent_than_its_siblings_is_named_with_the_hit(tmp_pa
     points[3] = replace(points[3], force=force)
     path = tmp_path / "hits.uff"
     write_uff(path, tests=replace(test, points=tuple(points)))
-    (said,) = [w for w in read(path).warnings if "mean coherence" in w]
-    assert "the mean coherence of 5+Z/4+Z is 0." in said and "--leave 4+Z:2" in said
+    (message,) = [w for w in read(path).warnings if "mean coherence" in w]
+    assert "the mean coherence of 5+Z/4+Z is 0." in message and "--leave 4+Z:2" in message
     write_uff(path, tests=test)
     assert not any("mean coherence" in w for w in read(path).warnings)
 

@@ -116,12 +116,12 @@ def test_the_ranking_prints_its_probability_at_any_width(diagnosis: Diagnosis) -
 
 
 def test_a_diagnosis_prints_every_size_whole(diagnosis: Diagnosis) -> None:
-    said = str(diagnosis)
-    assert "[...]" not in said and "..." not in said
+    message = str(diagnosis)
+    assert "[...]" not in message and "..." not in message
     first = diagnosis.ranking[0]
     assert first.parameters
     for name, estimate in first.parameters.items():
-        assert name in said and str(estimate) in said
+        assert name in message and str(estimate) in message
         assert str(estimate) in diagnosis.sizes().to_string()
 
 
@@ -155,8 +155,8 @@ def _functions(name: str, thing: Any) -> Iterator[tuple[str, Any]]:
 def test_strings_are_taken_as_paths(tmp_path: Any, session: modalkit.Session) -> None:
     study = str(sample("beam_dry"))
     assert modalkit.read_study(study).name == session.study.name
-    handling = modalkit.Handling(layout=study)
-    assert handling.layout == sample("beam_dry")
+    processing = modalkit.ProcessingOptions(layout=study)
+    assert processing.layout == sample("beam_dry")
     test = modalkit.simulate_test(study)
     test.write(str(tmp_path / "t.uff"))
     assert modalkit.read(str(tmp_path / "t.uff")).hits

@@ -37,12 +37,12 @@ def code() -> str:
 
 
 def test_the_table_is_what_the_command_prints() -> None:
-    said = CliRunner().invoke(app, ["effects", "--table"])
-    assert said.exit_code == 0
-    assert said.stdout == effects_table(effects_record())
+    message = CliRunner().invoke(app, ["effects", "--table"])
+    assert message.exit_code == 0
+    assert message.stdout == effects_table(effects_record())
     begin = PAGE.read_text(encoding="utf-8").split("| effect |")[1]
     written = "| effect |" + begin.split("\n\n")[0] + "\n"
-    assert written == said.stdout, (
+    assert written == message.stdout, (
         "the library has changed: put `modalkit effects --table` into docs/effects.md"
     )
 
@@ -57,16 +57,16 @@ def test_the_effect_on_the_page_is_named(library: dict[str, Effect]) -> None:
     rng = np.random.default_rng(3)
     x = np.linspace(0.0752, 0.376, 5)
     ones = np.ones(5)
-    look = Measured(
+    evaluation = Measured(
         *(np.array([28.0, 176.0, 493.0, 964.0, 1590.0]), ones, 0.01 * ones, 0.001 * ones),
         *(x[:, None], (1, 2, 3, 4, 5), np.full(5, 4), np.arange(5), np.ones((5, 5)), np.ones((5, 5))),
         absolute=True,
     )
-    finer = Predictor(BEAM.with_elements(60), look)
+    finer = Predictor(BEAM.with_elements(60), evaluation)
     truth = finer.predict(effect.state(finer, {"stiffness": 3000.0}), count=5)
     level = 0.003 * np.sqrt(np.mean(truth.constants**2, axis=0)) * np.ones((5, 5))
     test = replace(
-        look,
+        evaluation,
         frequency=truth.frequency * (1 + 5e-4 * rng.standard_normal(5)),
         frequency_sigma=1e-4 * truth.frequency,
         damping=truth.damping * np.exp(0.03 * rng.standard_normal(5)),

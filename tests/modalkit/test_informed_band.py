@@ -11,7 +11,7 @@ from acquisition import Dof, FrfSet, HammerTest, UffContent, estimate_frfs, hamm
 from acquisition.synthetic import HammerPlan, modal_system
 from identification import informed_band
 from modalkit.workflow.identification import Judged, Processed
-from modalkit.workflow.processing_options import Handling
+from modalkit.workflow.processing_options import ProcessingOptions
 
 FREQUENCIES = np.array([60.0, 151.0, 288.0, 417.0, 530.0])
 SYSTEM = modal_system(
@@ -36,10 +36,10 @@ def hit(**more: object) -> tuple[FrfSet, HammerTest]:
 def test_a_band_beyond_the_force_ends_where_the_force_does(hits: int) -> None:
     """The spectrum of a haversine of 5 ms is zero at 400 Hz and every 200 Hz from there."""
     frfs, test = hit(width=5e-3, width_scatter=0.01, hits=hits)
-    (low, high), said = informed_band(frfs, [(test, ())], (20.0, 1000.0))
+    (low, high), message = informed_band(frfs, [(test, ())], (20.0, 1000.0))
     assert low == 20.0 and 330 < high < 420
-    assert said is not None and "to 1000 Hz as asked" in said and "harder tip" in said
-    assert "there is information again" in said  # the first side lobe of the force
+    assert message is not None and "to 1000 Hz as asked" in message and "harder tip" in message
+    assert "there is information again" in message  # the first side lobe of the force
 
 
 def test_a_band_that_the_force_reaches_is_left_alone() -> None:
@@ -51,21 +51,21 @@ def test_a_band_that_the_force_reaches_is_left_alone() -> None:
 
 def test_a_band_to_the_nyquist_frequency_ends_in_the_fall_of_the_filter() -> None:
     frfs, test = hit(width=3e-4, force_noise=1e-4, response_noise=1e-6)
-    (_, high), said = informed_band(frfs, [(test, ())], (20.0, 1024.0))
-    assert 2048 / 2.56 < high < 0.49 * 2048 and said is not None and "filter" in said
+    (_, high), message = informed_band(frfs, [(test, ())], (20.0, 1024.0))
+    assert 2048 / 2.56 < high < 0.49 * 2048 and message is not None and "filter" in message
 
 
 def test_frfs_that_were_read_end_where_coherence_does_not_come_back() -> None:
     frfs, _ = hit(width=5e-3, width_scatter=0.01, force_noise=0.5)
-    (_, high), said = informed_band(frfs, [], (20.0, 1000.0))
-    assert high < 700 and said is not None and "coherence" in said
+    (_, high), message = informed_band(frfs, [], (20.0, 1000.0))
+    assert high < 700 and message is not None and "coherence" in message
     bare = replace(frfs, coherence=None, variance=None, scatter=None)
     assert informed_band(bare, [], (20.0, 1000.0)) == ((20.0, 1000.0), None)
 
 
 def test_no_mode_is_found_beyond_the_force_and_the_user_hears_of_it() -> None:
     frfs, test = hit(width=5e-3, width_scatter=0.01)
-    processed = Processed(UffContent(), frfs, (Judged(test, judge_hits(test)),), Handling(), ())
+    processed = Processed(UffContent(), frfs, (Judged(test, judge_hits(test)),), ProcessingOptions(), ())
     model = processed.identify(band=(20.0, 1000.0))
     np.testing.assert_allclose(model.modal.frequency, FREQUENCIES[:3], rtol=1e-3)
     assert any("as asked" in w for w in model.warnings)
@@ -94,7 +94,7 @@ def test_a_mode_just_above_a_cut_band_does_not_pass_for_one_at_its_edge() -> Non
     )
     test = hammer_test(system, plan, rng=np.random.default_rng(2))
     processed = Processed(
-        UffContent(), estimate_frfs(test), (Judged(test, judge_hits(test)),), Handling(), ()
+        UffContent(), estimate_frfs(test), (Judged(test, judge_hits(test)),), ProcessingOptions(), ()
     )
     model = processed.identify(band=(20.0, 1000.0))
     np.testing.assert_allclose(model.modal.frequency, FREQUENCIES, rtol=1e-3)

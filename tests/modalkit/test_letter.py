@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from modalkit.output.summary import letter, separated
+from modalkit.output.summary import separated, summary_text
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import Closed, Gap, NextTest, ParameterEstimate, Ranked, Shrink, Where
 
@@ -54,7 +54,7 @@ NONE = replace(
 
 
 def lines(diagnosis: Diagnosis) -> dict[str, str]:
-    found = letter(diagnosis)
+    found = summary_text(diagnosis)
     assert [line.split()[0] for line in found] == HEADS
     assert all("\n" not in line and len(line) > 15 for line in found)
     assert not any(word in " ".join(found) for word in ("nan", "None", "inf "))
@@ -70,8 +70,8 @@ def test_five_lines_for_every_verdict(diagnosis: Diagnosis) -> None:
 def test_points_of_the_measurement_are_not_called_nearest_to_a_place_in_the_structure() -> None:
     place = (0.31, 0.0, 0.0)
     where = replace(TIP, location=place, locations=(place,), points=(5,), nearest=(3,))
-    said = lines(replace(NAMED, where=where))["Where"]
-    assert said.endswith("at x = 310 mm (nearest test point 3); in the measurement, point 5")
+    message = lines(replace(NAMED, where=where))["Where"]
+    assert message.endswith("at x = 310 mm (nearest test point 3); in the measurement, point 5")
 
 
 def test_a_sensor_is_named_in_the_sentence_on_the_cause() -> None:
@@ -82,38 +82,38 @@ def test_a_sensor_is_named_in_the_sentence_on_the_cause() -> None:
         effects=("calibration_gain",),
         parameters={"calibration_gain.gain": gain, "calibration_gain.channel": channel},
     )
-    said = lines(replace(NAMED, sets=(row.effects,), ranking=(row, E)))["Cause"]
-    assert "The calibration of the sensor 5+Z is off: its FRFs" in said
-    assert "every FRF" not in said
+    message = lines(replace(NAMED, sets=(row.effects,), ranking=(row, E)))["Cause"]
+    assert "The calibration of the sensor 5+Z is off: its FRFs" in message
+    assert "every FRF" not in message
 
 
 def test_the_summary_states_that_most_modes_have_no_partner() -> None:
-    said = lines(replace(UNKNOWN, comparable=False))["Cause"]
-    assert "most measured modes have no partner" in said
-    assert "nothing in the library" not in said
+    message = lines(replace(UNKNOWN, comparable=False))["Cause"]
+    assert "most measured modes have no partner" in message
+    assert "nothing in the library" not in message
 
 
 def test_a_named_cause_says_its_size_its_place_and_its_test() -> None:
-    said = lines(NAMED)
-    assert "sensor_mass" in said["Cause"]
-    assert "mass 12.3 g (11.9 to 12.7)" in said["Cause"]
-    assert LIBRARY["sensor_mass"].summary in said["Cause"]
-    assert "mass (97 %), at x = 376 mm (nearest test point 5)" in said["Where"]
-    assert "5 % -> 0.1 % fitted, 0.2 % on modes held out (noise floor 0.05 %)" in said["Closes"]
-    assert "runner-up 1.5 %" in said["Closes"]
-    assert "tolerances alone 4 %" in said["Closes"]
-    assert "closes 99 % (97 to 100) of what can be closed" in said["Closes"]
-    assert "97 % probable" in said["Sure"]
-    assert "next E 2 %" in said["Sure"]
-    assert "p = 1e-12" in said["Sure"]
-    assert LIBRARY["sensor_mass"].separated_by in said["Next"]
+    message = lines(NAMED)
+    assert "sensor_mass" in message["Cause"]
+    assert "mass 12.3 g (11.9 to 12.7)" in message["Cause"]
+    assert LIBRARY["sensor_mass"].summary in message["Cause"]
+    assert "mass (97 %), at x = 376 mm (nearest test point 5)" in message["Where"]
+    assert "5 % -> 0.1 % fitted, 0.2 % on modes held out (noise floor 0.05 %)" in message["Closes"]
+    assert "runner-up 1.5 %" in message["Closes"]
+    assert "tolerances alone 4 %" in message["Closes"]
+    assert "closes 99 % (97 to 100) of what can be closed" in message["Closes"]
+    assert "97 % probable" in message["Sure"]
+    assert "next E 2 %" in message["Sure"]
+    assert "p = 1e-12" in message["Sure"]
+    assert LIBRARY["sensor_mass"].separated_by in message["Next"]
 
 
 def test_a_pair_is_named_with_both() -> None:
     both = Ranked(("E", "sensor_mass"), 0.99, (), {**E.parameters, **SENSOR.parameters}, True, 0.5)
-    said = lines(replace(NAMED, sets=(both.effects,), ranking=(both,)))
-    assert said["Cause"].startswith("Cause:   E + sensor_mass.")
-    assert "E factor 0.9 (0.89 to 0.91); mass 12.3 g" in said["Cause"]
+    message = lines(replace(NAMED, sets=(both.effects,), ranking=(both,)))
+    assert message["Cause"].startswith("Cause:   E + sensor_mass.")
+    assert "E factor 0.9 (0.89 to 0.91); mass 12.3 g" in message["Cause"]
 
 
 def test_an_effect_without_parameters_and_one_from_outside() -> None:
@@ -124,11 +124,11 @@ def test_an_effect_without_parameters_and_one_from_outside() -> None:
 
 
 def test_a_class_lists_all_of_it_and_the_test_that_splits_it() -> None:
-    said = lines(SPLIT)
-    assert "cannot tell apart: E (x 0.9), density + length" in said["Cause"]
-    assert "spread over the whole structure" in said["Where"]
-    assert "98 % probable together" in said["Sure"]
-    assert "weigh the specimen: separates E from density by 8 sigma" in said["Next"]
+    message = lines(SPLIT)
+    assert "cannot tell apart: E (x 0.9), density + length" in message["Cause"]
+    assert "spread over the whole structure" in message["Where"]
+    assert "98 % probable together" in message["Sure"]
+    assert "weigh the specimen: separates E from density by 8 sigma" in message["Next"]
     without = lines(replace(SPLIT, next_test=()))["Next"]
     assert LIBRARY["density"].separated_by in without
     assert LIBRARY["length"].separated_by in without
@@ -141,28 +141,28 @@ def test_a_test_that_separates_pairs_reads_as_such() -> None:
 
 
 def test_the_unknown_is_not_dressed_up() -> None:
-    said = lines(UNKNOWN)
-    assert "unknown" in said["Cause"]
-    assert "do not trust it" in said["Where"]
-    assert "376" not in said["Where"]
-    assert "97" not in said["Sure"]
-    assert "modes that miss most" in said["Next"]
+    message = lines(UNKNOWN)
+    assert "unknown" in message["Cause"]
+    assert "do not trust it" in message["Where"]
+    assert "376" not in message["Where"]
+    assert "97" not in message["Sure"]
+    assert "modes that miss most" in message["Next"]
 
 
 def test_no_gap_needs_nothing() -> None:
-    said = lines(NONE)
-    assert "no gap" in said["Cause"]
-    assert "nowhere" in said["Where"]
-    assert "nothing to close" in said["Closes"]
-    assert "p = 0.4" in said["Sure"]
-    assert "within its tolerances" in said["Next"]
+    message = lines(NONE)
+    assert "no gap" in message["Cause"]
+    assert "nowhere" in message["Where"]
+    assert "nothing to close" in message["Closes"]
+    assert "p = 0.4" in message["Sure"]
+    assert "within its tolerances" in message["Next"]
 
 
 def test_a_gap_too_small_to_close_says_no_share() -> None:
     small = replace(NAMED, shrink=replace(NAMED.shrink, closed=None, held_runner_up=None))
-    said = lines(small)["Closes"]
-    assert "of what can be closed" not in said
-    assert "runner-up" not in said
+    message = lines(small)["Closes"]
+    assert "of what can be closed" not in message
+    assert "runner-up" not in message
 
 
 def test_a_fault_of_the_measurement_has_no_place_on_the_structure() -> None:
@@ -173,33 +173,34 @@ def test_a_fault_of_the_measurement_has_no_place_on_the_structure() -> None:
 def test_a_place_on_a_plate_has_two_coordinates_and_its_mirror_images() -> None:
     corner = (0.3, 0.15, 0.0)
     found = replace(TIP, location=corner, locations=(corner,), points=(7, 9), nearest=(7, 9))
-    said = lines(replace(NAMED, where=found))["Where"]
-    assert said.endswith("at x = 300, y = 150 mm (nearest test points 7, 9)")
+    message = lines(replace(NAMED, where=found))["Where"]
+    assert message.endswith("at x = 300, y = 150 mm (nearest test points 7, 9)")
     both = replace(TIP, location=corner, locations=(corner, (0.3, 0.05, 0.0)), points=(), nearest=())
-    said = lines(replace(NAMED, where=both))["Where"]
-    assert said.endswith("at x = 300, y = 150 mm and x = 300, y = 50 mm")
+    message = lines(replace(NAMED, where=both))["Where"]
+    assert message.endswith("at x = 300, y = 150 mm and x = 300, y = 50 mm")
 
 
 def test_effects_that_are_equal_by_physics_are_called_so() -> None:
     gain = Ranked(("calibration_gain",), 0.5, (("section_scale",),), {}, True, 0.5)
     width = Ranked(("section_scale",), 0.49, (("calibration_gain",),), {}, True, 0.5)
-    said = lines(replace(SPLIT, sets=(gain.effects, width.effects), ranking=(gain, width), next_test=()))
-    assert "no hammer test" not in said["Next"]
-    assert "scale every FRF and nothing else" in said["Cause"]
-    assert "calibrate the chain" in said["Next"]
+    message = lines(replace(SPLIT, sets=(gain.effects, width.effects), ranking=(gain, width), next_test=()))
+    assert "no hammer test" not in message["Next"]
+    assert "scale every FRF and nothing else" in message["Cause"]
+    assert "calibrate the chain" in message["Next"]
 
 
 def test_a_size_at_the_end_of_its_range_is_called_unlikely() -> None:
     heavy = replace(SENSOR, parameters={"sensor_mass.mass": replace(MASS, at_bound=True)}, plausible=False)
-    said = lines(replace(NAMED, ranking=(heavy, E)))["Cause"]
-    assert "the end of its range" in said
-    assert "hardly believable" in said
+    message = lines(replace(NAMED, ranking=(heavy, E)))["Cause"]
+    assert "the end of its range" in message
+    assert "hardly believable" in message
 
 
 def test_tolerances_that_would_have_to_be_absurd_are_said_to_be() -> None:
-    said = lines(replace(NAMED, shrink=replace(NAMED.shrink, stretch=28.0)))["Closes"]
+    message = lines(replace(NAMED, shrink=replace(NAMED.shrink, stretch=28.0)))["Closes"]
     assert (
-        "tolerances alone 4 % (kept within 3 sigma; to explain it they would have to be 28 sigma off)" in said
+        "tolerances alone 4 % (kept within 3 sigma; to explain it they would have to be 28 sigma off)"
+        in message
     )
 
 
@@ -210,8 +211,10 @@ def test_with_one_mode_nothing_is_held_out() -> None:
 
 
 def test_all_data_together_are_told_in_standard_deviations() -> None:
-    said = lines(replace(NAMED, shrink=replace(NAMED.shrink, metric="combined", before=1200.0, after=90.0)))
-    assert "misfit of all data 12 sigma -> 0.9 sigma fitted" in said["Closes"]
+    message = lines(
+        replace(NAMED, shrink=replace(NAMED.shrink, metric="combined", before=1200.0, after=90.0))
+    )
+    assert "misfit of all data 12 sigma -> 0.9 sigma fitted" in message["Closes"]
 
 
 def test_a_test_says_which_it_tells_from_which() -> None:

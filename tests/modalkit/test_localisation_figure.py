@@ -34,8 +34,8 @@ def test_localisation_is_legible_for_every_verdict(kind: str, verdict: str) -> N
 
 @pytest.mark.parametrize("kind", ["beam", "plate"])
 def test_points_concerned_are_named(kind: str) -> None:
-    said = words(localisation_figure(diagnosis_with(kind, "named"), case_of(kind)))
-    assert "point 2" in said
+    message = words(localisation_figure(diagnosis_with(kind, "named"), case_of(kind)))
+    assert "point 2" in message
 
 
 @pytest.mark.parametrize("modes", [3, 12, 30])
@@ -46,9 +46,9 @@ def test_as_many_modes_as_fit_are_shown(modes: int) -> None:
 
 
 def test_unknown_says_that_nothing_explains_and_how_zones_were_weighed() -> None:
-    said = words(localisation_figure(diagnosis_with("beam", "unknown")))
-    assert "Nothing explains the gap" in said
-    assert "as if one of them alone were changed" in said
+    message = words(localisation_figure(diagnosis_with("beam", "unknown")))
+    assert "Nothing explains the gap" in message
+    assert "as if one of them alone were changed" in message
 
 
 def test_a_measurement_is_not_in_the_structure() -> None:
@@ -67,9 +67,9 @@ def test_the_title_places_a_pair_in_measurement_and_structure(channel: str) -> N
         ranking=(pair, *plain.ranking[1:]),
         where=replace(plain.where, channel=channel, points=(3,)),
     )
-    said = words(localisation_figure(both))
-    assert "in the measurement of point 3 and in the structure" in said
-    assert "not in the structure" not in said
+    message = words(localisation_figure(both))
+    assert "in the measurement of point 3 and in the structure" in message
+    assert "not in the structure" not in message
 
 
 def test_without_a_table_of_modes_the_structure_stands_alone() -> None:

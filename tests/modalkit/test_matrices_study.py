@@ -152,9 +152,9 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("text", "said"), REFUSED)
-def test_what_does_not_fit_is_refused(tmp_path: Path, text: str, said: str) -> None:
-    with pytest.raises(StudyError, match=said) as error:
+@pytest.mark.parametrize(("text", "message"), REFUSED)
+def test_what_does_not_fit_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(StudyError, match=message) as error:
         read_study(exported(tmp_path, text)).spec()
     assert str(tmp_path) in str(error.value)
     assert "\n" not in str(error.value)

@@ -72,12 +72,12 @@ def test_one_measurement_at_two_points_is_said(tmp_path: Path, sign: float) -> N
     values = np.array(FRFS.values)
     values[3] = sign * values[1]
     write_uff(tmp_path / "copy.uff", frfs=replace(FRFS, values=values, variance=None, scatter=None))
-    said = [w for w in read(tmp_path / "copy.uff").warnings if "identical" in w]
-    assert len(said) == 1 and "1+Z/2+Z, 1+Z/4+Z" in said[0]
+    message = [w for w in read(tmp_path / "copy.uff").warnings if "identical" in w]
+    assert len(message) == 1 and "1+Z/2+Z, 1+Z/4+Z" in message[0]
     same = replace(TEST, points=(*TEST.points[:3], replace(TEST.points[0], reference=Dof(4, 3))))
     write_uff(tmp_path / "hits.uff", tests=same)
-    said = [w for w in read(tmp_path / "hits.uff").warnings if "identical" in w]
-    assert len(said) == 1 and "1+Z/1+Z, 1+Z/4+Z" in said[0]
+    message = [w for w in read(tmp_path / "hits.uff").warnings if "identical" in w]
+    assert len(message) == 1 and "1+Z/1+Z, 1+Z/4+Z" in message[0]
 
 
 def test_reciprocal_and_different_frfs_are_no_copies() -> None:

@@ -14,7 +14,7 @@ from acquisition import InputError
 from identification.fit.search.manual_selection import nearest_modes
 from modalkit.cli import main
 from modalkit.cli.on_demand import ENTRIES, loaded
-from modalkit.workflow.processing_options import Handling, sensor_mass
+from modalkit.workflow.processing_options import ProcessingOptions, sensor_mass
 
 SAMPLE = Path(__file__).resolve().parents[2] / "sample_data" / "beam_wet"
 WORDS = {
@@ -82,12 +82,12 @@ def refused(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], 
         monkeypatch.setattr(sys, "argv", ["modalkit", *words])
         with pytest.raises(SystemExit) as ended:
             main()
-        said = capfd.readouterr().err.strip()
-        assert ended.value.code == 2, said
+        message = capfd.readouterr().err.strip()
+        assert ended.value.code == 2, message
         assert list(tmp_path.iterdir()) == []
-        assert "this should not have happened" not in said
-        assert "Warning:" not in said
-        return said
+        assert "this should not have happened" not in message
+        assert "Warning:" not in message
+        return message
 
     return call
 
@@ -95,8 +95,8 @@ def refused(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], 
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf"])
 @pytest.mark.parametrize(("command", "option", "count"), floats())
 def test_what_is_no_finite_number_is_refused(refused, command, option, count, value) -> None:
-    said = refused(*WORDS[command], *((option, value) if count == 1 else (option, "5", value)))
-    assert option in said
+    message = refused(*WORDS[command], *((option, value) if count == 1 else (option, "5", value)))
+    assert option in message
 
 
 @pytest.mark.parametrize("line", OUT_OF_RANGE.strip().splitlines())
@@ -110,8 +110,8 @@ def test_what_is_out_of_range_is_refused(refused, line: str) -> None:
     [("--band 5mm 500", "Hz"), ("--drop 3rad/s", "Hz"), ("--decay 3kg", "1/s"), ("--band 5Hz", "--band")],
 )
 def test_a_unit_of_another_kind_is_refused(refused, words: str, unit: str) -> None:
-    said = refused(*WORDS["identify"], *words.split())
-    assert unit in said and words.split(maxsplit=1)[0] in said and len(said.splitlines()) == 1
+    message = refused(*WORDS["identify"], *words.split())
+    assert unit in message and words.split(maxsplit=1)[0] in message and len(message.splitlines()) == 1
 
 
 def test_units_are_understood_as_in_a_study() -> None:
@@ -147,7 +147,7 @@ def test_no_mode_is_near_what_is_no_number() -> None:
         nearest_modes(poles, [float("nan")], np.ones(2, dtype=bool), 0.1)
     for value in (float("nan"), float("inf"), -1.0):
         with pytest.raises(InputError, match="decay rates are not negative"):
-            Handling(decay=value)
+            ProcessingOptions(decay=value)
 
 
 def test_too_little_memory_is_said_in_plain_words(refused, monkeypatch: pytest.MonkeyPatch) -> None:

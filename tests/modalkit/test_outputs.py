@@ -80,10 +80,10 @@ def refused(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.Capture
         monkeypatch.setattr(sys, "argv", ["modalkit", *words])
         with pytest.raises(SystemExit) as ended:
             main()
-        said = capfd.readouterr().err.strip()
+        message = capfd.readouterr().err.strip()
         assert ended.value.code == 2, words
         assert contents(folder) == before, words
-        return said
+        return message
 
     return call
 
@@ -109,9 +109,9 @@ def test_every_option_that_names_a_file_to_write_is_examined_here() -> None:
 def test_nothing_is_replaced_but_what_the_command_itself_writes(
     refused: Refused, option: str, place: str
 ) -> None:
-    said = refused(*COMMANDS[option], option.split()[1], place)
-    assert place in said
-    assert "name another" in said or "a table ends in" in said
+    message = refused(*COMMANDS[option], option.split()[1], place)
+    assert place in message
+    assert "name another" in message or "a table ends in" in message
 
 
 @pytest.mark.parametrize(
@@ -134,8 +134,8 @@ def test_nothing_is_replaced_but_what_the_command_itself_writes(
     ],
 )
 def test_inputs_and_files_of_others_stay(refused: Refused, words: str) -> None:
-    said = refused(*words.split())
-    assert "name another file" in said or "name one" in said
+    message = refused(*words.split())
+    assert "name another file" in message or "name one" in message
 
 
 def test_the_message_says_what_to_type(refused: Refused) -> None:

@@ -52,10 +52,10 @@ def test_both_curves_are_in_every_panel() -> None:
     curves = {line.get_label(): line for line in panels["magnitude 3+Z / 2-Z"].lines}
     assert curves["measured"].get_ydata() == pytest.approx(np.abs(both.measured.values[1]))
     assert curves["model"].get_ydata() == pytest.approx(1.5 * np.abs(both.measured.values[1]))
-    said = " ".join(t.get_text() for t in figure.texts)
-    assert "4 of 5 FRFs" in said
-    assert "window of 4 1/s" in said
-    assert "the model's own damping" in said
+    message = " ".join(t.get_text() for t in figure.texts)
+    assert "4 of 5 FRFs" in message
+    assert "window of 4 1/s" in message
+    assert "the model's own damping" in message
 
 
 def test_correlate_writes_record_and_figure(

@@ -14,14 +14,14 @@ from typer.testing import CliRunner
 
 from acquisition.errors import StudyError
 from modalkit.cli import app
-from modalkit.planning import Told, by_default, forecast
+from modalkit.planning import KnownTest, by_default, forecast
 from modalkit.planning.curves import Curve, solve_curve
 from modalkit.planning.design import Design, columns, present, whitener
 from modalkit.planning.document import to_json
 from modalkit.planning.effects import families
 from modalkit.planning.family import Family, short
-from modalkit.planning.forecast import Forecast, Outlook
-from modalkit.planning.from_study import told_by
+from modalkit.planning.forecast import Forecast, TestForecast
+from modalkit.planning.from_study import known_test_of
 from modalkit.planning.responses import Stations
 from modalkit.planning.separability import EQUAL, SEEN, distances, nearest_in
 from modalkit.simulator.setup import Setup, Tolerances
@@ -68,8 +68,8 @@ SETUP = Setup(
 FEW = ("E", "density", "thickness", "section_scale", "clamp_rotation", "calibration_gain", "sensor_mass")
 
 
-def told(setup: Setup = SETUP, **changes: object) -> Told:
-    return replace(Told(setup, *by_default(setup.modes)), **changes)  # type: ignore[arg-type]
+def known_test(setup: Setup = SETUP, **changes: object) -> KnownTest:
+    return replace(KnownTest(setup, *by_default(setup.modes)), **changes)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
@@ -79,16 +79,16 @@ def stations() -> Stations:
 
 @pytest.fixture(scope="module")
 def curves(stations: Stations) -> tuple[Curve, ...]:
-    return tuple(solve_curve(f, stations) for f in families(told()) if f.name in FEW)
+    return tuple(solve_curve(f, stations) for f in families(known_test()) if f.name in FEW)
 
 
 @pytest.fixture(scope="module")
 def sample() -> Forecast:
-    return forecast(told_by(read_study(SAMPLES / "beam_dry" / "study.toml")))
+    return forecast(known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml")))
 
 
-def outlook(curves: tuple[Curve, ...], stations: Stations, design: Design, known: Told) -> Outlook:
-    return Outlook(design, distances(curves, design, known, stations))
+def outlook(curves: tuple[Curve, ...], stations: Stations, design: Design, known: KnownTest) -> TestForecast:
+    return TestForecast(design, distances(curves, design, known, stations))
 
 
 def test_the_distance_to_a_circle_is_that_to_its_rim() -> None:
@@ -110,7 +110,7 @@ def test_the_distance_to_a_surface_is_that_to_its_plane_between_the_points_of_it
 
 def test_whitened_data_of_specimens_inside_their_tolerances_have_unit_variance(stations: Stations) -> None:
     """Frequencies of a cantilever go with sqrt(E / rho) t / L^2, so their doubt is known in closed form."""
-    known = told(shapes=False, damping_known=False)
+    known = known_test(shapes=False, damping_known=False)
     design = present(known)
     white = whitener(design, known, stations)
     covariance = np.linalg.inv(white.T @ white)
@@ -126,7 +126,7 @@ def test_whitened_data_of_specimens_inside_their_tolerances_have_unit_variance(s
 def test_a_modulus_is_seen_where_the_common_doubt_of_the_frequencies_says(
     curves: tuple[Curve, ...], stations: Stations
 ) -> None:
-    known = told(shapes=False, damping_known=False)
+    known = known_test(shapes=False, damping_known=False)
     seen = outlook(curves, stations, present(known), known).limits["E"].seen
     t = SETUP.tolerances
     common = (0.5 * t.E) ** 2 + (0.5 * t.density) ** 2 + t.thickness**2 + (2 * t.length) ** 2
@@ -137,7 +137,7 @@ def test_a_modulus_is_seen_where_the_common_doubt_of_the_frequencies_says(
 def test_frequencies_alone_do_not_tell_a_modulus_from_a_density(
     curves: tuple[Curve, ...], stations: Stations
 ) -> None:
-    known = told(shapes=False, damping_known=False)
+    known = known_test(shapes=False, damping_known=False)
     now = outlook(curves, stations, present(known), known)
     assert now.pairs["E", "density"] < 0.05
     assert not np.isfinite(now.limits["E"].separated)
@@ -147,7 +147,7 @@ def test_frequencies_alone_do_not_tell_a_modulus_from_a_density(
 
 def test_what_is_the_same_to_any_hammer_stays_the_same(curves: tuple[Curve, ...], stations: Stations) -> None:
     """Width moves no frequency and all constants alike, as a gain does: on a beam without a sensor's mass, exactly."""
-    now = outlook(curves, stations, present(told()), told())
+    now = outlook(curves, stations, present(known_test()), known_test())
     assert now.pairs["section_scale", "calibration_gain"] < 0.02
     assert ("section_scale", "calibration_gain") in EQUAL
     assert np.isfinite(now.limits["section_scale"].separated)
@@ -168,7 +168,7 @@ def test_a_better_test_tells_no_less(
     noise: float,
     drive: bool,
 ) -> None:
-    known, plain = told(), present(told())
+    known, plain = known_test(), present(known_test())
     better = replace(
         plain,
         calibration=calibration,
@@ -186,7 +186,7 @@ def test_a_better_test_tells_no_less(
 
 def test_every_severity_lies_on_its_own_curve(curves: tuple[Curve, ...], stations: Stations) -> None:
     """A severity that was not solved is met by the interpolation within a small part of a sigma."""
-    known = told()
+    known = known_test()
     design = present(known)
     white, have = whitener(design, known, stations), columns(design, stations)
     for curve in curves:
@@ -218,7 +218,7 @@ def test_advice_is_ordered_and_names_only_pairs_that_it_turns(sample: Forecast) 
 
 
 def test_every_change_says_how_it_is_followed(sample: Forecast) -> None:
-    setup = sample.told.setup
+    setup = sample.known_test.setup
     for one in sample.advice:
         followed, design = one.change.follow(setup), one.change.design
         assert followed.calibration == design.calibration
@@ -241,7 +241,7 @@ def test_the_document_is_json_and_names_every_effect(sample: Forecast) -> None:
 
 
 def test_a_study_with_data_is_read_as_it_was_measured() -> None:
-    known = told_by(read_study(SAMPLES / "beam_dry" / "study.toml"))
+    known = known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml"))
     assert known.setup.modes == 3
     assert known.setup.hits == 15
     assert known.setup.drive
@@ -251,7 +251,7 @@ def test_a_study_with_data_is_read_as_it_was_measured() -> None:
 
 
 def test_modes_alone_are_taken_as_frequencies_alone() -> None:
-    known = told_by(read_study(SAMPLES / "beam_dry" / "published.toml"))
+    known = known_test_of(read_study(SAMPLES / "beam_dry" / "published.toml"))
     assert not known.shapes
     # the test was made in air: what a liquid would do is not asked
     names = {family.name for family in families(known)}
@@ -282,22 +282,22 @@ def test_a_test_that_is_only_planned_needs_no_data(tmp_path: Path) -> None:
     path.write_text(
         STUDY.format(test="points = [0.1, 0.2, 0.3]\nsensor = 0.4\nhits = 7\nband = [5.0, 300.0]")
     )
-    known = told_by(read_study(path))
+    known = known_test_of(read_study(path))
     assert known.setup.points == ((0.1,), (0.2,), (0.3,), (0.4,))
     assert (known.setup.sensor, known.setup.drive, known.setup.hits, known.setup.modes) == (3, False, 7, 2)
     assert known.damping_known
     path.write_text(STUDY.format(test=""))
-    assert len(told_by(read_study(path)).setup.points) == 8
+    assert len(known_test_of(read_study(path)).setup.points) == 8
     path.write_text(STUDY.format(test="points = [0.1, 0.5]"))
     with pytest.raises(StudyError, match=r"0\.5 m is off the beam"):
-        told_by(read_study(path))
+        known_test_of(read_study(path))
 
 
 def test_what_the_rig_has_no_body_for_is_refused_with_what_can_be_done(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["blind", str(SAMPLES / "plate_dry" / "study.toml")])
     assert done.exit_code != 0
     with pytest.raises(StudyError, match="plan with a beam"):
-        told_by(read_study(SAMPLES / "plate_dry" / "study.toml"))
+        known_test_of(read_study(SAMPLES / "plate_dry" / "study.toml"))
 
 
 def test_numbers_are_said_in_two_or_three_digits() -> None:
@@ -307,7 +307,7 @@ def test_numbers_are_said_in_two_or_three_digits() -> None:
 
 
 def test_a_family_without_signs_is_asked_once_and_one_with_signs_twice() -> None:
-    by_name: dict[str, Family] = {family.name: family for family in families(told())}
+    by_name: dict[str, Family] = {family.name: family for family in families(known_test())}
     assert len(by_name["E"].asked) == 2
     assert len(by_name["sensor_mass"].asked) == 1
     for family in by_name.values():

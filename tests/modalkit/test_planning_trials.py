@@ -12,7 +12,7 @@ from modalkit.blind.answer import Answer
 from modalkit.planning import forecast
 from modalkit.planning.cases import Case, choose
 from modalkit.planning.forecast import Forecast
-from modalkit.planning.from_study import told_by
+from modalkit.planning.from_study import known_test_of
 from modalkit.planning.separability import SEEN
 from modalkit.planning.trials import Tried, check
 from modalkit.planning.writing import noise_for, write_case
@@ -23,7 +23,7 @@ SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
 
 @pytest.fixture(scope="module")
 def sample() -> Forecast:
-    return forecast(told_by(read_study(SAMPLES / "beam_dry" / "study.toml")))
+    return forecast(known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml")))
 
 
 @pytest.fixture(scope="module")
@@ -46,13 +46,13 @@ def test_cases_stay_inside_the_range_of_their_effect(sample: Forecast, cases: tu
     for case in cases:
         assert case.family.low <= case.q <= case.family.high
         assert case.q != 0
-        assert case.family.name in case.accepted(sample.told.setup)
+        assert case.family.name in case.accepted(sample.known_test.setup)
 
 
 def test_the_files_of_a_case_say_what_the_user_says_and_not_what_is_hidden(
     sample: Forecast, cases: tuple[Case, ...], tmp_path: Path
 ) -> None:
-    study = read_study(write_case(cases[0], sample.told, tmp_path, seed=[1]))
+    study = read_study(write_case(cases[0], sample.known_test, tmp_path, seed=[1]))
     own = read_study(SAMPLES / "beam_dry" / "study.toml")
     assert study.tolerances == own.tolerances
     assert study.test.calibration == own.test.calibration
@@ -70,18 +70,18 @@ def test_the_same_seed_writes_the_same_test(
 ) -> None:
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
-        write_case(cases[0], sample.told, tmp_path / name, seed=[4])
+        write_case(cases[0], sample.known_test, tmp_path / name, seed=[4])
     assert (tmp_path / "a" / "test.uff").read_bytes() == (tmp_path / "b" / "test.uff").read_bytes()
 
 
 def test_modes_alone_are_written_where_the_user_has_no_more(
     sample: Forecast, cases: tuple[Case, ...], tmp_path: Path
 ) -> None:
-    told = replace(sample.told, shapes=False)
-    study = read_study(write_case(cases[0], told, tmp_path, seed=[1]))
+    known_test = replace(sample.known_test, shapes=False)
+    study = read_study(write_case(cases[0], known_test, tmp_path, seed=[1]))
     assert study.test.modes == "test.csv"
     assert not study.test.files
-    assert len((tmp_path / "test.csv").read_text().splitlines()) == 1 + told.setup.modes
+    assert len((tmp_path / "test.csv").read_text().splitlines()) == 1 + known_test.setup.modes
 
 
 def tried(case: Case, answer: Answer | None) -> Tried:
@@ -104,7 +104,7 @@ def test_an_answer_is_right_if_it_names_the_effect_or_its_exact_equals_alone(
 
 
 def test_noise_is_matched_in_proportion(sample: Forecast) -> None:
-    setup = replace(sample.told.setup, noise=1e-3)
+    setup = replace(sample.known_test.setup, noise=1e-3)
     assert noise_for(0.004, 0.002, setup) == pytest.approx(2e-3)
 
 

@@ -148,10 +148,10 @@ def test_files_without_a_test_are_refused(folder: Path) -> None:
 def test_a_window_that_the_study_states_is_taken_out(folder: Path, name: str) -> None:
     """The files do not say that the records were windowed; the study does."""
     plain = read(folder / name).identify(band=(10.0, 250.0)).modal
-    told = read(folder / name, decay=1.5)
-    assert told.frfs.decay == 1.5
+    stated = read(folder / name, decay=1.5)
+    assert stated.frfs.decay == 1.5
     assert plain.damping is not None
-    found = told.identify(band=(10.0, 250.0)).modal.damping
+    found = stated.identify(band=(10.0, 250.0)).modal.damping
     assert found is not None
     assert plain.damping - found == pytest.approx(1.5 / (2 * np.pi * FREQUENCY), rel=2e-2)
 

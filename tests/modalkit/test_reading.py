@@ -26,7 +26,7 @@ from modalkit.output.records import modes_record
 from modalkit.workflow.files import read_files
 from modalkit.workflow.identification import read
 from modalkit.workflow.joining import together
-from modalkit.workflow.processing_options import Handling, sensor_mass
+from modalkit.workflow.processing_options import ProcessingOptions, sensor_mass
 
 RATE, SAMPLES = 2048.0, 4096
 SYSTEM = modal_system(
@@ -89,15 +89,15 @@ def test_hits_of_several_tests_are_numbered_through(tmp_path: Path) -> None:
     other = replace(weak, rate=RATE, source="b")
     from modalkit.workflow import identification
 
-    judged = identification._judged([one, other], Handling(), [])
+    judged = identification._judged([one, other], ProcessingOptions(), [])
     drawn = _gather(judged[1].test, judged[1].verdicts)
     assert [name for name, used in zip(drawn.names, drawn.used, strict=True) if not used] == ["1+Z hit 5"]
     names = [(str(v.point), v.hit) for j in judged for v in j.verdicts]
     assert len(set(names)) == 18
     assert [n for n in names if n[0] == "1+Z"] == [("1+Z", k) for k in range(1, 7)]
     assert [(str(v.point), v.hit) for j in judged for v in j.verdicts if not v.used] == [("1+Z", 5)]
-    decided = identification._judged([one, other], Handling(leave=(("1+Z", 4),)), [])
-    frfs = identification._estimated(decided, Handling())
+    decided = identification._judged([one, other], ProcessingOptions(leave=(("1+Z", 4),)), [])
+    frfs = identification._estimated(decided, ProcessingOptions())
     assert frfs.averages is not None
     assert frfs.averages.tolist() == [3, 3, 3, 1, 3, 3]
 
@@ -133,27 +133,27 @@ def test_the_band_ends_where_the_force_does(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "said",
+    "message",
     [{"use": (("1+Z", 1),)}, {"leave": (("1+Z", 1),)}, {"window": 3.0}],
 )
-def test_what_is_for_hits_is_refused_for_frfs(tmp_path: Path, said: dict[str, object]) -> None:
-    with pytest.raises(InputError, match=f"--{next(iter(said))} .*the files hold FRFs"):
-        read(frf_file(tmp_path), handling=Handling(**said))  # type: ignore[arg-type]
+def test_what_is_for_hits_is_refused_for_frfs(tmp_path: Path, message: dict[str, object]) -> None:
+    with pytest.raises(InputError, match=f"--{next(iter(message))} .*the files hold FRFs"):
+        read(frf_file(tmp_path), processing=ProcessingOptions(**message))  # type: ignore[arg-type]
 
 
 def test_what_cannot_act_is_said(tmp_path: Path) -> None:
-    told = read(frf_file(tmp_path), handling=Handling(estimator="Hv"))
-    assert any("estimator Hv is not used" in w for w in told.warnings)
+    stated = read(frf_file(tmp_path), processing=ProcessingOptions(estimator="Hv"))
+    assert any("estimator Hv is not used" in w for w in stated.warnings)
     with pytest.raises(InputError, match="a window on responses is told of without its decay"):
-        read(frf_file(tmp_path), handling=Handling(window_on="responses"))
-    told = read(frf_file(tmp_path), handling=Handling(window_on="responses", decay=2.0))
-    assert any("cannot be set right" in w for w in told.warnings)
+        read(frf_file(tmp_path), processing=ProcessingOptions(window_on="responses"))
+    stated = read(frf_file(tmp_path), processing=ProcessingOptions(window_on="responses", decay=2.0))
+    assert any("cannot be set right" in w for w in stated.warnings)
 
 
 def test_a_point_with_a_single_hit_is_named(tmp_path: Path) -> None:
-    told = read(saved(tmp_path, "s.uff", tests=kept(three(), (3, 1, 3))))
-    assert told.frfs.variance is None
-    assert any("a single usable hit at 2+Z:" in w for w in told.warnings)
+    stated = read(saved(tmp_path, "s.uff", tests=kept(three(), (3, 1, 3))))
+    assert stated.frfs.variance is None
+    assert any("a single usable hit at 2+Z:" in w for w in stated.warnings)
     every = read(saved(tmp_path, "e.uff", tests=kept(three(), (1, 1, 1))))
     assert any("a single usable hit at every point" in w for w in every.warnings)
     assert not any("single" in w for w in read(saved(tmp_path, "f.uff", tests=three())).warnings)
@@ -167,9 +167,9 @@ def test_a_dead_response_is_named(tmp_path: Path) -> None:
 
     test = three()
     test = replace(test, points=tuple(with_dead(p) for p in test.points))
-    told = read(saved(tmp_path, "d.uff", tests=test))
-    assert any("7+Z is dead in every hit" in w for w in told.warnings)
-    assert all(v.used for v in told.hits)
+    stated = read(saved(tmp_path, "d.uff", tests=test))
+    assert any("7+Z is dead in every hit" in w for w in stated.warnings)
+    assert all(v.used for v in stated.hits)
 
 
 def test_an_unstated_window_is_heard(tmp_path: Path) -> None:
@@ -178,8 +178,8 @@ def test_an_unstated_window_is_heard(tmp_path: Path) -> None:
     test = replace(
         test, points=tuple(replace(p, force=p.force * window, motion=p.motion * window) for p in test.points)
     )
-    told = read(saved(tmp_path, "w.uff", tests=test))
-    assert any("state it with --decay" in w for w in told.warnings)
+    stated = read(saved(tmp_path, "w.uff", tests=test))
+    assert any("state it with --decay" in w for w in stated.warnings)
     for fine in (
         read(saved(tmp_path, "s.uff", tests=test), decay=6.0),
         read(saved(tmp_path, "p.uff", tests=three(force_noise=0.05))),
@@ -219,7 +219,7 @@ def test_files_of_several_kinds_are_one_test(tmp_path: Path) -> None:
     assert [len(t.points) for t in content.tests] == [2, 1]
     assert content.geometry.nodes == (1, 3)
     assert all(t.geometry.nodes == (1, 3) for t in content.tests)
-    joined = read(paths, handling=Handling(layout=tmp_path / "layout.toml")).frfs
+    joined = read(paths, processing=ProcessingOptions(layout=tmp_path / "layout.toml")).frfs
     whole = estimate_frfs(test)
     assert np.allclose(joined.values, whole.values, rtol=1e-5, atol=1e-5 * np.abs(whole.values).max())
 
@@ -237,14 +237,14 @@ def test_joined_sets_have_the_mean_trigger_and_one_duration() -> None:
 def test_the_mass_of_a_sensor_is_taken_out_where_it_is_given(tmp_path: Path) -> None:
     path = saved(tmp_path, "m.uff", tests=three())
     plain = read(path).frfs
-    told = read(path, handling=Handling(sensor_masses=(("1-z", 0.01),)))
+    stated = read(path, processing=ProcessingOptions(sensor_masses=(("1-z", 0.01),)))
     expected = remove_sensor_mass(plain, mass=0.01)
-    assert isinstance(told.frfs, FrfSet)
-    assert np.array_equal(told.frfs.values, expected.values)
-    assert not np.allclose(told.frfs.values, plain.values)
-    assert any("10 g at 1+Z" in w for w in told.warnings)
+    assert isinstance(stated.frfs, FrfSet)
+    assert np.array_equal(stated.frfs.values, expected.values)
+    assert not np.allclose(stated.frfs.values, plain.values)
+    assert any("10 g at 1+Z" in w for w in stated.warnings)
     with pytest.raises(InputError, match="no response at 9\\+Z"):
-        read(path, handling=Handling(sensor_masses=(("9+Z", 0.01),)))
+        read(path, processing=ProcessingOptions(sensor_masses=(("9+Z", 0.01),)))
 
 
 @pytest.mark.parametrize("text", ["25+Z", "25+Z=heavy", "25+Z=-1", "25+Z=inf"])

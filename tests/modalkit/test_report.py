@@ -19,8 +19,8 @@ from test_localisation_figure import diagnosis_with
 from acquisition import Dof, FrfSet, InputError
 from modalkit.cli import main
 from modalkit.figures.diagnosis import fitted
-from modalkit.figures.diagnosis.frfs import LINES, thinned
-from modalkit.output.summary import letter
+from modalkit.figures.diagnosis.frfs import LINES, selected_lines
+from modalkit.output.summary import summary_text
 from modalkit.report import Drawing, diagnosis_report, drawings, write_report
 from modalkit.report.html import Column, element, table, text
 from modalkit.report.place import BEGIN
@@ -98,15 +98,15 @@ def test_every_verdict_has_a_report(kind: str, verdict: str, tmp_path: Path) -> 
     diagnosis = complete(diagnosis_with(kind, verdict))
     page = diagnosis_report(diagnosis, [session_of(kind, tmp_path)], when=NOON)
     read = Reader(page)
-    for line in letter(diagnosis):
+    for line in summary_text(diagnosis):
         assert " ".join(line.partition(":")[2].split()) in read.text
-    for said in (
+    for message in (
         "mind the <gap>",
         "a warning <of> the session",
         "plates are modelled as thin",
         "2026-03-01 12:00:00",
     ):
-        assert said in read.text
+        assert message in read.text
     assert read.text.count("How far it closes") == 1
     ids = read.values("id")
     assert len(ids) == len(set(ids))
@@ -149,8 +149,8 @@ def test_the_answer_is_marked_with_its_interval(tmp_path: Path) -> None:
     estimate = ParameterEstimate(0.0121, "kg", 0.0115, 0.0126, False)
     row = Ranked(("sensor_mass",), 0.97, (("lumped_mass",),), {"sensor_mass.mass": estimate}, True, 0.4)
     made = complete(diagnosis_with("beam", "named"))
-    told = replace(made, ranking=(row, *made.ranking[1:]), sets=(("sensor_mass",),))
-    page = diagnosis_report(told, [session_of("beam", tmp_path)], when=NOON)
+    stated = replace(made, ranking=(row, *made.ranking[1:]), sets=(("sensor_mass",),))
+    page = diagnosis_report(stated, [session_of("beam", tmp_path)], when=NOON)
     marked = re.findall(r'<tr class="answer-row">.*?</tr>', page, flags=re.DOTALL)
     assert any("mass = 12.1 g [11.5, 12.6]" in r and "97 %" in r and "lumped_mass" in r for r in marked)
 
@@ -219,12 +219,12 @@ def test_several_specimens_have_a_gap_each(tmp_path: Path) -> None:
     row = Ranked(("E",), 0.99, (), own, True, 0.4)  # type: ignore[arg-type]
     made = complete(replace(diagnosis_with("beam", "named"), ranking=(row,), sets=(row.effects,)), "first")
     modes = pd.concat([made.gap.modes, made.gap.modes.assign(study="second")])
-    told = replace(made, gap=replace(made.gap, modes=modes))
-    read = Reader(diagnosis_report(told, sessions, when=NOON))
+    stated = replace(made, gap=replace(made.gap, modes=modes))
+    read = Reader(diagnosis_report(stated, sessions, when=NOON))
     assert "first: modes of the test" in read.text and "second: modes of the test" in read.text
     assert "those of the first study, first" in read.text
     assert {"gap-title", "gap_2-title"} <= set(read.values("id"))
-    best = [fitted(told, session.case, alone=False).model() for session in sessions]
+    best = [fitted(stated, session.case, alone=False).model() for session in sessions]
     factors = [state.factors["E"] for model in best if model is not None for state in model[1:]]
     assert factors[0] < 1 < factors[1]
 
@@ -234,13 +234,13 @@ def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
     made = diagnosis_with("beam", "named")
     water = ParameterEstimate(1000.0, "kg/m^3", 950.0, 1050.0, False)
     row = Ranked(("fluid_added_mass",), 0.99, (), {"fluid_added_mass.fluid_density": water}, True, 0.4)
-    told = complete(replace(made, ranking=(row,), sets=(row.effects,)), session.case.title)
-    page = diagnosis_report(told, [session], when=NOON)
+    stated = complete(replace(made, ranking=(row,), sets=(row.effects,)), session.case.title)
+    page = diagnosis_report(stated, [session], when=NOON)
     found = re.search(r"median FRAC ([0-9.]+) before, ([0-9.]+) after", page)
     assert found is not None
     assert float(found[1]) < 0.1 and float(found[2]) > 0.8  # at the medians of the severity
     assert len(page) < 1_000_000
-    for drawing in drawings(told, [session]).values():
+    for drawing in drawings(stated, [session]).values():
         assert_legible(drawing.figure)
 
 
@@ -272,11 +272,11 @@ def test_long_records_are_drawn_on_fewer_lines() -> None:
     values = rng.standard_normal((1, lines)) + 1j
     dof = Dof(1, 3)
     long = FrfSet(np.linspace(1, 500, lines), values, (dof,), (dof,), coherence=np.ones((1, lines)))
-    short = thinned(long)
+    short = selected_lines(long)
     assert short.values.shape == (1, LINES - 1)
     assert short.values[0, 7] == values[0, 21]
     assert short.frequency[7] == long.frequency[21]
-    assert thinned(short) is short
+    assert selected_lines(short) is short
 
 
 def test_the_command_writes_report_and_figures(
@@ -288,8 +288,8 @@ def test_the_command_writes_report_and_figures(
         monkeypatch.setattr(sys, "argv", ["modalkit", "diagnose", str(study), *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
             main()
-        said = capfd.readouterr()
-        return int(ended.value.code or 0), said.out, said.err
+        message = capfd.readouterr()
+        return int(ended.value.code or 0), message.out, message.err
 
     page, folder = tmp_path / "out.html", tmp_path / "figures"
     code, out, _ = call("--report", page, "--figures", folder)
@@ -297,8 +297,8 @@ def test_the_command_writes_report_and_figures(
     assert f"report: {page}" in out
     assert sorted(p.stem for p in folder.iterdir()) == ["diagnosis", "gap", "localisation", "shrink"]
     read = Reader(page.read_text(encoding="utf-8"))
-    letter_lines = [line for line in out.splitlines() if line.startswith(("Cause:", "Next:"))]
-    assert all(" ".join(line.partition(":")[2].split()) in read.text for line in letter_lines)
+    summary_lines = [line for line in out.splitlines() if line.startswith(("Cause:", "Next:"))]
+    assert all(" ".join(line.partition(":")[2].split()) in read.text for line in summary_lines)
     code, _, error = call("--report", study)
     assert code == 2
     assert "this command reads it" in error and study.read_text(encoding="utf-8").startswith("#")

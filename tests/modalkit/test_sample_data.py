@@ -102,14 +102,14 @@ def test_beams_carry_their_hits_and_plates_their_coherence() -> None:
 
 
 def test_a_sample_is_made_anew_alike(maker: ModuleType, tmp_path: Path) -> None:
-    rig = maker.rigs()[0]
-    made = read(maker.make(rig, tmp_path)).frfs
-    kept = read(SAMPLES / rig.name / f"{rig.name}.uff").frfs
+    test_setup = maker.rigs()[0]
+    made = read(maker.make(test_setup, tmp_path)).frfs
+    kept = read(SAMPLES / test_setup.name / f"{test_setup.name}.uff").frfs
     # another linear-algebra library may round differently, and a converter step with it
     assert np.abs(made.values - kept.values).max() < 1e-3 * np.abs(kept.values).max()
-    maker.write_modes(rig.name, tmp_path)
-    modes = (tmp_path / rig.name / "modes.csv").read_text(encoding="utf-8")
-    assert modes == (SAMPLES / rig.name / "modes.csv").read_text(encoding="utf-8")
+    maker.write_modes(test_setup.name, tmp_path)
+    modes = (tmp_path / test_setup.name / "modes.csv").read_text(encoding="utf-8")
+    assert modes == (SAMPLES / test_setup.name / "modes.csv").read_text(encoding="utf-8")
 
 
 def test_the_joint_test_is_made_anew_alike(maker: ModuleType, tmp_path: Path) -> None:
@@ -139,13 +139,13 @@ def test_frequencies_follow_the_hits_in_the_joint_test_and_in_no_other() -> None
 
 
 def test_a_tape_test_is_made_anew_alike(maker: ModuleType, tmp_path: Path) -> None:
-    rig = maker.RIGS[1]
-    made = read(maker.make_tape(rig, tmp_path)).frfs
-    kept = read(SAMPLES / rig.name / f"{rig.name}.uff").frfs
+    test_setup = maker.RIGS[1]
+    made = read(maker.make_tape(test_setup, tmp_path)).frfs
+    kept = read(SAMPLES / test_setup.name / f"{test_setup.name}.uff").frfs
     assert np.abs(made.values - kept.values).max() < 1e-3 * np.abs(kept.values).max()
-    maker.write_modes(rig.name, tmp_path)
-    modes = (tmp_path / rig.name / "modes.csv").read_text(encoding="utf-8")
-    assert modes == (SAMPLES / rig.name / "modes.csv").read_text(encoding="utf-8")
+    maker.write_modes(test_setup.name, tmp_path)
+    modes = (tmp_path / test_setup.name / "modes.csv").read_text(encoding="utf-8")
+    assert modes == (SAMPLES / test_setup.name / "modes.csv").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -204,7 +204,7 @@ def test_the_shapes_are_as_complex_as_the_tape_makes_them(maker: ModuleType, tap
 def test_the_structure_behind_is_near_the_published_frequencies_before_its_poles_are_moved(
     maker: ModuleType,
 ) -> None:
-    for rig in maker.rigs():
-        truth = maker.structure_behind(rig).frequency[: len(PUBLISHED[rig.name])]
-        error = truth / np.array(PUBLISHED[rig.name]) - 1
-        assert np.sqrt(np.mean(error**2)) < (0.04 if rig.wet else 0.01)
+    for test_setup in maker.rigs():
+        truth = maker.structure_behind(test_setup).frequency[: len(PUBLISHED[test_setup.name])]
+        error = truth / np.array(PUBLISHED[test_setup.name]) - 1
+        assert np.sqrt(np.mean(error**2)) < (0.04 if test_setup.wet else 0.01)

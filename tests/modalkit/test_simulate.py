@@ -104,7 +104,7 @@ def test_the_file_depends_on_study_and_seed_alone(run: Run, tmp_path: Path) -> N
 def test_the_rig_is_that_of_the_study_s_own_hits() -> None:
     """The sample was made with these figures; window, rate and records are stated, the rest is heard."""
     made = simulate_test(read_study(STUDY), options=Options(hits=1))
-    plan = made.rig.plan
+    plan = made.test_setup.plan
     assert (plan.rate, plan.samples, plan.decay, plan.form) == (1280.0, 1024, 8.0, "accelerance")
     assert simulate_test(read_study(STUDY)).tests[0].points[0].count == 15
     assert plan.peak == pytest.approx(60.0, rel=0.1)
@@ -112,7 +112,7 @@ def test_the_rig_is_that_of_the_study_s_own_hits() -> None:
     assert plan.force_noise == pytest.approx(2e-4 * 60, rel=0.25)
     motion = np.abs(read_uff(STUDY.parent / "beam_dry.uff").tests[0].points[2].motion).max()
     assert plan.response_floor == pytest.approx(3e-4 * motion, rel=0.5)
-    assert made.rig.band == (5.0, 500.0)
+    assert made.test_setup.band == (5.0, 500.0)
     assert made.tests[0].decay == 8.0
 
 
@@ -197,15 +197,17 @@ def test_a_planned_test_needs_no_data_and_a_free_beam_hangs(tmp_path: Path) -> N
     )
     made = simulate_test(study, options=Options(hits=2, samples=4096))
     assert len(made.table()) == 5
-    assert any("hung on cords" in r for r in made.remarks)
+    assert any("hung on cords" in r for r in made.notes)
     made.write(tmp_path / "out.uff")
     processed = read(tmp_path / "out.uff")
     assert processed.frfs.geometry.coordinates[:, 1] == pytest.approx(np.linspace(0, 0.4, 5))
-    model = processed.identify(band=(20.0, made.rig.band[1]))
+    model = processed.identify(band=(20.0, made.test_setup.band[1]))
     assert model.modal.frequency == pytest.approx(made.table()["frequency [Hz]"].to_numpy(), rel=1e-4)
     written = tmp_path / "back.toml"
     written.write_text(
-        study.path.read_text().replace("[test]", f'[test]\nfiles = ["out.uff"]\nband = {list(made.rig.band)}')
+        study.path.read_text().replace(
+            "[test]", f'[test]\nfiles = ["out.uff"]\nband = {list(made.test_setup.band)}'
+        )
     )
     again = simulate_test(read_study(written), options=Options(hits=1))
     assert again.table()["frequency [Hz]"].to_numpy() == pytest.approx(
@@ -221,8 +223,8 @@ def test_transducers_along_turned_axes_point_the_model_s_way(tmp_path: Path) -> 
     ):
         study = read_study(study_of(tmp_path, f"axes = {{ {axes} }}"))
         made = simulate_test(study, options=Options(hits=1, samples=256))
-        assert {dof.direction for dof in made.rig.references} == {direction}
-        way = made.rig.geometry.direction(made.rig.references[0])
+        assert {dof.direction for dof in made.test_setup.references} == {direction}
+        way = made.test_setup.geometry.direction(made.test_setup.references[0])
         assert way == pytest.approx(study.axes(study.test).rotation[2])
 
 
@@ -237,7 +239,7 @@ def test_points_stand_off_the_clamps() -> None:
 
 
 @pytest.mark.parametrize(
-    ("effect", "said"),
+    ("effect", "message"),
     [
         ("senser_mass:mass=0.01", "did you mean sensor_mass?"),
         ("warp", "`modalkit effects` lists them"),
@@ -248,11 +250,11 @@ def test_points_stand_off_the_clamps() -> None:
         ("sensor_mass:mass=nan", "is no PARAM=VALUE"),
     ],
 )
-def test_a_wrong_effect_is_one_line_and_no_file(run: Run, tmp_path: Path, effect: str, said: str) -> None:
+def test_a_wrong_effect_is_one_line_and_no_file(run: Run, tmp_path: Path, effect: str, message: str) -> None:
     target = tmp_path / "out.uff"
     code, _, err = run("simulate", STUDY, "--effect", effect, "-o", target)
     assert code == 2
-    assert said in err
+    assert message in err
     assert err.strip().count("\n") == 0
     assert list(tmp_path.iterdir()) == []
 
@@ -290,7 +292,7 @@ def test_a_new_mounting_scatters_as_the_study_says() -> None:
     assert np.abs(ratios.imag).max() < 1e-12
     spread = np.sqrt(np.mean((ratios.real - 1) ** 2))
     assert spread == pytest.approx(study.test.repeatability, rel=0.5)  # 36 draws: 12 % is one sigma
-    gains = np.array([one.rig.plan.gain for one in again])
+    gains = np.array([one.test_setup.plan.gain for one in again])
     assert np.sqrt(np.mean(np.log(gains) ** 2)) == pytest.approx(study.test.calibration, rel=0.8)
 
 
@@ -350,12 +352,12 @@ def test_every_effect_can_be_simulated_and_acts_as_in_a_prediction(tmp_path: Pat
 
 
 def test_the_rig_of_averaged_frfs_has_their_lines_averages_and_noise(tmp_path: Path) -> None:
-    told = Options(hits=8, noise=2e-3)
-    first = simulate_test(read_study(STUDY), seed=2, options=told)
+    stated = Options(hits=8, noise=2e-3)
+    first = simulate_test(read_study(STUDY), seed=2, options=stated)
     first.write(tmp_path / "frfs.uff", as_frfs=True)
     plan = simulate_test(
         read_study(pointed_at(tmp_path / "frfs.uff", tmp_path)), options=Options(noise=None)
-    ).rig.plan
+    ).test_setup.plan
     assert plan.hits == 8
     assert plan.rate == pytest.approx(1280.0, rel=2e-3)
     assert plan.samples == pytest.approx(1024, rel=2e-3)
@@ -390,8 +392,8 @@ def test_a_window_applied_on_reading_is_not_one_of_the_records(run: Run, tmp_pat
     )
     made = simulate_test(read_study(path), options=Options(hits=1))
     assert made.tests[0].decay == 8.0
-    plain = simulate_test(read_study(STUDY), options=Options(hits=1)).rig.plan
-    assert made.rig.plan.response_floor == pytest.approx(plain.response_floor, rel=0.2)
+    plain = simulate_test(read_study(STUDY), options=Options(hits=1)).test_setup.plan
+    assert made.test_setup.plan.response_floor == pytest.approx(plain.response_floor, rel=0.2)
 
 
 def test_accepted_effects_are_in_the_model_already(tmp_path: Path) -> None:

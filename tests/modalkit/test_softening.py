@@ -12,7 +12,7 @@ from acquisition import Dof, Geometry, UffContent, estimate_frfs, hammer_test, j
 from acquisition.synthetic import HammerPlan, ModalSystem, modal_system
 from identification import ModalModel
 from modalkit.workflow.identification import Judged, Processed
-from modalkit.workflow.processing_options import Handling
+from modalkit.workflow.processing_options import ProcessingOptions
 from updating import Axes, Material, Predictor, Spec, measured_from_identified
 from updating.prediction.matching import pair_modes
 
@@ -62,7 +62,7 @@ def identified(slope: float, scatter: float, seed: int) -> ModalModel:
         lambda level: softened(level, slope), plan, rng=np.random.default_rng(seed), geometry=geometry
     )
     processed = Processed(
-        UffContent(), estimate_frfs(test), (Judged(test, judge_hits(test)),), Handling(), ()
+        UffContent(), estimate_frfs(test), (Judged(test, judge_hits(test)),), ProcessingOptions(), ()
     )
     return processed.identify(band=BAND)
 
@@ -107,7 +107,7 @@ def test_a_mode_of_another_shape_between_true_ones_has_no_partner() -> None:
 
 def test_frequencies_that_follow_the_level_are_warned_of() -> None:
     soft = identified(3e-4, 0.5, 1)
-    said = [w for w in soft.warnings if "follow the force of the hits" in w]
-    assert len(said) == 1
-    assert "-" in said[0] and "joint" in said[0]
+    message = [w for w in soft.warnings if "follow the force of the hits" in w]
+    assert len(message) == 1
+    assert "-" in message[0] and "joint" in message[0]
     assert not any("follow the force" in w for w in identified(0.0, 0.5, 0).warnings)

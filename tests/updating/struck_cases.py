@@ -114,15 +114,15 @@ def struck_case(
 def _ratios(bench: Bench, rng: np.random.Generator) -> np.ndarray:
     """Damping ratios by mode that are off what the model expects by a fifth."""
     omega = 2 * np.pi * Predictor(bench.truth, blank(np.squeeze(bench.points))).predict(count=14).frequency
-    told = bench.truth.damping
-    expected = 0.5 * (told.alpha / omega + told.beta * omega)
+    stated = bench.truth.damping
+    expected = 0.5 * (stated.alpha / omega + stated.beta * omega)
     return np.asarray(expected * np.exp(0.2 * rng.standard_normal(14)))
 
 
 def _measured(bench: Bench, off: State, faults: Faults, roving: Roving, rng: np.random.Generator) -> Measured:
     frfs = hits_to_frfs(bench, off, faults, roving, rng)
-    told = frfs.decay - faults.decay  # the analyst takes out what he knows of
-    modal = identify(replace(frfs, decay=told), band=bench.band)
+    stated = frfs.decay - faults.decay  # the analyst takes out what he knows of
+    modal = identify(replace(frfs, decay=stated), band=bench.band)
     return measured_from_identified(modal, Axes(), bench.nominal)
 
 

@@ -38,9 +38,9 @@ def baseline(ratios: list[float], *, damping: float | None = 0.01, shapes: bool 
 
 
 def corrected(test: Measured) -> Predictor:
-    looking = LOOK.looking(test)
-    state = correct(looking, test, np.arange(len(test.frequency)))
-    return looking.looking(test, (lambda _: state,))
+    own_predictor = LOOK.for_test(test)
+    state = correct(own_predictor, test, np.arange(len(test.frequency)))
+    return own_predictor.for_test(test, (lambda _: state,))
 
 
 @settings(max_examples=10, deadline=None)
@@ -89,16 +89,16 @@ def test_an_effect_acts_on_the_corrected_model() -> None:
 def test_a_baseline_without_damping_expects_none() -> None:
     bare = Predictor(replace(BEAM, damping=Damping()), LOOK.measured)
     test = baseline([0.9, 1.0], damping=None)
-    assert correct(bare.looking(test), test, np.arange(2)).damping == ()
-    known = correct(bare.looking(test), baseline([0.9, 1.0]), np.arange(2))
+    assert correct(bare.for_test(test), test, np.arange(2)).damping == ()
+    known = correct(bare.for_test(test), baseline([0.9, 1.0]), np.arange(2))
     assert len(known.damping) == 1
-    told = bare.looking(test, (lambda _: known,))
-    assert told.expects_damping
+    stated = bare.for_test(test, (lambda _: known,))
+    assert stated.expects_damping
     assert not bare.expects_damping
 
 
 def test_two_modes_for_one_of_the_models_are_refused() -> None:
     test = baseline([1.0, 1.0], shapes=False)
     with pytest.raises(EstimationError, match="two measured modes"):
-        correct(LOOK.looking(test), test, np.array([0, 0]))
-    assert isinstance(correct(LOOK.looking(test), test, np.array([0, 1])), State)
+        correct(LOOK.for_test(test), test, np.array([0, 0]))
+    assert isinstance(correct(LOOK.for_test(test), test, np.array([0, 1])), State)

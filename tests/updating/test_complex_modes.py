@@ -24,7 +24,7 @@ BEAM = Spec("beam", 1.0, 0.0315, 0.0046, (20,), (), "euler-bernoulli", STEEL, HA
 LINES = 2j * np.pi * np.linspace(5.0, 500.0, 60) + 2.0
 
 
-def chain(rng: np.random.Generator, n: int) -> Matrices:
+def channel_group(rng: np.random.Generator, n: int) -> Matrices:
     """Return a random chain of masses with dashpots that couple its modes."""
     springs = rng.uniform(1e4, 3e4, n)
     links = np.eye(n) - np.eye(n, k=-1)
@@ -50,7 +50,7 @@ def test_structural_damping_turns_the_stiffness() -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_modes_add_up_to_the_receptance(seed: int) -> None:
-    system = chain(np.random.default_rng(seed), 6)
+    system = channel_group(np.random.default_rng(seed), 6)
     viscous = replace(system, structural=np.zeros((6, 6)))
     modes = complex_modes(viscous)
     s = 2j * np.pi * np.linspace(1.0, 60.0, 40) + 0.5
@@ -63,7 +63,7 @@ def test_the_modes_add_up_to_the_receptance(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_every_line_solves_its_equation(seed: int) -> None:
-    system = chain(np.random.default_rng(seed), 5)
+    system = channel_group(np.random.default_rng(seed), 5)
     s = np.array([3.0 + 40j, 100j])
     found = receptance(system, np.eye(5), np.eye(5)[[1] * 5], s)
     for line, column in zip(s, found.T, strict=True):

@@ -32,12 +32,12 @@ THICK = replace(BEAM, thickness=0.012, theory="euler-bernoulli", regions=())
 def beam_with(**changes: object) -> Case:
     """A hammer test of a beam with something the model lacks."""
     rng = np.random.default_rng(11)
-    chain = {n: changes.pop(n) for n in ("gain", "decay") if n in changes}
+    channel_group = {n: changes.pop(n) for n in ("gain", "decay") if n in changes}
     beam = specimen(rng)
     if "tip" in changes:
         changes["masses"] = ((beam.length, changes.pop("tip")),)
     made = {n: getattr(beam, n) * v if n == "E" else v for n, v in changes.items()}
-    return case_of(struck(replace(beam, **made), rng, **chain), BEAM)  # type: ignore[arg-type]
+    return case_of(struck(replace(beam, **made), rng, **channel_group), BEAM)  # type: ignore[arg-type]
 
 
 def fluid_test(seed: int, *, density: float = 998.0, scatter: float = 0.2) -> Measured:
@@ -184,8 +184,8 @@ def test_frequencies_alone_cannot_tell_factors_apart() -> None:
 @pytest.mark.parametrize("gain", [1.0, 1.6])
 def test_the_level_of_mass_normalised_shapes_is_compared(gain: float) -> None:
     """A gain of the FRFs is its root in the shapes, whose signs are free mode by mode."""
-    told = beam_with()
-    test = told.measured
+    stated = beam_with()
+    test = stated.measured
     drive = np.flatnonzero(test.seen == test.hit)[0]
     scale = np.sign(np.arange(test.constants.shape[1]) % 2 - 0.5) * np.sqrt(
         gain / np.abs(test.constants[drive])
@@ -197,7 +197,7 @@ def test_the_level_of_mass_normalised_shapes_is_compared(gain: float) -> None:
         seen=test.hit,
         hit=np.full(len(test.hit), -1),
     )
-    found = diagnose(replace(told, measured=shapes), library=some("E", "sensor_mass", "calibration_gain"))
+    found = diagnose(replace(stated, measured=shapes), library=some("E", "sensor_mass", "calibration_gain"))
     if gain == 1.0:
         assert found.verdict == "none"
         return
@@ -208,8 +208,8 @@ def test_the_level_of_mass_normalised_shapes_is_compared(gain: float) -> None:
 
 
 def test_an_effect_put_into_the_model_is_not_found_again() -> None:
-    told = replace(TRUTHS["sensor_mass"](), accepted=(("sensor_mass", {"mass": 0.012}),))
-    found = diagnose(told, library=some("E", "sensor_mass", "clamp_rotation"))
+    stated = replace(TRUTHS["sensor_mass"](), accepted=(("sensor_mass", {"mass": 0.012}),))
+    found = diagnose(stated, library=some("E", "sensor_mass", "clamp_rotation"))
     assert found.verdict == "none"
     assert all("sensor_mass" not in r.effects for r in found.ranking)
 

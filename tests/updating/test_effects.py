@@ -94,7 +94,7 @@ def test_what_cannot_be_examined_is_said() -> None:
         replace(LOOK["beam"].measured, damping=np.full(2, np.nan)),
     )
     assert "already" in (LIBRARY["shear"].obstacle(thick) or "")
-    assert "damping" in (LIBRARY["exponential_window"].obstacle(LOOK["beam"].looking(unknown)) or "")
+    assert "damping" in (LIBRARY["exponential_window"].obstacle(LOOK["beam"].for_test(unknown)) or "")
 
 
 @every
@@ -263,8 +263,8 @@ def test_a_soft_spot_says_its_compliance() -> None:
 
 
 def test_a_fluid_that_is_told_is_not_searched_for() -> None:
-    told = replace(LOOK["beam"], environment=Environment(fluid_density=998.0))
-    (parameter,) = LIBRARY["fluid_added_mass"].parameters(told)
+    stated = replace(LOOK["beam"], environment=Environment(fluid_density=998.0))
+    (parameter,) = LIBRARY["fluid_added_mass"].parameters(stated)
     assert parameter.low == pytest.approx(0.97 * 998)
     assert parameter.high == pytest.approx(1.03 * 998)
 

@@ -268,7 +268,7 @@ def test_a_soft_spot_beside_another_effect(
 def test_a_soft_spot_follows_the_modulus_of_the_plate_it_is_in(cantilever: Predictor) -> None:
     """An accepted factor of E stiffens the place and its surroundings alike: all frequencies scale by its root."""
     spot = spotted(cantilever, SPOTS[2])
-    stiffer = cantilever.looking(cantilever.measured, (lambda _: State(factors={"E": 1.3}),))
+    stiffer = cantilever.for_test(cantilever.measured, (lambda _: State(factors={"E": 1.3}),))
     both = [p.predict(LIBRARY["local_stiffness"].state(p, spot), count=8) for p in (cantilever, stiffer)]
     assert both[1].frequency == pytest.approx(np.sqrt(1.3) * both[0].frequency, rel=1e-9)
 
@@ -312,7 +312,7 @@ def test_an_accelerometer_that_roves_loads_the_mean_of_its_places() -> None:
     """To first order: the mean frequency of a model loaded at one place after the other, to 2 % of the shift."""
     predictor = LOOK["beam"]
     test = predictor.measured
-    roving = predictor.looking(replace(test, seen=test.hit, hit=test.seen))
+    roving = predictor.for_test(replace(test, seen=test.hit, hit=test.seen))
     assert LIBRARY["sensor_mass"].why_not(roving) is None
     mass = 0.001 * LINE * BEAM.length
     found = roving.predict(LIBRARY["sensor_mass"].state(roving, {"mass": mass}), count=5).frequency

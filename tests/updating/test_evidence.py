@@ -13,12 +13,12 @@ from updating_cases import BEAM, DOUBTS, ExactBeam, blank, case_of, observed
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
-from updating.diagnosis.search.fit import Point, climb, evaluate
+from updating.diagnosis.search.fit import Point, evaluate, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.likelihood.comparison import KNOWN_SCATTER, SCALES, Comparison
-from updating.likelihood.gaussian import gaussian, marginal, whiten
+from updating.likelihood.gaussian import gaussian, marginal, normal_equations
 from updating.problem.candidate import Candidate
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 COARSE = replace(BEAM, elements=(8,), theory="euler-bernoulli")
 HIT = np.array([0.1, 0.25, 0.376])
@@ -39,12 +39,12 @@ def trial(*, E: float = 1.0, gain: float = 1.0, noise: float = 1.0, **changes: o
     return replace(test, **wider, repeatability=noise * test.repeatability, **changes)  # type: ignore[arg-type]
 
 
-def posed(measured: Measured, doubts: dict[str, float] | None = None) -> Problem:
+def diagnosis_problem(measured: Measured, doubts: dict[str, float] | None = None) -> SpecimenProblem:
     case = case_of(measured, COARSE)
     return pose(replace(case, tolerances=Tolerances(DOUBTS if doubts is None else doubts)))[0]
 
 
-def brute(problem: Problem, candidate: Candidate, count: int) -> float:
+def brute(problem: SpecimenProblem, candidate: Candidate, count: int) -> float:
     """Integrate the likelihood over the unit cube of prior quantiles, by the midpoint rule."""
     k = len(candidate.starts(problem.predictor)[0])
     axes = np.meshgrid(*[(np.arange(count) + 0.5) / count] * k, indexing="ij")
@@ -75,7 +75,7 @@ FINE = 500
     ],
 )
 def test_evidence_of_one_parameter(names: str, truth: dict[str, float]) -> None:
-    problem = posed(trial(**truth))
+    problem = diagnosis_problem(trial(**truth))
     found = explain(problem, candidate(names))
     assert found.log_evidence == pytest.approx(brute(problem, candidate(names), FINE), abs=0.2)
     assert found.weights.sum() == pytest.approx(1.0)
@@ -93,7 +93,7 @@ def test_evidence_of_one_parameter(names: str, truth: dict[str, float]) -> None:
     ],
 )
 def test_evidence_of_two_parameters(names: tuple[str, ...], truth: dict[str, float]) -> None:
-    problem = posed(trial(**truth, noise=12.0), {"E": 0.03})
+    problem = diagnosis_problem(trial(**truth, noise=12.0), {"E": 0.03})
     found = explain(problem, candidate(*names))
     assert found.log_evidence == pytest.approx(brute(problem, candidate(*names), 40), abs=0.2)
 
@@ -102,7 +102,7 @@ def test_a_parameter_that_nothing_sees_costs_nothing() -> None:
     """Frequencies alone do not see a common factor on stiffness and mass, nor the gain."""
     test = trial()
     blind = replace(test, seen=test.seen[:0], hit=test.hit[:0], constants=test.constants[:0])
-    problem = posed(replace(blind, constants_sigma=blind.constants, absolute=False))
+    problem = diagnosis_problem(replace(blind, constants_sigma=blind.constants, absolute=False))
     plain = explain(problem, Candidate()).log_evidence
     found = explain(problem, candidate("section_scale"))
     assert found.log_evidence == pytest.approx(plain, abs=0.05)
@@ -114,7 +114,7 @@ def test_a_parameter_that_nothing_sees_costs_nothing() -> None:
 
 
 def test_the_posterior_is_where_the_truth_is_and_as_wide_as_the_likelihood() -> None:
-    problem = posed(trial(E=0.9))
+    problem = diagnosis_problem(trial(E=0.9))
     found = explain(problem, candidate("E"))
     grid = (np.arange(FINE) + 0.5) / FINE
     score = np.array([evaluate(problem, candidate("E"), np.array([u])).marginal.log_likelihood for u in grid])
@@ -123,7 +123,7 @@ def test_the_posterior_is_where_the_truth_is_and_as_wide_as_the_likelihood() -> 
     assert found.weights @ found.samples[:, 0] == pytest.approx(mean, abs=2e-3)
     width = np.sqrt(weight @ (grid - mean) ** 2)
     assert np.sqrt(found.weights @ (found.samples[:, 0] - mean) ** 2) == pytest.approx(width, rel=0.15)
-    peak = climb(problem, candidate("E"), np.array([0.2]))
+    peak = maximise(problem, candidate("E"), np.array([0.2]))
     assert peak.point.coordinates[0] == pytest.approx(grid[np.argmax(score)], abs=1e-3)
     assert peak.normal[0, 0] == pytest.approx(1 / width**2, rel=0.15)
 
@@ -175,7 +175,7 @@ def test_whitened_least_squares_is_that_of_the_full_covariance(seed: int, scale:
     data = comparison(seed)
     columns = np.random.default_rng(seed + 1).standard_normal((24, 3))
     inverse = np.linalg.inv(full(data, scale, np.ones(24, bool)))
-    normal, load = whiten(data, columns, scale)
+    normal, load = normal_equations(data, columns, scale)
     np.testing.assert_allclose(normal, columns.T @ inverse @ columns, rtol=1e-7)
     np.testing.assert_allclose(load, columns.T @ inverse @ data.residual, rtol=1e-6, atol=1e-6)
 
@@ -213,7 +213,7 @@ def test_one_scale_is_one_gaussian() -> None:
 
 
 def test_a_pair_has_the_parameters_of_both() -> None:
-    problem = posed(trial())
+    problem = diagnosis_problem(trial())
     both = candidate("E", "sensor_mass")
     prior = LIBRARY["E"].parameters(problem.predictor)[0]
     values = both.values(problem.predictor, [0.25, 0.75, 0.2])

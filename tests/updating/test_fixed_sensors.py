@@ -15,7 +15,7 @@ from updating.effects import accepted_state
 PLACES = np.linspace(0.05, 0.376, 7)
 
 
-def looking(*, roving: str = "hit") -> Predictor:
+def test_predictor(*, roving: str = "hit") -> Predictor:
     """Seven points and two ends that stayed, at the first point and the fifth."""
     base = blank(PLACES)
     zero = np.zeros((14, 2))
@@ -27,35 +27,35 @@ def looking(*, roving: str = "hit") -> Predictor:
 
 @pytest.mark.parametrize("name", ["5+Z", "5+z", "5"])
 def test_a_sensor_and_the_hits_beside_it_are_two_things(name: str) -> None:
-    look = looking()
+    evaluation = test_predictor()
     polarity = LIBRARY["polarity"]
-    assert polarity.state(look, {"channel": name}).point_gains == {("seen", 4): -1.0}
-    assert polarity.state(look, {"points": (5,)}).point_gains == {("hit", 4): -1.0}
-    roved = looking(roving="seen")
+    assert polarity.state(evaluation, {"channel": name}).point_gains == {("seen", 4): -1.0}
+    assert polarity.state(evaluation, {"points": (5,)}).point_gains == {("hit", 4): -1.0}
+    roved = test_predictor(roving="seen")
     assert polarity.state(roved, {"channel": name}).point_gains == {("hit", 4): -1.0}
     assert polarity.state(roved, {"points": (5,)}).point_gains == {("seen", 4): -1.0}
 
 
 def test_the_forms_of_an_effect_can_be_stated_as_they_are_reported() -> None:
-    look = looking()
-    look = look.looking(replace(look.measured, constants=np.ones((14, 2))))
+    evaluation = test_predictor()
+    evaluation = evaluation.for_test(replace(evaluation.measured, constants=np.ones((14, 2))))
     for name, more in (("polarity", {}), ("calibration_gain", {"gain": 0.9})):
-        forms = [form.values for form in LIBRARY[name].variants(look)]
+        forms = [form.values for form in LIBRARY[name].variants(evaluation)]
         assert {"5+Z", "1+Z"} <= {values.get("channel") for values in forms}
         for values in forms:
-            state = accepted_state(look, name, {**values, **more})
-            again = LIBRARY[name].state(look, {**values, **more})
+            state = accepted_state(evaluation, name, {**values, **more})
+            again = LIBRARY[name].state(evaluation, {**values, **more})
             assert (state.point_gains, state.gain) == (again.point_gains, again.gain)
 
 
 def test_the_error_names_what_is_wrong() -> None:
-    look = looking()
+    evaluation = test_predictor()
     with pytest.raises(StudyError, match=r"no sensor that stayed; the test has 1\+Z, 5\+Z"):
-        accepted_state(look, "polarity", {"channel": "3+Z"})
+        accepted_state(evaluation, "polarity", {"channel": "3+Z"})
     with pytest.raises(StudyError, match=r"takes points \(or channel"):
-        accepted_state(look, "polarity", {})
+        accepted_state(evaluation, "polarity", {})
     with pytest.raises(StudyError, match="found channel, points"):
-        accepted_state(look, "polarity", {"channel": "5+Z", "points": (5,)})
+        accepted_state(evaluation, "polarity", {"channel": "5+Z", "points": (5,)})
 
 
 def test_the_sentence_names_the_sensor() -> None:

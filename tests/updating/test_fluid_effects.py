@@ -71,10 +71,10 @@ def test_losses_go_with_the_roots_of_viscosity_and_density(spec) -> None:
 
 
 def test_the_density_is_that_of_an_accepted_fluid_before_that_of_the_environment() -> None:
-    told = Predictor(BEAM, blank(POINTS), Environment(fluid_density=1000.0))
-    assert fluid_density(told) == 1000.0
+    stated = Predictor(BEAM, blank(POINTS), Environment(fluid_density=1000.0))
+    assert fluid_density(stated) == 1000.0
     both = replace(
-        told, additions=(accept("sensor_mass", mass=0.01), accept("fluid_added_mass", fluid_density=870.0))
+        stated, additions=(accept("sensor_mass", mass=0.01), accept("fluid_added_mass", fluid_density=870.0))
     )
     assert fluid_density(both) == pytest.approx(870.0)
     assert fluid_density(Predictor(BEAM, blank(POINTS))) == WATER

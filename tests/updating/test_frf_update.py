@@ -9,7 +9,7 @@ from acquisition.errors import StudyError
 from updating import Case, Material, Measured, Predictor, Region, Spec
 from updating.frf_update import FrfUpdate, bootstrap_frf_update, update_frfs
 from updating.frf_update.columns import columns
-from updating.frf_update.evaluation import changes, look, sensitivity
+from updating.frf_update.evaluation import changes, evaluate, sensitivity
 from updating.frf_update.expansion import expand
 from updating.frf_update.lines import choose_lines
 from updating.frf_update.run import _stage
@@ -19,7 +19,7 @@ from updating.models.state import NOMINAL
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.tolerances import Tolerances
 from updating.update.building import build_specimen
-from updating.update.parameters.parameters import build_panel
+from updating.update.parameters.parameters import build_parameter_set
 
 STEEL = Material(210e9, 7860.0, 0.3)
 START = {
@@ -166,15 +166,17 @@ def test_sensitivities_against_differences(name: str, decay: float) -> None:
         spec = replace(own, regions=tuple(replace(r, alpha=None) for r in spec.regions))
     measured, frfs = taken(spec, decay=decay, roving=name == "sensor_mass")
     predictor, ends = Predictor(spec, measured), columns(frfs)
-    panel = build_panel([name], predictor, Tolerances(), {})
-    knob = panel.knobs[0]
-    value = {"sensor_mass": 0.01, "length": 0.004}.get(name, knob.start or 0.01)
-    here = knob.coordinate(value)
-    at = look(predictor, panel.state(predictor, [value]), ends, frfs.laplace[::40])
-    by = sensitivity(at, changes(predictor, panel, [value], ends, NOMINAL)[0], ends)
-    step = 1e-4 * min(knob.doubt, knob.span() / 10)
+    parameter_set = build_parameter_set([name], predictor, Tolerances(), {})
+    model_parameter = parameter_set.model_parameters[0]
+    value = {"sensor_mass": 0.01, "length": 0.004}.get(name, model_parameter.start or 0.01)
+    here = model_parameter.coordinate(value)
+    at = evaluate(predictor, parameter_set.state(predictor, [value]), ends, frfs.laplace[::40])
+    by = sensitivity(at, changes(predictor, parameter_set, [value], ends, NOMINAL)[0], ends)
+    step = 1e-4 * min(model_parameter.doubt, model_parameter.span() / 10)
     sides = [
-        look(predictor, panel.state(predictor, [knob.value(here + d)]), ends, at.laplace).receptance
+        evaluate(
+            predictor, parameter_set.state(predictor, [model_parameter.value(here + d)]), ends, at.laplace
+        ).receptance
         for d in (-step, step)
     ]
     assert by == pytest.approx((sides[1] - sides[0]) / (2 * step), abs=1e-4 * np.abs(by).max())
@@ -199,10 +201,10 @@ def test_equation_9_is_exact_where_every_degree_of_freedom_is_measured() -> None
     h = Predictor(truth, blank).receptance(s)
     frfs = MeasuredFrfs(s, h, 1e-30 * np.abs(h) ** 2, blank.seen, blank.hit)
     predictor, ends = Predictor(start, blank), columns(frfs)
-    panel = build_panel(["all.area"], predictor, Tolerances(), {})
-    at = look(predictor, NOMINAL, ends, s)
+    parameter_set = build_parameter_set(["all.area"], predictor, Tolerances(), {})
+    at = evaluate(predictor, NOMINAL, ends, s)
     excited = expand(at, ends, h)
-    by = sensitivity(at, changes(predictor, panel, [1.0], ends, NOMINAL)[0], ends, excited)
+    by = sensitivity(at, changes(predictor, parameter_set, [1.0], ends, NOMINAL)[0], ends, excited)
     # Z is linear in the area itself; C = alpha M follows it
     factor = float((np.vdot(by, h - at.receptance) / np.vdot(by, by)).real)
     assert 1 + factor == pytest.approx(TRUTH["area"][0] / START["area"][0], rel=2e-3)
@@ -211,12 +213,12 @@ def test_equation_9_is_exact_where_every_degree_of_freedom_is_measured() -> None
 def test_lines_are_chosen_for_what_they_tell() -> None:
     measured, frfs = taken(beam(TRUTH))
     specimen = build_specimen(Case("tape", beam(START), measured), STRUCTURE)
-    stage = _stage(specimen, frfs, specimen.panel, NOMINAL)
-    theta = nominal(stage.knobs)
+    stage = _stage(specimen, frfs, specimen.parameter_set, NOMINAL)
+    theta = nominal(stage.model_parameters)
 
     def volume(chosen: np.ndarray) -> float:
         few = stage.lines(chosen)
-        at = few.look(theta)
+        at = few.evaluate(theta)
         rows, _ = whitened(few, few.slopes(theta, at, measured=False), at, few.variance(at, 0.05))
         return float(np.linalg.slogdet((rows * stage.doubt).T @ (rows * stage.doubt))[1])
 
@@ -273,7 +275,7 @@ def test_without_any_damping_the_identified_ratios_stand_in() -> None:
 def test_a_step_never_leaves_the_bounds() -> None:
     measured, frfs = taken(beam(START))
     specimen = build_specimen(Case("tape", beam(START), measured), ["bare.beta"])
-    stage = _stage(specimen, frfs, specimen.panel, NOMINAL)
+    stage = _stage(specimen, frfs, specimen.parameter_set, NOMINAL)
     down = increment(stage, stage.low, np.array([[1.0]]) / stage.doubt, np.array([-3.0]))
     up = increment(stage, stage.low, 10 * np.array([[1.0]]) / stage.doubt, np.array([3.0]))
     assert down == pytest.approx([0.0])

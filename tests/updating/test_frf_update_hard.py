@@ -10,13 +10,13 @@ from updating import Case, Damping, Material, Measured, Predictor, Region, Spec
 from updating.effects import accepted_state
 from updating.frf_update import FrfUpdate, update_frfs
 from updating.frf_update.columns import columns
-from updating.frf_update.evaluation import changes, look, sensitivity
+from updating.frf_update.evaluation import changes, evaluate, sensitivity
 from updating.frf_update.mounting import resonances, shifted
 from updating.models.response import receptance
 from updating.models.state import NOMINAL, State
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.tolerances import Tolerances
-from updating.update.parameters.parameters import build_panel
+from updating.update.parameters.parameters import build_parameter_set
 
 STEEL = Material(210e9, 7850.0, 0.3)
 CANTILEVER = Spec(
@@ -91,12 +91,18 @@ def test_an_accepted_window_is_in_the_model_s_frfs() -> None:
 def test_the_derivative_by_a_window_s_decay_against_differences() -> None:
     measured, frfs = hit_beam(CANTILEVER, "exponential_window", order=2, decay=6.0)
     predictor, ends = Predictor(CANTILEVER, measured), columns(frfs)
-    panel = build_panel(["exponential_window"], predictor, Tolerances(), {})
-    knob, s = panel.knobs[0], frfs.laplace[::20]
-    here = look(predictor, panel.state(predictor, [6.0]), ends, s, order=2)
-    by = sensitivity(here, changes(predictor, panel, [6.0], ends, NOMINAL)[0], ends)
+    parameter_set = build_parameter_set(["exponential_window"], predictor, Tolerances(), {})
+    model_parameter, s = parameter_set.model_parameters[0], frfs.laplace[::20]
+    here = evaluate(predictor, parameter_set.state(predictor, [6.0]), ends, s, order=2)
+    by = sensitivity(here, changes(predictor, parameter_set, [6.0], ends, NOMINAL)[0], ends)
     sides = [
-        look(predictor, State(decay=knob.value(knob.coordinate(6.0) + d)), ends, s, order=2).receptance
+        evaluate(
+            predictor,
+            State(decay=model_parameter.value(model_parameter.coordinate(6.0) + d)),
+            ends,
+            s,
+            order=2,
+        ).receptance
         for d in (-1e-4, 1e-4)
     ]
     assert by == pytest.approx((sides[1] - sides[0]) / 2e-4, abs=1e-5 * np.abs(by).max())
@@ -133,17 +139,17 @@ def test_stages_in_any_order_end_in_one_place(stages: list[list[str]]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("factor", "said"),
+    ("factor", "message"),
     [(2.0, "times the level"), (-1.0, "the opposite sign")],
 )
-def test_one_bad_channel_is_named_and_left_out(factor: float, said: str) -> None:
+def test_one_bad_channel_is_named_and_left_out(factor: float, message: str) -> None:
     """All parameters were four to eight standard deviations off, and no channel was named."""
     measured, frfs = taken(beam(TRUTH))
     values = frfs.values.copy()
     values[6] *= factor
     case = Case("tape", beam(START), measured)
     result = update_frfs(case, replace(frfs, values=values), stages=[STRUCTURE, DAMPING], lines=40)
-    assert [said in w and "node 7 by the force at node 4" in w for w in result.warnings] == [True]
+    assert [message in w and "node 7 by the force at node 4" in w for w in result.warnings] == [True]
     for p in result.parameters:
         assert p.value == pytest.approx(wanted(p.name), abs=4 * p.sigma)
     assert len(result.frac) == 11
@@ -169,8 +175,8 @@ def test_moved_resonances_are_those_of_a_stiffer_structure() -> None:
     spec = replace(CANTILEVER, damping=Damping(alpha=2.0))
     measured, frfs = hit_beam(spec)
     predictor, ends, s = Predictor(spec, measured), columns(frfs), frfs.laplace[frfs.frequency < 300]
-    here = look(predictor, NOMINAL, ends, s)
-    stiffer = look(predictor, State(factors={"E": 1.01**2}), ends, s)
+    here = evaluate(predictor, NOMINAL, ends, s)
+    stiffer = evaluate(predictor, State(factors={"E": 1.01**2}), ends, s)
     moved = shifted(here, ends, np.full(len(resonances(here)), 0.01)).sum(axis=0)
     change = stiffer.receptance - here.receptance
     assert np.linalg.norm(moved - change) < 2e-3 * np.linalg.norm(change)

@@ -19,7 +19,7 @@ from updating.problem.gates import (
     on_convergence,
     on_levels,
     on_modes,
-    shortfall,
+    theory_error,
 )
 
 THIN = replace(BEAM, theory="euler-bernoulli")
@@ -27,7 +27,7 @@ POINTS = np.linspace(0.0752, 0.376, 5)
 CORNERS = np.array([[x, y] for x in np.linspace(0.09, 0.376, 4) for y in (0.0, 0.11, 0.2)])
 
 
-def look(spec: Spec) -> Predictor:
+def evaluate(spec: Spec) -> Predictor:
     return Predictor(spec, blank(POINTS if spec.kind == "beam" else CORNERS * spec.length / 0.376))
 
 
@@ -89,7 +89,7 @@ def test_what_thin_plates_lack_is_estimated_to_half_of_itself(
     thickness: float, clamped: tuple[str, ...]
 ) -> None:
     spec = replace(PLATE, thickness=thickness, clamped=clamped, elements=(20, 12))
-    found = shortfall(look(spec), np.arange(8))
+    found = theory_error(evaluate(spec), np.arange(8))
     structure = build_structure(replace(spec, elements=(38, 20)))
     values = structure.eigen(structure.rigid_modes + 8)[0][structure.rigid_modes :]
     exact = np.log(thick_plate(spec, 8) / (np.sqrt(values) / (2 * np.pi)))
@@ -99,8 +99,8 @@ def test_what_thin_plates_lack_is_estimated_to_half_of_itself(
 
 def test_beams_are_compared_with_exact_ones() -> None:
     spec = replace(THIN, elements=(12,))
-    predictor = look(spec)
-    found = shortfall(predictor, np.arange(4))
+    predictor = evaluate(spec)
+    found = theory_error(predictor, np.arange(4))
     base = predictor.predict(count=4).frequency
     sizes = spec.length, spec.width, spec.thickness
     thin = ExactBeam(*sizes, shear=False, rotary=False).frequencies(4)
@@ -108,14 +108,14 @@ def test_beams_are_compared_with_exact_ones() -> None:
     assert found.mesh == pytest.approx(np.log(thin / base), rel=0.12, abs=2e-7)
     assert found.total == pytest.approx(np.log(thick / base), rel=0.05, abs=2e-6)
     assert discrepancy(predictor, np.array([3, 1])) == pytest.approx(found.total[[3, 1]])
-    assert not shortfall(look(BEAM), np.arange(4)).theory.any()
+    assert not theory_error(evaluate(BEAM), np.arange(4)).theory.any()
 
 
 @pytest.mark.parametrize("elements", [(12, 6), (30, 20)])
 def test_plates_are_compared_with_a_finer_mesh(elements: tuple[int, int]) -> None:
     """Finer than the estimate uses: the doubt may be too large by three, and too small by a third."""
     spec = replace(PLATE, elements=elements)
-    found = shortfall(look(spec), np.arange(8)).mesh
+    found = theory_error(evaluate(spec), np.arange(8)).mesh
     base, fine = (
         np.sqrt(build_structure(replace(spec, elements=e)).eigen(8)[0]) for e in (elements, (60, 32))
     )
@@ -130,18 +130,18 @@ def test_narrow_regions_and_accepted_theories_are_no_trouble() -> None:
     spec = replace(PLATE, elements=(64, 8), regions=(sliver,))
     with pytest.raises(StudyError):
         build_structure(spec.with_elements(32, 4))
-    assert np.abs(shortfall(look(spec), np.arange(2)).mesh).max() < 1e-3
+    assert np.abs(theory_error(evaluate(spec), np.arange(2)).mesh).max() < 1e-3
     shear = Predictor(THIN, blank(POINTS), additions=(lambda p: State(theory="timoshenko"),))
-    assert not shortfall(shear, np.arange(3)).theory.any()
+    assert not theory_error(shear, np.arange(3)).theory.any()
 
 
 def test_remarks_name_what_is_off_by_more_than_the_noise() -> None:
-    coarse = look(replace(THIN, elements=(6,)))
+    coarse = evaluate(replace(THIN, elements=(6,)))
     test, order = coarse.measured, np.array([1, 3])
-    said = " ".join(on_convergence(coarse, test, order))
-    assert "use more elements" in said
-    assert 'theory = "timoshenko"' in said
-    assert on_convergence(look(replace(BEAM, elements=(80,))), test, order) == []
+    message = " ".join(on_convergence(coarse, test, order))
+    assert "use more elements" in message
+    assert 'theory = "timoshenko"' in message
+    assert on_convergence(evaluate(replace(BEAM, elements=(80,))), test, order) == []
     blind = replace(test, repeatability=0.05)
     assert on_convergence(coarse, blind, order) == []
 
@@ -175,20 +175,20 @@ def test_few_and_missing_modes_are_said() -> None:
     model = ExactBeam(BEAM.length, BEAM.width, BEAM.thickness).frequencies(7)
     assert "only 2 modes" in on_modes(bare(model[:2]), model)[0]
     assert on_modes(bare(model[:5]), model) == []
-    (said,) = on_modes(bare(np.delete(model, 2)[:5]), model)
-    assert f"{model[2]:.4g} Hz" in said
+    (message,) = on_modes(bare(np.delete(model, 2)[:5]), model)
+    assert f"{model[2]:.4g} Hz" in message
     assert on_modes(bare(np.delete(model, 2)[:5]), model, np.array([0, 1, 3, 4, 5])) == [], (
         "paired so already"
     )
-    assert on_modes(look(BEAM).measured, model)[0].startswith("only 2 modes"), "shapes pair the modes"
+    assert on_modes(evaluate(BEAM).measured, model)[0].startswith("only 2 modes"), "shapes pair the modes"
 
 
-@pytest.mark.parametrize(("slope", "told"), [(0.0, False), (-3e-6, False), (-3e-5, True)])
-def test_a_level_dependence_is_said_where_it_is_no_chance(slope: float, told: bool) -> None:
+@pytest.mark.parametrize(("slope", "stated"), [(0.0, False), (-3e-6, False), (-3e-5, True)])
+def test_a_level_dependence_is_said_where_it_is_no_chance(slope: float, stated: bool) -> None:
     model = ExactBeam(BEAM.length, BEAM.width, BEAM.thickness).frequencies(5)
     test = replace(bare(model), slope=np.full(5, slope), slope_sigma=np.full(5, 3e-6), level=100.0)
-    said = on_levels(test, fluid=True)
-    assert bool(said) is told
-    assert all("fluid" in s for s in said)
+    message = on_levels(test, fluid=True)
+    assert bool(message) is stated
+    assert all("fluid" in s for s in message)
     assert not any("fluid" in s for s in on_levels(test, fluid=False))
     assert on_levels(bare(model), fluid=True) == []

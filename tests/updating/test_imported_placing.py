@@ -171,11 +171,11 @@ ASTRAY = [
 ]
 
 
-@pytest.mark.parametrize(("scale", "shift", "said"), ASTRAY)
-def test_points_off_the_structure_are_refused(scale: float, shift: tuple[float, ...], said: str) -> None:
+@pytest.mark.parametrize(("scale", "shift", "message"), ASTRAY)
+def test_points_off_the_structure_are_refused(scale: float, shift: tuple[float, ...], message: str) -> None:
     at = np.array([[0.1, 0.1, 0.0], [0.4, 0.2, 0.0]])
     at = scale * at + np.array([[0, 0, 0], shift])
-    with pytest.raises(StudyError, match=said) as error:
+    with pytest.raises(StudyError, match=message) as error:
         measured_from_modes(modes((Dof(7, 3), Dof(8, 3)), at), AXES, spec_of(plate()))
     assert "\n" not in str(error.value)
 

@@ -115,10 +115,10 @@ BROKEN = [
 ]
 
 
-@pytest.mark.parametrize(("name", "content", "said"), BROKEN)
-def test_a_broken_file_is_refused(tmp_path: Path, name: str, content: bytes, said: str) -> None:
+@pytest.mark.parametrize(("name", "content", "message"), BROKEN)
+def test_a_broken_file_is_refused(tmp_path: Path, name: str, content: bytes, message: str) -> None:
     (tmp_path / name).write_bytes(content)
-    with pytest.raises(StudyError, match=said) as error:
+    with pytest.raises(StudyError, match=message) as error:
         read_matrix(tmp_path / name)
     assert name in str(error.value)
     assert "\n" not in str(error.value).strip()
@@ -186,10 +186,10 @@ WRONG_TABLES = [
 ]
 
 
-@pytest.mark.parametrize(("text", "said"), WRONG_TABLES)
-def test_a_wrong_node_table_is_refused(tmp_path: Path, text: str, said: str) -> None:
+@pytest.mark.parametrize(("text", "message"), WRONG_TABLES)
+def test_a_wrong_node_table_is_refused(tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "nodes.csv").write_text(text)
-    with pytest.raises(StudyError, match=said):
+    with pytest.raises(StudyError, match=message):
         read_table(tmp_path / "nodes.csv", 2)
 
 
@@ -239,10 +239,10 @@ WRONG_DECKS = [
 ]
 
 
-@pytest.mark.parametrize(("text", "said"), WRONG_DECKS)
-def test_a_deck_that_cannot_be_followed_is_refused(tmp_path: Path, text: str, said: str) -> None:
+@pytest.mark.parametrize(("text", "message"), WRONG_DECKS)
+def test_a_deck_that_cannot_be_followed_is_refused(tmp_path: Path, text: str, message: str) -> None:
     path = deck(tmp_path, text)
-    with pytest.raises(StudyError, match=said):
+    with pytest.raises(StudyError, match=message):
         read_deck_table(path, tmp_path / "job.dof", 6)
 
 
@@ -382,12 +382,12 @@ DAMAGED = [
 ]
 
 
-@pytest.mark.parametrize(("name", "content", "said"), DAMAGED)
+@pytest.mark.parametrize(("name", "content", "message"), DAMAGED)
 def test_what_would_reach_a_parser_unchecked_is_refused(
-    tmp_path: Path, name: str, content: bytes, said: str
+    tmp_path: Path, name: str, content: bytes, message: str
 ) -> None:
     (tmp_path / name).write_bytes(content)
-    with pytest.raises(StudyError, match=said) as error:
+    with pytest.raises(StudyError, match=message) as error:
         read_matrix(tmp_path / name)
     assert name in str(error.value)
     assert "\n" not in str(error.value)
@@ -471,10 +471,10 @@ SLIPS = [
 ]
 
 
-@pytest.mark.parametrize(("text", "said"), SLIPS)
-def test_slips_in_a_deck_are_named(tmp_path: Path, text: str, said: str) -> None:
+@pytest.mark.parametrize(("text", "message"), SLIPS)
+def test_slips_in_a_deck_are_named(tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "job.inp").write_text(text)
-    with pytest.raises(StudyError, match=said):
+    with pytest.raises(StudyError, match=message):
         read_deck(tmp_path / "job.inp")
 
 

@@ -225,7 +225,12 @@ def test_effects_that_apply_and_those_that_do_not() -> None:
     test = seen_from(points, np.tile([0.0, 0.0, 1.0], (2, 1)))
     predictor = Predictor(spec_of(imported_beam(24)), test)
     why = {name: effect.why_not(predictor) for name, effect in LIBRARY.items()}
-    assert {n for n, told in why.items() if told is None} >= {"E", "density", "section_scale", "sensor_mass"}
+    assert {n for n, stated in why.items() if stated is None} >= {
+        "E",
+        "density",
+        "section_scale",
+        "sensor_mass",
+    }
     assert why["length"] == why["clamp_rotation"] == "not for imported matrices"
     assert "no stiffness_parts" in str(why["local_stiffness"])
     heavier = LIBRARY["sensor_mass"].state(predictor, {"mass": 0.02})
@@ -291,8 +296,8 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_matrices_that_cannot_be_are_refused(name: str) -> None:
-    stiffness, mass, said = REFUSED[name]
-    with pytest.raises(StudyError, match=said) as error:
+    stiffness, mass, message = REFUSED[name]
+    with pytest.raises(StudyError, match=message) as error:
         Imported(Sparse(stiffness), mass, TABLE, source="k.mtx, m.mtx")
     assert "k.mtx" in str(error.value)
 

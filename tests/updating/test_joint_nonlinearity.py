@@ -28,20 +28,20 @@ def with_slopes(test: Measured, slope: float, sigma: float, rng: np.random.Gener
     )
 
 
-def look() -> Predictor:
+def evaluate() -> Predictor:
     return Predictor(BEAM, with_slopes(blank(POINTS), 0.0, 1e-6, np.random.default_rng(1)))
 
 
 def test_it_needs_hits_of_different_levels() -> None:
     assert "2 : 1" in (EFFECT.obstacle(Predictor(BEAM, blank(POINTS))) or "")
-    assert EFFECT.obstacle(look()) is None
-    nothing = replace(look().measured, slope=np.full(2, np.nan))
+    assert EFFECT.obstacle(evaluate()) is None
+    nothing = replace(evaluate().measured, slope=np.full(2, np.nan))
     assert EFFECT.obstacle(Predictor(BEAM, nothing)) is not None
 
 
 @given(st.floats(0, 1))
 def test_the_prior_has_both_signs_in_equal_parts(u: float) -> None:
-    (slope,) = EFFECT.parameters(look())
+    (slope,) = EFFECT.parameters(evaluate())
     value = slope.value(u)
     assert slope.low <= value <= slope.high
     assert 1e-4 / LEVEL * (1 - 1e-9) <= abs(value) <= 0.2 / LEVEL * (1 + 1e-9)
@@ -51,7 +51,7 @@ def test_the_prior_has_both_signs_in_equal_parts(u: float) -> None:
 
 
 def test_frequencies_follow_slope_and_level() -> None:
-    predictor = look()
+    predictor = evaluate()
     state = EFFECT.state(predictor, {"slope": -2e-4})
     ratio = predictor.predict(state, count=4).frequency / predictor.predict(count=4).frequency
     assert ratio == pytest.approx(np.full(4, 1 - 2e-4 * LEVEL))
@@ -65,8 +65,8 @@ def test_a_diagnosis_names_it(slope: float) -> None:
     found = diagnose(case_of(test), library=library)
     assert found.sets == (("joint_nonlinearity",),)
     (row, *_) = found.ranking
-    told = row.parameters["joint_nonlinearity.slope"]
-    assert told.low95 < slope < told.high95
+    stated = row.parameters["joint_nonlinearity.slope"]
+    assert stated.low95 < slope < stated.high95
 
 
 def test_slopes_that_are_none_acquit_it() -> None:

@@ -27,8 +27,8 @@ from updating.localisation import (
     RegionEvidence,
     areas,
     boxes,
+    compare_regions,
     regions_at,
-    weigh_regions,
 )
 from updating.localisation.changes import NODES, changes, columns
 from updating.localisation.evidence import DOUBT
@@ -36,7 +36,7 @@ from updating.localisation.force_residual import region_parts
 from updating.localisation.severity import Between, integrate, refine
 from updating.localisation.shapes import dynamic, serep, shapes_of
 from updating.models.state import NOMINAL, Loss, State
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 BEAM = FINE.with_elements(20)
 SHARP = ((ConstitutiveError(), 2), (BestSubspace(), 1), (RegionEvidence(), 1))
@@ -44,7 +44,7 @@ SHARP = ((ConstitutiveError(), 2), (BestSubspace(), 1), (RegionEvidence(), 1))
 
 
 @cache
-def soft(zone: int, loss: float, *, as_designed: bool = False, shapes_only: bool = False) -> Problem:
+def soft(zone: int, loss: float, *, as_designed: bool = False, shapes_only: bool = False) -> SpecimenProblem:
     """An exact Timoshenko beam that has lost stiffness in one of ten zones, tested at five points."""
     rng = np.random.default_rng(3)
     edges = (BEAM.length * zone / 10, BEAM.length * (zone + 1) / 10, loss)
@@ -56,7 +56,7 @@ def soft(zone: int, loss: float, *, as_designed: bool = False, shapes_only: bool
 
 
 @cache
-def altered(state: str) -> Problem:
+def altered(state: str) -> SpecimenProblem:
     """A beam from a finer mesh of the model, with mass or damping in its eighth zone."""
     predictor = Predictor(FINE.with_elements(60), blank(POINTS))
     if state == "mass":
@@ -101,7 +101,7 @@ def test_evidence_and_subspace_find_a_tenth_under_tolerances(zone: int) -> None:
 
 @pytest.mark.parametrize("kind", ["mass", "damping"])
 def test_the_kind_of_change_and_its_size_are_found_too(kind: str) -> None:
-    found = weigh_regions(altered(kind))
+    found = compare_regions(altered(kind))
     assert max(found.by_kind, key=lambda k: found.by_kind[k]) == kind
     assert np.argmax(found.regions) == 7
     expected = {"mass": 1.5, "damping": 0.2}[kind]
@@ -109,14 +109,14 @@ def test_the_kind_of_change_and_its_size_are_found_too(kind: str) -> None:
     assert np.argmax(BestSubspace().scores(altered(kind), kind=kind)) == 7  # type: ignore[arg-type]
 
 
-def brute(problem: Problem, kind: Kind, region: int) -> float:
+def brute(problem: SpecimenProblem, kind: Kind, region: int) -> float:
     """Log evidence of a region's change, every severity predicted: steps halved until no more is gained."""
     state = changes(problem, kind)[region].state
     low, high = NODES[kind][0], NODES[kind][-1]
 
     def likely(severity: np.ndarray) -> np.ndarray:
-        looks = [problem.compare(state(s), doubt=DOUBT) for s in severity.tolist()]
-        return np.array([marginal(look).log_likelihood for look in looks])
+        evaluations = [problem.compare(state(s), doubt=DOUBT) for s in severity.tolist()]
+        return np.array([marginal(evaluation).log_likelihood for evaluation in evaluations])
 
     grid = np.r_[np.linspace(low, 0.0, 31)[:-1], np.linspace(0.0, high, 31)]
     values = likely(grid)
@@ -139,7 +139,7 @@ def brute(problem: Problem, kind: Kind, region: int) -> float:
 @pytest.mark.parametrize("kind", ["stiffness", "mass"])
 def test_evidence_is_the_integral_over_the_severity(zone: int, loss: float, kind: Kind) -> None:
     problem = soft(zone, loss)
-    found = weigh_regions(problem, (kind,))
+    found = compare_regions(problem, (kind,))
     for region in (4, 2):
         assert found.log_evidence[0, region] == pytest.approx(brute(problem, kind, region), abs=0.1)
 
@@ -226,12 +226,12 @@ def test_a_model_without_damping_is_not_suspected_of_it() -> None:
 
     problem = pose(case_of(soft(3, 0.4).measured, replace(BEAM, damping=Damping())))[0]
     assert not RegionEvidence().possible(problem, kind="damping")
-    assert weigh_regions(problem).kinds == ("stiffness", "mass")
+    assert compare_regions(problem).kinds == ("stiffness", "mass")
 
 
 def test_without_a_gap_evidence_is_the_prior_by_area() -> None:
     rng = np.random.default_rng(8)
-    found = weigh_regions(pose(case_of(struck(specimen(rng), rng), BEAM))[0])
+    found = compare_regions(pose(case_of(struck(specimen(rng), rng), BEAM))[0])
     assert found.log_evidence.max() < 3.0
     assert found.regions.max() < 0.6
 
@@ -239,7 +239,7 @@ def test_without_a_gap_evidence_is_the_prior_by_area() -> None:
 def test_a_soft_spot_astride_two_regions_is_put_into_one_of_them() -> None:
     rng = np.random.default_rng(11)
     spot = (0.14, 0.16, 0.6)
-    found = weigh_regions(pose(case_of(struck(specimen(rng, soft=spot), rng), BEAM))[0])
+    found = compare_regions(pose(case_of(struck(specimen(rng, soft=spot), rng), BEAM))[0])
     assert found.regions[3] + found.regions[4] > 0.9
     assert found.by_kind["stiffness"] > 0.9
 
@@ -262,13 +262,15 @@ def test_regions_of_imported_matrices_are_weighed_too() -> None:
     )
     problem = pose(case_of(test, spec))[0]
     assert areas(problem).shape == (4,)
-    assert np.argmax(weigh_regions(problem).regions) == 2
-    assert weigh_regions(problem).kinds[0] == "stiffness"
+    assert np.argmax(compare_regions(problem).regions) == 2
+    assert compare_regions(problem).kinds[0] == "stiffness"
 
 
 def test_areas_and_places_of_a_plate() -> None:
     measured = replace(blank(np.array([[0.376, 0.2]])), constants=np.ones((1, 2)))
-    problem = Problem(Predictor(PLATE, measured), measured, case_of(measured).tolerances, np.arange(2))
+    problem = SpecimenProblem(
+        Predictor(PLATE, measured), measured, case_of(measured).tolerances, np.arange(2)
+    )
     assert areas(problem) == pytest.approx(np.full(15, 1 / 15))
     assert boxes(PLATE)[0, :2] == pytest.approx(np.array([[0, 0.0752], [0, 0.2 / 3]]))
     shares = regions_at(PLATE, np.array([[0.01, 0.01, 0.0], [0.376, 0.1, 0.0], [0.0752, 0.01, 0.0]]))

@@ -169,15 +169,17 @@ def two_sensors() -> Predictor:
     return Predictor(replace(BEAM, clamped=()), test)
 
 
-def reversed_at(look: Predictor, rows: np.ndarray, *, noise: float = 0.02) -> tuple[Measured, Prediction]:
+def reversed_at(
+    evaluation: Predictor, rows: np.ndarray, *, noise: float = 0.02
+) -> tuple[Measured, Prediction]:
     """A test whose rows are of opposite sign, and the model's modes."""
-    model = look.predict(count=8)
+    model = evaluation.predict(count=8)
     modes = model.select(np.arange(5))
     rng = np.random.default_rng(2)
     scatter = 1 + noise * rng.normal(size=modes.constants.shape)
     constants = np.where(rows[:, None], -1.0, 1.0) * modes.constants * scatter
     test = replace(
-        look.measured,
+        evaluation.measured,
         frequency=0.99 * modes.frequency,
         frequency_sigma=1e-4 * modes.frequency,
         damping=np.full(5, 0.01),
@@ -190,9 +192,9 @@ def reversed_at(look: Predictor, rows: np.ndarray, *, noise: float = 0.02) -> tu
 
 @pytest.mark.parametrize("sensor", [0, 4])
 def test_a_fixed_sensor_upside_down_costs_no_pair(sensor: int) -> None:
-    look = two_sensors()
-    upside_down = look.measured.seen == sensor
-    test, model = reversed_at(look, upside_down)
+    evaluation = two_sensors()
+    upside_down = evaluation.measured.seen == sensor
+    test, model = reversed_at(evaluation, upside_down)
     paired = pair_modes(test, model)
     assert paired.order.tolist() == [0, 1, 2, 3, 4]
     assert not paired.mostly_alone
@@ -202,16 +204,16 @@ def test_a_fixed_sensor_upside_down_costs_no_pair(sensor: int) -> None:
 
 
 def test_a_point_hit_from_behind_and_a_sensor_upside_down_cost_no_pair() -> None:
-    look = two_sensors()
-    wrong = (look.measured.seen == 4) ^ (look.measured.hit == 6)
-    paired = pair_modes(*reversed_at(look, wrong))
+    evaluation = two_sensors()
+    wrong = (evaluation.measured.seen == 4) ^ (evaluation.measured.hit == 6)
+    paired = pair_modes(*reversed_at(evaluation, wrong))
     assert paired.order.tolist() == [0, 1, 2, 3, 4]
     assert paired.trusted is not None
-    assert not paired.trusted[look.measured.seen == 4].any()
-    assert not paired.trusted[look.measured.hit == 6].any()
+    assert not paired.trusted[evaluation.measured.seen == 4].any()
+    assert not paired.trusted[evaluation.measured.hit == 6].any()
 
 
 def test_sensors_that_agree_are_all_kept() -> None:
-    look = two_sensors()
-    paired = pair_modes(*reversed_at(look, np.zeros(14, dtype=bool)))
+    evaluation = two_sensors()
+    paired = pair_modes(*reversed_at(evaluation, np.zeros(14, dtype=bool)))
     assert paired.trusted is None and paired.warnings == ()

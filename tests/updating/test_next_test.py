@@ -22,7 +22,7 @@ from updating.models import Material, Spec
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.problem.candidate import Candidate
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 from updating.test_data.axes import Axes
 from updating.test_data.measured import measured_from_modes
 from updating.tolerances import Tolerances
@@ -45,22 +45,22 @@ def case_of(factor: float = 0.85, title: str = "beam") -> Case:
 
 
 @pytest.fixture(scope="module")
-def problem() -> Problem:
+def problem() -> SpecimenProblem:
     return pose(case_of())[0]
 
 
 @pytest.fixture(scope="module")
-def rivals(problem: Problem) -> dict[str, Rival]:
+def rivals(problem: SpecimenProblem) -> dict[str, Rival]:
     return {n: Rival(problem, explain(problem, Candidate((LIBRARY[n],)))) for n in SCALED}
 
 
-def apart(trial: object, problem: Problem, a: Rival, b: Rival) -> float:
+def apart(trial: object, problem: SpecimenProblem, a: Rival, b: Rival) -> float:
     expected = trial.outcomes(Site(problem, 0), (a, b))
     return separation(expected[0], expected[1], b)
 
 
 def test_weighing_sees_density_as_far_as_tolerances_and_balance_allow(
-    problem: Problem, rivals: dict[str, Rival]
+    problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
     """Either explanation expects another mass; the rival's mass is as uncertain as its tolerances and the balance."""
     a, b = rivals["density"], rivals["E"]
@@ -72,13 +72,13 @@ def test_weighing_sees_density_as_far_as_tolerances_and_balance_allow(
 
 
 def test_a_caliper_sees_the_thickness_and_nothing_of_density(
-    problem: Problem, rivals: dict[str, Rival]
+    problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
     assert apart(Caliper(), problem, rivals["thickness"], rivals["E"]) > 10
     assert apart(Caliper(), problem, rivals["density"], rivals["E"]) < 0.3
 
 
-def test_an_added_mass_tells_stiffness_from_mass(problem: Problem, rivals: dict[str, Rival]) -> None:
+def test_an_added_mass_tells_stiffness_from_mass(problem: SpecimenProblem, rivals: dict[str, Rival]) -> None:
     """A beam that is heavier feels an added mass less."""
     site = Site(problem, 0)
     light = AddedMass(site, np.array([0.4]), 0.002)
@@ -90,7 +90,7 @@ def test_an_added_mass_tells_stiffness_from_mass(problem: Problem, rivals: dict[
 
 
 def test_free_of_its_clamp_the_beam_shows_what_the_clamp_did(
-    problem: Problem, rivals: dict[str, Rival]
+    problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
     assert apart(FreeFree(), problem, rivals["length"], rivals["E"]) > 5
     # stiffness and density make one and the same change of all frequencies, in a clamp or out of it
@@ -98,25 +98,25 @@ def test_free_of_its_clamp_the_beam_shows_what_the_clamp_did(
 
 
 def test_the_level_of_the_frfs_tells_density_from_stiffness(
-    problem: Problem, rivals: dict[str, Rival]
+    problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
     assert apart(Shapes(Site(problem, 0)), problem, rivals["density"], rivals["E"]) > 3
 
 
 def test_a_sensor_on_the_balance_says_nothing_where_no_sensor_is_blamed(
-    problem: Problem, rivals: dict[str, Rival]
+    problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
     assert apart(WeighSensor(), problem, rivals["density"], rivals["E"]) == 0
 
 
-def test_a_rival_is_never_told_from_itself(problem: Problem, rivals: dict[str, Rival]) -> None:
+def test_a_rival_is_never_told_from_itself(problem: SpecimenProblem, rivals: dict[str, Rival]) -> None:
     site = Site(problem, 0)
     for trial in (Caliper(), Weigh(clamped=True), FreeFree(), Shapes(site)):
         assert apart(trial, problem, rivals["E"], rivals["E"]) < 1e-6
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_what_separates_all_comes_first_and_the_cheapest_of_it_at_the_top(problem: Problem) -> None:
+def test_what_separates_all_comes_first_and_the_cheapest_of_it_at_the_top(problem: SpecimenProblem) -> None:
     found = search(problem, [LIBRARY[n] for n in SCALED])
     verdict, sets = decide(found, significant=True)
     assert verdict == "class"
@@ -128,7 +128,7 @@ def test_what_separates_all_comes_first_and_the_cheapest_of_it_at_the_top(proble
     assert set(tests[0].separates) == {name for names in sets for name in names}
 
 
-def test_two_explanations_are_told_apart_by_the_cheapest_way(problem: Problem) -> None:
+def test_two_explanations_are_told_apart_by_the_cheapest_way(problem: SpecimenProblem) -> None:
     found = search(problem, [LIBRARY[n] for n in ("E", "density")])
     tests = propose(problem, found, (("E",), ("density",)))
     assert "weigh" in tests[0].measure

@@ -94,7 +94,9 @@ def test_slopes_are_what_moving_the_hit_changes(name: str) -> None:
         ends = []
         for moved in points:
             beside = replace(test, points=moved, seen=np.full(len(test.seen), len(test.points)))
-            ends.append(predictor.looking(beside).predict(State(factors={"length": 1.02}), count=5).constants)
+            ends.append(
+                predictor.for_test(beside).predict(State(factors={"length": 1.02}), count=5).constants
+            )
         difference = (ends[0] - ends[1]) / 2e-5
         scale = np.abs(difference).max()
         inner = (

@@ -10,7 +10,7 @@ from updating_cases import BEAM, PLATE, POINTS, blank
 
 from updating import Measured, Predictor
 from updating.models.state import State
-from updating.test_data.chain import fixed_sensors, reading, roving
+from updating.test_data.chain import fixed_sensors, measurement_chain, roving
 
 GRID = np.array([[x, y] for x in (0.1, 0.22, 0.376) for y in (0.0, 0.09, 0.2)])
 TESTS = {"beam": Predictor(BEAM, blank(POINTS)), "plate": Predictor(PLATE, blank(GRID))}
@@ -28,7 +28,7 @@ def roved(test: Measured) -> Measured:
 @both
 def test_a_sound_test_reads_its_own_points(name: str) -> None:
     test = TESTS[name].measured
-    read = reading(test, State())
+    read = measurement_chain(test, State())
     assert np.array_equal(read.seen, test.seen)
     assert np.array_equal(read.hit, test.hit)
     assert np.array_equal(read.gain, np.ones(len(test.seen)))
@@ -52,7 +52,7 @@ def test_a_reversed_point_reverses_its_own_rows_only(name: str) -> None:
     signs[1] = -1.0
     assert found == pytest.approx(signs[:, None] * constants(TESTS[name]), rel=1e-12)
     test = TESTS[name].measured
-    everywhere = reading(test, State(gain=2.0, point_gains={("seen", int(test.seen[0])): 0.5}))
+    everywhere = measurement_chain(test, State(gain=2.0, point_gains={("seen", int(test.seen[0])): 0.5}))
     assert everywhere.gain == pytest.approx(np.ones(len(test.seen)))
 
 
@@ -65,7 +65,7 @@ def test_a_point_that_moved_reads_as_one_stated_there(name: str, away: float) ->
     shift = np.array([away, 0.5 * abs(away)])[:dim]
     places = here.measured.points.copy()
     places[1] += shift
-    there = here.looking(replace(here.measured, points=places))
+    there = here.for_test(replace(here.measured, points=places))
     moved = State(moved={("hit", 1): tuple(shift)})
     assert constants(here, moved) == pytest.approx(constants(there), rel=1e-9, abs=1e-9)
     assert here.predict(moved, count=4).along == pytest.approx(

@@ -27,7 +27,7 @@ LOOK = {
     "plate": Predictor(PLATE, blank(CORNERS)),
 }
 CLOSE = {"timoshenko": 1e-4, "euler-bernoulli": 1e-4, "free": 1e-4, "plate": 1e-3}
-look = pytest.mark.parametrize("name", list(LOOK))
+evaluation = pytest.mark.parametrize("name", list(LOOK))
 
 
 def full(
@@ -47,7 +47,7 @@ def reduced(name: str) -> tuple[Reduced, Structure]:
     return LOOK[name].reduced, LOOK[name].reduced.structure
 
 
-@look
+@evaluation
 def test_the_nominal_model_is_reduced_without_loss(name: str) -> None:
     basis, structure = reduced(name)
     assert small(name, NOMINAL) == pytest.approx(full(structure, {}), rel=1e-6)
@@ -57,7 +57,7 @@ def test_the_nominal_model_is_reduced_without_loss(name: str) -> None:
         assert basis.basis.shape[1] < 0.75 * structure.fields.n_dofs
 
 
-@look
+@evaluation
 @settings(max_examples=12, deadline=None)
 @given(u=st.integers(0, 4), share=st.floats(0.001, 0.5))
 def test_a_mass_at_a_test_point(name: str, u: int, share: float) -> None:
@@ -143,7 +143,7 @@ def test_a_clamp_that_shifts_and_turns(name: str, ratio: float) -> None:
     assert small(name, state)[:5] == pytest.approx(exact.frequencies(5), rel=1e-4)
 
 
-@look
+@evaluation
 @pytest.mark.parametrize("stretch", [0.94, 1.12])
 def test_a_stretched_structure(name: str, stretch: float) -> None:
     """Over the range of the prior of the length."""

@@ -126,7 +126,7 @@ def test_one_value_for_both_explains_as_well_as_one_for_each_and_is_more_probabl
         specimen_of("plate", "sheet", "length", "sensor_mass"),
     )
     joint = explain(several(*cases, shared=("length", "sensor_mass")), candidate)
-    apart = explain(several(*cases), candidate, draft=True)
+    apart = explain(several(*cases), candidate, laplace_only=True)
     single = [explain(pose(case)[0], candidate).log_evidence for case in cases]
     assert joint.log_evidence > sum(single) + 1
     assert apart.best.marginal.log_likelihood >= joint.best.marginal.log_likelihood - 0.5

@@ -10,20 +10,20 @@ from updating.diagnosis.answer.metric import Squares, squares
 from updating.diagnosis.answer.shrink import closed, shrinkage
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
-from updating.diagnosis.search.fit import climb
+from updating.diagnosis.search.fit import maximise
 from updating.diagnosis.search.held_out import BELIEVED, believed, modes_held_out
 from updating.effects import LIBRARY
 from updating.likelihood.comparison import Comparison
 from updating.problem.candidate import Candidate
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 
 @pytest.fixture(scope="module")
-def problem() -> Problem:
+def problem() -> SpecimenProblem:
     return pose(case_of(0.85))[0]
 
 
-def test_a_gap_of_the_modulus_closes_to_the_noise(problem: Problem) -> None:
+def test_a_gap_of_the_modulus_closes_to_the_noise(problem: SpecimenProblem) -> None:
     nothing, best = explain(problem, Candidate()), explain(problem, Candidate((LIBRARY["E"],)))
     found = shrinkage(problem, nothing, best, None, np.random.default_rng(1))
     assert found.metric == "frequency"
@@ -35,7 +35,7 @@ def test_a_gap_of_the_modulus_closes_to_the_noise(problem: Problem) -> None:
     assert found.held_runner_up is None
 
 
-def test_tolerances_alone_close_no_more_than_is_believed_of_them(problem: Problem) -> None:
+def test_tolerances_alone_close_no_more_than_is_believed_of_them(problem: SpecimenProblem) -> None:
     """The modulus is 15 % off and good to 1 %: all tolerances at three sigma make up for a part of it."""
     nothing, best = explain(problem, Candidate()), explain(problem, Candidate((LIBRARY["E"],)))
     found = shrinkage(problem, nothing, best, None, np.random.default_rng(1))
@@ -45,13 +45,13 @@ def test_tolerances_alone_close_no_more_than_is_believed_of_them(problem: Proble
     assert found.held_nuisance == pytest.approx(100 * np.expm1(gap - most), rel=0.05)
 
 
-def test_held_out_modes_are_those_of_a_full_refit(problem: Problem) -> None:
+def test_held_out_modes_are_those_of_a_full_refit(problem: SpecimenProblem) -> None:
     best = explain(problem, Candidate((LIBRARY["clamp_rotation"],)))
     fast = modes_held_out(problem, best)
     mode = best.best.comparison.mode
     for m in np.unique(mode):
         keep = mode != m
-        point = climb(problem, best.candidate, best.best.coordinates, keep=keep).point
+        point = maximise(problem, best.candidate, best.best.coordinates, keep=keep).point
         assert fast[~keep] == pytest.approx(point.left_over[~keep], abs=2e-4)
 
 

@@ -79,8 +79,8 @@ def test_best_subset_is_orthogonal_matching() -> None:
 
 def test_the_report_says_what_a_fit_says() -> None:
     text = update(case_of(softer_root()), parameters=["E", "density", "root.E"]).report()
-    for said in ("[[Fit statistics]]", "reduced chi-square", "+-", "init 2.1e+11", "C(E, density)"):
-        assert said in text
+    for message in ("[[Fit statistics]]", "reduced chi-square", "+-", "init 2.1e+11", "C(E, density)"):
+        assert message in text
     assert "E, density: not each by itself" in text
     assert "NOT DETERMINED" in text
 
@@ -92,7 +92,7 @@ def test_a_value_at_its_bound_is_flagged() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ({"parameters": ["E", "length", "root.E", "middle.E", "tip.E"], "weights": "relative"}, "5 parameters"),
         ({"parameters": ["E"], "shared": ["length"]}, "'length'"),
@@ -106,8 +106,8 @@ def test_a_value_at_its_bound_is_flagged() -> None:
         ({"parameters": ["E"], "data": ["frequencies", "shapes"]}, "no shapes were measured"),
     ],
 )  # fmt: skip
-def test_bad_input_is_refused_in_one_line(options: dict[str, object], said: str) -> None:
-    with pytest.raises(StudyError, match=said) as refused:
+def test_bad_input_is_refused_in_one_line(options: dict[str, object], message: str) -> None:
+    with pytest.raises(StudyError, match=message) as refused:
         update(case_of(frequencies(BEAM, 3)), **options)  # type: ignore[arg-type]
     assert "\n" not in str(refused.value)
 

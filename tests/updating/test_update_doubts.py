@@ -53,7 +53,7 @@ def test_a_good_update_is_not_doubted() -> None:
 
 
 def test_a_sensor_upside_down_alone_makes_no_pair_poor() -> None:
-    said = [
+    message = [
         [
             w
             for w in of_body([0, 1, 2, 3], upside_down=which).warnings
@@ -61,4 +61,4 @@ def test_a_sensor_upside_down_alone_makes_no_pair_poor() -> None:
         ]
         for which in (None, 4)
     ]
-    assert len(said[0]) == len(said[1])
+    assert len(message[0]) == len(message[1])

@@ -65,7 +65,7 @@ def differences(spec: Spec, name: str, at: float, step: float) -> np.ndarray:
 @pytest.mark.parametrize("at", [1.0, 1.3])
 def test_sensitivities_to_the_whole_are_those_of_rebuilt_models(spec: Spec, name: str, at: float) -> None:
     specimen = build_specimen(case_of(replace(spec, regions=())), [name], lean=True)
-    slope = specimen.slopes([at], specimen.look([at]))[:, 0]
+    slope = specimen.slopes([at], specimen.evaluate([at]))[:, 0]
     assert slope == pytest.approx(differences(replace(spec, regions=()), name, at, 3e-3), abs=1e-5)
 
 
@@ -74,7 +74,7 @@ def test_sensitivities_to_the_whole_are_those_of_rebuilt_models(spec: Spec, name
 def test_sensitivities_on_the_nominal_model_are_exact(spec: Spec, name: str) -> None:
     name = name.replace("last", spec.regions[1].name)
     specimen = build_specimen(case_of(spec), [name], lean=True)
-    slope = specimen.slopes([1.0], specimen.look([1.0]))[:, 0]
+    slope = specimen.slopes([1.0], specimen.evaluate([1.0]))[:, 0]
     assert slope == pytest.approx(differences(spec, name, 1.0, 3e-3), abs=2e-5)
 
 
@@ -83,7 +83,7 @@ def test_sensitivities_on_the_nominal_model_are_exact(spec: Spec, name: str) -> 
 def test_sensitivities_to_regions_stay_good_on_the_reduced_basis(spec: Spec, name: str) -> None:
     name = name.replace("last", spec.regions[1].name)
     specimen = build_specimen(case_of(spec), [name], lean=True)
-    slope = specimen.slopes([1.3], specimen.look([1.3]))[:, 0]
+    slope = specimen.slopes([1.3], specimen.evaluate([1.3]))[:, 0]
     assert slope == pytest.approx(differences(spec, name, 1.3, 3e-3), abs=3e-3)
 
 
@@ -93,7 +93,7 @@ def test_sensitivities_to_regions_stay_good_on_the_reduced_basis(spec: Spec, nam
 def test_length_sensitivity_is_per_metre_of_extension(spec: Spec) -> None:
     specimen = build_specimen(case_of(spec), ["length"], lean=True)
     extension, step = 0.012, 1e-3
-    slope = specimen.slopes([extension], specimen.look([extension]))[:, 0]
+    slope = specimen.slopes([extension], specimen.evaluate([extension]))[:, 0]
     ends = [
         frequencies(replace(spec, length=spec.length + extension + s, regions=()), 5) for s in (-step, step)
     ]
@@ -103,4 +103,4 @@ def test_length_sensitivity_is_per_metre_of_extension(spec: Spec) -> None:
 def test_regional_changes_of_one_region_multiply() -> None:
     specimen = build_specimen(case_of(BEAM), ["root.E", "root.thickness"], lean=True)
     both = scaled(scaled(BEAM, "root.E", 1.2), "root.thickness", 1.1)
-    assert specimen.look([1.2, 1.1]).frequency == pytest.approx(frequencies(both, 5), rel=1e-5)
+    assert specimen.evaluate([1.2, 1.1]).frequency == pytest.approx(frequencies(both, 5), rel=1e-5)

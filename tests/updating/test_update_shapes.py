@@ -45,7 +45,7 @@ def case_of(measured: Measured) -> Case:
 def test_slopes_of_constants_are_those_of_rebuilt_models(name: str) -> None:
     specimen = build_specimen(case_of(measured_on(BEAM)), [f"{name}.E"], lean=True)
     at, step = 1.2, 1e-4
-    slopes = specimen.shape_slopes([at], specimen.look([at]))[:, :, 0]
+    slopes = specimen.shape_slopes([at], specimen.evaluate([at]))[:, :, 0]
     ends = [measured_on(turned(**{name: at * np.exp(s)})).constants for s in (-step, step)]
     assert slopes == pytest.approx((ends[1] - ends[0]) / (2 * step), abs=2e-4 * np.abs(ends[0]).max())
 
@@ -57,10 +57,12 @@ def test_linear_problem_is_the_derivative_of_its_residual(level: str) -> None:
     )
     system, step = fitted.system, 1e-5
     theta = np.array([-0.1, 0.05])
-    linear = system.linear(theta, system.looks(theta))
+    linear = system.linear(theta, system.evaluations(theta))
     cost = [
         [
-            system.cost(theta + sign * step * np.eye(2)[i], system.looks(theta + sign * step * np.eye(2)[i]))
+            system.cost(
+                theta + sign * step * np.eye(2)[i], system.evaluations(theta + sign * step * np.eye(2)[i])
+            )
             for sign in (-1, 1)
         ]
         for i in range(2)
@@ -159,7 +161,7 @@ def test_differences_of_constants_are_those_of_rebuilt_models(name: str) -> None
     specimen = build_specimen(case, names, lean=True)
     at = {"E": 1.1, "length": 0.0, "sensor_mass": 0.008}[name]
     values = [at, 0.0][: len(names)]
-    slopes = specimen.shape_slopes(values, specimen.look(values))[:, :, 0]
+    slopes = specimen.shape_slopes(values, specimen.evaluate(values))[:, :, 0]
     step = {"E": 1e-3, "length": 1e-4, "sensor_mass": 1e-5}[name]
 
     def rebuilt(value: float) -> np.ndarray:
@@ -215,9 +217,10 @@ def test_the_slopes_of_mass_normalised_shapes_are_those_of_their_residual() -> N
     fitted = fit(case_of(truth), parameters=["root.E", "tip.E"], data=("frequencies", "constants"))
     system, step = fitted.system, 1e-5
     theta = np.array([-0.1, 0.05])
-    linear = system.linear(theta, system.looks(theta))
+    linear = system.linear(theta, system.evaluations(theta))
     ends = [
-        [system.cost(theta + s * e, system.looks(theta + s * e)) for s in (-step, step)] for e in np.eye(2)
+        [system.cost(theta + s * e, system.evaluations(theta + s * e)) for s in (-step, step)]
+        for e in np.eye(2)
     ]
     slope = np.array([(high - low) / (2 * step) for low, high in ends])
     expected = -2 * linear.sensitivity.T @ (linear.weight * linear.residual) + 2 * system.prior * theta

@@ -95,7 +95,7 @@ def test_a_parameter_that_runs_to_the_end_of_its_range_says_so() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         ({"parameters": ["Young"]}, "no parameter 'Young'"),
         ({"parameters": ["zone1.colour"]}, "no 'colour'"),
@@ -110,8 +110,8 @@ def test_a_parameter_that_runs_to_the_end_of_its_range_says_so() -> None:
         ({"parameters": ["zone1.E", "zone2.E", "zone3.E", "zone4.E"], "weights": "relative"}, "4 parameters"),
     ],
 )
-def test_what_makes_no_sense_is_refused_in_one_line(options: dict[str, object], said: str) -> None:
-    with pytest.raises(StudyError, match=said) as caught:
+def test_what_makes_no_sense_is_refused_in_one_line(options: dict[str, object], message: str) -> None:
+    with pytest.raises(StudyError, match=message) as caught:
         update(case_of(), **options)  # type: ignore[arg-type]
     assert "\n" not in str(caught.value)
 

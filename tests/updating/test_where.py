@@ -17,7 +17,7 @@ from updating.diagnosis.search.evidence import Explanation, explain
 from updating.diagnosis.search.search import Search, search
 from updating.models.state import State
 from updating.problem.candidate import Candidate
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 BEAM = FINE.with_elements(20)
 FREE = replace(BEAM, clamped=(), regions=())
@@ -37,7 +37,7 @@ def without_shapes(test: Measured) -> Measured:
 
 
 @cache
-def free_beam(*, shapes: bool) -> Problem:
+def free_beam(*, shapes: bool) -> SpecimenProblem:
     """A free beam with a soft spot off the middle, with or without shapes."""
     rng = np.random.default_rng(4)
     points = np.linspace(0.0, 0.376, 5)
@@ -49,7 +49,7 @@ def free_beam(*, shapes: bool) -> Problem:
     return pose(case_of(test if shapes else without_shapes(test), FREE))[0]
 
 
-def explained(problem: Problem, name: str) -> Explanation:
+def explained(problem: SpecimenProblem, name: str) -> Explanation:
     """As the search does it: a first look, then a closer one at the best place alone."""
     candidate = Candidate((LIBRARY[name],))
     first = explain(problem, candidate)
@@ -95,7 +95,7 @@ def test_a_plate_hit_along_its_middle_does_not_know_its_left_from_its_right() ->
 
 
 @cache
-def weighed(truth: str) -> tuple[Problem, Search]:
+def compared(truth: str) -> tuple[SpecimenProblem, Search]:
     rng = np.random.default_rng(11)
     beam = specimen(rng)
     library = ["E", "lumped_mass", "sensor_mass", "local_stiffness", "calibration_gain"]
@@ -116,11 +116,11 @@ def weighed(truth: str) -> tuple[Problem, Search]:
 
 
 def test_a_place_is_the_posterior_mean_with_its_spread() -> None:
-    where = locate(*weighed("soft"), significant=True)
+    where = locate(*compared("soft"), significant=True)
     assert where.location is not None
-    assert where.location == where.locations[0] == where.seats[0].place
+    assert where.location == where.locations[0] == where.likely_places[0].place
     assert where.location[0] == pytest.approx(0.15, abs=0.01)
-    assert abs(where.location[0] - 0.15) < 4 * where.seats[0].spread[0] + 0.002
+    assert abs(where.location[0] - 0.15) < 4 * where.likely_places[0].spread[0] + 0.002
     assert where.points == (2,)  # at 0.1504 m
     assert where.channel == "stiffness"
     assert where.zones_by == "explanations"
@@ -128,20 +128,20 @@ def test_a_place_is_the_posterior_mean_with_its_spread() -> None:
 
 
 def test_a_mass_on_the_sensor_is_at_its_node() -> None:
-    where = locate(*weighed("tip"), significant=True)
+    where = locate(*compared("tip"), significant=True)
     assert where.channel == "mass"
     assert where.points == (5,)
     assert max(where.zones, key=lambda z: z.probability).name == "zone10"
 
 
 def test_points_of_the_measurement_are_named() -> None:
-    where = locate(*weighed("reversed"), significant=True)
+    where = locate(*compared("reversed"), significant=True)
     assert where.channel == "measurement"
     assert where.points == (3,)
 
 
 def test_what_nothing_explains_is_still_put_into_a_region() -> None:
-    problem, found = weighed("unknown")
+    problem, found = compared("unknown")
     where = locate(problem, found, significant=True)
     assert where.zones_by == "regions"
     assert max(where.zones, key=lambda z: z.probability).name == "zone1"
@@ -149,7 +149,7 @@ def test_what_nothing_explains_is_still_put_into_a_region() -> None:
 
 
 def test_without_a_gap_there_is_no_place() -> None:
-    where = locate(*weighed("none"), significant=False)
+    where = locate(*compared("none"), significant=False)
     assert (where.channel, where.location, where.locations, where.points) == ("none", None, (), ())
     assert "No mode stands out" in where.band
 
@@ -178,5 +178,5 @@ def test_contributions_of_noise_alone_are_of_order_one() -> None:
 
 
 def test_a_case_is_not_needed_twice() -> None:
-    case: Case = case_of(weighed("soft")[0].measured, BEAM)
-    assert contributions(pose(case)[0]).summary == contributions(weighed("soft")[0]).summary
+    case: Case = case_of(compared("soft")[0].measured, BEAM)
+    assert contributions(pose(case)[0]).summary == contributions(compared("soft")[0]).summary

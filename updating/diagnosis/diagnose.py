@@ -17,8 +17,8 @@ from updating.diagnosis.answer.shrink import shrinkage
 from updating.diagnosis.answer.verdict import decide, is_significant, rank
 from updating.diagnosis.answer.where import locate
 from updating.diagnosis.next_test import propose
-from updating.diagnosis.problem.doubtful import remarks_on_doubtful
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.doubtful import notes_on_doubtful
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.search import Search, search
@@ -28,9 +28,9 @@ from updating.nominal import predictor_of
 from updating.prediction.baseline import correct, doubt_in_mass
 from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
-from updating.problem.gates import on_levels, on_modes, remarks_on, shortfall
+from updating.problem.gates import notes_on, on_levels, on_modes, theory_error
 from updating.problem.same_places import unmatched
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 
 def diagnose(
@@ -95,15 +95,15 @@ def diagnose_together(
     if len(set(titles)) < len(titles):
         raise InputError(f"two studies are titled alike ({', '.join(titles)}); give each its own title")
     with threadpool_limits(1, user_api="blas"):
-        posed = [pose(case) for case in cases]
-        several = Several(tuple(problem for problem, _ in posed), titles, frozenset(shared))
+        diagnosis_problem = [pose(case) for case in cases]
+        several = Several(tuple(problem for problem, _ in diagnosis_problem), titles, frozenset(shared))
         accepted = {name for case in cases for name, _ in case.accepted}
-        warnings = [f"{t}: {w}" for t, (_, own) in zip(titles, posed, strict=True) for w in own]
+        warnings = [f"{t}: {w}" for t, (_, own) in zip(titles, diagnosis_problem, strict=True) for w in own]
         return _diagnose(several, titles, accepted, library, rng, warnings)
 
 
 def _diagnose(
-    problem: Posed,
+    problem: DiagnosisProblem,
     titles: tuple[str, ...],
     accepted: set[str],
     library: Sequence[Effect] | None,
@@ -127,13 +127,13 @@ def _diagnose(
         sets,
         rank(problem, found),
         propose(problem, found, sets, verdict),
-        tuple(dict.fromkeys((*warnings, *_remarks(problem, found)))),
+        tuple(dict.fromkeys((*warnings, *_notes(problem, found)))),
         found.not_examined,
         comparable,
     )
 
 
-def pose(case: Case) -> tuple[Problem, list[str]]:
+def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
     """Pair the modes, put the baseline and accepted effects into the model, and pose the problem."""
     predictor = predictor_of(case)
     additions = list(predictor.additions)
@@ -141,19 +141,19 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
     warnings = [*case.measured.warnings, *paired.warnings]
     baseline, baseline_order, tolerances = None, None, case.tolerances
     if case.baseline is not None:
-        looking = predictor.looking(case.baseline, ())
-        before = pair_modes(case.baseline, looking.predict())
-        doubt = doubt_in_mass(predictor.looking(before.measured, ()), before.measured, before.order)
+        own_predictor = predictor.for_test(case.baseline, ())
+        before = pair_modes(case.baseline, own_predictor.predict())
+        doubt = doubt_in_mass(predictor.for_test(before.measured, ()), before.measured, before.order)
         tolerances = replace(tolerances, factors={**tolerances.factors, "section": doubt})
-        said = (*case.baseline.warnings, *before.warnings, *unmatched(case.measured, before.measured))
-        warnings += [f"baseline: {w}" for w in said]
+        statement = (*case.baseline.warnings, *before.warnings, *unmatched(case.measured, before.measured))
+        warnings += [f"baseline: {w}" for w in statement]
         additions.append(_corrected(before))
         baseline, baseline_order = before.measured, before.order
-        predictor = predictor.looking(case.measured, tuple(additions))
+        predictor = predictor.for_test(case.measured, tuple(additions))
         paired = pair_modes(case.measured, predictor.predict())
-    predictor = predictor.looking(paired.measured)
+    predictor = predictor.for_test(paired.measured)
     accepted = tuple(LIBRARY[name] for name, _ in case.accepted)
-    problem = Problem(
+    problem = SpecimenProblem(
         predictor,
         paired.measured,
         tolerances,
@@ -161,7 +161,7 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
         baseline,
         baseline_order,
         accepted,
-        shortfall(predictor, paired.order),
+        theory_error(predictor, paired.order),
         paired.mostly_alone,
     )
     return problem, warnings
@@ -169,25 +169,25 @@ def pose(case: Case) -> tuple[Problem, list[str]]:
 
 def _corrected(before: Paired) -> Callable[[Predictor], State]:
     def build(predictor: Predictor) -> State:
-        looking = predictor.looking(before.measured, ())
-        return correct(looking, before.measured, before.order)
+        own_predictor = predictor.for_test(before.measured, ())
+        return correct(own_predictor, before.measured, before.order)
 
     return build
 
 
-def _locate(problem: Posed, found: Search, *, significant: bool) -> Where:
+def _locate(problem: DiagnosisProblem, found: Search, *, significant: bool) -> Where:
     """Say where the cause sits; of several specimens, on the first on which all of the best explanation acts."""
     if not isinstance(problem, Several):
         return locate(problem.specimens[0], found, significant=significant)
-    leader = next((row.explanation for row in found.weighed if row.names), found.nothing)
+    leader = next((row.explanation for row in found.compared if row.names), found.nothing)
     acting = [len(problem.restrict(leader, i).names) for i in range(len(problem.specimens))]
     i = int(np.argmax(acting))
-    rows = tuple(replace(row, explanation=problem.restrict(row.explanation, i)) for row in found.weighed)
-    part = replace(found, nothing=problem.restrict(found.nothing, i), weighed=rows)
+    rows = tuple(replace(row, explanation=problem.restrict(row.explanation, i)) for row in found.compared)
+    part = replace(found, nothing=problem.restrict(found.nothing, i), compared=rows)
     return locate(problem.specimens[i], part, significant=significant, whole=found)
 
 
-def _gap(problem: Posed, titles: tuple[str, ...]) -> Gap:
+def _gap(problem: DiagnosisProblem, titles: tuple[str, ...]) -> Gap:
     tables = []
     for title, one in zip(titles, problem.specimens, strict=True):
         test, model = one.measured, one.nominal
@@ -217,15 +217,17 @@ def _rms(values: pd.Series) -> float:
     return float(np.sqrt(np.mean(np.square(values.to_numpy(dtype=float)))))
 
 
-def _frac(problem: Problem) -> FloatArray:
+def _frac(problem: SpecimenProblem) -> FloatArray:
     """Return, per FRF, the correlation of measured and nominal constants over the modes [-]."""
     a, b = problem.measured.constants, problem.nominal.constants
     power = np.sum(a**2, axis=1) * np.sum(b**2, axis=1)
     return np.asarray(np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300))
 
 
-def _shrink(problem: Posed, found: Search, rng: np.random.Generator, *, significant: bool) -> Shrink:
-    named = [row for row in found.weighed if row.names]
+def _shrink(
+    problem: DiagnosisProblem, found: Search, rng: np.random.Generator, *, significant: bool
+) -> Shrink:
+    named = [row for row in found.compared if row.names]
     best = named[0].explanation if named else found.nothing
     # what holds the best set and more is no rival of it
     rivals = [row.explanation for row in named[1:] if not set(best.names) <= set(row.names)]
@@ -234,21 +236,21 @@ def _shrink(problem: Posed, found: Search, rng: np.random.Generator, *, signific
     return result if significant else replace(result, closed=None)
 
 
-def _remarks(problem: Posed, found: Search) -> list[str]:
+def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:
     """Return what the reader ought to know about how the answer was reached."""
-    remarks = []
-    leader = next((row for row in found.weighed if row.names), None)
+    notes = []
+    leader = next((row for row in found.compared if row.names), None)
     if leader is not None and leader.explanation.candidate.theory is not None:
-        remarks.append(
+        notes.append(
             "the beam theory of the model leaves out shear and rotary inertia by more than the noise; "
             "every effect was weighed with and without them"
         )
     for one in problem.specimens:
-        remarks += remarks_on_doubtful(one)
-        if one.shortfall is not None:
-            remarks += remarks_on(one.shortfall, one.measured, one.predictor.spec)
-        remarks += on_modes(one.measured, one.predictor.predict(at_least=one.reach).frequency, one.order)
+        notes += notes_on_doubtful(one)
+        if one.theory_error is not None:
+            notes += notes_on(one.theory_error, one.measured, one.predictor.spec)
+        notes += on_modes(one.measured, one.predictor.predict(at_least=one.reach).frequency, one.order)
         wet = one.predictor.environment.fluid_density is not None
-        wet |= any("fluid" in name for row in found.weighed[:1] for name in row.names)
-        remarks += on_levels(one.measured, fluid=wet)
-    return remarks
+        wet |= any("fluid" in name for row in found.compared[:1] for name in row.names)
+        notes += on_levels(one.measured, fluid=wet)
+    return notes

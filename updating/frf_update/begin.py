@@ -78,12 +78,14 @@ def paired(specimen: Specimen, stage: Stage, theta: FloatArray) -> tuple[Predict
 def frequency_slopes(stage: Stage, theta: FloatArray, at: Prediction, partner: IntArray) -> FloatArray:
     """Return the differences of ln f of the partners by the coordinates, in their doubts, (n_modes, p) [-]."""
     slopes = np.zeros((len(partner), len(theta)))
-    for i, knob in enumerate(stage.knobs):
-        ends = np.clip(theta[i] + STEP * knob.doubt * np.array([-1, 1]), stage.low[i], stage.high[i])
+    for i, model_parameter in enumerate(stage.model_parameters):
+        ends = np.clip(
+            theta[i] + STEP * model_parameter.doubt * np.array([-1, 1]), stage.low[i], stage.high[i]
+        )
         logs = []
         for end in ends:
             moved = np.where(np.arange(len(theta)) == i, end, theta)
             prediction = stage.predictor.predict(stage.state(moved), count=len(at.frequency))
             logs.append(np.log(prediction.frequency[partner]))
-        slopes[:, i] = (logs[1] - logs[0]) / (ends[1] - ends[0]) * knob.doubt
+        slopes[:, i] = (logs[1] - logs[0]) / (ends[1] - ends[0]) * model_parameter.doubt
     return slopes

@@ -12,7 +12,7 @@ from acquisition.display import Displayed
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.frf_update.columns import columns
-from updating.frf_update.evaluation import Look, look
+from updating.frf_update.evaluation import Evaluation, evaluate
 from updating.frf_update.mounting import resonances, shifted
 from updating.frf_update.report import report
 from updating.frf_update.result import FrfUpdate
@@ -102,7 +102,7 @@ def bootstrap_frf_update(
         raise StudyError(f"bootstrap: {len(values)} draws were given and {n} asked for")
     tails = (1 - LEVEL) / 2
     low, high = np.quantile(values, [tails, 1 - tails], axis=0)
-    nominal = np.array([k.nominal for step in last for k in step.stage.knobs])
+    nominal = np.array([k.nominal for step in last for k in step.stage.model_parameters])
     ends = zip(found.parameters, low * nominal, high * nominal, strict=True)
     with_ends = tuple(replace(p, interval=(float(a), float(b))) for p, a, b in ends)
     return FrfBootstrap(replace(found, parameters=with_ends, draws=n), values)
@@ -114,14 +114,16 @@ def _from_noise(frfs: MeasuredFrfs, rng: np.random.Generator, n: int) -> Iterabl
         yield replace(frfs, values=frfs.values + np.sqrt(frfs.variance / 2) * scatter)
 
 
-def _whole(last: Sequence[Step], frfs: MeasuredFrfs) -> Look:
+def _whole(last: Sequence[Step], frfs: MeasuredFrfs) -> Evaluation:
     """Return the updated model on all lines."""
     stage = last[-1].stage
     state = replace(combine([s.own for s in last]), ratios=stage.earlier.ratios)
-    return look(stage.predictor, state, columns(frfs), frfs.laplace, order=frfs.order)
+    return evaluate(stage.predictor, state, columns(frfs), frfs.laplace, order=frfs.order)
 
 
-def _mounted(frfs: MeasuredFrfs, at: Look, rng: np.random.Generator, repeatability: float) -> MeasuredFrfs:
+def _mounted(
+    frfs: MeasuredFrfs, at: Evaluation, rng: np.random.Generator, repeatability: float
+) -> MeasuredFrfs:
     """Move every resonance as another mounting might."""
     shift = repeatability * rng.standard_normal(len(resonances(at)))
     return replace(frfs, values=frfs.values + shifted(at, columns(frfs), shift).sum(axis=0))
@@ -145,9 +147,9 @@ def _repeat(last: Sequence[Step], frfs: MeasuredFrfs, draw: MeasuredFrfs) -> lis
             kept = set(step.stage.frfs.pairs())
             rows = np.array([k for k, pair in enumerate(draw.pairs()) if pair in kept])
             stage: Stage = replace(step.stage, frfs=draw.select(rows).lines(chosen), earlier=earlier)
-            size, at = step.solved.discrepancy, stage.look(theta[i])
+            size, at = step.solved.discrepancy, stage.evaluate(theta[i])
             theta[i] = descend(
                 stage, theta[i], at, size, share=CONVERGED, steps=STEPS, variance=stage.variance(at, size)
             )[0]
-            own[i] = stage.panel.state(stage.predictor, stage.values(theta[i]))
+            own[i] = stage.parameter_set.state(stage.predictor, stage.values(theta[i]))
     return [v for step, t in zip(last, theta, strict=True) for v in step.stage.values(t)]

@@ -12,7 +12,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.frf_update.columns import columns
-from updating.frf_update.evaluation import look
+from updating.frf_update.evaluation import evaluate
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.test_data.measured_frfs import MeasuredFrfs
@@ -53,7 +53,7 @@ def odd(frfs: MeasuredFrfs, predictor: Predictor, state: State) -> dict[int, str
     count = len(frfs.values)
     if count < FEWEST:
         return {}
-    model = look(predictor, state, columns(frfs), frfs.laplace, order=frfs.order).receptance
+    model = evaluate(predictor, state, columns(frfs), frfs.laplace, order=frfs.order).receptance
     level, cosine = _compared(frfs, model)
     middle = np.nanmedian(level)
     away = np.abs(level - middle)
@@ -71,12 +71,12 @@ def _over(away: FloatArray, spread: float) -> Sequence[int]:
 def _compared(frfs: MeasuredFrfs, model: np.ndarray) -> tuple[FloatArray, FloatArray]:
     """Return the median log level and the mean cosine of the phase of every FRF to the model's (n_frf,) [-]."""
     size, own = np.abs(frfs.values), np.abs(model)
-    heard = np.maximum(size, own) ** 2 > AUDIBLE * frfs.variance
-    enough = heard.sum(axis=1) >= max(5, heard.shape[1] // 20)
+    above_noise = np.maximum(size, own) ** 2 > AUDIBLE * frfs.variance
+    enough = above_noise.sum(axis=1) >= max(5, above_noise.shape[1] // 20)
     tiny = 1e-30 * max(float(own.max()), 1e-300)
-    ratio = np.where(heard, np.log(np.maximum(size, tiny) / np.maximum(own, tiny)), np.nan)
+    ratio = np.where(above_noise, np.log(np.maximum(size, tiny) / np.maximum(own, tiny)), np.nan)
     turned = (frfs.values * model.conj()).real / np.maximum(size * own, tiny**2)
     level, cosine = np.full(len(size), np.nan), np.full(len(size), np.nan)
     level[enough] = np.nanmedian(ratio[enough], axis=1)
-    cosine[enough] = np.nanmean(np.where(heard, turned, np.nan)[enough], axis=1)
+    cosine[enough] = np.nanmean(np.where(above_noise, turned, np.nan)[enough], axis=1)
     return level, cosine

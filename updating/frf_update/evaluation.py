@@ -17,14 +17,14 @@ from updating.models.damping import Matrices
 from updating.models.response import answers, on_each_line
 from updating.models.state import State
 from updating.prediction.predict import Predictor
-from updating.update.parameters.parameters import Panel
+from updating.update.parameters.parameters import ParameterSet
 
 STEP = 1e-4
 """Step of the differences of matrices, relative to a parameter's doubt [-]."""
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class Evaluation:
     """A model at one setting of its parameters.
 
     Parameters
@@ -58,7 +58,9 @@ class Look:
     order: int = 0
 
 
-def look(predictor: Predictor, state: State, ends: Columns, laplace: ComplexArray, *, order: int = 0) -> Look:
+def evaluate(
+    predictor: Predictor, state: State, ends: Columns, laplace: ComplexArray, *, order: int = 0
+) -> Evaluation:
     """Evaluate a model at the points and lines of measured FRFs.
 
     Parameters
@@ -79,7 +81,7 @@ def look(predictor: Predictor, state: State, ends: Columns, laplace: ComplexArra
     gain = level * (there / laplace) ** order if decay else np.full(len(laplace), level, dtype=complex)
     states = answers(matrices, rows.T, there)
     receptance = gain * on_each_line(rows, states)[:, ends.response, ends.excitation].T
-    return Look(state, matrices, rows, states, receptance, there, gain, order)
+    return Evaluation(state, matrices, rows, states, receptance, there, gain, order)
 
 
 def _parts(predictor: Predictor, state: State, ends: Columns) -> tuple[Matrices, FloatArray, float, float]:
@@ -112,7 +114,7 @@ class Change:
 
 
 def changes(
-    predictor: Predictor, panel: Panel, values: Sequence[float], ends: Columns, earlier: State
+    predictor: Predictor, parameter_set: ParameterSet, values: Sequence[float], ends: Columns, earlier: State
 ) -> list[Change]:
     """Return what each parameter changes in the model, by central differences of its matrices.
 
@@ -124,7 +126,7 @@ def changes(
     ----------
     predictor : Predictor
         The specimen.
-    panel : Panel
+    parameter_set : Panel
         Its parameters.
     values : sequence of float
         Their factors and values.
@@ -134,14 +136,20 @@ def changes(
         What earlier stages have settled.
     """
     found = []
-    for i, knob in enumerate(panel.knobs):
-        here, step = knob.coordinate(values[i]), STEP * min(knob.doubt, knob.span() / 4)
-        limits = knob.coordinate(knob.low), knob.coordinate(knob.high)
+    for i, model_parameter in enumerate(parameter_set.model_parameters):
+        here, step = (
+            model_parameter.coordinate(values[i]),
+            STEP * min(model_parameter.doubt, model_parameter.span() / 4),
+        )
+        limits = (
+            model_parameter.coordinate(model_parameter.low),
+            model_parameter.coordinate(model_parameter.high),
+        )
         at = [max(here - step, limits[0]), min(here + step, limits[1])]
         sides = []
         for coordinate in at:
-            moved = [*values[:i], knob.value(coordinate), *values[i + 1 :]]
-            sides.append(_parts(predictor, earlier.plus(panel.state(predictor, moved)), ends))
+            moved = [*values[:i], model_parameter.value(coordinate), *values[i + 1 :]]
+            sides.append(_parts(predictor, earlier.plus(parameter_set.state(predictor, moved)), ends))
         width = at[1] - at[0]
         (low, low_rows, low_gain, low_decay), (high, high_rows, high_gain, high_decay) = sides
         names = ("stiffness", "mass", "viscous", "structural")
@@ -153,7 +161,9 @@ def changes(
     return found
 
 
-def sensitivity(at: Look, change: Change, ends: Columns, excited: ComplexArray | None = None) -> ComplexArray:
+def sensitivity(
+    at: Evaluation, change: Change, ends: Columns, excited: ComplexArray | None = None
+) -> ComplexArray:
     """Return dH / d coordinate of every FRF, shape (n_frf, n_lines) [m/N].
 
     Parameters
@@ -180,7 +190,7 @@ def sensitivity(at: Look, change: Change, ends: Columns, excited: ComplexArray |
     return np.asarray(at.gain * by + level * at.receptance)
 
 
-def _forces(at: Look, change: Change, states: ComplexArray) -> ComplexArray:
+def _forces(at: Evaluation, change: Change, states: ComplexArray) -> ComplexArray:
     """Return dZ / d coordinate times states (n_lines, r, n) [N]."""
     s, d, own = at.laplace[:, None, None], change.matrices, at.matrices
     one = np.ones_like(s)

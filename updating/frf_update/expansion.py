@@ -6,14 +6,14 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray
 from updating.frf_update.columns import Columns
-from updating.frf_update.evaluation import Look
+from updating.frf_update.evaluation import Evaluation
 from updating.models.response import answers, on_each_line
 
 RIDGE = 1e-4
 """Share of the mean stiffness of the explanation under which a direction is left to the model [-]."""
 
 
-def expand(at: Look, ends: Columns, measured: ComplexArray) -> ComplexArray:
+def expand(at: Evaluation, ends: Columns, measured: ComplexArray) -> ComplexArray:
     """Expand measured receptances to the whole basis, for the {H^X}_j of paper B's Eq. 9.
 
     The equation needs the measured column at every degree of freedom, and a test gives it at a few. Of all

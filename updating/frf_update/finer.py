@@ -38,7 +38,7 @@ def finer(specimen: Specimen, steps: Sequence[Step]) -> tuple[Specimen, list[Ste
     state = predictor.base.plus(step.state)
     if predictor.reduced.structure.unknowns <= SMALL or state.released or state.theory is not None:
         return None
-    new = predictor.looking(specimen.measured)
+    new = predictor.for_test(specimen.measured)
     new.__dict__["reduced"] = basis_at(predictor.reduced, state, _loads(specimen))
     new.__dict__.pop("base", None)
     moved = [_moved(s, new) for s in steps]
@@ -53,7 +53,7 @@ def finer(specimen: Specimen, steps: Sequence[Step]) -> tuple[Specimen, list[Ste
 def _moved(step: Step, predictor: Predictor) -> Step:
     """Return a step whose effects are matrices on the basis of another predictor."""
     values = step.stage.values(step.solved.theta)
-    return replace(step, own=step.stage.panel.state(predictor, values))
+    return replace(step, own=step.stage.parameter_set.state(predictor, values))
 
 
 def _loads(specimen: Specimen) -> FloatArray:

@@ -90,7 +90,7 @@ def _nearest(frequency: FloatArray, wanted: FloatArray) -> IntArray:
 
 def _information(stage: Stage, theta: FloatArray, discrepancy: float) -> FloatArray:
     """Return the information of every line on the parameters, in units of their doubts, (n_lines, p, p) [-]."""
-    at = stage.look(theta)
+    at = stage.evaluate(theta)
     slopes = stage.slopes(theta, at, measured=False) * stage.doubt[:, None, None]
     weight = 2 / stage.variance(at, discrepancy)
     both = np.einsum("pfl,qfl,fl->lpq", slopes, slopes.conj(), weight, optimize=True)

@@ -10,13 +10,13 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from updating.frf_update.columns import Columns
-from updating.frf_update.evaluation import Look
+from updating.frf_update.evaluation import Evaluation
 
 BEYOND = 1.2
 """Modes up to so many times the highest line move the FRFs [-]."""
 
 
-def resonances(at: Look) -> IntArray:
+def resonances(at: Evaluation) -> IntArray:
     """Return the numbers of the elastic modes that count, in order of frequency."""
     values = at.matrices.undamped[0]
     top = (BEYOND * np.abs(at.laplace.imag).max()) ** 2
@@ -24,7 +24,7 @@ def resonances(at: Look) -> IntArray:
     return np.flatnonzero(elastic & (values > 0) & (values < top))
 
 
-def shifted(at: Look, ends: Columns, shift: FloatArray) -> ComplexArray:
+def shifted(at: Evaluation, ends: Columns, shift: FloatArray) -> ComplexArray:
     """Return what moved resonances add to the model's receptances, each mode by itself.
 
     Parameters

@@ -11,7 +11,7 @@ import pandas as pd
 from acquisition.arrays import FloatArray, IntArray
 from identification import frac
 from updating.frf_update.columns import columns
-from updating.frf_update.evaluation import look
+from updating.frf_update.evaluation import evaluate
 from updating.frf_update.result import FrfUpdate
 from updating.frf_update.stage import nominal
 from updating.frf_update.statistics import assess, misses, with_misses
@@ -22,7 +22,7 @@ from updating.prediction.predict import Predictor
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.data.specimen import Specimen
 from updating.update.parameters.exact import full_modes
-from updating.update.parameters.parameters import Knob
+from updating.update.parameters.parameters import ModelParameter
 from updating.update.result import Estimate
 from updating.update.statistics.determined import correlations
 
@@ -45,40 +45,45 @@ def report(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step]) -> Frf
     last = last_steps(steps)
     test = specimen.measured
     # a stage of damping alone looks at the lines where a mounting puts its peaks; misses hold the scatter too
-    apart = [s.stage.damps_alone or s.solved.discrepancy > 0 for s in last]
-    scatter = [0.0 if a else test.repeatability for a in apart]
+    separate = [s.stage.damps_alone or s.solved.discrepancy > 0 for s in last]
+    scatter = [0.0 if a else test.repeatability for a in separate]
     results = [assess(s.stage, s.solved, test.calibration, r) for s, r in zip(last, scatter, strict=True)]
     results = [
         r if s.solved.discrepancy == 0 else with_misses(r, misses(specimen, s))
         for r, s in zip(results, last, strict=True)
     ]
-    knobs = [k for step in last for k in step.stage.knobs]
+    model_parameters = [k for step in last for k in step.stage.model_parameters]
     theta = np.concatenate([s.solved.theta for s in last])
-    slope = np.array([k.nominal * (k.value(t) if k.log else 1.0) for k, t in zip(knobs, theta, strict=True)])
+    slope = np.array(
+        [k.nominal * (k.value(t) if k.log else 1.0) for k, t in zip(model_parameters, theta, strict=True)]
+    )
     covariance = _blocks([r.covariance for r in results])
     state = combine([s.own for s in last])
     if not specimen.predictor.expects(specimen.predictor.base.plus(state)):
         state = replace(state, ratios=last[0].stage.earlier.ratios)
     lost = np.concatenate([r.undetermined for r in results])
     pairs, exact = _pairs(
-        specimen, last[-1].stage.predictor, state, [k.value(t) for k, t in zip(knobs, theta, strict=True)]
+        specimen,
+        last[-1].stage.predictor,
+        state,
+        [k.value(t) for k, t in zip(model_parameters, theta, strict=True)],
     )
     chi2, count = sum(r.chi2 for r in results), sum(r.count for r in results)
     return FrfUpdate(
         parameters=tuple(
             _estimate(k, float(t), float(s))
-            for k, t, s in zip(knobs, theta, np.sqrt(np.diag(covariance)) * slope, strict=True)
+            for k, t, s in zip(model_parameters, theta, np.sqrt(np.diag(covariance)) * slope, strict=True)
         ),
         pairs=pairs,
         covariance=covariance * np.outer(slope, slope),
         correlations=correlations(covariance),
-        undetermined=tuple(k.name for k, bad in zip(knobs, lost, strict=True) if bad),
+        undetermined=tuple(k.name for k, bad in zip(model_parameters, lost, strict=True) if bad),
         iterations=sum(len(s.solved.history) - 1 for s in steps),
         converged=all(s.solved.converged for s in last),
         chi2=chi2,
-        dof=count - len(knobs),
+        dof=count - len(model_parameters),
         inflation=1.0,
-        history=_history(steps, knobs),
+        history=_history(steps, model_parameters),
         exact=exact,
         warnings=tuple(_warnings(specimen, last, exact)),
         data=count,
@@ -101,39 +106,44 @@ def _blocks(parts: Sequence[FloatArray]) -> FloatArray:
     return total
 
 
-def _estimate(knob: Knob, coordinate: float, sigma: float) -> Estimate:
-    value = knob.value(coordinate)
-    margin = 1e-6 * knob.span()
-    ends = knob.coordinate(knob.low) + margin, knob.coordinate(knob.high) - margin
-    factor = value if knob.is_factor or knob.parameter == "factor" else None
-    if knob.reach:
-        factor = 1 + knob.reach * value
+def _estimate(model_parameter: ModelParameter, coordinate: float, sigma: float) -> Estimate:
+    value = model_parameter.value(coordinate)
+    margin = 1e-6 * model_parameter.span()
+    ends = (
+        model_parameter.coordinate(model_parameter.low) + margin,
+        model_parameter.coordinate(model_parameter.high) - margin,
+    )
+    factor = value if model_parameter.is_factor or model_parameter.parameter == "factor" else None
+    if model_parameter.reach:
+        factor = 1 + model_parameter.reach * value
     return Estimate(
-        knob.name,
+        model_parameter.name,
         None,
-        knob.nominal * value,
-        knob.unit,
+        model_parameter.nominal * value,
+        model_parameter.unit,
         factor,
         sigma,
         not ends[0] < coordinate < ends[1],
-        knob.nominal * knob.low,
-        knob.nominal * knob.high,
-        knob.nominal * knob.start,
+        model_parameter.nominal * model_parameter.low,
+        model_parameter.nominal * model_parameter.high,
+        model_parameter.nominal * model_parameter.start,
     )
 
 
-def _history(steps: Sequence[Step], knobs: Sequence[Knob]) -> pd.DataFrame:
+def _history(steps: Sequence[Step], model_parameters: Sequence[ModelParameter]) -> pd.DataFrame:
     """Return factors and values of every iteration; parameters of other stages stand still."""
     current = {
-        k.name: k.value(t) for s in steps for k, t in zip(s.stage.knobs, nominal(s.stage.knobs), strict=True)
+        k.name: k.value(t)
+        for s in steps
+        for k, t in zip(s.stage.model_parameters, nominal(s.stage.model_parameters), strict=True)
     }
     rows = [dict(current)]
     for step in steps:
         for theta in step.solved.history[1:]:
-            current |= {k.name: k.value(t) for k, t in zip(step.stage.knobs, theta, strict=True)}
+            current |= {k.name: k.value(t) for k, t in zip(step.stage.model_parameters, theta, strict=True)}
             rows.append(dict(current))
     return pd.DataFrame(
-        rows, columns=[k.name for k in knobs], index=pd.RangeIndex(len(rows), name="iteration")
+        rows, columns=[k.name for k in model_parameters], index=pd.RangeIndex(len(rows), name="iteration")
     )
 
 
@@ -142,12 +152,12 @@ def _pairs(
 ) -> tuple[pd.DataFrame, bool]:
     test = specimen.measured
     found = {}
-    for name, looking, at in (("before", specimen.predictor, NOMINAL), ("after", predictor, state)):
-        prediction = looking.predict(at)
+    for name, own_predictor, at in (("before", specimen.predictor, NOMINAL), ("after", predictor, state)):
+        prediction = own_predictor.predict(at)
         partner = match(test, prediction, specimen.order)
         found[name] = (prediction.select(partner), partner)
     after, partner = found["after"]
-    whole = full_modes(predictor, lambda on: specimen.panel.state(on, values), int(partner.max()) + 1)
+    whole = full_modes(predictor, lambda on: specimen.parameter_set.state(on, values), int(partner.max()) + 1)
     after_hz = after.frequency if whole is None else whole[0][partner]
     mac = np.full(len(partner), np.nan)
     if test.has_shapes:
@@ -185,15 +195,15 @@ def _frac(specimen: Specimen, frfs: MeasuredFrfs, steps: Sequence[Step], state: 
         "response": [nodes[i] for i in frfs.seen],
         "force": [nodes[i] for i in frfs.hit],
     }
-    apart = [s for s in steps if not s.together]
-    first = [s.own for s in apart[: max(s.number for s in apart)]]
+    separate = [s for s in steps if not s.together]
+    first = [s.own for s in separate[: max(s.number for s in separate)]]
     stations = {"before": NOMINAL}
     stations |= {f"after stage {i + 1}": combine(first[: i + 1]) for i in range(len(first))}
     undamped = not specimen.predictor.expects(specimen.predictor.base)
     for name, at in (stations | {"after": state}).items():
         shown = replace(at, ratios=identified_ratios(specimen)) if undamped and not at.dampers else at
-        looking = specimen.predictor if name == "before" else steps[-1].stage.predictor
-        computed = look(looking, shown, columns(frfs), frfs.laplace, order=frfs.order).receptance
+        own_predictor = specimen.predictor if name == "before" else steps[-1].stage.predictor
+        computed = evaluate(own_predictor, shown, columns(frfs), frfs.laplace, order=frfs.order).receptance
         table[name] = frac(frfs.values, computed).tolist()
     return pd.DataFrame(table)
 

@@ -43,12 +43,12 @@ class FrfUpdate(Update):
         together = len(self.discrepancy) == 1 and len(self.stages) > 1
         names = ["all together"] if together else [f"stage {i + 1}" for i in range(len(self.discrepancy))]
         rows = zip(names, self.lines, self.discrepancy, strict=True)
-        told = [
+        stated = [
             f"    {name}: {len(lines)} lines from {lines[0]:.4g} to {lines[-1]:.4g} Hz, model off by {100 * size:.2g} %"
             for name, lines, size in rows
         ]
         steps = "    iterations, stage after stage: " + ", ".join(str(n) for n in self.stages)
-        return "\n".join([super().report(), "[[Stages]]", *told, steps])
+        return "\n".join([super().report(), "[[Stages]]", *stated, steps])
 
     def damping_error_percent(self, which: str = "after") -> float:
         """Return the mean magnitude of the relative error of the damping ratios, ``before`` or ``after`` [%]."""

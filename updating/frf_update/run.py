@@ -27,7 +27,7 @@ from updating.prediction.matching import match
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.building import build_specimen
 from updating.update.data.specimen import Specimen
-from updating.update.parameters.parameters import DAMPERS, DAMPING, Panel, build_panel
+from updating.update.parameters.parameters import DAMPERS, DAMPING, ParameterSet, build_parameter_set
 
 PASSES = 2
 """How often a stage chooses its lines: on the nominal model, and again where that has brought it."""
@@ -123,23 +123,26 @@ def solve_stages(
     """Go through the stages until they rest; see :func:`update_frfs`."""
     named = _staged(parameters, stages)
     specimen = build_specimen(case, [name for stage in named for name in stage])
-    panels = _split(specimen, case, named)
-    specimen, kept, steps = _without_odd(specimen, frfs, panels, lines)
+    parameter_sets = _split(specimen, case, named)
+    specimen, kept, steps = _without_odd(specimen, frfs, parameter_sets, lines)
     here = specimen
     for _ in range(BASES):
         better = finer(here, steps)
         if better is None:
             break
         here, steps = better
-        steps = _go_through(here, kept, panels, [s for s in steps if not s.together], lines)
+        steps = _go_through(here, kept, parameter_sets, [s for s in steps if not s.together], lines)
     return specimen, frfs, steps
 
 
 def _without_odd(
-    specimen: Specimen, frfs: MeasuredFrfs, panels: Sequence[Panel], lines: int | Sequence[float] | None
+    specimen: Specimen,
+    frfs: MeasuredFrfs,
+    parameter_sets: Sequence[ParameterSet],
+    lines: int | Sequence[float] | None,
 ) -> tuple[Specimen, MeasuredFrfs, list[Step]]:
     """Go through the stages, and again without FRFs that no parameter can follow if the others then agree."""
-    steps = _go_through(specimen, frfs, panels, [], lines)
+    steps = _go_through(specimen, frfs, parameter_sets, [], lines)
     off = max(s.solved.discrepancy for s in last_steps(steps))
     if off < ODD:
         return specimen, frfs, steps
@@ -148,34 +151,34 @@ def _without_odd(
     if not found:
         return specimen, frfs, steps
     kept = frfs.select(np.setdiff1d(np.arange(len(frfs.values)), list(found)))
-    again = _go_through(specimen, kept, panels, [], lines)
+    again = _go_through(specimen, kept, parameter_sets, [], lines)
     better = max(s.solved.discrepancy for s in last_steps(again)) < ODD_GAIN * off
     nodes, what = (
         specimen.measured.nodes,
         "is left out" if better else "was kept, as the rest agree no better",
     )
-    said = [
+    statement = [
         f"the FRF at node {nodes[frfs.seen[i]]} by the force at node {nodes[frfs.hit[i]]} has {how} of the others "
         f"beside the model and {what}; check its channel, calibration and direction"
         for i, how in sorted(found.items())
     ]
-    specimen = replace(specimen, warnings=(*specimen.warnings, *said))
+    specimen = replace(specimen, warnings=(*specimen.warnings, *statement))
     return (specimen, kept, again) if better else (specimen, frfs, steps)
 
 
 def _go_through(
     specimen: Specimen,
     frfs: MeasuredFrfs,
-    panels: Sequence[Panel],
+    parameter_sets: Sequence[ParameterSet],
     done: Sequence[Step],
     lines: int | Sequence[float] | None,
 ) -> list[Step]:
     """Go through the stages until they rest on one basis, from where they rested on another."""
-    steps, count = list(done), len(panels)
-    mixed = entangled(panels)
+    steps, count = list(done), len(parameter_sets)
+    mixed = entangled(parameter_sets)
     for _ in range(1 if count == 1 or mixed else CYCLES):
-        for i, panel in enumerate(panels):
-            steps.append(_solve(specimen, frfs, (i, panel), steps, lines))
+        for i, parameter_set in enumerate(parameter_sets):
+            steps.append(_solve(specimen, frfs, (i, parameter_set), steps, lines))
         if _at_rest(steps, count):
             break
     else:
@@ -192,9 +195,11 @@ def _go_through(
     return steps
 
 
-def entangled(panels: Sequence[Panel]) -> bool:
+def entangled(parameter_sets: Sequence[ParameterSet]) -> bool:
     """Tell whether more than one stage turns mass or stiffness, so that one can only rest where the others do."""
-    return sum(not all(k.damps for k in panel.knobs) for panel in panels) > 1
+    return (
+        sum(not all(k.damps for k in parameter_set.model_parameters) for parameter_set in parameter_sets) > 1
+    )
 
 
 def _together(
@@ -206,11 +211,11 @@ def _together(
     near: bool = False,
 ) -> Step:
     """Turn the parameters of all stages at once, from where they rested or from where the frequencies put them."""
-    stage = _stage(specimen, frfs, specimen.panel, NOMINAL)
+    stage = _stage(specimen, frfs, specimen.parameter_set, NOMINAL)
     theta = np.concatenate([step.solved.theta for step in last])
     begin = max(FRESH, *(step.solved.discrepancy for step in last))
     if near:
-        theta, begin = from_frequencies(specimen, stage, nominal(stage.knobs)), BEGIN
+        theta, begin = from_frequencies(specimen, stage, nominal(stage.model_parameters)), BEGIN
     stage = stage.lines(choose_lines(stage, theta, LEAST, None if lines is None else _doubled(lines)))
     solved = solve(stage, theta, begin=begin)
     found = stage.state(solved.theta)
@@ -246,33 +251,39 @@ def _staged(parameters: Sequence[str], stages: Sequence[Sequence[str]] | None) -
     return named
 
 
-def _split(specimen: Specimen, case: Case, named: Sequence[Sequence[str]]) -> list[Panel]:
+def _split(specimen: Specimen, case: Case, named: Sequence[Sequence[str]]) -> list[ParameterSet]:
     """Return the panel of each stage."""
     fixed = {name: dict(values) for name, values in case.accepted}
-    counts = [len(build_panel(s, specimen.predictor, case.tolerances, fixed).knobs) for s in named]
+    counts = [
+        len(build_parameter_set(s, specimen.predictor, case.tolerances, fixed).model_parameters)
+        for s in named
+    ]
     ends = np.cumsum([0, *counts])
-    return [replace(specimen.panel, knobs=specimen.panel.knobs[a:b]) for a, b in pairwise(ends)]
+    return [
+        replace(specimen.parameter_set, model_parameters=specimen.parameter_set.model_parameters[a:b])
+        for a, b in pairwise(ends)
+    ]
 
 
 def _solve(
     specimen: Specimen,
     frfs: MeasuredFrfs,
-    numbered: tuple[int, Panel],
+    numbered: tuple[int, ParameterSet],
     done: Sequence[Step],
     lines: int | Sequence[float] | None,
 ) -> Step:
     """Choose lines, solve, and do both again where the model has come to."""
-    number, panel = numbered
-    if len(panel.knobs) > 2 * frfs.values.size:
+    number, parameter_set = numbered
+    if len(parameter_set.model_parameters) > 2 * frfs.values.size:
         raise StudyError(
-            f"update: {len(panel.knobs)} parameters and {2 * frfs.values.size} data; name fewer parameters"
+            f"update: {len(parameter_set.model_parameters)} parameters and {2 * frfs.values.size} data; name fewer parameters"
         )
     latest = {step.number: step for step in done}
     others = NOMINAL
     for step in (latest[n] for n in sorted(latest) if n != number):
         others = others.plus(step.own)
-    whole = _stage(specimen, frfs, panel, others)
-    theta, size, passes = nominal(panel.knobs), BEGIN, PASSES
+    whole = _stage(specimen, frfs, parameter_set, others)
+    theta, size, passes = nominal(parameter_set.model_parameters), BEGIN, PASSES
     if number in latest:
         theta, size, passes = latest[number].solved.theta, max(latest[number].solved.discrepancy, FRESH), 1
     variance = None
@@ -285,7 +296,9 @@ def _solve(
         if other[1].discrepancy < solved.discrepancy:
             stage, solved, visited = other[0], other[1], [theta, *other[2]]
     theta = solved.theta
-    own = panel.state(specimen.predictor, [k.value(t) for k, t in zip(panel.knobs, theta, strict=True)])
+    own = parameter_set.state(
+        specimen.predictor, [k.value(t) for k, t in zip(parameter_set.model_parameters, theta, strict=True)]
+    )
     return Step(number, stage, replace(solved, history=np.array(visited)), own, stage.state(theta))
 
 
@@ -307,13 +320,13 @@ def _rested(
     return stage, solved, visited
 
 
-def _stage(specimen: Specimen, frfs: MeasuredFrfs, panel: Panel, earlier: State) -> Stage:
+def _stage(specimen: Specimen, frfs: MeasuredFrfs, parameter_set: ParameterSet, earlier: State) -> Stage:
     test = specimen.measured
-    damps = any(k.damps for k in panel.knobs)
-    only_damps = all(k.damps for k in panel.knobs)
+    damps = any(k.damps for k in parameter_set.model_parameters)
+    only_damps = all(k.damps for k in parameter_set.model_parameters)
     unknown = not damps and not np.isfinite(test.damping).all()
-    told = damps or unknown or bool(earlier.dampers)
-    ratios = None if told else identified_ratios(specimen)
+    stated = damps or unknown or bool(earlier.dampers)
+    ratios = None if stated else identified_ratios(specimen)
     widths = np.where(np.isfinite(test.damping), test.damping, UNTOLD_RATIO)
     order = np.argsort(test.frequency)
     centres, widths = (test.frequency[order], widths[order]) if unknown else (np.zeros(0), np.zeros(0))
@@ -324,7 +337,7 @@ def _stage(specimen: Specimen, frfs: MeasuredFrfs, panel: Panel, earlier: State)
         specimen.predictor,
         frfs,
         columns(frfs),
-        panel,
+        parameter_set,
         replace(earlier, ratios=ratios),
         centres,
         widths,

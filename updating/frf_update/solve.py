@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.frf_update.evaluation import Look
+from updating.frf_update.evaluation import Evaluation
 from updating.frf_update.stage import Stage, whitened
 
 BEGIN = 0.5
@@ -56,7 +56,7 @@ class Solved:
     """
 
     theta: FloatArray
-    at: Look
+    at: Evaluation
     discrepancy: float
     history: FloatArray
     converged: bool
@@ -87,7 +87,7 @@ def solve(
         Weights to keep; left out, they follow the discrepancy and the model [m^2/N^2].
     """
     theta, size, history = start, begin, [start]
-    at = stage.look(theta)
+    at = stage.evaluate(theta)
     if variance is not None:
         theta, at, visited, converged = descend(stage, theta, at, size, share=CONVERGED, variance=variance)
         found = stage.discrepancy(at)
@@ -110,13 +110,13 @@ def solve(
 def descend(
     stage: Stage,
     theta: FloatArray,
-    at: Look,
+    at: Evaluation,
     size: float,
     *,
     share: float,
     steps: int = 30,
     variance: FloatArray | None = None,
-) -> tuple[FloatArray, Look, list[FloatArray], bool]:
+) -> tuple[FloatArray, Evaluation, list[FloatArray], bool]:
     """Iterate under one discrepancy; of Eq. 9 with the measured and with the model's column the better is taken.
 
     Where the discrepancy is small, and at the last, peaks overlap and the weights stay as they are at the beginning;
@@ -182,11 +182,11 @@ def _cut_off(rows: FloatArray, load: FloatArray) -> FloatArray:
 
 def _controlled(
     stage: Stage, theta: FloatArray, step: FloatArray, weights: FloatArray | float, before: float
-) -> tuple[FloatArray, Look, float] | None:
+) -> tuple[FloatArray, Evaluation, float] | None:
     """Shorten a step until the misfit falls; None if it does not."""
     for halving in range(8):
         new = np.clip(theta + step / 2**halving, stage.low, stage.high)
-        at = stage.look(new)
+        at = stage.evaluate(new)
         variance = stage.variance(at, weights) if isinstance(weights, float) else weights
         misfit = stage.misfit(at, variance)
         if misfit < before:

@@ -147,11 +147,13 @@ def misses(specimen: Specimen, step: Step) -> FloatArray:
     _, size, right = np.linalg.svd(rows * stage.doubt, full_matrices=False)
     kept = size > max(DROWNED, 1e-10 * size.max(initial=0.0))
     gain = (right[kept].T / size[kept] ** 2) @ right[kept] @ (rows * stage.doubt).T
-    dampers = sum(knob.damper is not None for knob in stage.knobs)
+    dampers = sum(model_parameter.damper is not None for model_parameter in stage.model_parameters)
     total = np.zeros((len(solved.theta),) * 2)
     if np.all(stage.warp == 1.0):
         missed = max(
-            _scatter(np.log(test.frequency / at_rest.frequency[partner]), len(stage.knobs) - dampers),
+            _scatter(
+                np.log(test.frequency / at_rest.frequency[partner]), len(stage.model_parameters) - dampers
+            ),
             test.repeatability,
         )
         total += missed**2 * _pulled(

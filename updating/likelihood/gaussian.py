@@ -90,9 +90,9 @@ def gaussian(
     shapes = comparison.channel[rows] == SHAPES
     data = np.column_stack([j, r])
     # every scale weighs the same two Gram matrices, those of the shapes and of the rest
-    grams = [(data[part].T / d[part]) @ data[part] for part in (~shapes, shapes)]
+    gram_matrices = [(data[part].T / d[part]) @ data[part] for part in (~shapes, shapes)]
     share = 1.0 / np.square(np.asarray(scales))[:, None, None]
-    gram = grams[0] + share * grams[1]
+    gram = gram_matrices[0] + share * gram_matrices[1]
     p = j.shape[1]
     inner = np.eye(p) + gram[:, :p, :p]
     lower = np.linalg.cholesky(inner)
@@ -107,7 +107,7 @@ def gaussian(
     ]
 
 
-def whiten(
+def normal_equations(
     comparison: Comparison, columns: FloatArray, scale: float, keep: BoolArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
     """Return normal matrix and load of least squares on ``columns``, the nuisances integrated out.

@@ -1,12 +1,12 @@
 """Localisation: in which region of the model the error sits.
 
 Siblings with one face: each takes a test beside a model and gives every region a score. The classical ones are here
-to be compared with; :func:`weigh_regions` is what a diagnosis uses.
+to be compared with; :func:`compare_regions` is what a diagnosis uses.
 """
 
 from updating.localisation.base import KINDS, Kind, Localiser, areas
 from updating.localisation.comac import Comac
-from updating.localisation.evidence import RegionEvidence, RegionPosterior, weigh_regions
+from updating.localisation.evidence import RegionEvidence, RegionPosterior, compare_regions
 from updating.localisation.force_residual import ForceResidual
 from updating.localisation.mece import ConstitutiveError
 from updating.localisation.places import boxes, centres, regions_at
@@ -37,6 +37,6 @@ __all__ = [
     "areas",
     "boxes",
     "centres",
+    "compare_regions",
     "regions_at",
-    "weigh_regions",
 ]

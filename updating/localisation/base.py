@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 Kind = Literal["stiffness", "mass", "damping"]
 """What of a region may be wrong."""
@@ -36,7 +36,7 @@ class Localiser(ABC):
     """Whether it can do nothing with frequencies and damping alone."""
 
     @abstractmethod
-    def scores(self, problem: Problem, *, kind: Kind = "stiffness") -> FloatArray:
+    def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
         """Return how suspect each region is.
 
         Parameters
@@ -52,14 +52,14 @@ class Localiser(ABC):
             Not negative, the greater the more suspect; all zero where the data say nothing [-].
         """
 
-    def possible(self, problem: Problem, *, kind: Kind = "stiffness") -> bool:
+    def possible(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> bool:
         """Tell whether the method can be used on these data."""
         if kind not in self.kinds or (self.needs_shapes and not problem.measured.has_shapes):
             return False
         return kind != "damping" or bool(len(problem.damping_known))
 
 
-def areas(problem: Problem) -> FloatArray:
+def areas(problem: SpecimenProblem) -> FloatArray:
     """Return how large each region is relative to all: of area on a plate, of mass on imported matrices.
 
     Returns
@@ -78,7 +78,7 @@ def _area(x: Sequence[float], y: Sequence[float] | None, width: float) -> float:
     return (x[1] - x[0]) * (width if y is None else y[1] - y[0])
 
 
-def _masses(problem: Problem) -> FloatArray:
+def _masses(problem: SpecimenProblem) -> FloatArray:
     """Return the share of each region in the mass; equal shares where no parts of the mass are given."""
     reduced = problem.predictor.reduced
     parts = [p for t, p in zip(reduced.structure.terms, reduced.parts, strict=True) if t.kind == "mass"]

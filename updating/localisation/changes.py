@@ -12,7 +12,7 @@ from updating.localisation.base import Kind
 from updating.localisation.force_residual import region_parts
 from updating.models.state import NOMINAL, Loss, State
 from updating.prediction.predict import Predictor
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 STEP = 0.05
 """Logarithm of the factor at which sensitivities are taken [-]."""
@@ -51,7 +51,7 @@ class Change:
     state: Callable[[float], State]
 
 
-def changes(problem: Problem, kind: Kind) -> tuple[Change, ...]:
+def changes(problem: SpecimenProblem, kind: Kind) -> tuple[Change, ...]:
     """Return the change of every region."""
     count = len(problem.predictor.spec.regions)
     if kind == "damping":
@@ -72,7 +72,7 @@ def _lossy(predictor: Predictor, stiffness: FloatArray) -> Callable[[float], Sta
     return lambda severity: State(losses=(Loss(float(np.exp(severity)) * whole, -1.0),))
 
 
-def columns(problem: Problem, kind: Kind) -> FloatArray:
+def columns(problem: SpecimenProblem, kind: Kind) -> FloatArray:
     """Return the change of the data by each region's severity, at the nominal model, (n, n_regions) [-]."""
     plain = problem.compare(NOMINAL).residual
     found = []

@@ -11,7 +11,7 @@ from acquisition.arrays import FloatArray
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.places import centres
 from updating.localisation.shapes import shapes_of
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Comac(Localiser):
     summary: ClassVar[str] = "One minus the correlation of the shapes over the modes at the nearest point."
     source: ClassVar[str] = "Lieven and Ewins (1988), Proc. IMAC 6"
 
-    def scores(self, problem: Problem, *, kind: Kind = "stiffness") -> FloatArray:
+    def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
         """Return 1 - COMAC of the point nearest to each region's centre [-]."""
         shapes = shapes_of(problem)
         products = np.sum(np.abs(shapes.measured * shapes.predicted), axis=1) ** 2

@@ -22,7 +22,7 @@ from updating.localisation.changes import NODES, changes
 from updating.localisation.severity import DEPTH, Between, integrate, refine
 from updating.models.state import NOMINAL, State
 from updating.problem.candidate import Doubt
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 DOUBT = Doubt(fidelity=0.1)
 """A change is rarely even over just one region: how far that is off, relative to the shift it makes."""
@@ -77,7 +77,7 @@ class RegionPosterior:
         return dict(zip(self.kinds, self.probability.sum(axis=1).tolist(), strict=True))
 
 
-def weigh_regions(problem: Problem, kinds: tuple[Kind, ...] = KINDS) -> RegionPosterior:
+def compare_regions(problem: SpecimenProblem, kinds: tuple[Kind, ...] = KINDS) -> RegionPosterior:
     """Weigh a change of every region.
 
     Parameters
@@ -94,7 +94,7 @@ def weigh_regions(problem: Problem, kinds: tuple[Kind, ...] = KINDS) -> RegionPo
     kept = tuple(k for k in kinds if k != "damping" or len(problem.damping_known))
     reference = marginal(problem.compare(NOMINAL)).log_likelihood
     plain = problem.compare(NOMINAL, doubt=DOUBT)
-    found = [[_weigh(problem, plain, c.state, k) for c in changes(problem, k)] for k in kept]
+    found = [[_compare(problem, plain, c.state, k) for c in changes(problem, k)] for k in kept]
     table = np.array(found).reshape(len(kept), -1, 2)
     return RegionPosterior(kept, table[..., 0] - reference, areas(problem), table[..., 1])
 
@@ -111,30 +111,30 @@ class RegionEvidence(Localiser):
     kinds: ClassVar[tuple[Kind, ...]] = KINDS
     needs_shapes: ClassVar[bool] = False
 
-    def scores(self, problem: Problem, *, kind: Kind = "stiffness") -> FloatArray:
+    def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
         """Return the probability of each region, given that one region is changed [-]."""
-        return weigh_regions(problem, (kind,)).regions
+        return compare_regions(problem, (kind,)).regions
 
 
-def _weigh(
-    problem: Problem, plain: Comparison, state: Callable[[float], State], kind: Kind
+def _compare(
+    problem: SpecimenProblem, plain: Comparison, state: Callable[[float], State], kind: Kind
 ) -> tuple[float, float]:
     """Return log evidence and mean severity of one region's change."""
-    looks = {float(s): problem.compare(state(float(s)), doubt=DOUBT) for s in NODES[kind]}
+    evaluations = {float(s): problem.compare(state(float(s)), doubt=DOUBT) for s in NODES[kind]}
     if kind != "damping":
-        looks[0.0] = plain
-    looks = {s: look for s, look in looks.items() if _finite(look)}
-    if len(looks) < ENOUGH:
+        evaluations[0.0] = plain
+    evaluations = {s: evaluation for s, evaluation in evaluations.items() if _finite(evaluation)}
+    if len(evaluations) < ENOUGH:
         return -np.inf, 0.0
     start = _start(kind)
-    grid, likely = refine(Between(looks).log_likelihoods, start)
+    grid, likely = refine(Between(evaluations).log_likelihoods, start)
     mean, spread = _moments(*_posterior(grid, likely, kind))
     for severity in np.clip(mean + spread * np.array(AGAIN), start[0], start[-1]).tolist():
         exact = problem.compare(state(severity), doubt=DOUBT)
         if _finite(exact):
-            looks[severity] = exact
+            evaluations[severity] = exact
     worth = (likely > likely.max() - 2 * DEPTH) | np.isin(grid, [start[0], 0.0, start[-1]])
-    fine, score = _posterior(*refine(Between(looks).log_likelihoods, grid[worth]), kind)
+    fine, score = _posterior(*refine(Between(evaluations).log_likelihoods, grid[worth]), kind)
     return float(logsumexp(score)), _moments(fine, score)[0]
 
 
@@ -159,8 +159,10 @@ def _posterior(grid: FloatArray, likely: FloatArray, kind: Kind) -> tuple[FloatA
     return fine, score - np.log(2 * np.where(fine < 0, -low, high))
 
 
-def _finite(look: Comparison) -> bool:
-    return all(np.isfinite(part).all() for part in (look.residual, look.nuisance, look.variance))
+def _finite(evaluation: Comparison) -> bool:
+    return all(
+        np.isfinite(part).all() for part in (evaluation.residual, evaluation.nuisance, evaluation.variance)
+    )
 
 
 def _moments(grid: FloatArray, score: FloatArray) -> tuple[float, float]:
@@ -170,4 +172,4 @@ def _moments(grid: FloatArray, score: FloatArray) -> tuple[float, float]:
     return mean, float(np.sqrt(weight @ (grid - mean) ** 2))
 
 
-__all__ = ["RegionEvidence", "RegionPosterior", "weigh_regions"]
+__all__ = ["RegionEvidence", "RegionPosterior", "compare_regions"]

@@ -11,7 +11,7 @@ from scipy import linalg
 from acquisition.arrays import FloatArray
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.shapes import dynamic, serep, shapes_of
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class ForceResidual(Localiser):
 
     expansion: Literal["serep", "dynamic"] = "serep"
 
-    def scores(self, problem: Problem, *, kind: Kind = "stiffness") -> FloatArray:
+    def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
         """Return the mean square of the left-over acceleration in each region, relative to the shape's own [-]."""
         shapes = shapes_of(problem)
         whole = serep(problem, shapes) if self.expansion == "serep" else dynamic(shapes)
@@ -46,7 +46,7 @@ class ForceResidual(Localiser):
         return np.asarray(np.maximum(share, 0.0))
 
 
-def region_parts(problem: Problem, kind: str) -> FloatArray:
+def region_parts(problem: SpecimenProblem, kind: str) -> FloatArray:
     """Return the stiffness or mass matrix of every region on the reduced basis, (n_regions, r, r) [SI]."""
     predictor = problem.predictor
     reduced, base = predictor.reduced, predictor.base

@@ -12,7 +12,7 @@ from acquisition.arrays import FloatArray
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.force_residual import region_parts
 from updating.localisation.shapes import dynamic, shapes_of
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class ConstitutiveError(Localiser):
 
     trust: float = 1e2
 
-    def scores(self, problem: Problem, *, kind: Kind = "stiffness") -> FloatArray:
+    def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
         """Return the error of each region's law, relative to the energy of each mode, over all modes [-]."""
         shapes = shapes_of(problem)
         moved = dynamic(shapes, trust=self.trust)

@@ -6,7 +6,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.models.spec import Spec
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 
 def boxes(spec: Spec) -> FloatArray:
@@ -26,7 +26,7 @@ def boxes(spec: Spec) -> FloatArray:
     return found
 
 
-def centres(problem: Problem) -> FloatArray:
+def centres(problem: SpecimenProblem) -> FloatArray:
     """Return the centre of each region, (n_regions, 3); that of the whole where its own is not known [m]."""
     limits = boxes(problem.predictor.spec)
     middle = limits.mean(axis=2)

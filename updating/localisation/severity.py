@@ -44,30 +44,30 @@ class Between:
 
     Parameters
     ----------
-    looks : mapping
+    evaluations : mapping
         Comparisons by severity; all of the same data and nuisances.
     """
 
-    looks: Mapping[float, Comparison]
+    evaluations: Mapping[float, Comparison]
 
     @cached_property
     def nodes(self) -> FloatArray:
         """The severities predicted, in order."""
-        return np.array(sorted(self.looks), dtype=float)
+        return np.array(sorted(self.evaluations), dtype=float)
 
     @cached_property
     def _ordered(self) -> list[Comparison]:
-        return [self.looks[s] for s in self.nodes.tolist()]
+        return [self.evaluations[s] for s in self.nodes.tolist()]
 
     @cached_property
     def _data(self) -> CubicSpline:
         """Spline of nuisances and residual, (n, p + 1)."""
-        parts = [np.column_stack([look.nuisance, look.residual]) for look in self._ordered]
+        parts = [np.column_stack([evaluation.nuisance, evaluation.residual]) for evaluation in self._ordered]
         return CubicSpline(self.nodes, np.stack(parts))
 
     @cached_property
     def _least(self) -> FloatArray:
-        return np.asarray(np.min([look.variance for look in self._ordered], axis=0))
+        return np.asarray(np.min([evaluation.variance for evaluation in self._ordered], axis=0))
 
     @cached_property
     def _excess(self) -> CubicSpline:
@@ -76,8 +76,8 @@ class Between:
         The noise of frequencies grows with the square of their shift: its root, with the sign of the shift, is smooth
         where the noise is least. That of the shapes has a floor well above what it grows by there.
         """
-        excess = np.stack([look.variance for look in self._ordered]) - self._least
-        change = np.stack([look.residual for look in self._ordered])
+        excess = np.stack([evaluation.variance for evaluation in self._ordered]) - self._least
+        change = np.stack([evaluation.residual for evaluation in self._ordered])
         start = int(np.argmin(excess[:, self._shifting].sum(axis=1)))
         root = np.sign(change - change[start]) * np.sqrt(excess)
         return CubicSpline(self.nodes, np.where(self._shifting, root, excess))
@@ -98,17 +98,22 @@ class Between:
         scales = SCALES if shapes.any() else SCALES[:1]
         prior = np.log(first.scale_prior if len(scales) > 1 else (1.0,))
         data, variance = self._data(severity), self.variance(severity)
-        grams = [_grams(data[:, rows], variance[:, rows]) for rows in (~shapes, shapes)]
+        gram_matrices = [_gram_matrices(data[:, rows], variance[:, rows]) for rows in (~shapes, shapes)]
         noise = np.log(variance).sum(axis=1) + len(shapes) * np.log(2 * np.pi)
         found = [
             prior_of
-            - 0.5 * (noise + 2 * shapes.sum() * np.log(scale) + _marginal(grams[0] + grams[1] / scale**2))
+            - 0.5
+            * (
+                noise
+                + 2 * shapes.sum() * np.log(scale)
+                + _marginal(gram_matrices[0] + gram_matrices[1] / scale**2)
+            )
             for scale, prior_of in zip(scales, prior, strict=True)
         ]
         return np.asarray(logsumexp(np.stack(found), axis=0))
 
 
-def _grams(data: FloatArray, variance: FloatArray) -> FloatArray:
+def _gram_matrices(data: FloatArray, variance: FloatArray) -> FloatArray:
     return np.asarray(np.swapaxes(data / variance[:, :, None], 1, 2) @ data)
 
 

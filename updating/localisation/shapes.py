@@ -14,7 +14,7 @@ from scipy import linalg
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.state import NOMINAL
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 ROUNDS = 6
 """How often the two factors of the constants are fitted in turn."""
@@ -53,7 +53,7 @@ class Shapes:
     mass: FloatArray
 
 
-def shapes_of(problem: Problem) -> Shapes:
+def shapes_of(problem: SpecimenProblem) -> Shapes:
     """Return the measured shapes point by point, and what the model says of them."""
     predictor, test = problem.predictor, problem.measured
     stiffness, mass = predictor.reduced.matrices(predictor.base)
@@ -71,7 +71,7 @@ def shapes_of(problem: Problem) -> Shapes:
     )
 
 
-def _components(problem: Problem, model: FloatArray) -> FloatArray:
+def _components(problem: SpecimenProblem, model: FloatArray) -> FloatArray:
     """Fit the components of a shape at all points to the products of two of them, (n_points, n_modes)."""
     test = problem.measured
     share = np.sum(test.constants * problem.nominal.constants, axis=0)
@@ -92,7 +92,7 @@ def _components(problem: Problem, model: FloatArray) -> FloatArray:
     return np.asarray(found)
 
 
-def serep(problem: Problem, shapes: Shapes) -> FloatArray:
+def serep(problem: SpecimenProblem, shapes: Shapes) -> FloatArray:
     """Expand the shapes by the model's own lowest modes, no more of them than there are points.
 
     Returns

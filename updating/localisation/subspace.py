@@ -8,11 +8,11 @@ from typing import ClassVar
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.likelihood.gaussian import marginal, whiten
+from updating.likelihood.gaussian import marginal, normal_equations
 from updating.localisation.base import KINDS, Kind, Localiser
 from updating.localisation.changes import columns
 from updating.models.state import NOMINAL
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 
 @dataclass(frozen=True)
@@ -33,18 +33,18 @@ class BestSubspace(Localiser):
 
     nuisances: bool = True
 
-    def scores(self, problem: Problem, *, kind: Kind = "stiffness") -> FloatArray:
+    def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
         """Return the share of the squared error that each region removes, (n_regions,) [-]."""
         comparison = problem.compare(NOMINAL)
         if not self.nuisances:
             comparison = replace(comparison, nuisance=comparison.nuisance[:, :0])
         scale = marginal(comparison).scale
-        normal, load = whiten(comparison, columns(problem, kind), scale)
+        normal, load = normal_equations(comparison, columns(problem, kind), scale)
         power = np.diag(normal)
         gain = np.where(
             power > 1e-12 * max(power.max(initial=0.0), 1e-300), load**2 / np.maximum(power, 1e-300), 0.0
         )
-        total, _ = whiten(comparison, comparison.residual[:, None], scale)
+        total, _ = normal_equations(comparison, comparison.residual[:, None], scale)
         if kind == "damping":
             gain = np.where(load > 0, gain, 0.0)  # a region cannot take damping away
         return np.asarray(np.clip(gain / max(float(total[0, 0]), 1e-300), 0.0, 1.0))

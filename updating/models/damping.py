@@ -90,8 +90,8 @@ def coefficients(reduced: Reduced, damping: Damping, state: State) -> dict[str, 
         general = 0.0 if given is None else float(given)
         values = np.full(len(regions) + 1, general)
         for i, region in enumerate(regions):
-            told = None if state.damping else getattr(region, name)  # a baseline has measured that too
-            own = state.dampers.get((i, name), told)
+            stated = None if state.damping else getattr(region, name)  # a baseline has measured that too
+            own = state.dampers.get((i, name), stated)
             values[i] = general if own is None else float(own)
         found[name] = values
     return found

@@ -24,7 +24,7 @@ from updating.models.response import receptance
 from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State
 from updating.models.whole import Whole
-from updating.test_data.chain import Reading, reading
+from updating.test_data.chain import MeasurementChain, measurement_chain
 from updating.test_data.measured import Measured
 
 
@@ -101,16 +101,16 @@ class Predictor(Displayed):
         total, seen = NOMINAL, self.bare
         for count, addition in enumerate(self.additions, start=1):
             total = total.plus(addition(seen))
-            seen = self.looking(self.measured, self.additions[:count])
+            seen = self.for_test(self.measured, self.additions[:count])
             seen.__dict__["base"] = total
         return total
 
     @cached_property
     def bare(self) -> Predictor:
         """The same predictor on the same basis without any addition."""
-        return self.looking(self.measured, ()) if self.additions else self
+        return self.for_test(self.measured, ()) if self.additions else self
 
-    def looking(
+    def for_test(
         self, measured: Measured, additions: tuple[Callable[[Predictor], State], ...] | None = None
     ) -> Predictor:
         """Return a predictor for another test or with other additions, on the same reduced basis."""
@@ -198,7 +198,7 @@ class Predictor(Displayed):
             top = (2 * np.pi * 1.6 * self.measured.frequency.max()) ** 2
             count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
         chosen = np.arange(first, min(first + count, len(values)))
-        read = reading(self.measured, total)
+        read = measurement_chain(self.measured, total)
         rows = self._rows(total, read.points)
         shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
         by = self._by_factors(total, values, vectors, chosen, factors, rows, read.points) if factors else []
@@ -239,8 +239,8 @@ class Predictor(Displayed):
         return {n: m / stretch if n == "wx" else m for n, m in rows.items()}
 
     def _directions(self, count: int) -> FloatArray | None:
-        told = self.measured.directions
-        return None if told is None else told[np.minimum(np.arange(count), len(told) - 1)]
+        stated = self.measured.directions
+        return None if stated is None else stated[np.minimum(np.arange(count), len(stated) - 1)]
 
     @property
     def growth(self) -> float:
@@ -249,14 +249,14 @@ class Predictor(Displayed):
         share = {frozenset({"x0"}): 1.0, frozenset({"x1"}): 0.0}.get(frozenset(clamped), 0.5)
         return share * self.spec.length
 
-    def _slopes(self, shapes: dict[str, FloatArray], read: Reading) -> FloatArray:
+    def _slopes(self, shapes: dict[str, FloatArray], read: MeasurementChain) -> FloatArray:
         names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         bare = read.hit[:, None] < 0
         seen = shapes["w"][read.seen]
         slopes = [np.where(bare, shapes[n][read.seen], seen * shapes[n][read.hit]) for n in names]
         return np.stack(slopes)
 
-    def _sensor_slopes(self, shapes: dict[str, FloatArray], read: Reading) -> FloatArray:
+    def _sensor_slopes(self, shapes: dict[str, FloatArray], read: MeasurementChain) -> FloatArray:
         names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         return np.stack([read.product(shapes[n], shapes["w"]) for n in names])
 
@@ -279,7 +279,7 @@ class Predictor(Displayed):
         ]
         gap = lam[None, :] - values[:, None]
         near = np.abs(gap) < 1e-9 * np.abs(lam).max()
-        apart = np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
+        inverse_gap = np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
         n = vectors.shape[0]
         basis = rows["w"][:, :n] @ vectors
         own = np.arange(len(chosen))
@@ -292,7 +292,7 @@ class Predictor(Displayed):
                     whole += power * part
                     if term.kind == "mass":
                         heavier -= power * part[chosen, own] / np.where(lam == 0, 1.0, lam)
-            weights = apart * whole
+            weights = inverse_gap * whole
             weights[chosen, own] = -0.5 * heavier
             change = basis @ weights
             if name == "length":
@@ -317,8 +317,8 @@ class Predictor(Displayed):
     def expects(self, state: State) -> bool:
         """Whether model, regions or the state say what damping to expect."""
         own = any(v is not None for r in self.spec.regions for v in (r.alpha, r.beta, r.loss_factor))
-        told = bool(state.damping) or bool(state.dampers) or state.ratios is not None
-        return self.spec.damping.known or own or told
+        stated = bool(state.damping) or bool(state.dampers) or state.ratios is not None
+        return self.spec.damping.known or own or stated
 
     def _damping_matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
         """Return C and D; damping matrices in the state replace what the model expects."""
@@ -402,7 +402,7 @@ class Predictor(Displayed):
         return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
 
 
-def _change(shape: FloatArray, change: FloatArray, read: Reading) -> FloatArray:
+def _change(shape: FloatArray, change: FloatArray, read: MeasurementChain) -> FloatArray:
     """Return the change of the constants that a change of the shapes makes, both (n_points, n_modes)."""
     left, right = shape[read.seen], shape[read.hit]
     d_left, d_right = change[read.seen], change[read.hit]

@@ -55,15 +55,15 @@ class Before:
     @cached_property
     def prediction(self) -> Prediction:
         """The corrected model's modes at the baseline's points, in the order of the baseline."""
-        looking = self.predictor.looking(self.baseline, self.predictor.additions[-1:])
-        prediction = looking.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
+        own_predictor = self.predictor.for_test(self.baseline, self.predictor.additions[-1:])
+        prediction = own_predictor.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
         return prediction.select(match(self.baseline, prediction, self.order))
 
     @cached_property
     def _uneven(self) -> FloatArray:
         """That part of the correction of ln f which is no common factor, shape (n_baseline,) [-]."""
         base = self.baseline
-        plain = self.predictor.looking(base, ())
+        plain = self.predictor.for_test(base, ())
         prediction = plain.predict(at_least=int(self.order.max()) + 3)
         prediction = prediction.select(match(base, prediction, self.order))
         correction = np.log(base.frequency / prediction.frequency)

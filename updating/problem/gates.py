@@ -11,7 +11,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
-from updating.problem.theory_error import Shortfall, discrepancy, shortfall
+from updating.problem.theory_error import TheoryError, discrepancy, theory_error
 from updating.test_data.measured import Measured
 
 FEW_MODES = 3
@@ -24,14 +24,14 @@ UNLIKE = 0.02
 """Scatter of the frequency ratios, relative, below which nothing is suspected [-]."""
 
 __all__ = [
-    "Shortfall",
+    "TheoryError",
     "discrepancy",
     "missing_mode",
+    "notes_on",
     "on_convergence",
     "on_levels",
     "on_modes",
-    "remarks_on",
-    "shortfall",
+    "theory_error",
 ]
 
 
@@ -47,28 +47,28 @@ def on_convergence(predictor: Predictor, measured: Measured, order: IntArray) ->
     order : (n_modes,) int array
         Rank of each mode among the model's.
     """
-    return remarks_on(shortfall(predictor, order), measured, predictor.spec)
+    return notes_on(theory_error(predictor, order), measured, predictor.spec)
 
 
-def remarks_on(found: Shortfall, measured: Measured, spec: Spec) -> list[str]:
+def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
     """Return what a shortfall that was worked out already says beside the noise; see `on_convergence`."""
     if not found.known:
         return ["imported matrices cannot be refined: whether they have converged is not examined"]
     noise = np.hypot(measured.frequency_sigma / measured.frequency, measured.repeatability)
-    remarks = []
+    notes = []
     worst = int(np.argmax(np.abs(found.mesh) / noise))
     if abs(found.mesh[worst]) > noise[worst]:
-        remarks.append(
+        notes.append(
             f"the mesh alone moves mode {worst + 1} by {_percent(found.mesh[worst])}, more than the noise of "
             f"{_percent(noise[worst])}: use more elements"
         )
     worst = int(np.argmax(np.abs(found.theory) / noise))
     if abs(found.theory[worst]) > noise[worst]:
-        remarks.append(
+        notes.append(
             f"{spec.theory} theory leaves out shear and rotary inertia: some {_percent(found.theory[worst])} in mode "
             f"{worst + 1}, more than the noise of {_percent(noise[worst])}" + _advice(spec)
         )
-    return remarks
+    return notes
 
 
 def _advice(spec: Spec) -> str:
@@ -95,18 +95,18 @@ def on_modes(measured: Measured, predicted: FloatArray, order: IntArray | None =
         no more is said of it.
     """
     count = len(measured.frequency)
-    remarks = []
+    notes = []
     if count < FEW_MODES:
-        remarks.append(f"only {count} mode{'s' * (count > 1)} paired: little can be told apart")
+        notes.append(f"only {count} mode{'s' * (count > 1)} paired: little can be told apart")
     if measured.has_shapes or (order is not None and np.any(order != np.arange(count))):
-        return remarks
+        return notes
     skipped = missing_mode(measured.frequency, predicted)
     if skipped is not None:
-        remarks.append(
+        notes.append(
             f"without shapes, modes are paired by rank; from mode {skipped + 1} on they fit far better as if the test "
             f"had missed the model's mode {skipped + 1} at {predicted[skipped]:.4g} Hz: check that none is missing"
         )
-    return remarks
+    return notes
 
 
 def missing_mode(test: FloatArray, model: FloatArray) -> int | None:
@@ -158,9 +158,9 @@ def on_levels(measured: Measured, *, fluid: bool) -> list[str]:
     if abs(slope) < 4 * sigma and not beyond:
         return []
     size = 100 * slope * measured.level
-    told = f"frequencies follow the force of the hits: {size:+.2g} % on average at {measured.level:.3g} N"
+    stated = f"frequencies follow the force of the hits: {size:+.2g} % on average at {measured.level:.3g} N"
     if fluid:
         return [
-            f"{told}; so the fluid is not still, or a joint is not linear: added mass for small motion is at its limit"
+            f"{stated}; so the fluid is not still, or a joint is not linear: added mass for small motion is at its limit"
         ]
-    return [f"{told}: the structure is not linear at the level of this test; hit more softly"]
+    return [f"{stated}: the structure is not linear at the level of this test; hit more softly"]

@@ -22,7 +22,7 @@ from updating.prediction.matching import match
 from updating.prediction.predict import Prediction, Predictor
 from updating.problem.baseline_prior import Before
 from updating.problem.candidate import Candidate, Doubt
-from updating.problem.gates import Shortfall
+from updating.problem.gates import TheoryError
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.tolerances import Tolerances
 
@@ -68,7 +68,7 @@ NO_DOUBT = Doubt()
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class SpecimenProblem:
     """A test, a model, and all that is doubted about either.
 
     Parameters
@@ -87,7 +87,7 @@ class Problem:
         Rank of the model mode of each of them, for data without shapes.
     accepted : tuple of Effect
         Effects put into the model beforehand, the first of the predictor's additions.
-    shortfall : Shortfall, optional
+    theory_error : Shortfall, optional
         How far the mesh, and a plate's theory, leave each mode's frequency off.
     mostly_alone : bool
         Whether most of the measured modes have no partner, and are left out.
@@ -100,11 +100,11 @@ class Problem:
     baseline: Measured | None = None
     baseline_order: IntArray | None = None
     accepted: tuple[Effect, ...] = ()
-    shortfall: Shortfall | None = None
+    theory_error: TheoryError | None = None
     mostly_alone: bool = False
 
     @property
-    def specimens(self) -> tuple[Problem, ...]:
+    def specimens(self) -> tuple[SpecimenProblem, ...]:
         """The specimens: this one."""
         return (self,)
 
@@ -156,8 +156,8 @@ class Problem:
             Nuisances about which tolerances are linearised; left out, none [standard deviations].
         """
         (state,) = self.place(candidate, coordinates)
-        told = None if shift is None else shift[: len(self.names)]
-        return self.compare(state, told, doubt=candidate.doubt_on(self.predictor))
+        stated = None if shift is None else shift[: len(self.names)]
+        return self.compare(state, stated, doubt=candidate.doubt_on(self.predictor))
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -180,8 +180,8 @@ class Problem:
     @property
     def damping_doubt(self) -> float:
         """Doubt in the expected damping: a baseline that measured it knows better than a modeller [-]."""
-        told = self.tolerances.damping
-        return min(told, REPEATED_DAMPING) if self.baseline is not None else told
+        stated = self.tolerances.damping
+        return min(stated, REPEATED_DAMPING) if self.baseline is not None else stated
 
     @cached_property
     def sigmas(self) -> FloatArray:
@@ -279,7 +279,7 @@ class Problem:
         A baseline has taken it out. A beam's theory is an effect of its own; a plate's is no effect, and since the
         estimate may be half of itself off and a test may come from a thin plate, half of it is expected.
         """
-        found, n = self.shortfall, len(self.measured.frequency)
+        found, n = self.theory_error, len(self.measured.frequency)
         if found is None or not found.known or self.baseline is not None:
             return np.zeros(n), np.zeros((n, 0)), np.zeros(n)
         theory = found.theory if self.predictor.spec.kind == "plate" else np.zeros(n)
@@ -291,7 +291,7 @@ class Problem:
         """How far the idealisations of the effects put into the model beforehand may be off, relative [-]."""
         if not self.doubt_of_accepted:
             return np.zeros(len(self.measured.frequency))
-        without = self.predictor.looking(self.measured, self.predictor.additions[len(self.accepted) :])
+        without = self.predictor.for_test(self.measured, self.predictor.additions[len(self.accepted) :])
         plain = without.predict(at_least=self.reach)
         plain = plain.select(self._match(plain))
         shift = np.log(self.nominal.frequency / plain.frequency)
@@ -304,10 +304,10 @@ class Problem:
 
     def _damping_tolerance(self, now: Prediction) -> FloatArray:
         """Return the doubt in the expected damping of each mode: small where a baseline measured it [-]."""
-        told = self.tolerances.damping
+        stated = self.tolerances.damping
         if self.before is None:
-            return np.full(len(now.frequency), told)
-        return np.where(self.before.seen(now) > 0.5, self.damping_doubt, told)
+            return np.full(len(now.frequency), stated)
+        return np.where(self.before.seen(now) > 0.5, self.damping_doubt, stated)
 
     def _dampings(self, now: Prediction, doubt: float) -> Block:
         rows = self.damping_known
@@ -349,10 +349,10 @@ class Problem:
             columns,
             np.tile(np.arange(n_modes), n_chains),
         )
-        assert test.chain is not None
+        assert test.channel_group is not None
         # the residue of exp(-s tau) H(s) holds exp(-s tau) at the pole, whose decay makes it larger
         grown = np.exp(2 * np.pi * test.frequency * np.nan_to_num(test.damping) * whole.delay)
-        return block, np.where(turns[test.chain] % 2 == 0, grown, -grown)
+        return block, np.where(turns[test.channel_group] % 2 == 0, grown, -grown)
 
     @cached_property
     def _complexity(self) -> FloatArray:
@@ -363,12 +363,14 @@ class Problem:
         sits near a node of it.
         """
         test = self.measured
-        assert test.chain is not None
-        member = (test.chain == np.arange(int(test.chain.max()) + 1)[:, None]).astype(float)
+        assert test.channel_group is not None
+        member = (test.channel_group == np.arange(int(test.channel_group.max()) + 1)[:, None]).astype(float)
         ratio = np.where(np.isfinite(test.damping), test.damping, 0.0)
         prediction = self.nominal
         rows = self.predictor.nominal_rows["w"][:, : len(prediction.vectors)] @ prediction.vectors
-        seen = np.stack([np.abs(rows[test.seen[test.chain == c]]).mean(axis=0) for c in range(len(member))])
+        seen = np.stack(
+            [np.abs(rows[test.seen[test.channel_group == c]]).mean(axis=0) for c in range(len(member))]
+        )
         typical = np.sqrt(np.mean(rows**2, axis=0))
         away = typical / np.maximum(seen, typical / MOST_TURNED)
         return np.asarray(ratio * np.hypot(1.0, COMPLEX * away))

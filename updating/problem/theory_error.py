@@ -23,7 +23,7 @@ SHEAR_COEFFICIENT = 5 / 6
 
 
 @dataclass(frozen=True, eq=False)
-class Shortfall:
+class TheoryError:
     """How far the base model's frequencies are from those of an endless mesh and a fuller theory.
 
     Parameters
@@ -61,14 +61,14 @@ def discrepancy(predictor: Predictor, order: IntArray, *, count: int | None = No
     (n_modes,) array
         ln(better frequency / model's): what a nuisance has to be able to take up.
     """
-    return shortfall(predictor, order, count=count).total
+    return theory_error(predictor, order, count=count).total
 
 
-def shortfall(predictor: Predictor, order: IntArray, *, count: int | None = None) -> Shortfall:
+def theory_error(predictor: Predictor, order: IntArray, *, count: int | None = None) -> TheoryError:
     """Return the parts of `discrepancy`; parameters as there."""
     needed = max(count or 0, int(order.max()) + 1)
     if predictor.spec.kind == "matrices":
-        return Shortfall(np.zeros(len(order)), np.zeros(len(order)), known=False)
+        return TheoryError(np.zeros(len(order)), np.zeros(len(order)), known=False)
     reduced = predictor.reduced
     base, vectors = _elastic(reduced, needed)
     theory = (
@@ -76,7 +76,7 @@ def shortfall(predictor: Predictor, order: IntArray, *, count: int | None = None
         if predictor.spec.kind == "beam"
         else _plate_theory(reduced, base, vectors)
     )
-    return Shortfall(_mesh(predictor.spec, base)[order], theory[order])
+    return TheoryError(_mesh(predictor.spec, base)[order], theory[order])
 
 
 def _elastic(reduced: Reduced, count: int) -> tuple[FloatArray, FloatArray]:

@@ -73,7 +73,7 @@ def with_identified_damping(predictor: Predictor, measured: Measured | None = No
         If no measured mode has a partner.
     """
     test = predictor.measured if measured is None else measured
-    prediction = predictor.looking(test).predict()
+    prediction = predictor.for_test(test).predict()
     ratios = identified_ratios(pair_modes(test, prediction), prediction)
     if ratios is None:
         raise StudyError(f"{test.title or 'test'}: no damping was measured to put into the model")

@@ -113,7 +113,7 @@ def simulated(
     predictor = predictor_of(source) if isinstance(source, Case) else source
     if points is not None:
         predictor = _from_points(predictor, np.asarray(points, dtype=float), directions)
-    whole = predictor.looking(predictor.measured, (*predictor.additions, *map(_function, departures)))
+    whole = predictor.for_test(predictor.measured, (*predictor.additions, *map(_function, departures)))
     theory = whole.base.theory
     if theory is not None:
         whole = whole.under(theory)

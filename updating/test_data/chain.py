@@ -13,7 +13,7 @@ from updating.test_data.measured import Measured
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
+class MeasurementChain:
     """The FRFs of a test as a state of the measurement has them.
 
     Parameters
@@ -47,12 +47,12 @@ class Reading:
         return np.asarray(at_seen[self.seen] * np.where(bare, 1.0, at_hit[self.hit]))
 
 
-def reading(measured: Measured, state: State) -> Reading:
+def measurement_chain(measured: Measured, state: State) -> MeasurementChain:
     """Return what a test reads under a state of its measurement."""
     ends = {"seen": measured.seen.copy(), "hit": measured.hit.copy()}
     for role, a, b in state.exchanged:
-        told = ends[role]
-        ends[role] = np.where(told == a, b, np.where(told == b, a, told))
+        given = ends[role]
+        ends[role] = np.where(given == a, b, np.where(given == b, a, given))
     gain = np.full(len(measured.seen), level_of(state.gain, measured))
     stated = {"seen": measured.seen, "hit": measured.hit}
     for (role, point), factor in state.point_gains.items():
@@ -62,7 +62,7 @@ def reading(measured: Measured, state: State) -> Reading:
         dim = measured.points.shape[1]
         points.append((measured.points[point] + np.resize(np.asarray([*away, 0.0, 0.0]), 3)[:dim])[None, :])
         ends[role] = np.where(ends[role] == point, len(measured.points) + i, ends[role])
-    return Reading(np.concatenate(points), ends["seen"], ends["hit"], gain)
+    return MeasurementChain(np.concatenate(points), ends["seen"], ends["hit"], gain)
 
 
 def level_of(gain: float, measured: Measured) -> float:

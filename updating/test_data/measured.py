@@ -72,7 +72,7 @@ class Measured(Displayed):
     phase, phase_sigma : (n_chains, n_modes) arrays, optional
         By how much the complex constants of each measurement chain are turned, from -pi/2 to pi/2, and its
         standard deviation; ``constants`` are turned back by it [rad].
-    chain : (n_frf,) int array, optional
+    channel_group : (n_frf,) int array, optional
         Which chain each FRF was measured by.
     slope, slope_sigma : (n_modes,) arrays, optional
         Relative change of each frequency per newton of the hits' peak force [1/N].
@@ -110,7 +110,7 @@ class Measured(Displayed):
     shared: FloatArray | None = None
     phase: FloatArray | None = None
     phase_sigma: FloatArray | None = None
-    chain: IntArray | None = None
+    channel_group: IntArray | None = None
     slope: FloatArray | None = None
     slope_sigma: FloatArray | None = None
     level: float | None = None
@@ -329,7 +329,7 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         shared=model.constant_shared[both] * signs[:, None, None],
         phase=constants.phase,
         phase_sigma=constants.phase_sigma,
-        chain=constants.chain,
+        channel_group=constants.channel_group,
         **options,  # type: ignore[arg-type]
     )
 
@@ -357,7 +357,7 @@ class Turned:
     phase, phase_sigma : (n_chains, n_modes) arrays
         That direction, within a quarter turn of all chains' together so that no sign is lost between them, and its
         standard deviation [rad].
-    chain : (n_frf,) int array
+    channel_group : (n_frf,) int array
         Which chain measured each FRF.
     """
 
@@ -365,7 +365,7 @@ class Turned:
     imaginary: FloatArray
     phase: FloatArray
     phase_sigma: FloatArray
-    chain: IntArray
+    channel_group: IntArray
 
     def widened(self, sigma: FloatArray, known: FloatArray | float = 0.0) -> FloatArray:
         """Widen standard deviations (n_frf, n_modes) to what the imaginary parts show.
@@ -394,18 +394,18 @@ def turn(constants: ComplexArray, sigma: FloatArray, seen: IntArray, hit: IntArr
         Point of the response and of the force of each FRF; a response transducer that stays is a chain, one that
         roves is one chain in all.
     """
-    transducers, chain = np.unique(seen, return_inverse=True)
+    transducers, channel_group = np.unique(seen, return_inverse=True)
     if len(transducers) > len(np.unique(hit)):
-        chain = np.zeros(len(seen), dtype=np.int64)
-    count = int(chain.max()) + 1
-    member = (chain == np.arange(count)[:, None]).astype(float)
+        channel_group = np.zeros(len(seen), dtype=np.int64)
+    count = int(channel_group.max()) + 1
+    member = (channel_group == np.arange(count)[:, None]).astype(float)
     common = np.angle(np.sum(constants**2, axis=0)) / 2
     phase = common + np.angle((member @ constants**2) * np.exp(-2j * common)) / 2
-    real, imaginary = (part(constants * np.exp(-1j * phase[chain])) for part in (np.real, np.imag))
+    real, imaginary = (part(constants * np.exp(-1j * phase[channel_group])) for part in (np.real, np.imag))
     power = np.maximum(member @ real**2, 1e-300)
     excess = np.maximum(np.mean(imaginary**2, axis=0) - np.mean(sigma**2, axis=0), 0.0)
     phase_sigma = np.sqrt(member @ (real**2 * (sigma**2 + excess))) / power
-    return Turned(np.asarray(real), np.asarray(imaginary), phase, phase_sigma, chain.astype(np.int64))
+    return Turned(np.asarray(real), np.asarray(imaginary), phase, phase_sigma, channel_group.astype(np.int64))
 
 
 def _directions(keys: tuple[Key, ...], spec: Spec) -> FloatArray | None:

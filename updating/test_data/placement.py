@@ -74,15 +74,17 @@ def place(dofs: tuple[Dof, ...], geometry: Geometry, axes: Axes, spec: Spec) -> 
     forward, signs = _forward(along[rows])
     if spec.imported is None:
         forward = np.tile([0.0, 0.0, 1.0], (len(rows), 1))
-    told: list[Key] = [(dofs[i].node, (x, y, z)) for i, (x, y, z) in zip(rows, forward.tolist(), strict=True)]
-    keys = tuple(dict.fromkeys(told))
+    stated: list[Key] = [
+        (dofs[i].node, (x, y, z)) for i, (x, y, z) in zip(rows, forward.tolist(), strict=True)
+    ]
+    keys = tuple(dict.fromkeys(stated))
     points = (
         axes.to_model(geometry.at([k[0] for k in keys]))[:, : spec.dim] if keys else np.zeros((0, spec.dim))
     )
     if spec.imported is None:
         _check_on(points, keys, spec)
     where = {key: i for i, key in enumerate(keys)}
-    index = np.array([where[key] for key in told], dtype=int)
+    index = np.array([where[key] for key in stated], dtype=int)
     return Placed(rows, index, keys, points, signs, tuple(warnings))
 
 
@@ -126,8 +128,8 @@ def check_among(points: FloatArray, keys: tuple[Key, ...], spec: Spec) -> tuple[
     if spec.imported is None or not len(points):
         return ()
     places = spec.imported.places
-    if (told := _thousandfold(points, spec)) and len(points) > 1:
-        raise StudyError(f"the test spans {np.ptp(points, axis=0).max():.3g} m of the model's axes: {told}")
+    if (stated := _thousandfold(points, spec)) and len(points) > 1:
+        raise StudyError(f"the test spans {np.ptp(points, axis=0).max():.3g} m of the model's axes: {stated}")
     between: dict[int, float] = {}
     for point, (node, direction) in zip(points, keys, strict=True):
         for axis in np.flatnonzero(np.abs(direction) > 1e-9).tolist():

@@ -19,7 +19,7 @@ from updating.update.data.specimen import Specimen
 from updating.update.data.system import Quantity, System, Weights
 from updating.update.parameters.affine import eligible
 from updating.update.parameters.basis import update_basis
-from updating.update.parameters.parameters import Knob, Panel, build_panel
+from updating.update.parameters.parameters import ModelParameter, ParameterSet, build_parameter_set
 
 BEYOND = ("shapes", "constants")
 """What can be data beside the frequencies."""
@@ -47,26 +47,30 @@ def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False)
     """
     predictor = predictor_of(case)
     accepted = {name: dict(values) for name, values in case.accepted}
-    panel = build_panel(parameters, predictor, case.tolerances, accepted)
-    dampers = [knob.name for knob in panel.knobs if knob.damper is not None]
+    parameter_set = build_parameter_set(parameters, predictor, case.tolerances, accepted)
+    dampers = [
+        model_parameter.name
+        for model_parameter in parameter_set.model_parameters
+        if model_parameter.damper is not None
+    ]
     if lean and dampers:
         raise StudyError(
             f'update: {dampers[0]} is a coefficient of damping, of which frequencies say nothing; use method = "frf"'
         )
-    predictor = _on_own_basis(predictor, panel) if lean else predictor
+    predictor = _on_own_basis(predictor, parameter_set) if lean else predictor
     paired = pair_modes(case.measured, predictor.predict())
     number = 1 + _rows_of(paired.measured.frequency, case.measured.frequency)
-    updated = {knob.effect for knob in panel.knobs}
+    updated = {model_parameter.effect for model_parameter in parameter_set.model_parameters}
     if updated & set(accepted):
         kept = tuple((n, v) for n, v in case.accepted if n not in updated)
         predictor = predictor_of(replace(case, accepted=kept))
     return Specimen(
         case.title,
-        predictor.looking(paired.measured),
+        predictor.for_test(paired.measured),
         paired.measured,
         number,
         paired.order,
-        panel,
+        parameter_set,
         (*case.measured.warnings, *paired.warnings),
         np.ones(len(number)),
     )
@@ -81,16 +85,22 @@ def _rows_of(kept: FloatArray, every: FloatArray) -> IntArray:
     return np.array(rows, dtype=np.int64)
 
 
-def _on_own_basis(predictor: Predictor, panel: Panel) -> Predictor:
+def _on_own_basis(predictor: Predictor, parameter_set: ParameterSet) -> Predictor:
     """Give a plain model whose knobs are factors a basis made for these; others keep theirs."""
-    if predictor.additions or not eligible(panel.knobs) or predictor.spec.kind not in ("beam", "plate"):
+    if (
+        predictor.additions
+        or not eligible(parameter_set.model_parameters)
+        or predictor.spec.kind not in ("beam", "plate")
+    ):
         return predictor
     structure = build_structure(predictor.spec)
     if not isinstance(structure, FieldStructure):
         return predictor
     test, own = predictor.measured, replace(predictor)
     highest, count = float(test.frequency.max()), len(test.frequency)
-    own.__dict__["reduced"] = update_basis(structure, panel.knobs, highest=highest, count=count)
+    own.__dict__["reduced"] = update_basis(
+        structure, parameter_set.model_parameters, highest=highest, count=count
+    )
     return own
 
 
@@ -112,17 +122,17 @@ def build_system(
         If a shared name is no parameter, weights do not fit the modes, or there are more free parameters than
         data.
     """
-    known = {knob.name for s in specimens for knob in s.panel.knobs}
+    known = {model_parameter.name for s in specimens for model_parameter in s.parameter_set.model_parameters}
     if missing := sorted(set(shared) - known):
         raise StudyError(
             f"update: shared parameter {missing[0]!r} is updated in no study; add it to the parameters"
         )
-    unknowns: dict[tuple[str, int], Knob] = {}
+    unknowns: dict[tuple[str, int], ModelParameter] = {}
     index = []
     for i, specimen in enumerate(specimens):
-        keys = [(k.name, -1 if k.name in shared else i) for k in specimen.panel.knobs]
-        for key, knob in zip(keys, specimen.panel.knobs, strict=True):
-            unknowns.setdefault(key, knob)
+        keys = [(k.name, -1 if k.name in shared else i) for k in specimen.parameter_set.model_parameters]
+        for key, model_parameter in zip(keys, specimen.parameter_set.model_parameters, strict=True):
+            unknowns.setdefault(key, model_parameter)
         index.append([list(unknowns).index(key) for key in keys])
     system = System(
         tuple(specimens),

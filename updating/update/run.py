@@ -13,13 +13,13 @@ from updating.case import Case
 from updating.update.building import BEYOND, build_specimen, build_system, check_data, per_case
 from updating.update.data.system import Quantity, System, Weights
 from updating.update.parameters.exact import full_modes
-from updating.update.parameters.parameters import Knob
+from updating.update.parameters.parameters import ModelParameter
 from updating.update.result import Estimate, Update
 from updating.update.solve import Solution, solve
 from updating.update.statistics.determined import Statistics, assess, correlations
 from updating.update.statistics.doubts import doubts
 from updating.update.statistics.mixture import Mixture
-from updating.update.statistics.solutions import Others, best_solution, mixture, said, within
+from updating.update.statistics.solutions import Others, best_solution, mixture, statement, within
 
 EXACT = 1e-7
 """Agreement of reduced and full frequencies at which the outer iteration ends, relative [-]."""
@@ -146,7 +146,7 @@ def _exactly(system: System) -> tuple[System, Solution, bool, Others]:
     solution, others = best_solution(system)
     history = [solution.history]
     if system.shapes:
-        system = system.settled(solution.theta, solution.looks)
+        system = system.settled(solution.theta, solution.evaluations)
         solution = solve(system, solution.theta)
         history.append(solution.history[1:])
     for _ in range(6):
@@ -154,7 +154,9 @@ def _exactly(system: System) -> tuple[System, Solution, bool, Others]:
         modes = [f for f in full if f is not None]
         if len(modes) < len(full):
             return system, solution, False, others
-        ratios = [f / look.frequency for (f, _), look in zip(modes, solution.looks, strict=True)]
+        ratios = [
+            f / evaluation.frequency for (f, _), evaluation in zip(modes, solution.evaluations, strict=True)
+        ]
         near = max(np.abs(ratio - 1).max() for ratio in ratios) < EXACT
         vectors = [v for _, v in modes]
         system = system.corrected(ratios) if near else system.nearer(vectors, ratios)
@@ -162,25 +164,27 @@ def _exactly(system: System) -> tuple[System, Solution, bool, Others]:
         history.append(solution.history[1:])
         if near:
             break
-    looks = system.looks(solution.theta)
-    return system, Solution(solution.theta, looks, np.vstack(history), solution.converged), True, others
+    evaluations = system.evaluations(solution.theta)
+    return system, Solution(solution.theta, evaluations, np.vstack(history), solution.converged), True, others
 
 
 def _full(system: System, index: int, solution: Solution) -> tuple[FloatArray, FloatArray] | None:
     """Return the full model's frequencies of the partners, and all its low modes; None where there is no such."""
-    specimen, look = system.specimens[index], solution.looks[index]
+    specimen, evaluation = system.specimens[index], solution.evaluations[index]
     values = system.values(solution.theta, index)
     modes = full_modes(
-        specimen.predictor, lambda on: specimen.panel.state(on, values), int(look.partner.max()) + 1
+        specimen.predictor,
+        lambda on: specimen.parameter_set.state(on, values),
+        int(evaluation.partner.max()) + 1,
     )
-    return None if modes is None else (modes[0][look.partner], modes[1])
+    return None if modes is None else (modes[0][evaluation.partner], modes[1])
 
 
 def report(fitted: Fitted) -> Update:
     """Work out the statistics of an update."""
     system, solution, exact = fitted.system, fitted.solution, fitted.exact
     statistics, several = assess_all(fitted)
-    jacobian = np.array([_slope(k, t) for k, t in zip(system.knobs, solution.theta, strict=True)])
+    jacobian = np.array([_slope(k, t) for k, t in zip(system.model_parameters, solution.theta, strict=True)])
     with_units = statistics.covariance * np.outer(jacobian, jacobian)
     sigma = np.sqrt(np.diag(with_units))
     parameters = tuple(
@@ -188,10 +192,12 @@ def report(fitted: Fitted) -> Update:
         for i, (t, s) in enumerate(zip(solution.theta, sigma, strict=True))
     )
     if several is not None:
-        parameters = tuple(within(p, system.knobs[i], several, i) for i, p in enumerate(parameters))
+        parameters = tuple(
+            within(p, system.model_parameters[i], several, i) for i, p in enumerate(parameters)
+        )
     names = list(system.names)
     history = pd.DataFrame(
-        [[k.value(t) for k, t in zip(system.knobs, row, strict=True)] for row in solution.history],
+        [[k.value(t) for k, t in zip(system.model_parameters, row, strict=True)] for row in solution.history],
         columns=names,
         index=pd.RangeIndex(len(solution.history), name="iteration"),
     )
@@ -208,7 +214,7 @@ def report(fitted: Fitted) -> Update:
         statistics.inflation,
         history,
         exact,
-        (*_warnings(system, solution, statistics, exact), *said(system, several)),
+        (*_warnings(system, solution, statistics, exact), *statement(system, several)),
         determinability=statistics.determinability,
         data=system.count,
         weights=fitted.weights,
@@ -219,7 +225,7 @@ def report(fitted: Fitted) -> Update:
 def assess_all(fitted: Fitted) -> tuple[Statistics, Mixture | None]:
     """Return the statistics of an update, and the mixture of all solutions where another one matters."""
     system, solution = fitted.system, fitted.solution
-    statistics = assess(system, system.linear(solution.theta, solution.looks), solution.theta)
+    statistics = assess(system, system.linear(solution.theta, solution.evaluations), solution.theta)
     if not fitted.others.solutions:
         return statistics.strained(), None
     both = mixture(system, solution, statistics.covariance, fitted.others)
@@ -228,47 +234,47 @@ def assess_all(fitted: Fitted) -> tuple[Statistics, Mixture | None]:
     return replace(statistics, covariance=both.error()), both
 
 
-def _slope(knob: Knob, coordinate: float) -> float:
-    value = knob.value(coordinate)
-    return knob.nominal * (value if knob.log else 1.0)
+def _slope(model_parameter: ModelParameter, coordinate: float) -> float:
+    value = model_parameter.value(coordinate)
+    return model_parameter.nominal * (value if model_parameter.log else 1.0)
 
 
 def _estimate(system: System, index: int, coordinate: float, sigma: float) -> Estimate:
-    knob, owner = system.knobs[index], system.owner[index]
-    value = knob.value(coordinate)
-    margin = 1e-6 * knob.span()
-    factor = value if knob.is_factor or knob.parameter == "factor" else None
-    if knob.reach and owner >= 0:
-        factor = 1 + knob.reach * value
+    model_parameter, owner = system.model_parameters[index], system.owner[index]
+    value = model_parameter.value(coordinate)
+    margin = 1e-6 * model_parameter.span()
+    factor = value if model_parameter.is_factor or model_parameter.parameter == "factor" else None
+    if model_parameter.reach and owner >= 0:
+        factor = 1 + model_parameter.reach * value
     return Estimate(
-        knob.name,
+        model_parameter.name,
         None if owner < 0 else system.specimens[owner].title,
-        knob.nominal * value,
-        knob.unit,
+        model_parameter.nominal * value,
+        model_parameter.unit,
         factor,
         sigma,
         bool(coordinate <= system.low[index] + margin or coordinate >= system.high[index] - margin),
-        knob.nominal * knob.low,
-        knob.nominal * knob.high,
-        knob.nominal * knob.start,
+        model_parameter.nominal * model_parameter.low,
+        model_parameter.nominal * model_parameter.high,
+        model_parameter.nominal * model_parameter.start,
     )
 
 
 def _pairs(system: System, solution: Solution) -> pd.DataFrame:
     weights = system.weights
     parts = []
-    for specimen, look, weight in zip(system.specimens, solution.looks, weights, strict=True):
+    for specimen, evaluation, weight in zip(system.specimens, solution.evaluations, weights, strict=True):
         before = specimen.nominal
         parts.append(
             pd.DataFrame(
                 {
                     "study": specimen.title,
                     "test_mode": specimen.number,
-                    "model_mode": look.partner + 1,
-                    "mac": specimen.mac(look),
+                    "model_mode": evaluation.partner + 1,
+                    "mac": specimen.mac(evaluation),
                     "test_hz": specimen.measured.frequency,
                     "before_hz": before.frequency,
-                    "after_hz": look.frequency,
+                    "after_hz": evaluation.frequency,
                     "used": weight > 0,
                 }
             )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.update.data.specimen import Look
+from updating.update.data.specimen import Evaluation
 from updating.update.data.system import Linear, System
 
 NEGLIGIBLE = 1e-10
@@ -28,7 +28,7 @@ class Solution:
     ----------
     theta : (p,) array
         Coordinates.
-    looks : tuple of Look
+    evaluations : tuple of Look
         Specimens there.
     history : (iterations + 1, p) array
         Coordinates of every iteration.
@@ -37,7 +37,7 @@ class Solution:
     """
 
     theta: FloatArray
-    looks: tuple[Look, ...]
+    evaluations: tuple[Evaluation, ...]
     history: FloatArray
     converged: bool
 
@@ -68,24 +68,24 @@ def solve(
     Solution
     """
     theta = _scan(system) if start is None else start
-    looks = system.looks(theta)
+    evaluations = system.evaluations(theta)
     history, converged = [theta], False
-    linear, bend = system.linear(theta, looks), np.zeros((len(theta), len(theta)))
+    linear, bend = system.linear(theta, evaluations), np.zeros((len(theta), len(theta)))
     for _ in range(steps):
         increment = step(system, linear, theta, bend)
-        new, new_looks, moved = _controlled(system, theta, looks, increment)
+        new, new_evaluations, moved = _controlled(system, theta, evaluations, increment)
         if not moved and bend.any():
             bend = np.zeros_like(bend)
             continue
         converged = bool(np.all(np.abs(new - theta) <= rest * system.doubt))
         if moved:
-            before, linear = linear, system.linear(new, new_looks)
+            before, linear = linear, system.linear(new, new_evaluations)
             bend = _bent(bend, before, linear, new - theta, system.doubt)
-            theta, looks = new, new_looks
+            theta, evaluations = new, new_evaluations
             history.append(theta)
         if converged or not moved:
             break
-    return Solution(theta, looks, np.array(history), converged)
+    return Solution(theta, evaluations, np.array(history), converged)
 
 
 def _bent(
@@ -148,30 +148,30 @@ def _least(rows: FloatArray, load: FloatArray, bend: FloatArray | None) -> Float
 
 
 def _controlled(
-    system: System, theta: FloatArray, looks: tuple[Look, ...], increment: FloatArray
-) -> tuple[FloatArray, tuple[Look, ...], bool]:
+    system: System, theta: FloatArray, evaluations: tuple[Evaluation, ...], increment: FloatArray
+) -> tuple[FloatArray, tuple[Evaluation, ...], bool]:
     """Shorten the step until the misfit does not grow; tell whether anything moved."""
-    before = system.cost(theta, looks)
+    before = system.cost(theta, evaluations)
     for halving in range(14):
         new = np.clip(theta + increment / 2**halving, system.low, system.high)
-        new_looks = system.looks(new)
-        if system.cost(new, new_looks) <= before * (1 + 1e-12):
-            return new, new_looks, True
+        new_evaluations = system.evaluations(new)
+        if system.cost(new, new_evaluations) <= before * (1 + 1e-12):
+            return new, new_evaluations, True
         if np.all(np.abs(new - theta) <= CONVERGED * system.doubt):
             break
-    return theta, looks, False
+    return theta, evaluations, False
 
 
 def _scan(system: System) -> FloatArray:
     """Start factors at 1 and every other parameter at the best of a few values, one after the other."""
     theta = system.start.copy()
-    for i, knob in enumerate(system.knobs):
-        if knob.factor is not None:
+    for i, model_parameter in enumerate(system.model_parameters):
+        if model_parameter.factor is not None:
             continue
         tried = []
         for value in _trials(system, i, float(theta[i])):
             theta[i] = value
-            tried.append((system.cost(theta, system.looks(theta)), float(value)))
+            tried.append((system.cost(theta, system.evaluations(theta)), float(value)))
         theta[i] = min(tried)[1]
     return theta
 

@@ -91,14 +91,14 @@ def _correlations(update: Update) -> Iterator[str]:
 
 
 def _undetermined(update: Update) -> Iterator[str]:
-    told = update.determinability
-    if told is not None:
-        yield from (str(coupling) for coupling in told.couplings)
+    stated = update.determinability
+    if stated is not None:
+        yield from (str(coupling) for coupling in stated.couplings)
 
 
 def _subset(update: Update) -> Iterator[str]:
-    told = update.determinability
-    if told is None or len(update.parameters) < 2:
+    stated = update.determinability
+    if stated is None or len(update.parameters) < 2:
         return
-    for name, share in zip(told.subset, told.explained, strict=True):
+    for name, share in zip(stated.subset, stated.explained, strict=True):
         yield f"{name}: {100 * share:.4g} % explained"

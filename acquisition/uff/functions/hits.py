@@ -113,15 +113,15 @@ def _groups(
     reference: Dof,
     shocks: Sequence[Measurement],
     answers: dict[Dof, list[Measurement]],
-    remarks: tuple[list[str], dict[str, str]],
+    notes: tuple[list[str], dict[str, str]],
     source: str,
 ) -> Iterable[tuple[_Key, list[Hit]]]:
     """Return the hits at one point, one group for each set of responses, rate, length and window."""
-    warnings, broken = remarks
+    warnings, broken = notes
     hits, uncertain = pair_up(shocks, answers)
     if uncertain:
-        told = ", ".join(f"{len(list_)} at {dof}" for dof, list_ in answers.items())
-        warnings.append(f"{source}: {len(shocks)} forces at {reference} but responses {told}{uncertain}")
+        stated = ", ".join(f"{len(list_)} at {dof}" for dof, list_ in answers.items())
+        warnings.append(f"{source}: {len(shocks)} forces at {reference} but responses {stated}{uncertain}")
     whole = _largest([frozenset(hit.motion) for hit in hits])
     groups: dict[tuple[frozenset[Dof], float, int, float], list[Hit]] = defaultdict(list)
     for hit in hits:

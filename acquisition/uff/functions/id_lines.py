@@ -76,9 +76,9 @@ def _misspelt(text: str, key: str) -> str:
     for i in range(length, len(words)):
         number = _AMOUNT.fullmatch(words[i].lstrip("=:"))
         before = [word for word in words[max(0, i - length - 1) : i] if word not in ("=", ":")][-length:]
-        said = " ".join(before).rstrip("=:").lower()
-        if number and said != key and SequenceMatcher(None, said, key).ratio() >= _NEARLY:
-            return f"its ID lines say {said[:40]!r}: not taken; what is read is '{key} {number[0][:20]}'"
+        statement = " ".join(before).rstrip("=:").lower()
+        if number and statement != key and SequenceMatcher(None, statement, key).ratio() >= _NEARLY:
+            return f"its ID lines say {statement[:40]!r}: not taken; what is read is '{key} {number[0][:20]}'"
     return ""
 
 

@@ -68,12 +68,12 @@ def units_of(code: int, length: float, force: float) -> tuple[Units, str]:
             raise InputError(f"factors of length {length:g} and force {force:g} belong to no unit system")
         named = _SYSTEMS.get(code)
         agrees = named is None or (abs(length / named[0] - 1) < 1e-2 and abs(force / named[1] - 1) < 1e-2)
-        remark = (
+        note = (
             ""
             if agrees
             else f"units code {code} and the factors {length:g}, {force:g} differ; the factors are used"
         )
-        return Units(length, force, True), remark
+        return Units(length, force, True), note
     if code in _SYSTEMS:
         return Units(*_SYSTEMS[code], known=True), f"no factors, those of units code {code} are used"
     raise InputError(f"units code {code} with factors of length {length:g} and force {force:g} says nothing")

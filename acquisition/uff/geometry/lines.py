@@ -27,9 +27,9 @@ def read_lines(number: int, body: bytes) -> tuple[IntArray, str]:
     InputError
         If entries are missing or are no whole numbers.
     """
-    pairs, remark = _trace(body) if number == 82 else _elements(body)
+    pairs, note = _trace(body) if number == 82 else _elements(body)
     lines = np.array([(min(p), max(p)) for p in pairs if p[0] != p[1]], dtype=np.int64).reshape(-1, 2)
-    return np.unique(lines, axis=0), remark
+    return np.unique(lines, axis=0), note
 
 
 def _whole(text: bytes, number: int) -> list[int]:
@@ -50,9 +50,9 @@ def _trace(body: bytes) -> tuple[list[tuple[int, int]], str]:
     count = header[1]
     check_columns(lines[2])
     wrong = count > len(nodes) or (count and any(nodes[count:]))
-    remark = f"it announces {count} nodes and holds {len(nodes)}" if wrong else ""
+    note = f"it announces {count} nodes and holds {len(nodes)}" if wrong else ""
     nodes = nodes[:count] if count else nodes
-    return [(a, b) for a, b in pairwise(nodes) if a > 0 and b > 0], remark
+    return [(a, b) for a, b in pairwise(nodes) if a > 0 and b > 0], note
 
 
 def _elements(body: bytes) -> tuple[list[tuple[int, int]], str]:

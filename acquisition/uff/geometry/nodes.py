@@ -58,7 +58,7 @@ class Nodes:
 
     geometry: Geometry
     right: Mapping[int, FloatArray]
-    remarks: tuple[str, ...]
+    notes: tuple[str, ...]
 
     def turn(self, dof: Dof) -> Dof:
         """Return a degree of freedom with its direction in the global system, where that is an axis."""
@@ -75,33 +75,33 @@ def merge_nodes(sets: Iterable[NodeSet], lines: Sequence[IntArray]) -> Nodes:
     """Return the nodes of all sets; where one is given two places, the first counts and a remark is made."""
     places: dict[int, FloatArray] = {}
     axes: dict[int, FloatArray] = {}
-    remarks: list[str] = []
+    notes: list[str] = []
     twice: dict[int, str] = {}
     for one in sets:
-        where = _global_places(one, remarks)
+        where = _global_places(one, notes)
         for row in np.flatnonzero(np.isfinite(where).all(axis=-1)):
             node, place = int(one.nodes[row]), where[row]
             known = places.setdefault(node, place)
             if not np.allclose(known, place, rtol=1e-6, atol=1e-9):
                 twice.setdefault(node, f"{known.tolist()} and at {place.tolist()}")
-        _gather_axes(one, places, axes, remarks)
+        _gather_axes(one, places, axes, notes)
     if twice:
         first, where_else = next(iter(twice.items()))
         others = f"; so are nodes {_named([n for n in twice if n != first])}" if len(twice) > 1 else ""
-        remarks.append(f"node {first} is given at {where_else} [m]; the first is used{others}")
+        notes.append(f"node {first} is given at {where_else} [m]; the first is used{others}")
     right = {n: a for n, a in axes.items() if np.array_equal(np.abs(a), np.abs(a).round())}
     skew = {n: a for n, a in axes.items() if n not in right}
     own = np.array([skew.get(n, np.eye(3)) for n in places]).reshape(-1, 3, 3) if skew else None
     if skew:
-        remarks.append(
+        notes.append(
             f"the directions at nodes {_named(list(skew))} are along axes of their own, turned by other than right "
             "angles: codes +X, +Y, +Z mean these there, not the global ones"
         )
     drawn, lost = _known_lines(lines, places)
     if lost:
-        remarks.append(f"{lost} lines end at nodes without coordinates; they are left out")
+        notes.append(f"{lost} lines end at nodes without coordinates; they are left out")
     coordinates = np.array(list(places.values()), dtype=np.float64).reshape(-1, 3)
-    return Nodes(Geometry(tuple(places), coordinates, drawn, own), right, tuple(remarks))
+    return Nodes(Geometry(tuple(places), coordinates, drawn, own), right, tuple(notes))
 
 
 def turned(nodes: Nodes, dofs: Iterable[Dof]) -> str:
@@ -116,16 +116,16 @@ def _named(nodes: Sequence[int]) -> str:
     return ", ".join(map(str, nodes[:8])) + (f" and {len(nodes) - 8} others" if len(nodes) > 8 else "")
 
 
-def _global_places(one: NodeSet, remarks: list[str]) -> FloatArray:
+def _global_places(one: NodeSet, notes: list[str]) -> FloatArray:
     """Return global coordinates [m]; nan where they cannot be told."""
     places = one.coordinates / one.units.length
     for label in np.unique(one.given).tolist():
         rows = one.given == label
-        system = _find(one, label, rows, remarks)
+        system = _find(one, label, rows, notes)
         if system is None or system.is_global:
             continue
         if one.number == 2411:  # its coordinates are those of the part, whatever the export system
-            remarks.append(
+            notes.append(
                 f"{one.place}: nodes {_named(one.nodes[rows].tolist())} name export system {label}; their coordinates "
                 "are taken as global, as data set 2411 has it"
             )
@@ -139,7 +139,7 @@ def _global_places(one: NodeSet, remarks: list[str]) -> FloatArray:
         try:
             places[rows] = system.to_global(local)
         except InputError as error:
-            remarks.append(
+            notes.append(
                 f"{one.place}: nodes {_named(one.nodes[rows].tolist())} are given in {error}; left out"
             )
             places[rows] = np.nan
@@ -147,21 +147,19 @@ def _global_places(one: NodeSet, remarks: list[str]) -> FloatArray:
 
 
 def _gather_axes(
-    one: NodeSet, places: Mapping[int, FloatArray], axes: dict[int, FloatArray], remarks: list[str]
+    one: NodeSet, places: Mapping[int, FloatArray], axes: dict[int, FloatArray], notes: list[str]
 ) -> None:
     """Collect the axes of the nodes whose displacements are not given in the global system."""
     for label in np.unique(one.moving).tolist():
         rows = one.moving == label
-        system = _find(one, label, rows, remarks)
+        system = _find(one, label, rows, notes)
         if system is None:
             continue
         for node in one.nodes[rows].tolist():
             try:
                 own = system.directions(places[node]) if node in places else np.eye(3)
             except InputError as error:
-                remarks.append(
-                    f"{one.place}: directions at node {node} are given in {error}; taken as global"
-                )
+                notes.append(f"{one.place}: directions at node {node} are given in {error}; taken as global")
                 continue
             if np.abs(own - own.round()).max() < 1e-4:
                 own = own.round() + 0.0
@@ -169,7 +167,7 @@ def _gather_axes(
                 axes.setdefault(node, own)
 
 
-def _find(one: NodeSet, label: int, rows: FloatArray, remarks: list[str]) -> Placed | None:
+def _find(one: NodeSet, label: int, rows: FloatArray, notes: list[str]) -> Placed | None:
     """Return a system of the file; 0, and 1 where the file defines none, are the global one."""
     if label == 0 or (label not in one.systems and label == 1):
         return None
@@ -177,7 +175,7 @@ def _find(one: NodeSet, label: int, rows: FloatArray, remarks: list[str]) -> Pla
         return place_system(one.systems, label, one.placed)
     except InputError as error:
         nodes = _named(one.nodes[rows].tolist())
-        remarks.append(f"{one.place}: nodes {nodes}: {error}; the global one is taken")
+        notes.append(f"{one.place}: nodes {nodes}: {error}; the global one is taken")
         return None
 
 

@@ -39,7 +39,7 @@ class SigmaSet:
 
 
 @dataclass(frozen=True)
-class Told:
+class Stated:
     """What the ID lines say: frequency and its sigma [Hz], damping ratio and its sigma [-]; nan if nothing."""
 
     frequency: float
@@ -68,7 +68,7 @@ class ModeSet:
         Node numbers.
     shape : (n, 6) complex array
         Translations and rotations.
-    told : Told
+    stated_values : Told
         What the ID lines say.
     units : Units
         The file's units.
@@ -84,7 +84,7 @@ class ModeSet:
     modal_b: complex
     nodes: IntArray
     shape: ComplexArray
-    told: Told
+    stated_values: Stated
     units: Units = field(default_factory=Units)
 
     @property
@@ -100,7 +100,7 @@ class ModeSet:
             if self.is_complex
             else (self.frequency, self.damping)
         )
-        return (*stated, *np.nan_to_num([self.told.frequency, self.told.damping]).tolist())
+        return (*stated, *np.nan_to_num([self.stated_values.frequency, self.stated_values.damping]).tolist())
 
 
 def same_shape(one: ModeSet, other: ModeSet) -> bool:
@@ -137,8 +137,8 @@ def read_mode(number: int, body: bytes, units: Units, place: str, file: int) -> 
         )
     reals, rest = _parameters55(lines) if number == 55 else _parameters2414(lines)
     nodes, shape = _shape(b"\n".join(rest), width, is_complex=data_type > 4)
-    told = _told(b" ".join(line[:LENGTH] for line in lines[first : first + 5]).decode("latin-1"))
-    return _mode(analysis, reals, (place, file), (nodes, shape), told, units)
+    stated_values = _stated(b" ".join(line[:LENGTH] for line in lines[first : first + 5]).decode("latin-1"))
+    return _mode(analysis, reals, (place, file), (nodes, shape), stated_values, units)
 
 
 def read_sigma(body: bytes) -> SigmaSet | None:
@@ -197,7 +197,7 @@ def _mode(
     reals: dict[str, float],
     origin: tuple[str, int],
     table: tuple[IntArray, ComplexArray],
-    told: Told,
+    stated_values: Stated,
     units: Units,
 ) -> ModeSet:
     normal = analysis == NORMAL
@@ -217,7 +217,7 @@ def _mode(
         modal_b=0j if normal else complex(reals["b_re"], reals["b_im"]),
         nodes=table[0],
         shape=table[1],
-        told=told,
+        stated_values=stated_values,
         units=units,
     )
 
@@ -255,7 +255,7 @@ def _integers(line: bytes) -> list[int]:
     return [int(v) for v in values]
 
 
-def _told(text: str) -> Told:
+def _stated(text: str) -> Stated:
     def number(pattern: re.Pattern[str]) -> float:
         found = pattern.search(text)
         try:
@@ -269,4 +269,4 @@ def _told(text: str) -> Told:
         frequency = float(hertz[1]) if hertz else np.nan
     except ValueError:
         frequency = np.nan
-    return Told(frequency, number(_SIGMA), number(_DAMPING), number(_DAMPING_SIGMA))
+    return Stated(frequency, number(_SIGMA), number(_DAMPING), number(_DAMPING_SIGMA))

@@ -42,21 +42,21 @@ def solve_modes(
     ID lines and the ratio of modal B to modal A, which is the eigenvalue in rad/s, tell; what they say of some
     modes of a file holds for all of them.
     """
-    modes, remarks = [], []
+    modes, notes = [], []
     for _, group in groupby(sorted(sets, key=lambda s: s.file), key=lambda s: s.file):
         members = list(group)
-        hertz, remark = _in_hertz([s for s in members if s.is_complex])
-        remarks += [remark] if remark else []
+        hertz, note = _in_hertz([s for s in members if s.is_complex])
+        notes += [note] if note else []
         solved = [_solved(s, hertz=hertz) for s in members]
         with_sigma, lost = _with_sigmas(solved, (sigmas or {}).get(members[0].file, ()))
         modes += with_sigma
-        remarks += lost
+        notes += lost
     if len({mode.scaled for mode in modes}) > 1:
         bare = next(mode for mode in modes if not mode.scaled)
-        remarks.append(
+        notes.append(
             f"{bare.stated.place}: it states no modal mass and others do: no shape counts as mass-normalised"
         )
-    return modes, remarks
+    return modes, notes
 
 
 def _with_sigmas(modes: Sequence[Mode], sigmas: Sequence[SigmaSet]) -> tuple[list[Mode], list[str]]:
@@ -94,8 +94,10 @@ def _in_hertz(sets: Sequence[ModeSet]) -> tuple[bool, str]:
     name = "(damping, frequency) in Hz" if hertz else "(real, imaginary) in rad/s"
     if votes:
         doubt = any(vote != hertz for vote in votes)
-        told = f"{sets[0].place}: the modes disagree on the unit of their eigenvalues; taken for {name}"
-        return hertz, told if doubt else ""
+        stated_values = (
+            f"{sets[0].place}: the modes disagree on the unit of their eigenvalues; taken for {name}"
+        )
+        return hertz, stated_values if doubt else ""
     if any(s.eigenvalue.real > 0 for s in sets):
         return True, (
             f"{sets[0].place}: eigenvalues have positive real parts; taken for (damping, frequency) in Hz; "
@@ -109,7 +111,7 @@ def _in_hertz(sets: Sequence[ModeSet]) -> tuple[bool, str]:
 
 def _by_frequency(mode: ModeSet) -> bool | None:
     """Return what the frequency in the ID lines says: in Hz or not; None if nothing."""
-    ratio = mode.told.frequency / abs(mode.eigenvalue)
+    ratio = mode.stated_values.frequency / abs(mode.eigenvalue)
     return next(
         (hertz for hertz, unit in ((True, 1.0), (False, 0.5 / np.pi)) if abs(ratio / unit - 1) < 0.02), None
     )
@@ -147,11 +149,11 @@ def _solved(mode: ModeSet, *, hertz: bool) -> Mode:
 def _with_all_digits(mode: ModeSet, pole: complex) -> complex:
     """Return the pole with the digits of the ID lines, where only rounding is between them."""
     omega, zeta = abs(pole), -pole.real / abs(pole)
-    told = mode.told
-    if abs(2 * np.pi * told.frequency / omega - 1) < 1e-5:
-        omega = 2 * np.pi * told.frequency
-    if abs(told.damping - zeta) < 1e-5 * zeta + 1e-12 and told.damping < 1:
-        zeta = told.damping
+    stated_values = mode.stated_values
+    if abs(2 * np.pi * stated_values.frequency / omega - 1) < 1e-5:
+        omega = 2 * np.pi * stated_values.frequency
+    if abs(stated_values.damping - zeta) < 1e-5 * zeta + 1e-12 and stated_values.damping < 1:
+        zeta = stated_values.damping
     return complex(-zeta * omega, omega * np.sqrt(max(1 - zeta**2, 0.0)))
 
 
@@ -171,9 +173,9 @@ def join_modes(modes: Sequence[Mode], geometry: Geometry) -> ModalData:
     poles = np.array([mode.pole for mode in ordered])
     return ModalData(
         frequency=np.abs(poles) / (2 * np.pi),
-        frequency_sigma=np.array([m.stated.told.frequency_sigma for m in ordered]),
+        frequency_sigma=np.array([m.stated.stated_values.frequency_sigma for m in ordered]),
         damping=np.array([-m.pole.real / abs(m.pole) if m.damped else np.nan for m in ordered]),
-        damping_sigma=np.array([m.stated.told.damping_sigma for m in ordered]),
+        damping_sigma=np.array([m.stated.stated_values.damping_sigma for m in ordered]),
         dofs=tuple(Dof(nodes[n], int(axis) + 1) for n, axis in moving),
         shapes=table[moving[:, 0], moving[:, 1]] if len(moving) else None,
         shape_sigma=_known(sigma[moving[:, 0], moving[:, 1]]),

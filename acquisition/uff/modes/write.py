@@ -63,9 +63,9 @@ def _set(lines: list[str]) -> bytes:
 
 
 def _sigmas(frequency: float, damping: float) -> str:
-    told = [f"sigma {frequency!r} Hz"] if np.isfinite(frequency) else []
-    told += [f"damping sigma {damping!r}"] if np.isfinite(damping) else []
-    return ", ".join(told) or "NONE"
+    stated_values = [f"sigma {frequency!r} Hz"] if np.isfinite(frequency) else []
+    stated_values += [f"damping sigma {damping!r}"] if np.isfinite(damping) else []
+    return ", ".join(stated_values) or "NONE"
 
 
 def _by_node(

@@ -90,21 +90,21 @@ def write_uff(
 
 def _write_whole(target: Path, *chunks: Iterable[bytes | memoryview]) -> None:
     """Write beside the target and move into place; leave nothing behind if that fails."""
-    beside = ""
+    partial = ""
     try:
-        handle, beside = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+        handle, partial = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
         with os.fdopen(handle, "wb") as file:
             for parts in chunks:
                 file.writelines(parts)
             file.flush()
             os.fsync(file.fileno())  # or a power cut leaves an empty file under the name
-        Path(beside).chmod(0o644)
-        Path(beside).replace(target)
+        Path(partial).chmod(0o644)
+        Path(partial).replace(target)
     except OSError as error:
         raise InputError(f"{target}: cannot be written ({error.strerror}); check folder and space") from error
     finally:
-        if beside:
-            Path(beside).unlink(missing_ok=True)
+        if partial:
+            Path(partial).unlink(missing_ok=True)
 
 
 def _records(tests: Sequence[HammerTest], sets: Sequence[FrfSet]) -> Iterator[Record58]:

@@ -7,7 +7,7 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
-from identification.fit.equations.line_selection import thinned
+from identification.fit.equations.line_selection import selected_lines
 
 _STEPS = np.array([0.003, 0.01, 0.02, 0.04, 0.07, 0.11, 0.16, 0.22, 0.3, 0.4, 0.55, 0.75])
 _DAMPING = 0.004
@@ -33,7 +33,7 @@ def gains(
     Colours that differ between FRFs are replaced by their mean: this is a search, not the fit.
     """
     shared = normal_equations.Weights(weights.level, weights.lines.mean(axis=0, keepdims=True))
-    lines, shared = thinned(frfs, np.append(poles, trials), shared)
+    lines, shared = selected_lines(frfs, np.append(poles, trials), shared)
     columns = basis.build(lines.axis, poles, powers).linear
     extra = basis.build(lines.axis, trials, ()).modes
     k = columns.shape[1]

@@ -38,7 +38,7 @@ class Lines:
         return cls(Axis.of(frfs), frfs.values)
 
 
-def thinned(frfs: FrfSet, poles: ComplexArray, weights: Weights) -> tuple[Lines, Weights]:
+def selected_lines(frfs: FrfSet, poles: ComplexArray, weights: Weights) -> tuple[Lines, Weights]:
     """Average lines far from every pole, weights adding up.
 
     All lines are kept within 40 lines of each pole and of s = 0; elsewhere a stretch is at most a fortieth of

@@ -42,7 +42,7 @@ class Weights:
 
 
 @dataclass(frozen=True, eq=False)
-class Grams:
+class NormalEquations:
     """Products of columns with columns and with data, real parts, weighted by line (not by FRF level).
 
     Parameters
@@ -96,7 +96,7 @@ def prepared(values: ComplexArray, weights: Weights) -> Data:
     return Data(weighted, power, weights)
 
 
-def form(columns: ComplexArray, data: Data) -> Grams:
+def form(columns: ComplexArray, data: Data) -> NormalEquations:
     """Form the normal equations.
 
     Parameters
@@ -107,7 +107,7 @@ def form(columns: ComplexArray, data: Data) -> Grams:
         The data, with their weights.
     """
     real = np.concatenate([columns.real, columns.imag], axis=0)
-    return Grams(products(real, data.weights.lines), data.weighted @ real, data.power)
+    return NormalEquations(products(real, data.weights.lines), data.weighted @ real, data.power)
 
 
 def products(real: FloatArray, lines: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
-from identification.fit.equations.line_selection import Lines, thinned
+from identification.fit.equations.line_selection import Lines, selected_lines
 from identification.fit.equations.residues import Residues, unpack
 
 _ITERATIONS = 40
@@ -119,7 +119,7 @@ def refine(
     Fit
         The refined model.
     """
-    problem = _Problem.of(*thinned(frfs, poles, weights), powers)
+    problem = _Problem.of(*selected_lines(frfs, poles, weights), powers)
     whole = len(problem.axis.laplace) == len(frfs.frequency)
     start = known if known is not None and whole else _at(problem, poles)
     state, converged = _iterate(problem, start, iterations, (tolerance, enough))
@@ -167,7 +167,7 @@ class State:
 
     poles: ComplexArray
     step: Step
-    products: normal_equations.Grams
+    products: normal_equations.NormalEquations
     follow: FloatArray
     term_scale: FloatArray
     level: FloatArray
@@ -228,7 +228,7 @@ def _at(problem: _Problem, poles: ComplexArray) -> State:
     )
 
 
-def _projection(products: normal_equations.Grams, k: int) -> tuple[FloatArray, FloatArray]:
+def _projection(products: normal_equations.NormalEquations, k: int) -> tuple[FloatArray, FloatArray]:
     """Return the linear solution, (n_frf, k), and how it follows the slope columns, (n_frf or 1, k, rest)."""
     here, across = products.gram[:, :k, :k], products.gram[:, :k, k:]
     if len(here) < len(products.cross):
@@ -314,11 +314,15 @@ def evaluate(
     frfs: FrfSet, poles: ComplexArray, weights: normal_equations.Weights, powers: tuple[int, ...]
 ) -> Step:
     """Project the linear unknowns out at given poles; parameters as for :func:`refine`."""
-    return _at(_Problem.of(*thinned(frfs, poles, weights), powers), poles).step
+    return _at(_Problem.of(*selected_lines(frfs, poles, weights), powers), poles).step
 
 
 def _step(
-    products: normal_equations.Grams, solution: FloatArray, follow: FloatArray, level: FloatArray, n: int
+    products: normal_equations.NormalEquations,
+    solution: FloatArray,
+    follow: FloatArray,
+    level: FloatArray,
+    n: int,
 ) -> Step:
     k = solution.shape[1]
     cost = float(level @ (products.power - np.einsum("jk,jk->j", products.cross[:, :k], solution)))

@@ -9,7 +9,7 @@ import numpy as np
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
-from identification.fit.equations.line_selection import thinned
+from identification.fit.equations.line_selection import selected_lines
 from identification.fit.equations.refine import pole_turns
 from identification.fit.poly_reference.blocks import blocks_times, inverses, paired, rotations, times_blocks
 from identification.fit.poly_reference.places import Sorted
@@ -90,7 +90,7 @@ class Projected:
 
 def project(problem: Problem, poles: ComplexArray, n_held: int) -> Projected:
     """Eliminate at given poles, the first ``n_held`` of rank one, what each FRF has alone."""
-    few, weights = thinned(problem.frfs, poles, problem.weights)
+    few, weights = selected_lines(problem.frfs, poles, problem.weights)
     columns = basis.build(few.axis, poles, problem.powers)
     shared, own = columns.modes[:, : 2 * n_held], columns.modes[:, 2 * n_held :]
     both = np.hstack([shared, columns.slopes, own, columns.terms])

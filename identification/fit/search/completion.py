@@ -112,7 +112,7 @@ def _acceptable(frfs: FrfSet, fit: Fit, trial: Fit, pole: complex, band: tuple[f
         new = int(moved.argmax())
         gap = np.delete(np.abs(trial.poles - trial.poles[new]), new).min(initial=np.inf)
         return bool(gap > 3.0 * abs(trial.poles[new].real))
-    return halves(frfs, trial) is None
+    return find_split_mode(frfs, trial) is None
 
 
 def _higher(
@@ -129,17 +129,17 @@ def _higher(
     return ladder[rung + 1], gain - float(stats.chi2.isf(1e-6, extra))
 
 
-def halves(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
+def find_split_mode(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
     """Return two poles of a fit that are one mode, the weaker first, or None.
 
     They are the halves of one by their shapes, or one pole for each FRF explains the FRFs as well.
     """
     places, residues = sorted_frfs(frfs), fit.linear.residues
-    found = residual_peaks.split_halves(fit.poles, residues, places)
+    found = residual_peaks.split_mode_pairs(fit.poles, residues, places)
     if found is not None or len(residues) < residual_peaks.FEW:
         return found
-    apart = None if places is None else residual_peaks.two_by_references(residues, places)
-    groups = split_modes.clusters(fit.poles, apart)
+    disagreement = None if places is None else residual_peaks.two_by_references(residues, places)
+    groups = split_modes.clusters(fit.poles, disagreement)
     if not groups:
         return None
     residual, weights = left_over(frfs, fit), search_weights(frfs, fit)
@@ -150,9 +150,9 @@ def halves(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
     return None
 
 
-def without_halves(frfs: FrfSet, fit: Fit) -> Fit:
+def without_split_modes(frfs: FrfSet, fit: Fit) -> Fit:
     """Make one of poles that are the halves of one mode."""
-    while (pair := halves(frfs, fit)) is not None:
+    while (pair := find_split_mode(frfs, fit)) is not None:
         rest = np.delete(fit.poles, pair[0])
         weights, powers = search_weights(frfs, fit), fit.linear.powers
         fit = refine(frfs, rest, weights, powers=powers, iterations=SHORT, tolerance=COARSE)

@@ -59,7 +59,7 @@ def trial_poles(
     return np.asarray(damped[(damped.imag >= low) & (damped.imag <= high)])
 
 
-def split_halves(
+def split_mode_pairs(
     poles: ComplexArray, residues: ComplexArray, places: Sorted | None = None
 ) -> tuple[int, int] | None:
     """Return two poles that are the halves of one mode, the weaker first, or None.
@@ -90,12 +90,14 @@ def split_halves(
     together = np.abs(residues.conj().T @ residues) / np.maximum(size.T @ size, np.finfo(float).tiny)
     crooked = np.minimum(straight[:, None], straight[None, :]) < _REAL
     if len(residues) < FEW:
-        halves = distance < 1.0
+        find_split_mode = distance < 1.0
     else:
-        halves = (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
-    if places is not None and halves.any():
-        halves &= ~two_by_references(residues, places)
-    first, second = np.nonzero(np.triu(halves, 1))
+        find_split_mode = (
+            (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
+        )
+    if places is not None and find_split_mode.any():
+        find_split_mode &= ~two_by_references(residues, places)
+    first, second = np.nonzero(np.triu(find_split_mode, 1))
     if len(first) == 0:
         return None
     nearest = int(distance[first, second].argmin())

@@ -23,22 +23,22 @@ _DOUBT = 3.0  # standard deviations of chi-squared by which one pole each may fi
 _LEAST_LINES = 6
 
 
-def clusters(poles: ComplexArray, apart: BoolArray | None = None) -> list[IntArray]:
+def clusters(poles: ComplexArray, disagreement: BoolArray | None = None) -> list[IntArray]:
     """Return groups of poles that are linked by less than 2.5 half-widths, two or more in each.
 
     Parameters
     ----------
     poles : (n_modes,) complex array
         Poles [rad/s].
-    apart : (n_modes, n_modes) bool array, optional
+    disagreement : (n_modes, n_modes) bool array, optional
         Pairs known to be two modes.
     """
     width = np.maximum(np.abs(poles.real)[:, None], np.abs(poles.real)[None, :])
     linked = np.abs(poles[:, None] - poles[None, :]) < _CLOSE * width
     narrow = np.minimum(np.abs(poles.real)[:, None], np.abs(poles.real)[None, :])
     linked &= width < _UNEQUAL * narrow
-    if apart is not None:
-        linked &= ~apart
+    if disagreement is not None:
+        linked &= ~disagreement
     reached = linked
     for _ in range(len(poles)):
         wider = (reached.astype(np.int64) @ linked) > 0

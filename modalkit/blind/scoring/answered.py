@@ -28,7 +28,7 @@ def headline_section(score: Score) -> Section:
 def groups_section(score: Score) -> Section:
     """Return how often it is right by severity, structure, baseline and level."""
     rows = [
-        {"": f"{row['group']}: {_said(row['value'])}", "trials": row["total"]}
+        {"": f"{row['group']}: {_statement(row['value'])}", "trials": row["total"]}
         | {
             words: f"{percent(row[key])} % ({percent(row[f'{key} low95'])} to {percent(row[f'{key} high95'])})"
             for key, words in (
@@ -46,7 +46,7 @@ def groups_section(score: Score) -> Section:
     return Section("By severity, structure, baseline and absolute level", note, words(rows))
 
 
-def _said(value: str) -> str:
+def _statement(value: str) -> str:
     return {"True": "yes", "False": "no"}.get(value, value)
 
 

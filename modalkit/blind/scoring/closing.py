@@ -32,7 +32,7 @@ def closing_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        Share of the gap that closes [%]: ``said`` with ``low95`` and ``high95``, ``held_out`` (from the errors on
+        Share of the gap that closes [%]: ``statement`` with ``low95`` and ``high95``, ``held_out`` (from the errors on
         data held out), ``true`` on the rig's own modes in the band and ``beyond`` on those above it; ``covered``:
         the true one lies in the interval; ``held``: the answer holds the hidden effect.
     """
@@ -46,17 +46,19 @@ def _row(outcome: Outcome) -> list[Any] | None:
         return None
     share_true = closed(true.before_percent, true.after_percent)
     share_beyond = closed(true.beyond_before_percent, true.beyond_after_percent)
-    said = answer.closed
+    statement = answer.closed
     inside = (
-        None if said is None or np.isnan(said.low + said.high) else bool(said.low <= share_true <= said.high)
+        None
+        if statement is None or np.isnan(statement.low + statement.high)
+        else bool(statement.low <= share_true <= statement.high)
     )
     out = answer.held_out
     held_out = closed(
         out.get("before_percent"), out.get("after_percent"), out.get("noise_floor_percent") or 0.0
     )
     start = [outcome.index, label(outcome.truth.effects), sort_of(outcome.truth), answer.metric, true.metric]
-    told = [np.nan] * 3 if said is None else [said.value, said.low, said.high]
-    return [*start, *told, share_true, share_beyond, held_out, inside, holds(answer, outcome.truth)]
+    stated = [np.nan] * 3 if statement is None else [statement.value, statement.low, statement.high]
+    return [*start, *stated, share_true, share_beyond, held_out, inside, holds(answer, outcome.truth)]
 
 
 def closed(before: float | None, after: float | None, floor: float = 0.0) -> float:
@@ -103,23 +105,23 @@ def closing_summary(table: pd.DataFrame, rng: np.random.Generator) -> pd.DataFra
     Returns
     -------
     pandas.DataFrame
-        By group of trials: mean \\|said - true\\| [points of %] with its interval, mean ``said`` and ``true``,
+        By group of trials: mean \\|said - true\\| [points of %] with its interval, mean ``statement`` and ``true``,
         ``count`` of ``total`` within 10 points, ``covered`` of ``intervals``.
     """
-    told = comparable(table)
-    held = told["held"].astype(bool)
-    groups = {"all": told, "answer holds the truth": told[held], "answer is false": told[~held]}
-    outside = told["sort"].isin(["outside", "left out"])
-    groups["wrong name for what cannot be known"] = told[outside & ~held]
-    groups |= {f"gap of {metric}": some for metric, some in told.groupby("metric")}
+    stated = comparable(table)
+    held = stated["held"].astype(bool)
+    groups = {"all": stated, "answer holds the truth": stated[held], "answer is false": stated[~held]}
+    outside = stated["sort"].isin(["outside", "left out"])
+    groups["wrong name for what cannot be known"] = stated[outside & ~held]
+    groups |= {f"gap of {metric}": some for metric, some in stated.groupby("metric")}
     return pd.DataFrame(
         [{"trials": name} | _summary(some, rng) for name, some in groups.items() if len(some)]
     )
 
 
 def _summary(some: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
-    apart = (some["said"] - some["true"]).abs().to_numpy(float)
-    mean = bootstrap(apart, rng)
+    distance = (some["said"] - some["true"]).abs().to_numpy(float)
+    mean = bootstrap(distance, rng)
     covered = some["covered"].dropna().astype(bool)
     inside = share(covered)
     return (
@@ -131,6 +133,6 @@ def _summary(some: pd.DataFrame, rng: np.random.Generator) -> dict[str, Any]:
             "true": float(some["true"].mean()),
             "beyond": float(some["beyond"].mean()),
         }
-        | share(apart <= WITHIN)
+        | share(distance <= WITHIN)
         | {f"covered_{key}": value for key, value in inside.items()}
     )

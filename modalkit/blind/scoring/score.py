@@ -207,7 +207,7 @@ def score_again(document: dict[str, Any]) -> Score:
     """
     if document.get("schema") != SCHEMA or "outcomes" not in document:
         raise InputError(f"schema {document.get('schema')!r} is not {SCHEMA}; give what `blind --json` wrote")
-    from modalkit.simulator.drawing.ranges import Plan
+    from modalkit.simulator.drawing.ranges import DrawRanges
 
     outcomes = tuple(Outcome.from_json(row) for row in document["outcomes"])
-    return score(BlindResult(document["seed"], Plan.from_json(document["plan"]), outcomes))
+    return score(BlindResult(document["seed"], DrawRanges.from_json(document["plan"]), outcomes))

@@ -53,16 +53,16 @@ def severity_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
 
 
 def _rows(outcome: Outcome) -> list[list[Any]]:
-    said = true_row(outcome)
-    if said is None or outcome.answer is None:
+    statement = true_row(outcome)
+    if statement is None or outcome.answer is None:
         return []
     rows = []
     for name, true in outcome.truth.parameters.items():
-        if name in NOT_SCORED or name.split(".")[-1] in PLACES or name not in said.parameters:
+        if name in NOT_SCORED or name.split(".")[-1] in PLACES or name not in statement.parameters:
             continue
         if not isinstance(true, int | float) or not true:
             continue
-        e = said.parameters[name]
+        e = statement.parameters[name]
         covered = bool(e.low <= true <= e.high) if np.isfinite([e.low, e.high]).all() else None
         error = e.value / true - 1
         start = [outcome.index, label(outcome.truth.effects), name]
@@ -123,12 +123,12 @@ def point_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``true`` and ``said`` points, and whether they are the same.
+        ``true`` and ``statement`` points, and whether they are the same.
     """
     rows = []
     for outcome in outcomes:
-        said = true_row(outcome)
-        for name, points in () if said is None else said.points.items():
+        statement = true_row(outcome)
+        for name, points in () if statement is None else statement.points.items():
             true = outcome.truth.parameters.get(name)
             if true is None:
                 continue

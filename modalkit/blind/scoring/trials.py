@@ -71,11 +71,11 @@ def _row(outcome: Outcome) -> dict[str, Any]:
         "calibrated": truth.calibrated,
         "gap_percent": truth.gap_percent,
     }
-    said = _FAILED if answer is None else _said(answer, truth)
-    return hidden | said | {"seconds": outcome.seconds, "failure": outcome.failure or ""}
+    statement = _FAILED if answer is None else _statement(answer, truth)
+    return hidden | statement | {"seconds": outcome.seconds, "failure": outcome.failure or ""}
 
 
-def _said(answer: Answer, truth: Truth) -> dict[str, Any]:
+def _statement(answer: Answer, truth: Truth) -> dict[str, Any]:
     stated: Posterior = posterior(answer, truth)
     return {
         "verdict": answer.verdict,

@@ -29,7 +29,7 @@ def blind_figures(score: Score) -> dict[str, Figure]:
         ``blind_closing``; those that the run has nothing for are left out.
     """
     known, outside = score.abstention, score.abstention_outside
-    told = comparable(score.closing)
+    stated = comparable(score.closing)
     drawn: dict[str, tuple[bool, Callable[[], Figure]]] = {
         "blind_rates": (len(score.headline) > 0, lambda: rates_figure(score.headline, score.effects)),
         "blind_confusion": (True, lambda: confusion_figure(score.answers)),
@@ -48,7 +48,7 @@ def blind_figures(score: Score) -> dict[str, Figure]:
             lambda: severity_figure(score.severity),
         ),
         "blind_closing": (
-            len(told) > 0 or bool(score.places["held"].astype(bool).any()),
+            len(stated) > 0 or bool(score.places["held"].astype(bool).any()),
             lambda: closing_figure(score.closing, score.places),
         ),
     }

@@ -136,7 +136,7 @@ def closing_figure(closing: pd.DataFrame, places: pd.DataFrame) -> Figure:
     Parameters
     ----------
     closing : pandas.DataFrame
-        ``said``, ``low95``, ``high95``, ``true`` [%], ``metric``, ``true_metric``, ``held``.
+        ``statement``, ``low95``, ``high95``, ``true`` [%], ``metric``, ``true_metric``, ``held``.
     places : pandas.DataFrame
         ``nearest`` and ``first`` error [-], ``held``.
 
@@ -149,14 +149,14 @@ def closing_figure(closing: pd.DataFrame, places: pd.DataFrame) -> Figure:
     InputError
         If there is neither.
     """
-    told = comparable(closing)
+    stated = comparable(closing)
     held = places[places["held"].astype(bool)]
-    if told.empty and held.empty:
+    if stated.empty and held.empty:
         raise InputError("no trial says how far its gap closes, or where it sits; there is nothing to draw")
     title = "How far the gap closes was not said"
-    if len(told):
-        apart = (told["said"] - told["true"]).abs()
-        title = f"Said and true shrinkage differ by {apart.mean():.1f} points of % in the mean"
+    if len(stated):
+        distance = (stated["said"] - stated["true"]).abs()
+        title = f"Said and true shrinkage differ by {distance.mean():.1f} points of % in the mean"
     note = (
         "Left: share of the gap that closes; true: with the answer in the rig's own nominal body. Right: errors of "
         "place where the answer holds the effect, of the nearest of mirrored places and of the first one."
@@ -164,35 +164,35 @@ def closing_figure(closing: pd.DataFrame, places: pd.DataFrame) -> Figure:
     top = caption_height(title, note) + 0.45
     figure = new_figure(top + SIDE + 0.7)
     caption(figure, title, note)
-    _closing(place(figure, MARGIN + 0.75, top, SIDE, SIDE, name="closing"), told)
+    _closing(place(figure, MARGIN + 0.75, top, SIDE, SIDE, name="closing"), stated)
     _places(place(figure, WIDTH - MARGIN - SIDE - 0.1, top, SIDE, SIDE, name="places"), held)
     return figure
 
 
-def _closing(axes: Axes, told: pd.DataFrame) -> None:
+def _closing(axes: Axes, stated: pd.DataFrame) -> None:
     tidy(axes, x="true [%]", y="said, on data held out [%]")
     head(axes, "How far the gap closes")
     low = 0.0
-    if len(told):
-        low = float(min(told["true"].quantile(0.02), told["said"].quantile(0.02)))
+    if len(stated):
+        low = float(min(stated["true"].quantile(0.02), stated["said"].quantile(0.02)))
         low = max(-100.0, min(0.0 if low < 60 else 50.0, 10 * np.floor(low / 10)))
     axes.plot([low, 100], [low, 100], color=FAINT, linewidth=1.2, zorder=1.5)
-    right = told["held"].astype(bool).to_numpy()
-    many = min(1.0, 12.0 / np.sqrt(max(len(told), 1)))
+    right = stated["held"].astype(bool).to_numpy()
+    many = min(1.0, 12.0 / np.sqrt(max(len(stated), 1)))
     for among, colour, words in (
         (right, BLUE, "answer holds the effect"),
         (~right, ORANGE, "answer is false"),
     ):
-        some = told[among]
+        some = stated[among]
         if some.empty:
             continue
         x = np.clip(some["true"].to_numpy(float), low, 100)
         bars = np.clip(some[["low95", "high95"]].to_numpy(float), low, 100)
         axes.vlines(x, bars[:, 0], bars[:, 1], color=colour, linewidth=1.0, alpha=0.35 * many, zorder=2)
-        said = np.clip(some["said"].to_numpy(float), low, 100)
+        statement = np.clip(some["said"].to_numpy(float), low, 100)
         axes.scatter(
             x,
-            said,
+            statement,
             s=20,
             color=colour,
             alpha=max(0.4, many),
@@ -203,7 +203,7 @@ def _closing(axes: Axes, told: pd.DataFrame) -> None:
         )
     axes.set_xlim(low, 101)
     axes.set_ylim(low, 101)
-    if len(told):
+    if len(stated):
         axes.legend(loc="lower right", frameon=False, fontsize=SMALL, labelcolor=INK)
 
 

@@ -81,8 +81,8 @@ def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float
         last = i == len(found) - 1
         if i == ROWS or down + tall + (0.0 if last else LINE) > height:
             total = share(sum(other.probability for other in found[i:]))
-            said = f"{len(found) - i} more, together {total}"
-            axes.text(0, -down - 0.17, said, fontsize=SMALL, color=MUTED)
+            statement = f"{len(found) - i} more, together {total}"
+            axes.text(0, -down - 0.17, statement, fontsize=SMALL, color=MUTED)
             break
         _bar(axes, row, -down - 0.30, width)
         for k, line in enumerate(under):

@@ -93,8 +93,8 @@ def mode_errors(diagnosis: Diagnosis, case: Case | None = None, *, best: Fitted 
 
 def _sigmas(plain: Comparison, residual: FloatArray) -> FloatArray:
     """Return the r.m.s. of all data of each mode [standard deviations]."""
-    told = squares(residual, plain, "combined")
-    return np.asarray(np.sqrt(told.total / np.maximum(told.count, 1.0)))
+    stated = squares(residual, plain, "combined")
+    return np.asarray(np.sqrt(stated.total / np.maximum(stated.count, 1.0)))
 
 
 def _errors(residual: FloatArray, mode: FloatArray, count: int, metric: str) -> FloatArray:

@@ -137,9 +137,9 @@ def _advice(diagnosis: Diagnosis, most: int) -> list[tuple[str, bool]]:
     lines: list[tuple[str, bool]] = []
     for measure in dict.fromkeys(test.measure for test in diagnosis.next_test):
         tests = [test for test in diagnosis.next_test if test.measure == measure]
-        told = "; ".join(dict.fromkeys(filter(None, map(separated, tests))))
+        stated = "; ".join(dict.fromkeys(filter(None, map(separated, tests))))
         here = [(line, True) for line in broken(measure[:1].upper() + measure[1:], 72 * RIGHT[1], TEXT)]
-        here += [(line, False) for line in broken(told.replace("_", " "), 72 * RIGHT[1], SMALL)]
+        here += [(line, False) for line in broken(stated.replace("_", " "), 72 * RIGHT[1], SMALL)]
         if lines and len(lines) + len(here) > most:
             break
         lines += here

@@ -11,11 +11,11 @@ from acquisition.arrays import FloatArray
 from updating import LIBRARY, Case, Diagnosis, Predictor
 from updating.diagnosis.answer.result import ParameterEstimate
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import Point, climb, evaluate
+from updating.diagnosis.search.fit import Point, evaluate, maximise
 from updating.effects import Variant
 from updating.models.state import State
 from updating.problem.candidate import Candidate
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class Fitted:
         It at its most probable parameters and tolerances.
     """
 
-    problem: Problem
+    problem: SpecimenProblem
     candidate: Candidate | None = None
     point: Point | None = None
 
@@ -50,7 +50,7 @@ class Fitted:
         shift = self.point.marginal.shift[: len(problem.names)]
         factors = dict(zip(problem.names, np.exp(shift * problem.sigmas).tolist(), strict=True))
         whole = state.plus(State(factors=factors))
-        return stage.looking(stage.measured, (*stage.additions, lambda _: whole)), whole
+        return stage.for_test(stage.measured, (*stage.additions, lambda _: whole)), whole
 
 
 def fitted(diagnosis: Diagnosis, case: Case, *, alone: bool = True) -> Fitted:
@@ -72,36 +72,40 @@ def fitted(diagnosis: Diagnosis, case: Case, *, alone: bool = True) -> Fitted:
     theories = (None, "timoshenko") if problem.predictor.spec.kind == "beam" else (None,)
     found: list[tuple[Candidate, Point]] = []
     for theory in theories:
-        told = _told(leader.parameters, case.title)
+        given = _stated(leader.parameters, case.title)
         applying = [n for n in leader.effects if problem.applies(LIBRARY[n]) is None]
         stated = dict(zip(leader.effects, leader.forms, strict=False))
-        forms = tuple(Variant(stated[n]) if n in stated else _form(n, told) for n in applying)
+        forms = tuple(Variant(stated[n]) if n in stated else _form(n, given) for n in applying)
         candidate = Candidate(tuple(LIBRARY[n] for n in applying), theory, forms)  # type: ignore[arg-type]
-        start = _start(problem, candidate, told)
+        start = _start(problem, candidate, given)
         point = (
-            climb(problem, candidate, start, rounds=6).point if alone else evaluate(problem, candidate, start)
+            maximise(problem, candidate, start, rounds=6).point
+            if alone
+            else evaluate(problem, candidate, start)
         )
         found.append((candidate, point))
     candidate, point = max(found, key=lambda one: one[1].marginal.log_likelihood)
     return Fitted(problem, candidate, point) if point.possible else Fitted(problem)
 
 
-def _told(parameters: Mapping[str, ParameterEstimate], title: str) -> dict[str, ParameterEstimate]:
+def _stated(parameters: Mapping[str, ParameterEstimate], title: str) -> dict[str, ParameterEstimate]:
     """Return the estimates by effect.parameter: of one of several specimens, its own where it has some."""
     own = f" ({title})"
     common = {n: e for n, e in parameters.items() if " (" not in n}
     return {**common, **{n.removesuffix(own): e for n, e in parameters.items() if n.endswith(own)}}
 
 
-def _form(name: str, told: Mapping[str, ParameterEstimate]) -> Variant:
+def _form(name: str, given: Mapping[str, ParameterEstimate]) -> Variant:
     """Return what the form of an effect fixes: what has no interval."""
-    own = {n.removeprefix(f"{name}."): e for n, e in told.items() if n.startswith(f"{name}.")}
+    own = {n.removeprefix(f"{name}."): e for n, e in given.items() if n.startswith(f"{name}.")}
     return Variant({n: e.value for n, e in own.items() if e.low95 is None})
 
 
-def _start(problem: Problem, candidate: Candidate, told: Mapping[str, ParameterEstimate]) -> FloatArray:
+def _start(
+    problem: SpecimenProblem, candidate: Candidate, given: Mapping[str, ParameterEstimate]
+) -> FloatArray:
     quantiles: Sequence[float] = [
-        p.coordinate(float(told[n].value)) if n in told else 0.5  # type: ignore[arg-type]
+        p.coordinate(float(given[n].value)) if n in given else 0.5  # type: ignore[arg-type]
         for n, p in problem.parameters(candidate)
     ]
     return np.array(quantiles, dtype=float)

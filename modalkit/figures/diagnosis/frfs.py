@@ -85,7 +85,7 @@ def overlaid(frfs: FrfSet, best: Fitted) -> Overlaid:
         If none of the FRFs is between points of the test.
     """
     top = BEYOND * float(best.problem.measured.frequency.max())
-    part = thinned(frfs.band(0.0, top) if frfs.frequency[0] < top < frfs.frequency[-1] else frfs)
+    part = selected_lines(frfs.band(0.0, top) if frfs.frequency[0] < top < frfs.frequency[-1] else frfs)
     found, before = best.model(), best.problem.predictor
     after = None if found is None else _after(part, best, *found)
     both = Overlaid(_beside(part, best, before), after, round(part.df / frfs.df))
@@ -104,7 +104,7 @@ def _levelled(both: CorrelatedFrfs) -> CorrelatedFrfs:
     return replace(both, model=replace(both.model, values=factor * both.model.values))
 
 
-def thinned(frfs: FrfSet) -> FrfSet:
+def selected_lines(frfs: FrfSet) -> FrfSet:
     """Return FRFs on every n-th line, where they have more than :data:`LINES`."""
     every = -(-len(frfs.frequency) // LINES)
     if every == 1:
@@ -206,11 +206,13 @@ def _block(
     _curve(magnitude, test, test.values[row], INK, "measured", width=1.0)
     angle = np.degrees(np.angle(test.values[row]))
     phase.plot(test.frequency, angle, ".", color=FAINT, markersize=2.0, rasterized=True)
-    for label, told, colour, dashed in models:
-        correlation = f"{label}, FRAC {told.frac[row]:.3f}"
-        _curve(magnitude, told.model, told.model.values[row], colour, correlation, dashed=dashed)
-        _phase(phase, told.model.frequency, told.model.values[row], colour, dashed=dashed)
-    size = np.abs(np.concatenate([test.values[row], *(told.model.values[row] for _, told, _, _ in models)]))
+    for label, stated, colour, dashed in models:
+        correlation = f"{label}, FRAC {stated.frac[row]:.3f}"
+        _curve(magnitude, stated.model, stated.model.values[row], colour, correlation, dashed=dashed)
+        _phase(phase, stated.model.frequency, stated.model.values[row], colour, dashed=dashed)
+    size = np.abs(
+        np.concatenate([test.values[row], *(stated.model.values[row] for _, stated, _, _ in models)])
+    )
     size = size[np.isfinite(size) & (size > 0)]
     if len(size):
         magnitude.set_ylim(float(np.percentile(size, 0.5)) / 2.5, float(size.max()) * 2)

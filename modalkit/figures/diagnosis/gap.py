@@ -31,11 +31,11 @@ def gap_figure(diagnosis: Diagnosis, errors: ModeErrors, *, title: str = "") -> 
     -------
     Figure
     """
-    said, note = _title(diagnosis, errors, of_several=bool(title)), title
-    top = caption_height(said, note) + 0.45
+    statement, note = _title(diagnosis, errors, of_several=bool(title)), title
+    top = caption_height(statement, note) + 0.45
     tall = max(1.3, ROW * len(errors.frequency) + 0.3)
     figure = new_figure(top + tall + 0.65)
-    caption(figure, said, note)
+    caption(figure, statement, note)
     panel = place(figure, MARGIN + INDENT, top, WIDTH - 2 * MARGIN - INDENT - 0.1, tall, name="gap")
     dumbbells(
         panel,

@@ -103,11 +103,11 @@ def _gather(test: HammerTest, verdicts: Sequence[HitVerdict]) -> _Row:
     used: list[bool] = []
     reasons: list[str] = []
     start: list[int] = []
-    for point, told in zip(test.points, verdicts_of(test, verdicts), strict=True):
+    for point, stated in zip(test.points, verdicts_of(test, verdicts), strict=True):
         start.append(len(names))
         first = seen.get(point.reference, 0)
         seen[point.reference] = first + point.count
-        for number, verdict in enumerate(told, start=first + 1):
+        for number, verdict in enumerate(stated, start=first + 1):
             names.append(f"{point.reference} hit {number if verdict is None else verdict.hit}")
             used.append(verdict is None or verdict.used)
             reasons.append("" if verdict is None else "; ".join(verdict.reasons))

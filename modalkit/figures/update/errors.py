@@ -67,17 +67,17 @@ def update_figure(
     if not f.ndim == 1 or not f.shape == b.shape == a.shape or len(f) == 0:
         raise InputError(f"frequencies {f.shape}, errors {b.shape} and {a.shape}: give one of each per mode")
     factors = parameters or {}
-    said = f"Updating takes the frequency error from {percent(_rms(b))} to {percent(_rms(a))} r.m.s."
+    statement = f"Updating takes the frequency error from {percent(_rms(b))} to {percent(_rms(a))} r.m.s."
     note = "  ·  ".join(
         part
         for part in (title, counted(len(f), "mode"), counted(len(factors), "parameter") if factors else "")
         if part
     )
     rows = max(len(f), len(factors))
-    top = caption_height(said, note) + 0.8
+    top = caption_height(statement, note) + 0.8
     tall = max(1.2, 0.36 * rows)
     figure = new_figure(top + tall + 0.7)
-    caption(figure, said, note)
+    caption(figure, statement, note)
     split = 6.0 if factors else WIDTH - MARGIN
     panel = place(figure, MARGIN + 1.1, top, split - MARGIN - 1.35, tall, name="errors")
     heading(figure, MARGIN, top - 0.42, "Errors, mode by mode")

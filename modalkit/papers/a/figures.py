@@ -81,7 +81,7 @@ def _figure(one: Walk) -> Figure:
     curves += [Curve(part, labels[part], model_frf(walked, frfs, state)) for part, state in states.items()]
     after = walked.result.rms_percent("after")
     before = walked.result.rms_percent("before")
-    said = (
+    statement = (
         f"{shown.of}: one factor takes the frequency error from {percent(before)} to {percent(after)} r.m.s."
     )
     note = (
@@ -91,7 +91,7 @@ def _figure(one: Walk) -> Figure:
     panel = Panel(
         f"hit and seen at point {frfs.responses[row].node}", frfs.frequency, tuple(curves), frfs.unit
     )
-    return curves_figure(said, note, [panel])
+    return curves_figure(statement, note, [panel])
 
 
 def _at_the_sensor(frfs: FrfSet) -> int:

@@ -185,14 +185,14 @@ def _predictor(case: Case, start: Start) -> Predictor:
     if start.values is not None:
         return predictor_of(replace(case, accepted=tuple(start.values.items())))
     plain = predictor_of(case)
-    return plain.looking(case.measured, (_corrected(case),))
+    return plain.for_test(case.measured, (_corrected(case),))
 
 
 def _corrected(case: Case) -> Callable[[Predictor], State]:
     def build(predictor: Predictor) -> State:
         assert case.baseline is not None
-        before = pair_modes(case.baseline, predictor.looking(case.baseline, ()).predict())
-        return correct(predictor.looking(before.measured, ()), before.measured, before.order)
+        before = pair_modes(case.baseline, predictor.for_test(case.baseline, ()).predict())
+        return correct(predictor.for_test(before.measured, ()), before.measured, before.order)
 
     return build
 

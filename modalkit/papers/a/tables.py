@@ -54,7 +54,7 @@ def _rows(table: PrintedTable, printed: Printed, walked: Walked) -> pd.DataFrame
         columns["MAC [%]"] = _numbers(printed.mac)
         columns["MAC, ours"] = 100 * walked.pairs["mac"].to_numpy()
     columns["erratum"] = [
-        _remark(printed, mode, row) for mode, row in zip(table.modes, _partners(walked), strict=True)
+        _note(printed, mode, row) for mode, row in zip(table.modes, _partners(walked), strict=True)
     ]
     return pd.DataFrame(columns)
 
@@ -65,7 +65,7 @@ def _partners(walked: Walked) -> list[tuple[int, int]]:
     return [(i + 1, int(p)) for i, p in enumerate(partners)]
 
 
-def _remark(printed: Printed, mode: int, row: tuple[int, int]) -> str:
+def _note(printed: Printed, mode: int, row: tuple[int, int]) -> str:
     """Return the erratum of a row, and say where our pairing is another."""
     place, partner = row
     parts = [printed.errata[mode]] if mode in printed.errata else []

@@ -48,7 +48,7 @@ def figures_b(update: Staged) -> dict[str, Figure]:
     }  # fmt: skip
 
 
-def _frfs(update: Staged, number: int, said: str, what: str, states: Mapping[str, State]) -> Figure:
+def _frfs(update: Staged, number: int, statement: str, what: str, states: Mapping[str, State]) -> Figure:
     taped = update.taped
     frfs = taped.frfs
     back = frfs.laplace ** FORMS.index(frfs.form)
@@ -63,16 +63,16 @@ def _frfs(update: Staged, number: int, said: str, what: str, states: Mapping[str
         title = f"seen at point {nodes[row]}, hit at point {frfs.references[row].node}"
         panels.append(Panel(title, frfs.frequency, tuple(curves), UNITS["receptance"], 135.0))
     note = f"Paper B, Fig. {number}, ours  ·  {what}  ·  receptances"
-    return curves_figure(said, note, panels)
+    return curves_figure(statement, note, panels)
 
 
-def _frac(update: Staged, number: int, states: Mapping[str, State], what: str, said: str) -> Figure:
+def _frac(update: Staged, number: int, states: Mapping[str, State], what: str, statement: str) -> Figure:
     taped = update.taped
     bars = {name: taped.frac_of(state) for name, state in states.items()}
     before, after = (f"{v.mean():.2f}" for v in bars.values())
     note = f"Paper B, Fig. {number}, ours  ·  {what}  ·  receptances, 5-600 Hz"
-    said = said.format(before=before, after=after)
-    return frac_figure(said, note, [f"{r.node}" for r in taped.frfs.responses], bars)
+    statement = statement.format(before=before, after=after)
+    return frac_figure(statement, note, [f"{r.node}" for r in taped.frfs.responses], bars)
 
 
 def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, float, float]]) -> Figure:
@@ -82,7 +82,7 @@ def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, f
         course = Course(region, scale * update.courses[parameter], given, update.repeats[parameter])
         panels.setdefault(name, []).append(course)
     damped = "alpha" in panels
-    said = (
+    statement = (
         "Alpha and beta under the tape grow far above those of the bare steel"
         if damped
         else "Area and inertia grow by a third: the test's calibration, not the beam"
@@ -94,7 +94,7 @@ def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, f
     courses = [
         Courses(name, _unit(name), tuple(lines), logarithmic=name == "beta") for name, lines in panels.items()
     ]
-    return evolution_figure(said, note, courses)
+    return evolution_figure(statement, note, courses)
 
 
 def _unit(name: str) -> str:

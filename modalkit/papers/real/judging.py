@@ -71,8 +71,8 @@ def _of_nothing(answer: Answer) -> Judgement:
 def _of_left_out(case: Case, answer: Answer) -> Judgement:
     if answer.verdict == "unknown":
         return Judgement("right", "unknown")
-    told = [s for s in answer.sets if s in case.stands_in]
-    if told and len(told) == len(answer.sets):
+    stated = [s for s in answer.sets if s in case.stands_in]
+    if stated and len(stated) == len(answer.sets):
         return Judgement("right", "the same under another name")
     if any(stand_in <= s for s in answer.sets for stand_in in case.stands_in):
         return Judgement("partly", "a stand-in beside others, or with something added")
@@ -103,8 +103,8 @@ def _of_numbers(case: Case, answer: Answer) -> Judgement:
 def estimates(case: Case, answer: Answer) -> list[tuple[Fact, Estimate]]:
     """Return the known numbers with what the most probable true set says of them."""
     row = next((row for row in answer.ranking if row.effects in case.accepted), None)
-    told = {} if row is None else row.parameters
-    return [(fact, told[fact.parameter]) for fact in case.facts if fact.parameter in told]
+    stated = {} if row is None else row.parameters
+    return [(fact, stated[fact.parameter]) for fact in case.facts if fact.parameter in stated]
 
 
 def covers(estimate: Estimate, fact: Fact) -> bool:

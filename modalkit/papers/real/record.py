@@ -83,8 +83,8 @@ def real_markdown(record: Mapping[str, Any]) -> str:
     whole = [c for c in record["cases"] if not c["without"]]
     left_out = [c for c in record["cases"] if c["without"]]
     parts = [
-        *_told("The library whole", whole),
-        *_told("The true effects taken out of the library", left_out),
+        *_stated("The library whole", whole),
+        *_stated("The true effects taken out of the library", left_out),
     ]
     if whole:
         facts = [{"case": c["name"], "withheld": c["withheld"], "known from": c["source"]} for c in whole]
@@ -92,12 +92,12 @@ def real_markdown(record: Mapping[str, Any]) -> str:
     return "\n".join(parts)
 
 
-def _told(heading: str, cases: Sequence[Mapping[str, Any]]) -> list[str]:
+def _stated(heading: str, cases: Sequence[Mapping[str, Any]]) -> list[str]:
     if not cases:
         return []
     grades = [c.get("grade", "skipped") for c in cases]
-    told = [f"{grades.count(g)} {g}" for g in ("right", "partly", "wrong", "skipped") if g in grades]
-    line = f"{len(cases)} cases: {', '.join(told)}."
+    stated = [f"{grades.count(g)} {g}" for g in ("right", "partly", "wrong", "skipped") if g in grades]
+    line = f"{len(cases)} cases: {', '.join(stated)}."
     return [f"### {heading}", "", line, "", *_rows([c["row"] for c in cases]), ""]
 
 

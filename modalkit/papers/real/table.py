@@ -25,7 +25,7 @@ def row_of(outcome: RealOutcome) -> dict[str, str]:
         empty = dict.fromkeys(("size (95 %)", "gap [%]", "runner-up / tolerances / floor"), "")
         return row | {"said": outcome.missing or ""} | empty | {"judged": "skipped"}
     return row | {
-        "said": said(document),
+        "said": statement(document),
         "size (95 %)": sizes(outcome),
         "gap [%]": _gap(document),
         "runner-up / tolerances / floor": _rivals(document),
@@ -33,7 +33,7 @@ def row_of(outcome: RealOutcome) -> dict[str, str]:
     }
 
 
-def said(document: Mapping[str, Any]) -> str:
+def statement(document: Mapping[str, Any]) -> str:
     """Return the verdict with the sets of effects it names, and whether their size is hardly believable."""
     cause = document["cause"]
     if cause["verdict"] in ("none", "unknown"):
@@ -59,8 +59,8 @@ def sizes(outcome: RealOutcome) -> str:
     parameters = next(true, rows[0])["parameters"]
     known = {fact.parameter for fact in outcome.case.facts}
     chosen = {n: p for n, p in parameters.items() if n in known} or parameters
-    told = [_size(name, p) for name, p in chosen.items() if not isinstance(p["value"], list | str)]
-    return "; ".join([*told, *_places(outcome)])
+    stated = [_size(name, p) for name, p in chosen.items() if not isinstance(p["value"], list | str)]
+    return "; ".join([*stated, *_places(outcome)])
 
 
 def _places(outcome: RealOutcome) -> list[str]:
@@ -106,7 +106,9 @@ def _gap(document: Mapping[str, Any]) -> str:
 def _rivals(document: Mapping[str, Any]) -> str:
     held = document["shrink"].get("held_out") or {}
     keys = ("runner_up_percent", "nuisance_only_percent", "noise_floor_percent")
-    told = [held.get(key) for key in keys]
+    stated = [held.get(key) for key in keys]
     return (
-        " / ".join("-" if v is None else number(v) for v in told) if any(v is not None for v in told) else ""
+        " / ".join("-" if v is None else number(v) for v in stated)
+        if any(v is not None for v in stated)
+        else ""
     )

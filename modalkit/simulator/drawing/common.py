@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 
 MATERIALS = ((210e9, 7850.0, 0.30), (70e9, 2700.0, 0.33), (100e9, 8500.0, 0.34))
 """E [Pa], density [kg/m3] and Poisson's ratio [-] of steel, aluminium and brass."""
 MATERIAL_SHARES = (0.45, 0.4, 0.15)
 
 
-def draw_test(rng: np.random.Generator, plan: Plan) -> dict[str, Any]:
+def draw_test(rng: np.random.Generator, plan: DrawRanges) -> dict[str, Any]:
     """Draw what has nothing to do with the specimen: how it is hit, recorded and calibrated.
 
     Parameters

@@ -6,7 +6,7 @@ import numpy as np
 
 from modalkit.simulator.bodies.plate.plate import Plate
 from modalkit.simulator.drawing.common import MATERIAL_SHARES, MATERIALS, draw_test, rayleigh, two_digits
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.setup import Setup, Tolerances
 
 _CLAMPS: tuple[tuple[str, ...], ...] = (("x0",), ("x0", "x1"), ("x0", "x1", "y0", "y1"), ())
@@ -15,7 +15,7 @@ _THIN = 0.7
 _THINNEST = 0.0008
 
 
-def draw_plate(rng: np.random.Generator, plan: Plan) -> Setup | None:
+def draw_plate(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
     """Draw a plate and its test.
 
     Parameters

@@ -12,7 +12,7 @@ KINDS = ("beam", "plate", "solid")
 
 
 @dataclass(frozen=True)
-class Plan:
+class DrawRanges:
     """What may be drawn; together with the seed it says everything about a run.
 
     Parameters

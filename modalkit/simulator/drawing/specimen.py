@@ -11,7 +11,7 @@ from modalkit.simulator.bodies.beam.beam import Beam
 from modalkit.simulator.bodies.solid.solid import available
 from modalkit.simulator.drawing.common import MATERIAL_SHARES, MATERIALS, draw_test, rayleigh, two_digits
 from modalkit.simulator.drawing.plate import draw_plate
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.setup import Setup, Tolerances
 
 _CLAMPS: tuple[tuple[str, ...], ...] = (("x0",), ("x0", "x1"), ())
@@ -19,10 +19,10 @@ _CLAMP_SHARES = (0.62, 0.12, 0.26)
 _THIN_SHEAR = 0.5
 _SHEAR_SHOWS = 0.02
 _SHEAR_KEPT = 0.55
-_EVERYTHING = Plan()
+_EVERYTHING = DrawRanges()
 
 
-def draw_setup(rng: np.random.Generator, *, plan: Plan = _EVERYTHING) -> Setup:
+def draw_setup(rng: np.random.Generator, *, plan: DrawRanges = _EVERYTHING) -> Setup:
     """Draw a specimen and its test.
 
     Parameters
@@ -54,14 +54,14 @@ def draw_setup(rng: np.random.Generator, *, plan: Plan = _EVERYTHING) -> Setup:
             return setup
 
 
-def _draw_kind(rng: np.random.Generator, plan: Plan) -> str:
+def _draw_kind(rng: np.random.Generator, plan: DrawRanges) -> str:
     others = [kind for kind in plan.kinds if kind != "beam"]
     share = plan.plates if "beam" in plan.kinds else 1 / len(others)
     borders = share * np.arange(1, len(others) + 1)
     return [*others, "beam"][int(np.searchsorted(borders, rng.random(), side="right"))]
 
 
-def _draw_beam(rng: np.random.Generator, plan: Plan) -> Setup | None:
+def _draw_beam(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
     length = round(rng.uniform(0.25, 1.0), 3)
     thickness = round(max(0.002, length / np.exp(rng.uniform(np.log(20), np.log(150)))), 4)
     width = round(rng.uniform(max(0.015, 1.5 * thickness), max(0.02, 2 * thickness, 0.2 * length)), 3)
@@ -71,7 +71,7 @@ def _draw_beam(rng: np.random.Generator, plan: Plan) -> Setup | None:
     return setup and _fit_theory(rng, setup)
 
 
-def _draw_solid(rng: np.random.Generator, plan: Plan) -> Setup | None:
+def _draw_solid(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
     """Draw a cantilever of compact section, which is half a row of bricks wide; shear is in its model."""
     length = round(rng.uniform(0.25, 0.8), 3)
     thickness = round(length / np.exp(rng.uniform(np.log(35), np.log(100))), 4)
@@ -83,7 +83,7 @@ def _draw_solid(rng: np.random.Generator, plan: Plan) -> Setup | None:
 
 def _tested(
     rng: np.random.Generator,
-    plan: Plan,
+    plan: DrawRanges,
     kind: str,
     size: tuple[float, float, float],
     material: tuple[float, float, float],

@@ -52,7 +52,7 @@ def no_equals(setup: Setup, values: Values) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Secret:
+class HiddenEffect:
     """One kind of hidden effect.
 
     Parameters
@@ -74,7 +74,7 @@ class Secret:
         Whether the diagnosis is expected to know it.
     graded : bool
         Whether it comes in different strengths.
-    seat : str
+    exclusive : str
         Two effects with the same seat cannot be there at once; empty for none.
     metric : {"frequency", "damping", ""}
         In which of the two the gap that it makes shrinks; empty for neither.
@@ -92,7 +92,7 @@ class Secret:
     places: Callable[[Setup, Values], tuple[Place, ...]] = nowhere
     in_library: bool = True
     graded: bool = True
-    seat: str = ""
+    exclusive: str = ""
     metric: str = "frequency"
     solid: bool = False
     share: float = 1.0

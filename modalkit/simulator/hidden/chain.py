@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modalkit.simulator.hidden.base import Place, Secret, Values, either_sign, log_uniform, only_level
+from modalkit.simulator.hidden.base import HiddenEffect, Place, Values, either_sign, log_uniform, only_level
 from modalkit.simulator.scene import Scene
 from modalkit.simulator.setup import Setup
 
@@ -68,25 +68,25 @@ def _point_places(setup: Setup, values: Values) -> tuple[Place, ...]:
 
 
 CHAIN = tuple(
-    replace(secret, solid=True)
-    for secret in (
-        Secret(
+    replace(hidden_effect, solid=True)
+    for hidden_effect in (
+        HiddenEffect(
             "calibration_gain",
             _draw_gain,
             lambda scene, values: scene.with_chain(gain=scene.chain.gain * values["gain"]),
             applies=lambda setup: setup.calibrated or setup.baseline,
             equals=_gain_equals,
-            seat="level",
+            exclusive="level",
             metric="",
             share=0.9,
         ),
-        Secret(
+        HiddenEffect(
             "time_delay",
             _draw_delay,
             lambda scene, values: scene.with_chain(delay=scene.chain.delay + values["delay"]),
             metric="",
         ),
-        Secret(
+        HiddenEffect(
             "polarity",
             _draw_reversed,
             lambda scene, values: scene.with_chain(reversed=tuple(n - 1 for n in values["points"])),
@@ -94,15 +94,17 @@ CHAIN = tuple(
             graded=False,
             metric="",
         ),
-        Secret(
+        HiddenEffect(
             "swapped_points",
             _draw_exchanged,
             lambda scene, values: scene.with_chain(exchanged=(tuple(n - 1 for n in values["points"]),)),
             places=_point_places,
             graded=False,
-            seat="labels",
+            exclusive="labels",
             metric="",
         ),
-        Secret("position_error", _draw_moved, _act_moved, places=_moved_places, seat="labels", metric=""),
+        HiddenEffect(
+            "position_error", _draw_moved, _act_moved, places=_moved_places, exclusive="labels", metric=""
+        ),
     )
 )

@@ -8,16 +8,16 @@ from itertools import product
 import numpy as np
 
 from acquisition.errors import StudyError
-from modalkit.simulator.drawing.ranges import Plan
+from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import lacks_shear
-from modalkit.simulator.hidden import SECRETS, Secret, Values
+from modalkit.simulator.hidden import HIDDEN_EFFECTS, HiddenEffect, Values
 from modalkit.simulator.setup import Setup
 
 _MILD = (0.15, 0.5)
 _STRONG = (1.5, 2.5)
 
 
-def checked(plan: Plan) -> Plan:
+def checked(plan: DrawRanges) -> DrawRanges:
     """Return the plan if the rig has all that it asks for.
 
     Parameters
@@ -30,13 +30,15 @@ def checked(plan: Plan) -> Plan:
     StudyError
         If a name is not one of the rig's.
     """
-    missing = [name for name in plan.effects if name != "none" and name not in SECRETS]
+    missing = [name for name in plan.effects if name != "none" and name not in HIDDEN_EFFECTS]
     if missing:
-        raise StudyError(f"the rig cannot hide {', '.join(missing)}; it has: none, {', '.join(SECRETS)}")
+        raise StudyError(
+            f"the rig cannot hide {', '.join(missing)}; it has: none, {', '.join(HIDDEN_EFFECTS)}"
+        )
     return plan
 
 
-def choose_sort(rng: np.random.Generator, plan: Plan) -> str:
+def choose_sort(rng: np.random.Generator, plan: DrawRanges) -> str:
     """Draw what sort of trial it is.
 
     Parameters
@@ -52,7 +54,7 @@ def choose_sort(rng: np.random.Generator, plan: Plan) -> str:
         Among named effects, those inside and outside the library are singles alike.
     """
     named = [n for n in plan.effects if n != "none"]
-    inside = [n for n in named if SECRETS[n].in_library]
+    inside = [n for n in named if HIDDEN_EFFECTS[n].in_library]
     weights = {"none": plan.none, "pair": plan.pairs, "outside": plan.outside}
     if plan.effects:
         weights["none"] = (plan.none if named else 1.0) if "none" in plan.effects else 0.0
@@ -63,9 +65,9 @@ def choose_sort(rng: np.random.Generator, plan: Plan) -> str:
     return sorts[int(rng.choice(len(sorts), p=np.maximum(list(weights.values()), 0.0)))]
 
 
-def choose_secrets(
-    rng: np.random.Generator, setup: Setup, sort: str, plan: Plan
-) -> tuple[Secret, ...] | None:
+def choose_hidden_effects(
+    rng: np.random.Generator, setup: Setup, sort: str, plan: DrawRanges
+) -> tuple[HiddenEffect, ...] | None:
     """Draw the effects of one sort that a setup can have.
 
     Parameters
@@ -88,11 +90,11 @@ def choose_secrets(
     """
     if sort == "none":
         return ()
-    pool = [s for s in SECRETS.values() if not plan.effects or s.name in plan.effects]
+    pool = [s for s in HIDDEN_EFFECTS.values() if not plan.effects or s.name in plan.effects]
     if not plan.effects or sort == "pair":
         pool = [s for s in pool if s.in_library == (sort != "outside")]
     pool = [s for s in pool if s.fits(setup)]
-    chosen: list[Secret] = []
+    chosen: list[HiddenEffect] = []
     forced = [s for s in pool if s.name == "shear" and lacks_shear(setup)]
     for _ in range(2 if sort == "pair" else 1):
         free = forced or [s for s in pool if s not in chosen and not _clash(s, chosen)]
@@ -101,15 +103,15 @@ def choose_secrets(
         weights = np.array([1.0 / s.share for s in free])
         chosen.append(free[int(rng.choice(len(free), p=weights / weights.sum()))])
         forced = []
-    order = list(SECRETS.values())
+    order = list(HIDDEN_EFFECTS.values())
     return tuple(sorted(chosen, key=order.index))
 
 
-def _clash(secret: Secret, others: Sequence[Secret]) -> bool:
-    return any(secret.seat and secret.seat == other.seat for other in others)
+def _clash(hidden_effect: HiddenEffect, others: Sequence[HiddenEffect]) -> bool:
+    return any(hidden_effect.exclusive and hidden_effect.exclusive == other.exclusive for other in others)
 
 
-def draw_strength(rng: np.random.Generator, plan: Plan) -> tuple[str, float]:
+def draw_strength(rng: np.random.Generator, plan: DrawRanges) -> tuple[str, float]:
     """Draw how strong an effect is.
 
     Parameters
@@ -136,13 +138,16 @@ def draw_strength(rng: np.random.Generator, plan: Plan) -> tuple[str, float]:
 
 
 def right_answers(
-    secrets: Sequence[Secret], values: Sequence[Values], setup: Setup, without: Sequence[str] = ()
+    hidden_effects: Sequence[HiddenEffect],
+    values: Sequence[Values],
+    setup: Setup,
+    without: Sequence[str] = (),
 ) -> tuple[tuple[str, ...], ...]:
     """Return every set of names that is a right answer.
 
     Parameters
     ----------
-    secrets, values : sequences
+    hidden_effects, values : sequences
         What is hidden, and its parameters.
     setup : Setup
         On which it is.
@@ -154,12 +159,12 @@ def right_answers(
     tuple of tuple of str
         Each sorted; empty where nothing is hidden, and where the right answer is ``unknown``.
     """
-    if not secrets or not all(secret.in_library for secret in secrets):
+    if not hidden_effects or not all(hidden_effect.in_library for hidden_effect in hidden_effects):
         return ()
-    names = [(s.name, *s.equals(setup, v)) for s, v in zip(secrets, values, strict=True)]
+    names = [(s.name, *s.equals(setup, v)) for s, v in zip(hidden_effects, values, strict=True)]
     sets = dict.fromkeys(tuple(sorted(set(chosen))) for chosen in product(*names))
     return tuple(
         chosen
         for chosen in sets
-        if len(chosen) == len(secrets) and not any(name in without for name in chosen)
+        if len(chosen) == len(hidden_effects) and not any(name in without for name in chosen)
     )

@@ -7,8 +7,8 @@ import numpy as np
 from modalkit.simulator.bodies.parts import Notch, Stretch
 from modalkit.simulator.fixing import attached, covered, softened
 from modalkit.simulator.hidden.base import (
+    HiddenEffect,
     Place,
-    Secret,
     Values,
     at_its_place,
     draw_place,
@@ -102,7 +102,7 @@ def _draw_patch(rng: np.random.Generator, setup: Setup, strength: float) -> Valu
 
 
 LOCAL = (
-    Secret(
+    HiddenEffect(
         "sensor_mass",
         _draw_sensor,
         _act_sensor,
@@ -110,7 +110,7 @@ LOCAL = (
         places=_sensor_places,
         solid=True,
     ),
-    Secret("lumped_mass", _draw_mass, _act_mass, equals=_mass_equals, places=at_its_place, solid=True),
-    Secret("local_stiffness", _draw_soft, softened, places=at_its_place, solid=True),
-    Secret("damping_patch", _draw_patch, covered, places=at_its_place, metric="damping"),
+    HiddenEffect("lumped_mass", _draw_mass, _act_mass, equals=_mass_equals, places=at_its_place, solid=True),
+    HiddenEffect("local_stiffness", _draw_soft, softened, places=at_its_place, solid=True),
+    HiddenEffect("damping_patch", _draw_patch, covered, places=at_its_place, metric="damping"),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from modalkit.simulator.bodies.body import Loss
-from modalkit.simulator.hidden.base import Secret, Values, log_uniform
+from modalkit.simulator.hidden.base import HiddenEffect, Values, log_uniform
 from modalkit.simulator.scene import Scene, nominal_scene
 from modalkit.simulator.setup import Setup
 
@@ -16,8 +16,10 @@ _FASTEST = 60.0
 
 def _draw_fluid(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
     drawn = log_uniform(rng, 700.0, 1300.0)
-    told = setup.environment
-    return {"fluid_density": float(drawn if told is None else told * (1.0 + 0.005 * rng.standard_normal()))}
+    stated = setup.environment
+    return {
+        "fluid_density": float(drawn if stated is None else stated * (1.0 + 0.005 * rng.standard_normal()))
+    }
 
 
 def _act_fluid(scene: Scene, values: Values) -> Scene:
@@ -79,24 +81,24 @@ def _draw_window(rng: np.random.Generator, setup: Setup, strength: float) -> Val
 
 
 LOSSES = (
-    Secret("fluid_added_mass", _draw_fluid, _act_fluid, graded=False, seat="fluid"),
-    Secret("fluid_damping", _draw_viscosity, _act_viscosity, metric="damping", seat="viscosity"),
-    Secret(
+    HiddenEffect("fluid_added_mass", _draw_fluid, _act_fluid, graded=False, exclusive="fluid"),
+    HiddenEffect("fluid_damping", _draw_viscosity, _act_viscosity, metric="damping", exclusive="viscosity"),
+    HiddenEffect(
         "uniform_damping",
         _draw_uniform,
         _act_uniform,
         equals=_uniform_equals,
         metric="damping",
         solid=True,
-        seat="decay",
+        exclusive="decay",
     ),
-    Secret(
+    HiddenEffect(
         "exponential_window",
         _draw_window,
         lambda scene, values: scene.with_chain(window=scene.chain.window + values["decay"]),
         equals=lambda setup, values: ("uniform_damping",),
         metric="damping",
         solid=True,
-        seat="decay",
+        exclusive="decay",
     ),
 )

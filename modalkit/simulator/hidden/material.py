@@ -8,7 +8,7 @@ import numpy as np
 
 from modalkit.simulator.drawing.specimen import lacks_shear
 from modalkit.simulator.hidden.base import (
-    Secret,
+    HiddenEffect,
     Values,
     clamped_places,
     either_sign,
@@ -52,21 +52,21 @@ def _with_level(setup: Setup) -> bool:
 
 
 MATERIAL = (
-    Secret("E", factor(0.07, 0.5, most=0.8), scaled("E"), solid=True),
-    Secret("density", factor(0.07, 0.5, most=0.8), scaled("density"), solid=True),
-    Secret("thickness", factor(0.035, 0.25, most=0.4), scaled("thickness"), solid=True),
-    Secret(
+    HiddenEffect("E", factor(0.07, 0.5, most=0.8), scaled("E"), solid=True),
+    HiddenEffect("density", factor(0.07, 0.5, most=0.8), scaled("density"), solid=True),
+    HiddenEffect("thickness", factor(0.035, 0.25, most=0.4), scaled("thickness"), solid=True),
+    HiddenEffect(
         "section_scale",
         factor(0.1, 0.5, most=0.8),
         _act_section,
         applies=_with_level,
         equals=_section_equals,
-        seat="level",
+        exclusive="level",
         metric="",
         solid=True,
         share=0.9,
     ),
-    Secret(
+    HiddenEffect(
         "length",
         _draw_extension,
         lambda scene, values: lengthened_scene(scene, values["extension"]),
@@ -75,14 +75,16 @@ MATERIAL = (
         solid=True,
         share=0.74,
     ),
-    Secret(
+    HiddenEffect(
         "orthotropy",
         _draw_ratio,
         lambda scene, values: scene.with_body(ratio=values["ratio"]),
         applies=is_plate,
         share=0.4,
     ),
-    Secret("shear", nothing, lambda scene, values: scene, applies=lacks_shear, graded=False, share=0.05),
+    HiddenEffect(
+        "shear", nothing, lambda scene, values: scene, applies=lacks_shear, graded=False, share=0.05
+    ),
 )
 
 

@@ -11,8 +11,8 @@ from modalkit.simulator.bodies.parts import Attached, Stretch
 from modalkit.simulator.bodies.plate.parts import flat_rib
 from modalkit.simulator.fixing import appended, attached, hung
 from modalkit.simulator.hidden.base import (
+    HiddenEffect,
     Place,
-    Secret,
     Values,
     at_its_place,
     draw_place,
@@ -218,10 +218,12 @@ def _at_x(setup: Setup, values: Values) -> tuple[Place, ...]:
 
 
 OUTSIDE = tuple(
-    replace(secret, in_library=False)
-    for secret in (
-        Secret("ground_spring", _draw_ground_spring, _act_ground_spring, places=at_its_place, solid=True),
-        Secret(
+    replace(hidden_effect, in_library=False)
+    for hidden_effect in (
+        HiddenEffect(
+            "ground_spring", _draw_ground_spring, _act_ground_spring, places=at_its_place, solid=True
+        ),
+        HiddenEffect(
             "tip_spring",
             _draw_tip_spring,
             _act_ground_spring,
@@ -229,14 +231,18 @@ OUTSIDE = tuple(
             places=_at_x,
             share=0.62,
         ),
-        Secret("dashpot", _draw_dashpot, _act_dashpot, places=at_its_place, metric="damping", solid=True),
-        Secret("taper", _draw_taper, lambda scene, values: scene.with_body(taper=values["taper"])),
-        Secret("rib", _draw_rib, _act_rib, places=at_its_place),
-        Secret("step", _draw_step, _act_step, applies=is_beam, places=_at_x),
-        Secret("cable", _draw_cable, _act_cable, places=at_its_place),
-        Secret("tuned_absorber", _draw_absorber, _act_absorber, places=at_its_place),
-        Secret("breathing_crack", _draw_breathing, _act_breathing, applies=is_beam, places=at_its_place),
-        Secret(
+        HiddenEffect(
+            "dashpot", _draw_dashpot, _act_dashpot, places=at_its_place, metric="damping", solid=True
+        ),
+        HiddenEffect("taper", _draw_taper, lambda scene, values: scene.with_body(taper=values["taper"])),
+        HiddenEffect("rib", _draw_rib, _act_rib, places=at_its_place),
+        HiddenEffect("step", _draw_step, _act_step, applies=is_beam, places=_at_x),
+        HiddenEffect("cable", _draw_cable, _act_cable, places=at_its_place),
+        HiddenEffect("tuned_absorber", _draw_absorber, _act_absorber, places=at_its_place),
+        HiddenEffect(
+            "breathing_crack", _draw_breathing, _act_breathing, applies=is_beam, places=at_its_place
+        ),
+        HiddenEffect(
             "loose_end",
             _draw_loose,
             _act_loose,
@@ -244,7 +250,7 @@ OUTSIDE = tuple(
             places=_at_x,
             share=0.31,
         ),
-        Secret(
+        HiddenEffect(
             "skew_clamp",
             _draw_skew,
             lambda scene, values: scene.with_body(skew=values["angle"]),
@@ -252,10 +258,10 @@ OUTSIDE = tuple(
             places=lambda setup, values: ((0.0, setup.width / 2),),
             share=0.4,
         ),
-        Secret(
+        HiddenEffect(
             "drift", _draw_drift, lambda scene, values: scene.with_chain(drift=values["change"]), solid=True
         ),
-        Secret(
+        HiddenEffect(
             "oblique_hits",
             _draw_tilt,
             lambda scene, values: scene.with_chain(tilt=values["angle"]),

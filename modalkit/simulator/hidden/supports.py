@@ -8,7 +8,7 @@ import numpy as np
 
 from modalkit.simulator.bodies.body import Body
 from modalkit.simulator.hidden.base import (
-    Secret,
+    HiddenEffect,
     Values,
     clamped_places,
     either_sign,
@@ -89,16 +89,16 @@ def _draw_load(rng: np.random.Generator, setup: Setup, strength: float) -> Value
 
 
 SUPPORTS = (
-    Secret(
+    HiddenEffect(
         "clamp_rotation",
         _draw_rotation,
         lambda scene, values: scene.with_body(clamp_rotation=values["stiffness"]),
         applies=is_clamped,
         places=clamped_places,
-        seat="clamp",
+        exclusive="clamp",
         share=0.74,
     ),
-    Secret(
+    HiddenEffect(
         "clamp_translation",
         _draw_translation,
         lambda scene, values: scene.with_body(clamp_translation=values["stiffness"]),
@@ -106,16 +106,16 @@ SUPPORTS = (
         places=clamped_places,
         share=0.74,
     ),
-    Secret(
+    HiddenEffect(
         "joint_nonlinearity",
         _draw_slope,
         _act_slope,
         applies=lambda setup: is_clamped(setup) and can_show_levels(setup),
         places=clamped_places,
-        seat="clamp",
+        exclusive="clamp",
         share=0.37,
     ),
-    Secret(
+    HiddenEffect(
         "axial_load",
         _draw_load,
         lambda scene, values: scene.with_body(axial=values["force"]),

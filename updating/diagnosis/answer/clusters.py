@@ -12,8 +12,8 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.answer.result import Place
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import climb
-from updating.problem.specimen import Problem
+from updating.diagnosis.search.fit import maximise
+from updating.problem.specimen import SpecimenProblem
 
 LEAST = 0.05
 """A place with less of the weight is not told."""
@@ -46,17 +46,17 @@ class Cluster:
         Posterior standard deviation [m].
     weight : float
         Share of the posterior probability [-].
-    seat : int
+    likely_place : int
         Which of the places that an explanation has at the same time: a mass on each of two sensors has two.
     """
 
     place: FloatArray
     spread: FloatArray
     weight: float
-    seat: int = 0
+    likely_place: int = 0
 
 
-def clusters(problem: Problem, explanation: Explanation, channel: str) -> tuple[Cluster, ...]:
+def clusters(problem: SpecimenProblem, explanation: Explanation, channel: str) -> tuple[Cluster, ...]:
     """Gather the places of an explanation.
 
     Parameters
@@ -79,17 +79,17 @@ def clusters(problem: Problem, explanation: Explanation, channel: str) -> tuple[
     span = _span(problem)
     found = [
         cluster
-        for seat in np.unique(sampled.seats).tolist()
-        for cluster in _gather(sampled.of(seat), span, seat)
+        for likely_place in np.unique(sampled.likely_places).tolist()
+        for cluster in _gather(sampled.of(likely_place), span, likely_place)
     ]
     found += _mirrored(problem, explanation, channel, found, span)
-    return tuple(sorted(_told(found), key=lambda c: -c.weight))
+    return tuple(sorted(_stated(found), key=lambda c: -c.weight))
 
 
-def _told(found: list[Cluster]) -> Iterator[Cluster]:
+def _stated(found: list[Cluster]) -> Iterator[Cluster]:
     """Share the weight of each seat among its places, and drop those with little of it."""
-    for seat in {cluster.seat for cluster in found}:
-        here = [cluster for cluster in found if cluster.seat == seat]
+    for likely_place in {cluster.likely_place for cluster in found}:
+        here = [cluster for cluster in found if cluster.likely_place == likely_place]
         total = sum(cluster.weight for cluster in here)
         yield from (replace(c, weight=c.weight / total) for c in here if c.weight >= LEAST * total)
 
@@ -104,21 +104,21 @@ class Sampled:
         In model axes [m].
     weights : (n,) array
         Posterior weight; that of one sample is shared among the places that are alternatives [-].
-    seats : (n,) int array
+    likely_places : (n,) int array
         Places of one seat are alternatives, such as mirror images; those of several are taken at the same time.
     """
 
     places: FloatArray
     weights: FloatArray
-    seats: IntArray
+    likely_places: IntArray
 
-    def of(self, seat: int) -> Sampled:
+    def of(self, likely_place: int) -> Sampled:
         """Return the places of one seat."""
-        here = self.seats == seat
-        return Sampled(self.places[here], self.weights[here], self.seats[here])
+        here = self.likely_places == likely_place
+        return Sampled(self.places[here], self.weights[here], self.likely_places[here])
 
 
-def sampled_places(problem: Problem, explanation: Explanation, channel: str | None = None) -> Sampled:
+def sampled_places(problem: SpecimenProblem, explanation: Explanation, channel: str | None = None) -> Sampled:
     """Return the places of the heaviest samples.
 
     Parameters
@@ -134,20 +134,22 @@ def sampled_places(problem: Problem, explanation: Explanation, channel: str | No
     heavy = np.argsort(explanation.weights)[::-1][:HEAVY]
     heavy = heavy[explanation.weights[heavy] > NOTHING * explanation.weights[heavy[0]]]
     rows = [
-        (place, float(explanation.weights[i]) / len(alternatives), seat)
+        (place, float(explanation.weights[i]) / len(alternatives), likely_place)
         for i in heavy.tolist()
-        for seat, alternatives in enumerate(_seats(problem, explanation, explanation.samples[i], channel))
+        for likely_place, alternatives in enumerate(
+            _places_of_sample(problem, explanation, explanation.samples[i], channel)
+        )
         for place in alternatives
     ]
     return Sampled(
         np.array([place for place, _, _ in rows], dtype=float).reshape(-1, 3),
         np.array([weight for _, weight, _ in rows], dtype=float),
-        np.array([seat for _, _, seat in rows], dtype=np.int64),
+        np.array([likely_place for _, _, likely_place in rows], dtype=np.int64),
     )
 
 
-def _seats(
-    problem: Problem, explanation: Explanation, sample: FloatArray, channel: str | None
+def _places_of_sample(
+    problem: SpecimenProblem, explanation: Explanation, sample: FloatArray, channel: str | None
 ) -> list[list[Place]]:
     """Return the places of one sample by seat: an effect that searches its place has one, with alternatives."""
     candidate = explanation.candidate
@@ -156,18 +158,18 @@ def _seats(
     for effect, values in candidate.split(stage, sample.tolist()):
         places = list(effect.locations(stage, values))
         searches = bool(SEARCHED & {parameter.name for parameter in effect.parameters(stage)})
-        seats = [places] if searches else [[place] for place in places]
+        likely_places = [places] if searches else [[place] for place in places]
         asked = effect.channel == channel if channel else effect.channel != "measurement"
-        by_channel[asked] += [seat for seat in seats if seat]
+        by_channel[asked] += [likely_place for likely_place in likely_places if likely_place]
     return by_channel[True] or by_channel[False]
 
 
-def _span(problem: Problem) -> float:
+def _span(problem: SpecimenProblem) -> float:
     spec = problem.predictor.spec
     return max(spec.length, spec.width if spec.kind != "beam" else 0.0)
 
 
-def _gather(sampled: Sampled, span: float, seat: int) -> list[Cluster]:
+def _gather(sampled: Sampled, span: float, likely_place: int) -> list[Cluster]:
     """Gather the samples of one seat: what hangs together is one place."""
     bold = sampled.weights >= FAINT * sampled.weights.max()
     places, weights = sampled.places[bold], sampled.weights[bold]
@@ -179,34 +181,36 @@ def _gather(sampled: Sampled, span: float, seat: int) -> list[Cluster]:
         here, share = places[labels == label], weights[labels == label]
         mean = share @ here / share.sum()
         spread = np.sqrt(share @ (here - mean) ** 2 / share.sum())
-        found.append(Cluster(mean, spread, float(share.sum() / weights.sum()), seat))
+        found.append(Cluster(mean, spread, float(share.sum() / weights.sum()), likely_place))
     return found
 
 
 def _mirrored(
-    problem: Problem, explanation: Explanation, channel: str, found: list[Cluster], span: float
+    problem: SpecimenProblem, explanation: Explanation, channel: str, found: list[Cluster], span: float
 ) -> list[Cluster]:
     """Look for places on the other side that explain the data as well, which the samples may have missed."""
     best = explanation.best
-    leaders = {c.seat: c for c in sorted(found, key=lambda c: c.weight)}
+    leaders = {c.likely_place: c for c in sorted(found, key=lambda c: c.weight)}
     more: list[Cluster] = []
     for flipped in _flips(problem, explanation):
-        peak = climb(problem, explanation.candidate, flipped, rounds=4).point
+        peak = maximise(problem, explanation.candidate, flipped, rounds=4).point
         likely = np.exp(min(peak.marginal.log_likelihood - best.marginal.log_likelihood, 0.0))
         if likely < LEAST:
             continue
-        for seat, places in enumerate(_seats(problem, explanation, peak.coordinates, channel)):
-            known = [c.place for c in [*found, *more] if c.seat == seat]
-            if seat not in leaders:
+        for likely_place, places in enumerate(
+            _places_of_sample(problem, explanation, peak.coordinates, channel)
+        ):
+            known = [c.place for c in [*found, *more] if c.likely_place == likely_place]
+            if likely_place not in leaders:
                 continue
             for place in np.asarray(places, dtype=float):
                 if min(np.linalg.norm(place - k) for k in known) > APART * span:
-                    share = float(likely) * leaders[seat].weight
-                    more.append(Cluster(place, leaders[seat].spread, share, seat))
+                    share = float(likely) * leaders[likely_place].weight
+                    more.append(Cluster(place, leaders[likely_place].spread, share, likely_place))
     return more
 
 
-def _flips(problem: Problem, explanation: Explanation) -> Iterator[FloatArray]:
+def _flips(problem: SpecimenProblem, explanation: Explanation) -> Iterator[FloatArray]:
     """Give the best parameters with x, with y, and with both on the other side of the middle."""
     candidate, spec = explanation.candidate, problem.predictor.spec
     parameters = candidate.parameters(candidate.stage(problem.predictor))

@@ -10,7 +10,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.stats import chi2 as chi_square
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.models.state import NOMINAL
 
@@ -45,7 +45,7 @@ class Contributions:
     summary: str
 
 
-def contributions(problem: Posed, comparison: Comparison | None = None) -> Contributions:
+def contributions(problem: DiagnosisProblem, comparison: Comparison | None = None) -> Contributions:
     """Weigh what every mode adds to the gap between the test and the model as it stands.
 
     Parameters
@@ -60,7 +60,7 @@ def contributions(problem: Posed, comparison: Comparison | None = None) -> Contr
     frequency = np.concatenate([one.measured.frequency for one in problem.specimens])
     count = len(frequency)
     kinds = [int(c) for c in np.unique(plain.channel)]
-    apart = {_name(c): np.full(count, np.nan) for c in kinds}
+    misfit = {_name(c): np.full(count, np.nan) for c in kinds}
     excess, squared = np.zeros((count, len(kinds))), np.zeros(count)
     for k, kind in enumerate(kinds):
         for mode in range(count):
@@ -68,13 +68,13 @@ def contributions(problem: Posed, comparison: Comparison | None = None) -> Contr
             if len(rows):
                 distance = _distance(plain.residual[rows], covariance[np.ix_(rows, rows)])
                 sign = np.sign(plain.residual[rows[0]]) if len(rows) == 1 else 1.0
-                apart[_name(kind)][mode] = sign * np.sqrt(distance / len(rows))
+                misfit[_name(kind)][mode] = sign * np.sqrt(distance / len(rows))
                 excess[mode, k] = _sigmas(distance, len(rows))
                 squared[mode] += distance
     table = pd.DataFrame(
         {
             "test [Hz]": frequency,
-            **{f"{name} [sigma]": values for name, values in apart.items()},
+            **{f"{name} [sigma]": values for name, values in misfit.items()},
             "share [%]": 100 * squared / max(float(squared.sum()), 1e-300),
         },
         index=pd.RangeIndex(1, count + 1, name="mode"),

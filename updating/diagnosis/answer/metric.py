@@ -12,7 +12,7 @@ from updating.diagnosis.answer.result import Metric
 from updating.diagnosis.search.fit import Point
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.likelihood.gaussian import marginal
-from updating.problem.specimen import REPEATED_DAMPING, Problem
+from updating.problem.specimen import REPEATED_DAMPING, SpecimenProblem
 
 AS_MUCH = 0.5
 """A second channel carries the gap, too, if the logarithm of its probability is this share of the first's [-]."""
@@ -44,8 +44,8 @@ def metric_of(point: Point) -> Metric:
     order = sorted(surprise, key=lambda name: surprise[name])
     if not order:
         return "frequency"
-    told = [TOLD_AS[name] for name in order if surprise[name] <= AS_MUCH * surprise[order[0]]]
-    return told[0] if len(set(told)) == 1 else "combined"
+    stated = [TOLD_AS[name] for name in order if surprise[name] <= AS_MUCH * surprise[order[0]]]
+    return stated[0] if len(set(stated)) == 1 else "combined"
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ def squares(residual: FloatArray, nominal: Comparison, metric: Metric) -> Square
     )
 
 
-def noise_squares(specimens: tuple[Problem, ...], nominal: Comparison, metric: Metric) -> Squares:
+def noise_squares(specimens: tuple[SpecimenProblem, ...], nominal: Comparison, metric: Metric) -> Squares:
     """Return the errors that repeating the test, and the baseline, alone would give.
 
     Parameters
@@ -126,7 +126,7 @@ def noise_squares(specimens: tuple[Problem, ...], nominal: Comparison, metric: M
     return _small(np.sqrt(np.maximum(variance, 0.0)), nominal, metric)
 
 
-def _damped(problem: Problem) -> FloatArray:
+def _damped(problem: SpecimenProblem) -> FloatArray:
     """Return the variance of ln zeta from one mounting to the next, per mode whose damping is known [-]."""
     test, rows = problem.measured, problem.damping_known
     relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=0.05)
@@ -138,7 +138,7 @@ def _small(sigma: FloatArray, nominal: Comparison, metric: Metric) -> Squares:
     return squares(-np.log1p(sigma) if metric != "frf" else sigma, nominal, metric)
 
 
-def _repeated(problem: Problem) -> FloatArray:
+def _repeated(problem: SpecimenProblem) -> FloatArray:
     """Return the variance of ln f that repeating the test (and the baseline) gives, per mode [-]."""
     tests = [problem.measured] + ([] if problem.baseline is None else [problem.baseline])
     noise = [np.mean((t.frequency_sigma / t.frequency) ** 2) + t.repeatability**2 for t in tests]

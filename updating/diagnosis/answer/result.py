@@ -101,7 +101,7 @@ class Zone:
 
 
 @dataclass(frozen=True)
-class Seat:
+class LikelyPlace:
     """One place where a cause may sit.
 
     Parameters
@@ -140,7 +140,7 @@ class Where(Displayed):
     zones_by : {"explanations", "regions"}
         Whether these rest on the places of the explanations, or, where nothing explains the gap, on the evidence of
         a change of one region alone.
-    seats : tuple of Seat
+    likely_places : tuple of Seat
         The locations with spread and probability.
     modes : DataFrame, optional
         What each mode adds to the gap, in standard deviations; see :mod:`updating.diagnosis.answer.contributions`.
@@ -157,7 +157,7 @@ class Where(Displayed):
     points: tuple[int, ...]
     zones: tuple[Zone, ...]
     zones_by: Literal["explanations", "regions"] = "explanations"
-    seats: tuple[Seat, ...] = ()
+    likely_places: tuple[LikelyPlace, ...] = ()
     modes: pd.DataFrame | None = None
     band: str = ""
     nearest: tuple[int, ...] = ()

@@ -6,7 +6,7 @@ import numpy as np
 
 from updating.diagnosis.answer.metric import Squares, metric_of, noise_squares, squares
 from updating.diagnosis.answer.result import Closed, HeldPoints, Metric, Shrink
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.held_out import believed, modes_held_out, points_held_out
 from updating.likelihood.comparison import Comparison
@@ -20,7 +20,7 @@ CLOSABLE = 1.5
 
 
 def shrinkage(
-    problem: Posed,
+    problem: DiagnosisProblem,
     nothing: Explanation,
     best: Explanation,
     runner_up: Explanation | None,
@@ -73,7 +73,7 @@ def _stretch(nothing: Explanation) -> float:
 
 
 def _points(
-    problem: Posed, nothing: Explanation, best: Explanation, plain: Comparison, metric: Metric
+    problem: DiagnosisProblem, nothing: Explanation, best: Explanation, plain: Comparison, metric: Metric
 ) -> HeldPoints | None:
     """Return the errors of the modal constants at points held out; None where another metric tells the gap."""
     if metric not in {"frf", "combined"}:

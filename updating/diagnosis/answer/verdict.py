@@ -9,9 +9,9 @@ from scipy.stats import chi2
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.result import ParameterEstimate, Ranked, Verdict
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.search import Search, Weighed
+from updating.diagnosis.search.search import Compared, Search
 
 CERTAIN = 0.95
 """Probability that the sets of an answer hold together."""
@@ -43,7 +43,7 @@ def is_significant(found: Search, p_value: float) -> bool:
 
     A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it.
     """
-    fitting = [row for row in found.weighed if row.names and not row.rejected]
+    fitting = [row for row in found.compared if row.names and not row.rejected]
     gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
     gain -= found.nothing.log_evidence
     return bool(p_value < SIGNIFICANT or gain > FAR_BETTER or _by_chance(found) < CHANCE)
@@ -51,7 +51,7 @@ def is_significant(found: Search, p_value: float) -> bool:
 
 def _by_chance(found: Search) -> float:
     """Return the chance that noise alone makes one of the single effects that fit so much more likely (Wilks 1938)."""
-    singles = [row.explanation for row in found.weighed if len(row.names) == 1 and not row.rejected]
+    singles = [row.explanation for row in found.compared if len(row.names) == 1 and not row.rejected]
     least = found.nothing.best.marginal.log_likelihood
     chances = [
         chi2.sf(2 * (one.best.marginal.log_likelihood - least), one.samples.shape[1])
@@ -78,7 +78,7 @@ def decide(
     """
     if not significant:
         return "none", ()
-    rows = [row for row in found.weighed if row.names]
+    rows = [row for row in found.compared if row.names]
     if not rows or rows[0].rejected:
         return "unknown", ()
     least = found.nothing.log_evidence
@@ -91,7 +91,7 @@ def decide(
     return ("named", sets) if comparable else ("unknown", ())
 
 
-def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:
+def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
     """Return the fewest rows that hold the certainty asked for, and those that fit as well as the first.
 
     A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
@@ -108,10 +108,10 @@ def _credible(rows: list[Weighed]) -> tuple[tuple[str, ...], ...]:
     return tuple(sets)
 
 
-def rank(problem: Posed, found: Search) -> tuple[Ranked, ...]:
+def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
     """Turn what was weighed into rows of the ranking, the empty set left out."""
-    rows = [row for row in found.weighed if row.names]
-    total = sum(row.probability for row in found.weighed)
+    rows = [row for row in found.compared if row.names]
+    total = sum(row.probability for row in found.compared)
     return tuple(
         Ranked(
             row.names,
@@ -126,13 +126,13 @@ def rank(problem: Posed, found: Search) -> tuple[Ranked, ...]:
     )
 
 
-def _close(a: Weighed, b: Weighed) -> bool:
+def _close(a: Compared, b: Compared) -> bool:
     best = [row.explanation.best.marginal.log_likelihood for row in (a, b)]
     return bool(2 * abs(best[0] - best[1]) < CLOSE)
 
 
 def estimates(
-    problem: Posed, explanation: Explanation, extreme: Sequence[str] = (), *, most: int = 300
+    problem: DiagnosisProblem, explanation: Explanation, extreme: Sequence[str] = (), *, most: int = 300
 ) -> dict[str, ParameterEstimate]:
     """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means."""
     candidate = explanation.candidate

@@ -7,13 +7,13 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.clusters import Cluster, clusters, sampled_places
 from updating.diagnosis.answer.contributions import contributions
-from updating.diagnosis.answer.result import Place, Seat, Where, Zone
+from updating.diagnosis.answer.result import LikelyPlace, Place, Where, Zone
 from updating.diagnosis.answer.verdict import decide
-from updating.diagnosis.search.search import Search, Weighed
+from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
 from updating.effects.measurement.points import channel_point
-from updating.localisation import areas, centres, regions_at, weigh_regions
-from updating.problem.specimen import Problem
+from updating.localisation import areas, centres, compare_regions, regions_at
+from updating.problem.specimen import SpecimenProblem
 
 CHANNELS = ("stiffness", "mass", "damping", "measurement")
 
@@ -30,7 +30,9 @@ LABELS = (".point", ".points", ".channel")
 """How parameters that speak of points of the test end."""
 
 
-def locate(problem: Problem, found: Search, *, significant: bool, whole: Search | None = None) -> Where:
+def locate(
+    problem: SpecimenProblem, found: Search, *, significant: bool, whole: Search | None = None
+) -> Where:
     """Say where the cause sits, averaged over all explanations by their probability.
 
     Parameters
@@ -48,12 +50,12 @@ def locate(problem: Problem, found: Search, *, significant: bool, whole: Search 
     seen = contributions(problem)
     if not significant:
         zones = _zones(problem, _by_explanations(problem, found))
-        told = {**shares, "none": nothing}
-        return Where("none", told, None, (), (), zones, modes=seen.modes, band=seen.summary)
+        stated = {**shares, "none": nothing}
+        return Where("none", stated, None, (), (), zones, modes=seen.modes, band=seen.summary)
     top = _leading(shares)
-    leader = next((row for row in found.weighed if row.names), None)
-    seats = () if leader is None else clusters(problem, leader.explanation, top)
-    places = tuple(_place(cluster.place) for cluster in seats)
+    leader = next((row for row in found.compared if row.names), None)
+    likely_places = () if leader is None else clusters(problem, leader.explanation, top)
+    places = tuple(_place(cluster.place) for cluster in likely_places)
     unknown = decide(found, significant=True, comparable=not problem.mostly_alone)[0] == "unknown"
     probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
     return Where(
@@ -61,13 +63,13 @@ def locate(problem: Problem, found: Search, *, significant: bool, whole: Search 
         {**shares, "none": nothing},
         places[0] if places else None,
         places,
-        _points(problem, leader) or _nearest(problem, seats),
+        _points(problem, leader) or _nearest(problem, likely_places),
         _zones(problem, probability),
         "regions" if unknown else "explanations",
-        tuple(Seat(_place(c.place), _place(c.spread), c.weight) for c in seats),
+        tuple(LikelyPlace(_place(c.place), _place(c.spread), c.weight) for c in likely_places),
         seen.modes,
         seen.summary,
-        _nearest(problem, seats),
+        _nearest(problem, likely_places),
     )
 
 
@@ -83,7 +85,7 @@ def _leading(shares: dict[str, float]) -> str:
 def _channels(found: Search) -> tuple[dict[str, float], float]:
     """Return the probability of each channel given that there is a cause, and that of none."""
     channels, nothing = dict.fromkeys(CHANNELS, 0.0), 0.0
-    for row in found.weighed:
+    for row in found.compared:
         acting = [effect.channel for effect in row.explanation.candidate.effects]
         for name in acting:
             channels[name] += row.probability / len(acting)
@@ -96,7 +98,7 @@ def _place(place: FloatArray) -> Place:
     return float(place[0]), float(place[1]), float(place[2])
 
 
-def _points(problem: Problem, leader: Weighed | None) -> tuple[int, ...]:
+def _points(problem: SpecimenProblem, leader: Compared | None) -> tuple[int, ...]:
     """Return the test nodes of which an effect of the measurement speaks."""
     if leader is None:
         return ()
@@ -108,18 +110,20 @@ def _points(problem: Problem, leader: Weighed | None) -> tuple[int, ...]:
     return tuple(dict.fromkeys(map(int, nodes + sensors)))
 
 
-def _nearest(problem: Problem, seats: tuple[Cluster, ...]) -> tuple[int, ...]:
+def _nearest(problem: SpecimenProblem, likely_places: tuple[Cluster, ...]) -> tuple[int, ...]:
     """Return the test nodes at the places."""
     test, spec = problem.measured, problem.predictor.spec
-    if not seats or not len(test.points):
+    if not likely_places or not len(test.points):
         return ()
     dim = test.points.shape[1]
-    away = np.linalg.norm(np.stack([c.place[:dim] for c in seats])[:, None] - test.points[None], axis=2)
+    away = np.linalg.norm(
+        np.stack([c.place[:dim] for c in likely_places])[:, None] - test.points[None], axis=2
+    )
     near = away.min(axis=1) <= REACH * max(spec.length, spec.width if dim > 1 else 0.0)
     return tuple(dict.fromkeys(test.nodes[int(i)] for i in away.argmin(axis=1)[near]))
 
 
-def _zones(problem: Problem, probability: FloatArray) -> tuple[Zone, ...]:
+def _zones(problem: SpecimenProblem, probability: FloatArray) -> tuple[Zone, ...]:
     regions, middle = problem.predictor.spec.regions, centres(problem)
     return tuple(
         Zone(region.name, _place(at), float(p))
@@ -127,17 +131,17 @@ def _zones(problem: Problem, probability: FloatArray) -> tuple[Zone, ...]:
     )
 
 
-def _by_explanations(problem: Problem, found: Search) -> FloatArray:
+def _by_explanations(problem: SpecimenProblem, found: Search) -> FloatArray:
     """Spread each explanation over the regions: a seated one by its places, any other by area."""
     even = areas(problem)
     total = np.zeros(len(even))
-    for row in found.weighed:
+    for row in found.compared:
         if row.names and row.probability > NEGLIGIBLE:
             total += row.probability * _spread(problem, row, even)
     return np.asarray(total / total.sum() if total.sum() > 0 else even)
 
 
-def _spread(problem: Problem, row: Weighed, even: FloatArray) -> FloatArray:
+def _spread(problem: SpecimenProblem, row: Compared, even: FloatArray) -> FloatArray:
     explanation = row.explanation
     values = problem.values(explanation.candidate, explanation.best.coordinates)
     if any(
@@ -152,7 +156,7 @@ def _spread(problem: Problem, row: Weighed, even: FloatArray) -> FloatArray:
     return np.asarray(sampled.weights @ shares / sampled.weights.sum())
 
 
-def _by_regions(problem: Problem, channel: str) -> FloatArray:
+def _by_regions(problem: SpecimenProblem, channel: str) -> FloatArray:
     """Return the probability of each region by the evidence of a change of it alone."""
     kinds = [kind for kind in ("stiffness", "mass", "damping") if channel in (kind, "measurement")]
-    return weigh_regions(problem.specimens[0], tuple(kinds)).regions  # type: ignore[arg-type]
+    return compare_regions(problem.specimens[0], tuple(kinds)).regions  # type: ignore[arg-type]

@@ -18,7 +18,7 @@ from updating.diagnosis.next_test.free_free import Unclamped
 from updating.diagnosis.next_test.instruments import Instruments
 from updating.diagnosis.next_test.other_points import OtherPoints
 from updating.diagnosis.next_test.unknown import advise
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.search import Search
 
@@ -49,23 +49,26 @@ class _Found:
         return tuple(pair for pair, sigma in self.sigmas.items() if sigma >= ENOUGH)
 
     @property
-    def told(self) -> tuple[tuple[int, int], ...]:
+    def stated(self) -> tuple[tuple[int, int], ...]:
         """The pairs of which the proposal speaks: those separated, or the one that comes nearest to it."""
         return self.separated or (max(self.sigmas, key=lambda pair: self.sigmas[pair]),)
 
     @property
     def sigma(self) -> float:
-        return min(self.sigmas[pair] for pair in self.told)
+        return min(self.sigmas[pair] for pair in self.stated)
 
 
 def propose(
-    posed: Posed, found: Search, sets: tuple[tuple[str, ...], ...], verdict: Verdict = "class"
+    diagnosis_problem: DiagnosisProblem,
+    found: Search,
+    sets: tuple[tuple[str, ...], ...],
+    verdict: Verdict = "class",
 ) -> tuple[NextTest, ...]:
     """Return the tests that would separate what is left: those that separate all of it first, the cheapest at the top.
 
     Parameters
     ----------
-    posed : Problem or Several
+    diagnosis_problem : Problem or Several
         Test and model.
     found : Search
         What was weighed.
@@ -75,45 +78,49 @@ def propose(
         What was decided. A cause that is named is told from its runners-up, to confirm it.
     """
     if verdict == "unknown":
-        return tuple(advice for site in _sites(posed) for advice in advise(site, found))[:LINES]
-    rivals = _rivals(posed, found, sets, verdict)
+        return tuple(advice for site in _sites(diagnosis_problem) for advice in advise(site, found))[:LINES]
+    rivals = _rivals(diagnosis_problem, found, sets, verdict)
     if len(rivals) < 2:
         return ()
     pairs = list(combinations(range(len(rivals)), 2))
     if verdict == "named":
         pairs = [pair for pair in pairs if pair[0] == 0]
-    looks = [_look(trial, site, rivals, pairs) for site in _sites(posed) for trial in _trials(site, rivals)]
+    evaluations = [
+        _evaluated(trial, site, rivals, pairs)
+        for site in _sites(diagnosis_problem)
+        for trial in _trials(site, rivals)
+    ]
     best: dict[tuple[str, int], _Found] = {}
-    for look in looks:
-        key = (look.trial.family, look.site.index)
-        if key not in best or _worth(look) > _worth(best[key]):
-            best[key] = look
-    kept = [look for look in best.values() if look.sigma >= WORTH]
-    kept.sort(key=lambda look: (-len(look.separated), look.trial.cost, -look.sigma))
-    return tuple(_proposal(look, rivals) for look in kept[:LINES])
+    for evaluation in evaluations:
+        key = (evaluation.trial.family, evaluation.site.index)
+        if key not in best or _worth(evaluation) > _worth(best[key]):
+            best[key] = evaluation
+    kept = [evaluation for evaluation in best.values() if evaluation.sigma >= WORTH]
+    kept.sort(key=lambda evaluation: (-len(evaluation.separated), evaluation.trial.cost, -evaluation.sigma))
+    return tuple(_proposal(evaluation, rivals) for evaluation in kept[:LINES])
 
 
-def _worth(look: _Found) -> tuple[int, float]:
-    return len(look.separated), look.sigma
+def _worth(evaluation: _Found) -> tuple[int, float]:
+    return len(evaluation.separated), evaluation.sigma
 
 
 def _rivals(
-    posed: Posed, found: Search, sets: tuple[tuple[str, ...], ...], verdict: Verdict
+    diagnosis_problem: DiagnosisProblem, found: Search, sets: tuple[tuple[str, ...], ...], verdict: Verdict
 ) -> tuple[Rival, ...]:
     rows = {
-        row.names: row.explanation for row in found.weighed if row.names and row.explanation.best.possible
+        row.names: row.explanation for row in found.compared if row.names and row.explanation.best.possible
     }
     chosen = list(sets[:RIVALS])
     if verdict == "named" and sets:
         # what holds the named set and more can do all that it does
         others = [names for names in rows if not set(sets[0]) <= set(names)]
         chosen += others[: RIVALS - 2]
-    return tuple(Rival(posed, rows[names]) for names in chosen if names in rows)
+    return tuple(Rival(diagnosis_problem, rows[names]) for names in chosen if names in rows)
 
 
-def _sites(posed: Posed) -> list[Site]:
-    titles = posed.titles if isinstance(posed, Several) else ("",)
-    return [Site(posed, i, title) for i, title in enumerate(titles)]
+def _sites(diagnosis_problem: DiagnosisProblem) -> list[Site]:
+    titles = diagnosis_problem.titles if isinstance(diagnosis_problem, Several) else ("",)
+    return [Site(diagnosis_problem, i, title) for i, title in enumerate(titles)]
 
 
 def _trials(site: Site, rivals: tuple[Rival, ...]) -> Iterator[Trial]:
@@ -121,7 +128,7 @@ def _trials(site: Site, rivals: tuple[Rival, ...]) -> Iterator[Trial]:
         yield from maker.trials(site, rivals)
 
 
-def _look(trial: Trial, site: Site, rivals: tuple[Rival, ...], pairs: list[tuple[int, int]]) -> _Found:
+def _evaluated(trial: Trial, site: Site, rivals: tuple[Rival, ...], pairs: list[tuple[int, int]]) -> _Found:
     expected = trial.outcomes(site, rivals)
     sigmas = {
         (i, j): min(
@@ -132,13 +139,13 @@ def _look(trial: Trial, site: Site, rivals: tuple[Rival, ...], pairs: list[tuple
     return _Found(trial, site, sigmas)
 
 
-def _proposal(look: _Found, rivals: tuple[Rival, ...]) -> NextTest:
-    apart = sorted({i for pair in look.told for i in pair})
-    names = tuple(dict.fromkeys(name for i in apart for name in rivals[i].names))
-    where = f"{look.site.title}: " if look.site.title else ""
-    told = tuple((rivals[i].names, rivals[j].names) for i, j in look.told)
-    whole = len(look.separated) == len(look.sigmas)
-    return NextTest(where + look.trial.measure, names, round(look.sigma, 1), told, whole)
+def _proposal(evaluation: _Found, rivals: tuple[Rival, ...]) -> NextTest:
+    named_rivals = sorted({i for pair in evaluation.stated for i in pair})
+    names = tuple(dict.fromkeys(name for i in named_rivals for name in rivals[i].names))
+    where = f"{evaluation.site.title}: " if evaluation.site.title else ""
+    stated = tuple((rivals[i].names, rivals[j].names) for i, j in evaluation.stated)
+    whole = len(evaluation.separated) == len(evaluation.sigmas)
+    return NextTest(where + evaluation.trial.measure, names, round(evaluation.sigma, 1), stated, whole)
 
 
 __all__ = ["MAKERS", "propose"]

@@ -10,11 +10,11 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import sensitivities
 from updating.likelihood.comparison import Comparison
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 UNIFORM = 12.0
 """Inverse variance of a parameter about which nothing is known but its prior quantile's range [-]."""
@@ -26,13 +26,13 @@ class Rival:
 
     Parameters
     ----------
-    posed : Problem or Several
+    diagnosis_problem : Problem or Several
         Test and model.
     explanation : Explanation
         What was weighed.
     """
 
-    posed: Posed
+    diagnosis_problem: DiagnosisProblem
     explanation: Explanation
 
     @property
@@ -49,7 +49,7 @@ class Rival:
     def spread(self) -> FloatArray:
         """Covariance of nuisances and prior quantiles given all data so far, linearised at the best."""
         best = self.explanation.best
-        own = np.nan_to_num(sensitivities(self.posed, self.explanation.candidate, best))
+        own = np.nan_to_num(sensitivities(self.diagnosis_problem, self.explanation.candidate, best))
         columns = np.hstack([best.comparison.nuisance, own])
         count = best.comparison.nuisance.shape[1]
         prior = np.concatenate([np.ones(count), np.full(own.shape[1], UNIFORM)])
@@ -63,7 +63,7 @@ class Site:
 
     Parameters
     ----------
-    posed : Problem or Several
+    diagnosis_problem : Problem or Several
         All specimens.
     index : int
         Which of them.
@@ -71,28 +71,28 @@ class Site:
         How the specimen is called, empty where there is only one.
     """
 
-    posed: Posed
+    diagnosis_problem: DiagnosisProblem
     index: int
     title: str = ""
 
     @property
-    def problem(self) -> Problem:
+    def problem(self) -> SpecimenProblem:
         """The problem of this specimen."""
-        return self.posed.specimens[self.index]
+        return self.diagnosis_problem.specimens[self.index]
 
     def comparison(self, rival: Rival) -> Comparison:
         """Return this specimen's part of what a rival was compared by."""
         explanation = rival.explanation
-        if len(self.posed.specimens) == 1:
+        if len(self.diagnosis_problem.specimens) == 1:
             return explanation.best.comparison
-        state = self.posed.place(explanation.candidate, explanation.best.coordinates)[self.index]
+        state = self.diagnosis_problem.place(explanation.candidate, explanation.best.coordinates)[self.index]
         return self.problem.compare(state, doubt=explanation.candidate.doubt_on(self.problem.predictor))
 
     def doubts(self, rival: Rival) -> IntArray:
         """Return which of a rival's nuisances are this specimen's named doubts."""
         start = 0
         for i in range(self.index):
-            start += Site(self.posed, i).comparison(rival).nuisance.shape[1]
+            start += Site(self.diagnosis_problem, i).comparison(rival).nuisance.shape[1]
         return start + self.comparison(rival).doubts
 
 
@@ -162,9 +162,9 @@ def separation(a: Outcome, b: Outcome, rival: Rival) -> float:
     columns = np.hstack([b.nuisance, b.by])
     noise = np.maximum(a.variance, b.variance)
     covariance = np.diag(noise) + columns @ rival.spread @ columns.T + b.own @ b.own.T
-    apart = b.value - a.value
-    sound = np.isfinite(apart) & np.isfinite(np.diag(covariance))
+    difference = b.value - a.value
+    sound = np.isfinite(difference) & np.isfinite(np.diag(covariance))
     if not sound.any():
         return 0.0
-    apart, covariance = apart[sound], covariance[np.ix_(sound, sound)]
-    return float(np.sqrt(max(float(apart @ np.linalg.solve(covariance, apart)), 0.0)))
+    difference, covariance = difference[sound], covariance[np.ix_(sound, sound)]
+    return float(np.sqrt(max(float(difference @ np.linalg.solve(covariance, difference)), 0.0)))

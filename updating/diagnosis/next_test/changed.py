@@ -9,12 +9,12 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Outcome, Rival, Site, Trial
-from updating.diagnosis.next_test.places import said, telling_places
+from updating.diagnosis.next_test.places import statement, telling_places
 from updating.diagnosis.next_test.repeat import Repeat
 from updating.effects.base import Effect, total_mass
 from updating.models.state import State
 from updating.prediction.predict import Predictor
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 KNOWN_MASS = 0.05
 """Mass to add, relative to the structure's [-]."""
@@ -35,11 +35,11 @@ class AddedMass(Repeat):
     def __init__(self, site: Site, place: FloatArray, mass: float) -> None:
         """Take a place [m] and a mass [kg]."""
         self.measure = (
-            f"repeat the test with a weighed mass of {1000 * mass:.2g} g fixed at {said(site, place)}"
+            f"repeat the test with a weighed mass of {1000 * mass:.2g} g fixed at {statement(site, place)}"
         )
         self.place, self.mass = place, mass
 
-    def problem(self, site: Site) -> Problem:
+    def problem(self, site: Site) -> SpecimenProblem:
         """Return the problem with the mass in the model, before what a baseline has put there."""
         problem, place, mass = site.problem, self.place[None, :], self.mass
 
@@ -48,7 +48,7 @@ class AddedMass(Repeat):
 
         additions: list[Callable[[Predictor], State]] = list(problem.predictor.additions)
         additions.insert(len(additions) - (problem.baseline is not None), add)
-        return replace(problem, predictor=problem.predictor.looking(problem.measured, tuple(additions)))
+        return replace(problem, predictor=problem.predictor.for_test(problem.measured, tuple(additions)))
 
 
 class Again(Repeat):
@@ -58,7 +58,7 @@ class Again(Repeat):
     cost = 4
     measure = "check labels, signs and places of the points in question, and hit them again"
 
-    def problem(self, site: Site) -> Problem:
+    def problem(self, site: Site) -> SpecimenProblem:
         """Return the problem as it is."""
         return site.problem
 
@@ -74,7 +74,7 @@ class InAir(Repeat):
     cost = 8
     measure = "test the same specimen in air, as a baseline"
 
-    def problem(self, site: Site) -> Problem:
+    def problem(self, site: Site) -> SpecimenProblem:
         """Return the problem as it is."""
         return site.problem
 
@@ -102,7 +102,7 @@ class Levels(Trial):
         sigma = 1 / np.sqrt(np.sum(known**-2.0)) / HARDER
 
         def slope(coordinates: FloatArray) -> float:
-            return float(site.posed.place(candidate, coordinates)[site.index].slope / sigma)
+            return float(site.diagnosis_problem.place(candidate, coordinates)[site.index].slope / sigma)
 
         here = slope(best)
         step = 1e-3 * np.eye(len(best)) * np.where(best < 0.5, 1.0, -1.0)

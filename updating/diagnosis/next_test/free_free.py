@@ -8,7 +8,7 @@ from dataclasses import replace
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
 from updating.diagnosis.next_test.repeat import Repeat
 from updating.effects.base import Effect
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 OF_THE_CLAMP = frozenset({"clamp_rotation", "clamp_translation", "length", "joint_nonlinearity"})
 """Effects that go with the clamp; how deep it bends the structure inside is a ``length``."""
@@ -21,11 +21,11 @@ class FreeFree(Repeat):
     cost = 7
     measure = "take the specimen out of its clamp, hang it up free, and test it"
 
-    def problem(self, site: Site) -> Problem:
+    def problem(self, site: Site) -> SpecimenProblem:
         """Return the problem without clamps."""
         problem = site.problem
         free = replace(problem.predictor, spec=replace(problem.predictor.spec, clamped=()))
-        return replace(problem, predictor=free, shortfall=None)
+        return replace(problem, predictor=free, theory_error=None)
 
     def keeps(self, effect: Effect) -> bool:
         """Leave out what the clamp does."""

@@ -16,7 +16,7 @@ from updating.models.state import State
 Parts = Sequence[tuple[Effect, Values]]
 
 
-class Reading(Trial):
+class InstrumentReading(Trial):
     """One or several readings, in units of their standard deviations."""
 
     @abstractmethod
@@ -58,8 +58,8 @@ class Reading(Trial):
 
     def _at(self, site: Site, rival: Rival, coordinates: FloatArray) -> FloatArray:
         candidate = rival.explanation.candidate
-        parts = site.posed.parts(candidate, coordinates)[site.index]
-        return self.read(site, parts, site.posed.place(candidate, coordinates)[site.index])
+        parts = site.diagnosis_problem.parts(candidate, coordinates)[site.index]
+        return self.read(site, parts, site.diagnosis_problem.place(candidate, coordinates)[site.index])
 
 
 def _moved(coordinates: FloatArray, i: int) -> tuple[FloatArray, float]:

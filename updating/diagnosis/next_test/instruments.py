@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
-from updating.diagnosis.next_test.instrument_reading import Parts, Reading
+from updating.diagnosis.next_test.instrument_reading import InstrumentReading, Parts
 from updating.effects.base import total_mass
 from updating.effects.structure.mass import sensor_places
 from updating.models.state import State
@@ -35,7 +35,7 @@ PER_LENGTH = {"density": 1.0, "thickness": 1.0, "width": 1.0, "section": 1.0, "a
 """Powers of a beam's or plate's mass per length, whatever the section's name in the model."""
 
 
-class Weigh(Reading):
+class Weigh(InstrumentReading):
     """Weigh the specimen: mass per area, and bodies fixed to it; of one in a clamp, not how long it is."""
 
     family = "weigh"
@@ -62,7 +62,7 @@ class Weigh(Reading):
         return ({n: p / BALANCE for n, p in self._powers.items()},)
 
 
-class Caliper(Reading):
+class Caliper(InstrumentReading):
     """Measure thickness and width."""
 
     family = "caliper"
@@ -80,7 +80,7 @@ class Caliper(Reading):
         return ({"thickness": 1 / CALIPER}, {"width": 1 / CALIPER, "section": 1 / CALIPER})
 
 
-class WeighSensor(Reading):
+class WeighSensor(InstrumentReading):
     """Weigh the sensor with what fixes it."""
 
     family = "sensor"
@@ -96,7 +96,7 @@ class WeighSensor(Reading):
         return ({},)
 
 
-class Chain(Reading):
+class Chain(InstrumentReading):
     """Calibrate the measurement chain with a known free mass: its gain, and the delay between its channels."""
 
     family = "chain"
@@ -118,7 +118,7 @@ class Chain(Reading):
         return columns
 
 
-class Settings(Reading):
+class Settings(InstrumentReading):
     """Look up whether, and how, the analyser windowed the records."""
 
     family = "settings"

@@ -9,10 +9,10 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
-from updating.diagnosis.next_test.places import grid, said
+from updating.diagnosis.next_test.places import grid, statement
 from updating.diagnosis.next_test.repeat import SHAPES_KNOWN, Repeat
 from updating.effects.structure.mass import sensor_places
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
 
 APART = 0.04
@@ -30,10 +30,10 @@ class FurtherPoint(Repeat):
 
     def __init__(self, site: Site, place: FloatArray) -> None:
         """Take a place [m]."""
-        self.measure = f"measure at one more point, {said(site, place)}"
+        self.measure = f"measure at one more point, {statement(site, place)}"
         self.place = place
 
-    def problem(self, site: Site) -> Problem:
+    def problem(self, site: Site) -> SpecimenProblem:
         """Return the problem with the point among the others."""
         problem = site.problem
         return _with(problem, _one_more(problem.measured, self.place))
@@ -55,7 +55,9 @@ def _one_more(test: Measured, place: FloatArray) -> Measured:
         hit=np.append(test.hit, hit),
         constants=np.vstack([test.constants, size]),
         constants_sigma=np.vstack([test.constants_sigma, sigma]),
-        chain=None if test.chain is None else np.append(test.chain, test.chain[0]),
+        channel_group=None
+        if test.channel_group is None
+        else np.append(test.channel_group, test.channel_group[0]),
         noise=None,
         shared=None,
         trusted=None,
@@ -79,7 +81,7 @@ class Shapes(Repeat):
             "to 2 %"
         )
 
-    def problem(self, site: Site) -> Problem:
+    def problem(self, site: Site) -> SpecimenProblem:
         """Return the problem with FRFs from all points to the sensor."""
         problem, count = site.problem, len(self.places)
         at = sensor_places(problem.predictor)
@@ -100,8 +102,8 @@ class Shapes(Repeat):
         return _with(problem, data)
 
 
-def _with(problem: Problem, data: Measured) -> Problem:
-    return replace(problem, measured=data, predictor=problem.predictor.looking(data))
+def _with(problem: SpecimenProblem, data: Measured) -> SpecimenProblem:
+    return replace(problem, measured=data, predictor=problem.predictor.for_test(data))
 
 
 class OtherPoints(Maker):

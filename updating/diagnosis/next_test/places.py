@@ -7,7 +7,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Site
 from updating.models.spec import Spec
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 MOST = 4
 """So many places are tried for a mass."""
@@ -28,7 +28,7 @@ def grid(spec: Spec) -> FloatArray:
     return np.stack([x.ravel(), y.ravel()], axis=1)
 
 
-def telling_places(problem: Problem) -> FloatArray:
+def telling_places(problem: SpecimenProblem) -> FloatArray:
     """Return where a mass would act on the modes the most, and the least alike, (n, dim) [m]."""
     spec, points = problem.predictor.spec, problem.measured.points
     if not len(points):
@@ -49,7 +49,7 @@ def telling_places(problem: Problem) -> FloatArray:
     return points[list(dict.fromkeys(chosen))]
 
 
-def said(site: Site, place: FloatArray) -> str:
+def statement(site: Site, place: FloatArray) -> str:
     """Return how a place is called: the number of a test point there, or its coordinates."""
     test = site.problem.measured
     if len(test.points):

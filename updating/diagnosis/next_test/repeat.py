@@ -14,7 +14,7 @@ from updating.effects.base import Effect
 from updating.likelihood.comparison import Comparison
 from updating.models.state import State
 from updating.prediction.predict import Predictor
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
 
 SHAPES_KNOWN = 0.01
@@ -32,7 +32,7 @@ class Repeat(Trial):
     """Whether calibration, and what else is in doubt about the test so far, is the same in this one."""
 
     @abstractmethod
-    def problem(self, site: Site) -> Problem:
+    def problem(self, site: Site) -> SpecimenProblem:
         """Return the problem of such a test, whose data are still those of the test so far."""
 
     def keeps(self, effect: Effect) -> bool:
@@ -44,19 +44,25 @@ class Repeat(Trial):
         blank = self.problem(site)
         lead = self._state(blank, site, rivals[0], rivals[0].explanation.best.coordinates)
         data = imagined(blank.measured, blank.predictor, lead, blank.order)
-        then = replace(blank, measured=data, predictor=looking(blank.predictor, data))
+        then = replace(blank, measured=data, predictor=predictor_for(blank.predictor, data))
         return tuple(self._outcome(then, site, rival) for rival in rivals)
 
-    def _state(self, then: Problem, site: Site, rival: Rival, coordinates: FloatArray) -> State:
+    def _state(self, then: SpecimenProblem, site: Site, rival: Rival, coordinates: FloatArray) -> State:
         candidate = rival.explanation.candidate
-        parts = [part for part in site.posed.parts(candidate, coordinates)[site.index] if self.keeps(part[0])]
+        parts = [
+            part
+            for part in site.diagnosis_problem.parts(candidate, coordinates)[site.index]
+            if self.keeps(part[0])
+        ]
         return candidate.assemble(candidate.stage(then.predictor), parts)
 
-    def _compare(self, then: Problem, site: Site, rival: Rival, coordinates: FloatArray) -> Comparison:
+    def _compare(
+        self, then: SpecimenProblem, site: Site, rival: Rival, coordinates: FloatArray
+    ) -> Comparison:
         state = self._state(then, site, rival, coordinates)
         return then.compare(state, doubt=rival.explanation.candidate.doubt_on(then.predictor))
 
-    def _outcome(self, then: Problem, site: Site, rival: Rival) -> Outcome:
+    def _outcome(self, then: SpecimenProblem, site: Site, rival: Rival) -> Outcome:
         best = rival.explanation.best
         here = self._compare(then, site, rival, best.coordinates)
         by = []
@@ -80,9 +86,9 @@ class Repeat(Trial):
         )
 
 
-def looking(predictor: Predictor, measured: Measured) -> Predictor:
+def predictor_for(predictor: Predictor, measured: Measured) -> Predictor:
     """Return the predictor of other data on the same reduced basis."""
-    return predictor.looking(measured)
+    return predictor.for_test(measured)
 
 
 def imagined(measured: Measured, predictor: Predictor, state: State, order: IntArray) -> Measured:
@@ -123,9 +129,9 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
 
 
 def _relative(sigma: FloatArray, value: FloatArray) -> float:
-    told = sigma / value
-    told = told[np.isfinite(told)]
-    return float(np.median(told)) if len(told) else 0.05
+    stated = sigma / value
+    stated = stated[np.isfinite(stated)]
+    return float(np.median(stated)) if len(stated) else 0.05
 
 
 def _shape_noise(measured: Measured) -> float:

@@ -11,7 +11,7 @@ from updating.diagnosis.next_test.changed import THIN
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.search import Search
 from updating.likelihood.comparison import SHAPES
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 STANDS_OUT = 1.7
 """Points whose misfit is so many times the r.m.s. over all are named [-]..."""
@@ -35,29 +35,29 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
     """
     problem = site.problem
     spec, test = problem.predictor.spec, problem.measured
-    least_bad = next((row.explanation for row in found.weighed if row.names), found.nothing)
-    told = []
+    least_bad = next((row.explanation for row in found.compared if row.names), found.nothing)
+    stated = []
     points = _points_that_miss(site, problem, least_bad)
     if points:
-        told.append(
+        stated.append(
             f"hit again, with care, point {', '.join(points)}, where even the least bad explanation misses most, and a "
             "point or two beside it"
         )
     if problem.baseline is None:
-        told.append(_another_state(problem))
-    if not told:
-        told.append(
+        stated.append(_another_state(problem))
+    if not stated:
+        stated.append(
             "take the specimen down, mount it anew and repeat the test: does the gap come back the same?"
         )
     if len(test.points) < FEW and spec.imported is None:
-        told.append("measure at five points or more: where shapes miss says where to look")
+        stated.append("measure at five points or more: where shapes miss says where to look")
     if spec.clamped and spec.imported is None:
-        told.append("hang the specimen up free and test it: is the gap the clamp's?")
+        stated.append("hang the specimen up free and test it: is the gap the clamp's?")
     where = f"{site.title}: " if site.title else ""
-    return tuple(NextTest(where + text, (), float("nan"), whole=False) for text in told)
+    return tuple(NextTest(where + text, (), float("nan"), whole=False) for text in stated)
 
 
-def _another_state(problem: Problem) -> str:
+def _another_state(problem: SpecimenProblem) -> str:
     """Return which state of the structure to test as a baseline; not every one can be stripped or dried."""
     around = problem.predictor.environment.fluid_density
     if around is not None and around >= THIN:
@@ -68,12 +68,12 @@ def _another_state(problem: Problem) -> str:
     )
 
 
-def _points_that_miss(site: Site, problem: Problem, explanation: Explanation) -> list[str]:
+def _points_that_miss(site: Site, problem: SpecimenProblem, explanation: Explanation) -> list[str]:
     """Return the numbers of the points at which the constants are off the most."""
     test = problem.measured
     if not test.has_shapes:
         return []
-    if len(site.posed.specimens) > 1:
+    if len(site.diagnosis_problem.specimens) > 1:
         return []
     comparison = explanation.best.comparison
     rows = comparison.channel == SHAPES

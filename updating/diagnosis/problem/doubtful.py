@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from updating.problem.specimen import Problem
+from updating.problem.specimen import SpecimenProblem
 
 ALONE = 0.08
 """A frequency so far from what the others' median error says, and..."""
@@ -19,7 +19,7 @@ ANOTHER = 0.5
 """R.m.s. error from which test and model are hardly the same structure [-]."""
 
 
-def remarks_on_doubtful(problem: Problem) -> list[str]:
+def notes_on_doubtful(problem: SpecimenProblem) -> list[str]:
     """Return what ought to be checked before an answer is believed.
 
     Parameters
@@ -31,24 +31,24 @@ def remarks_on_doubtful(problem: Problem) -> list[str]:
     error = np.log(model.frequency / test.frequency)
     if not np.isfinite(error).all():
         return []
-    remarks = []
+    notes = []
     if np.sqrt(np.mean(np.expm1(error) ** 2)) > ANOTHER:
         size = 100 * np.sqrt(np.mean(np.expm1(error) ** 2))
-        remarks.append(
+        notes.append(
             f"frequencies are {size:.0f} % off (r.m.s.): test and model are hardly the same structure, or the modes "
             "are wrongly paired; check size, material, clamps and band before anything else"
         )
-        return remarks
+        return notes
     if len(error) >= FEWEST:
         away = np.abs(error - np.median(error))
         bar = max(ALONE, OUTLYING * float(np.median(away)))
-        remarks += [
+        notes += [
             f"the mode at {test.frequency[i]:.4g} Hz stands alone: the model is {100 * np.expm1(error[i]):+.0f} % off "
             f"there and {100 * np.expm1(np.median(error)):+.0f} % in most others; a slip, or a mode mistaken for "
             "another? Nothing should be concluded before that is settled"
             for i in np.flatnonzero(away > bar).tolist()
         ]
-    return remarks
+    return notes
 
 
-__all__ = ["remarks_on_doubtful"]
+__all__ = ["notes_on_doubtful"]

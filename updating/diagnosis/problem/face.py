@@ -13,14 +13,14 @@ from updating.problem.candidate import Candidate
 from updating.test_data.measured import Measured
 
 if TYPE_CHECKING:
-    from updating.problem.specimen import Problem
+    from updating.problem.specimen import SpecimenProblem
 
 
-class Posed(Protocol):
+class DiagnosisProblem(Protocol):
     """A problem of one specimen or of several; where one has to stand for all, the first does."""
 
     @property
-    def specimens(self) -> tuple[Problem, ...]:
+    def specimens(self) -> tuple[SpecimenProblem, ...]:
         """The problem of each specimen."""
 
     @property

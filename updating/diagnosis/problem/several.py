@@ -16,8 +16,8 @@ from updating.likelihood.comparison import Comparison, join
 from updating.models.state import State
 from updating.prediction.predict import Prediction, Predictor
 from updating.problem.candidate import Candidate
-from updating.problem.gates import Shortfall
-from updating.problem.specimen import Problem
+from updating.problem.gates import TheoryError
+from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
 
 
@@ -25,7 +25,7 @@ from updating.test_data.measured import Measured
 class Several:
     """The problems of several specimens, to be explained by one set of effects.
 
-    It answers what a :class:`Problem` answers; where one specimen has to stand for all, the first does.
+    It answers what a :class:`SpecimenProblem` answers; where one specimen has to stand for all, the first does.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Several:
         Effects whose parameters have one value on all specimens; those of all others have one on each.
     """
 
-    specimens: tuple[Problem, ...]
+    specimens: tuple[SpecimenProblem, ...]
     titles: tuple[str, ...]
     shared: frozenset[str] = field(default_factory=frozenset)
 
@@ -57,9 +57,9 @@ class Several:
         return self.specimens[0].nominal
 
     @property
-    def shortfall(self) -> Shortfall | None:
+    def theory_error(self) -> TheoryError | None:
         """That of the first specimen."""
-        return self.specimens[0].shortfall
+        return self.specimens[0].theory_error
 
     @property
     def wide(self) -> bool:
@@ -100,7 +100,7 @@ class Several:
     def _kept(self) -> dict[str, list[int]]:
         return {}
 
-    def _seats(self, effect: Effect) -> list[int]:
+    def _specimens_of(self, effect: Effect) -> list[int]:
         """Return the specimens on which an effect has parameters of its own: the first for a shared one."""
         if effect.name not in self._kept:
             self._kept[effect.name] = self._where(effect)
@@ -110,7 +110,7 @@ class Several:
         """Return effect, form, specimen and parameters of every block of coordinates, in their order."""
         blocks = []
         for effect, form in zip(candidate.effects, candidate.forms, strict=True):
-            for i in self._seats(effect):
+            for i in self._specimens_of(effect):
                 own = Candidate((effect,), candidate.theory, (form,))
                 stage = own.stage(self.specimens[i].predictor)
                 blocks.append((effect, form, i, list(own.parameters(stage))))
@@ -162,7 +162,7 @@ class Several:
         return {
             self._name(f"{effect.name}.{n}", effect, i): v
             for effect in candidate.effects
-            for i in self._seats(effect)
+            for i in self._specimens_of(effect)
             for n, v in split[i][effect.name].items()
         }
 
@@ -171,7 +171,7 @@ class Several:
         split = self._split(candidate, coordinates)
         found = {}
         for effect in candidate.effects:
-            for i in self._seats(effect):
+            for i in self._specimens_of(effect):
                 stage = candidate.stage(self.specimens[i].predictor)
                 for n, v in effect.derived(stage, split[i][effect.name]).items():
                     found[self._name(f"{effect.name}.{n}", effect, i)] = v
@@ -191,7 +191,7 @@ class Several:
             for own in self._split(candidate, coordinates)
         )
 
-    def _state(self, candidate: Candidate, problem: Problem, own: Mapping[str, Values]) -> State:
+    def _state(self, candidate: Candidate, problem: SpecimenProblem, own: Mapping[str, Values]) -> State:
         stage = candidate.stage(problem.predictor)
         parts = [(effect, own[effect.name]) for effect in candidate.effects if effect.name in own]
         return candidate.assemble(stage, parts)
@@ -204,8 +204,8 @@ class Several:
         parts: list[Comparison] = []
         start = 0
         for problem, state in zip(self.specimens, states, strict=True):
-            told = None if shift is None else shift[start : start + len(problem.names)]
-            part = problem.compare(state, told, doubt=candidate.doubt_on(problem.predictor))
+            stated = None if shift is None else shift[start : start + len(problem.names)]
+            part = problem.compare(state, stated, doubt=candidate.doubt_on(problem.predictor))
             start += part.nuisance.shape[1]
             parts.append(part)
         return join(parts)
@@ -219,9 +219,9 @@ class Several:
         candidate, start = explanation.candidate, 0
         columns: list[int] = []
         kept: list[tuple[Effect, Variant]] = []
-        for effect, form, seat, own in self._blocks(candidate):
+        for effect, form, specimen_index, own in self._blocks(candidate):
             end = start + len(own)
-            here = i in self._kept[effect.name] if effect.name in self.shared else seat == i
+            here = i in self._kept[effect.name] if effect.name in self.shared else specimen_index == i
             if here:
                 columns += range(start, end)
                 kept.append((effect, form))

@@ -16,8 +16,8 @@ from scipy.stats import qmc
 from scipy.stats import t as student
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.problem.face import Posed
-from updating.diagnosis.search.fit import Peak, Point, climb, evaluate
+from updating.diagnosis.problem.face import DiagnosisProblem
+from updating.diagnosis.search.fit import Peak, Point, evaluate, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.problem.candidate import Candidate
 
@@ -70,7 +70,7 @@ class Explanation:
         Their weights, summing to 1 [-].
     peaks : tuple of Peak
         The maxima found.
-    draft : bool
+    laplace_only : bool
         Whether the samples were weighed by parabolas only.
     other : float
         Logarithm of what the evidence of the other theory adds, relative to this one's [-].
@@ -82,7 +82,7 @@ class Explanation:
     samples: FloatArray
     weights: FloatArray
     peaks: tuple[Peak, ...] = ()
-    draft: bool = False
+    laplace_only: bool = False
     other: float = 0.0
 
     @property
@@ -97,13 +97,13 @@ class Explanation:
 
 
 def explain(
-    problem: Posed,
+    problem: DiagnosisProblem,
     candidate: Candidate,
     *,
     starts: list[FloatArray] | None = None,
     density: int = 16,
-    draft: bool = False,
-    climbs: int = CLIMBS,
+    laplace_only: bool = False,
+    maximisations: int = CLIMBS,
     bar: float = -np.inf,
 ) -> Explanation:
     """Weigh a candidate.
@@ -118,10 +118,10 @@ def explain(
         Prior quantiles to start from; left out, the effects' own.
     density : int
         Samples: this many times two to the number of parameters, at most 512.
-    draft : bool
+    laplace_only : bool
         Whether the samples are weighed by the parabolas through the peaks instead of by predictions: enough to
         tell the hopeless from the rest.
-    climbs : int
+    maximisations : int
         From how many starting places, those that a short climb finds best, the search goes on to the top.
     bar : float
         Log-likelihood that another candidate has reached; what stays far below it is searched less closely.
@@ -135,17 +135,17 @@ def explain(
         point = evaluate(problem, candidate, np.zeros(0))
         evidence = point.marginal.log_likelihood + candidate.log_weight
         return Explanation(candidate, evidence, point, np.zeros((1, 0)), np.ones(1))
-    peaks = _peaks(problem, candidate, places, climbs, bar)
+    peaks = _peaks(problem, candidate, places, maximisations, bar)
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
-    if draft:
+    if laplace_only:
         samples, proposal = _draw(peaks, DRAFT)
         log_weight = _parabolas(peaks, samples) - proposal
-        return _weighed(candidate, peaks[0].point, samples, log_weight, peaks, draft=True)
+        return _compared(candidate, peaks[0].point, samples, log_weight, peaks, laplace_only=True)
     return _sampled(problem, candidate, peaks, density)
 
 
-def finish(problem: Posed, explanation: Explanation, *, density: int = 32) -> Explanation:
+def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int = 32) -> Explanation:
     """Weigh a draft by predictions, from the maxima it found.
 
     Parameters
@@ -161,7 +161,7 @@ def finish(problem: Posed, explanation: Explanation, *, density: int = 32) -> Ex
     return replace(found, log_evidence=found.log_evidence + explanation.other, other=explanation.other)
 
 
-def _sampled(problem: Posed, candidate: Candidate, peaks: list[Peak], density: int) -> Explanation:
+def _sampled(problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak], density: int) -> Explanation:
     count = min(density * 2 ** len(peaks[0].gradient), MOST)
     for _ in range(ROUNDS):
         samples, proposal = _draw(peaks, count)
@@ -173,21 +173,23 @@ def _sampled(problem: Posed, candidate: Candidate, peaks: list[Peak], density: i
         peaks = [*peaks, _moments(problem, candidate, samples, weights)]
         count = min(2 * count, MOST)
     best = max([*points, *(p.point for p in peaks)], key=lambda p: p.marginal.log_likelihood)
-    return _weighed(candidate, best, samples, log_weight, peaks)
+    return _compared(candidate, best, samples, log_weight, peaks)
 
 
-def _weighed(
+def _compared(
     candidate: Candidate,
     best: Point,
     samples: FloatArray,
     log_weight: FloatArray,
     peaks: list[Peak],
     *,
-    draft: bool = False,
+    laplace_only: bool = False,
 ) -> Explanation:
     total = float(logsumexp(log_weight))
     evidence = total - float(np.log(len(samples))) + candidate.log_weight
-    return Explanation(candidate, evidence, best, samples, np.exp(log_weight - total), tuple(peaks), draft)
+    return Explanation(
+        candidate, evidence, best, samples, np.exp(log_weight - total), tuple(peaks), laplace_only
+    )
 
 
 def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
@@ -201,29 +203,31 @@ def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
     return np.asarray(np.max(found, axis=0))
 
 
-def _moments(problem: Posed, candidate: Candidate, samples: FloatArray, weights: FloatArray) -> Peak:
+def _moments(
+    problem: DiagnosisProblem, candidate: Candidate, samples: FloatArray, weights: FloatArray
+) -> Peak:
     """Return a component about the mean of the weighted samples: where the first ones missed the bulk."""
-    best = climb(problem, candidate, samples[int(np.argmax(weights))], rounds=4)
+    best = maximise(problem, candidate, samples[int(np.argmax(weights))], rounds=4)
     spread = samples - best.point.coordinates
     covariance = (spread.T * weights) @ spread + 1e-6 * np.eye(samples.shape[1])
     return Peak(best.point, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
 
 
 def _peaks(
-    problem: Posed, candidate: Candidate, places: list[FloatArray], climbs: int, bar: float
+    problem: DiagnosisProblem, candidate: Candidate, places: list[FloatArray], maximisations: int, bar: float
 ) -> list[Peak]:
-    if len(places) > climbs:
-        looks = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
-        nearest = [places[i] for i in np.argsort(looks)[::-1][:TRIED]]
-        tried = [climb(problem, candidate, place, rounds=FEW, bar=bar) for place in nearest]
+    if len(places) > maximisations:
+        evaluations = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
+        nearest = [places[i] for i in np.argsort(evaluations)[::-1][:TRIED]]
+        tried = [maximise(problem, candidate, place, rounds=FEW, bar=bar) for place in nearest]
         tried.sort(key=lambda p: -p.point.marginal.log_likelihood)
-        places = [peak.point.coordinates for peak in _apart(tried)[:climbs]]
-    found = _apart([climb(problem, candidate, place, bar=bar) for place in places])
+        places = [peak.point.coordinates for peak in _distinct(tried)[:maximisations]]
+    found = _distinct([maximise(problem, candidate, place, bar=bar) for place in places])
     top = found[0].point.marginal.log_likelihood
     return [peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < BEHIND]
 
 
-def _apart(peaks: list[Peak]) -> list[Peak]:
+def _distinct(peaks: list[Peak]) -> list[Peak]:
     """Return the peaks that are not the same as a higher one, the highest first."""
     kept: list[Peak] = []
     for peak in sorted(peaks, key=lambda p: -p.point.marginal.log_likelihood):

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.gaussian import Marginal, marginal, whiten
+from updating.likelihood.gaussian import Marginal, marginal, normal_equations
 from updating.problem.candidate import Candidate
 
 STEP = 1e-3
@@ -93,7 +93,7 @@ class Peak:
 
 
 def evaluate(
-    problem: Posed, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
+    problem: DiagnosisProblem, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
 ) -> Point:
     """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide.
 
@@ -119,7 +119,7 @@ def _wanted(point: Point) -> FloatArray:
 
 
 def _linearised(
-    problem: Posed,
+    problem: DiagnosisProblem,
     candidate: Candidate,
     coordinates: FloatArray,
     about: FloatArray | None,
@@ -129,13 +129,13 @@ def _linearised(
     return Point(coordinates, comparison, marginal(comparison, keep), about)
 
 
-def sensitivities(problem: Posed, candidate: Candidate, point: Point) -> FloatArray:
+def sensitivities(problem: DiagnosisProblem, candidate: Candidate, point: Point) -> FloatArray:
     """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
     return _slopes(problem, candidate, point, None)[0]
 
 
 def _slopes(
-    problem: Posed, candidate: Candidate, point: Point, keep: BoolArray | None
+    problem: DiagnosisProblem, candidate: Candidate, point: Point, keep: BoolArray | None
 ) -> tuple[FloatArray, FloatArray]:
     """Return the change of the prediction (n, k) and that of the log-likelihood (k,) per prior quantile."""
     columns, rises, steps = [], [], []
@@ -155,8 +155,8 @@ def _slopes(
     return whole, np.array(rises) + 0.5 * np.array(steps) * curve
 
 
-def climb(
-    problem: Posed,
+def maximise(
+    problem: DiagnosisProblem,
     candidate: Candidate,
     start: FloatArray,
     *,
@@ -187,9 +187,9 @@ def climb(
     damping, stretch, fresh = 1e-3, 1.0, True
     columns, rise = _slopes(problem, candidate, point, keep)
     normal, load = _curvature(point, columns, keep)
-    beside = _finite(rise - load)  # what the noise's own change with the parameters adds to the slope
+    noise_gradient = _finite(rise - load)  # what the noise's own change with the parameters adds to the slope
     for step_number in range(rounds if len(start) else 0):
-        gradient = load + beside
+        gradient = load + noise_gradient
         free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
         if not free.any():
             break
@@ -202,7 +202,7 @@ def climb(
         promised = float(step @ gradient - 0.5 * step @ normal @ step)
         stretch = 2 * stretch if gain > UNDERSTEPPED * promised > 0 else 1.0
         if gain > 0:
-            beside = beside * min(trial.marginal.chi2 / max(point.marginal.chi2, 1e-12), 1.0)
+            noise_gradient = noise_gradient * min(trial.marginal.chi2 / max(point.marginal.chi2, 1e-12), 1.0)
             columns, fresh = _secant(columns, point, trial), False
             point, damping = trial, damping / 5
         elif fresh:
@@ -215,12 +215,12 @@ def climb(
             fresh = True
         normal, load = _curvature(point, columns, keep)
         if fresh:
-            beside = _finite(rise - load)
+            noise_gradient = _finite(rise - load)
     if not fresh and bar - point.marginal.log_likelihood < HOPELESS:
         columns, rise = _slopes(problem, candidate, point, keep)
         normal, load = _curvature(point, columns, keep)
-        beside = _finite(rise - load)
-    return Peak(point, normal, load + beside)
+        noise_gradient = _finite(rise - load)
+    return Peak(point, normal, load + noise_gradient)
 
 
 def _secant(columns: FloatArray, before: Point, now: Point) -> FloatArray:
@@ -243,7 +243,7 @@ def _step(
 
 
 def _curvature(point: Point, columns: FloatArray, keep: BoolArray | None) -> tuple[FloatArray, FloatArray]:
-    return whiten(point.comparison, _finite(columns), point.marginal.scale, keep)
+    return normal_equations(point.comparison, _finite(columns), point.marginal.scale, keep)
 
 
 def _finite(values: FloatArray) -> FloatArray:

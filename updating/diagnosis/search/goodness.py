@@ -9,7 +9,7 @@ from scipy.stats import chi2, norm
 
 from updating.diagnosis.search.fit import Point
 from updating.likelihood.comparison import CHANNELS, SCALES, SHAPES, Comparison
-from updating.likelihood.gaussian import gaussian, whiten
+from updating.likelihood.gaussian import gaussian, normal_equations
 
 SCATTER = "scatter of shapes"
 
@@ -81,7 +81,7 @@ def _of_point(point: Point) -> dict[str, float]:
     for name in ("frequency", "damping"):
         together = (comparison.channel == CHANNELS.index(name)).astype(float)[:, None]
         if together.any():
-            normal, load = whiten(comparison, together, point.marginal.scale)
+            normal, load = normal_equations(comparison, together, point.marginal.scale)
             values[f"{name} together"] = float(2 * norm.sf(abs(load[0]) / np.sqrt(normal[0, 0])))
     named = point.marginal.shift[comparison.doubts]
     if len(named):

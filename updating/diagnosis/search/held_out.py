@@ -9,11 +9,11 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import CHEAP, climb, sensitivities
+from updating.diagnosis.search.fit import CHEAP, maximise, sensitivities
 from updating.likelihood.comparison import SHAPES, Comparison
-from updating.likelihood.gaussian import marginal, whiten
+from updating.likelihood.gaussian import marginal, normal_equations
 from updating.problem.candidate import Candidate
 
 BELIEVED = 3.0
@@ -32,21 +32,23 @@ FOLDS = 5
 """In so many parts the points are left out."""
 
 
-def modes_held_out(posed: Posed, explanation: Explanation) -> FloatArray:
+def modes_held_out(diagnosis_problem: DiagnosisProblem, explanation: Explanation) -> FloatArray:
     """Predict each mode from all others, and return measured minus predicted data, (n,) [-].
 
     Parameters
     ----------
-    posed : Problem or Several
+    diagnosis_problem : Problem or Several
         Test and model.
     explanation : Explanation
         What is refitted without each mode in turn.
     """
     mode = explanation.best.comparison.mode
-    return held_out(posed, explanation, [mode != m for m in np.unique(mode)])
+    return held_out(diagnosis_problem, explanation, [mode != m for m in np.unique(mode)])
 
 
-def points_held_out(posed: Posed, explanation: Explanation) -> tuple[FloatArray, BoolArray] | None:
+def points_held_out(
+    diagnosis_problem: DiagnosisProblem, explanation: Explanation
+) -> tuple[FloatArray, BoolArray] | None:
     """Predict the constants at a part of the points from all other data, part by part.
 
     Returns
@@ -58,17 +60,17 @@ def points_held_out(posed: Posed, explanation: Explanation) -> tuple[FloatArray,
     None
         Where there are too few points to leave any out.
     """
-    groups = _groups(posed)
+    groups = _groups(diagnosis_problem)
     if groups is None:
         return None
     parts = [groups != fold for fold in range(FOLDS)]
-    return held_out(posed, explanation, parts), groups >= 0
+    return held_out(diagnosis_problem, explanation, parts), groups >= 0
 
 
-def _groups(posed: Posed) -> np.ndarray | None:
+def _groups(diagnosis_problem: DiagnosisProblem) -> np.ndarray | None:
     """Return which part each datum belongs to, -1 for what is no constant; None where there are few points."""
     found = []
-    for problem in posed.specimens:
+    for problem in diagnosis_problem.specimens:
         test = problem.measured
         channel = problem.at(Candidate(), np.zeros(0)).channel
         group = np.full(len(channel), -1)
@@ -81,14 +83,16 @@ def _groups(posed: Posed) -> np.ndarray | None:
     return groups if len(np.unique(groups[groups >= 0])) == FOLDS else None
 
 
-def held_out(posed: Posed, explanation: Explanation, parts: Sequence[BoolArray]) -> FloatArray:
+def held_out(
+    diagnosis_problem: DiagnosisProblem, explanation: Explanation, parts: Sequence[BoolArray]
+) -> FloatArray:
     """Return measured minus predicted data, those outside each part predicted from those inside, (n,) [-].
 
     Tolerances alone are kept within what is believed of them; how far an effect's fit stretches them, its p-value
     judges. Where nothing is left to fit, the residuals are nan.
     """
     best = explanation.best
-    columns = np.nan_to_num(sensitivities(posed, explanation.candidate, best))
+    columns = np.nan_to_num(sensitivities(diagnosis_problem, explanation.candidate, best))
     errors = np.zeros(len(best.comparison.residual))
     for keep in parts:
         if not keep.any():
@@ -96,20 +100,26 @@ def held_out(posed: Posed, explanation: Explanation, parts: Sequence[BoolArray])
         elif not explanation.names:
             errors[~keep] = believed(best.comparison, marginal(best.comparison, keep).scale, keep)[~keep]
         else:
-            errors[~keep] = _refitted(posed, explanation, columns, keep)[~keep]
+            errors[~keep] = _refitted(diagnosis_problem, explanation, columns, keep)[~keep]
     return errors
 
 
-def _refitted(posed: Posed, explanation: Explanation, columns: FloatArray, keep: BoolArray) -> FloatArray:
+def _refitted(
+    diagnosis_problem: DiagnosisProblem, explanation: Explanation, columns: FloatArray, keep: BoolArray
+) -> FloatArray:
     """Return what is left of all data when some of them were fitted: of many parameters by a short linear step."""
     best = explanation.best
     if columns.shape[1] <= CHEAP:
-        return climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point.left_over
-    normal, load = whiten(best.comparison, columns, best.marginal.scale, keep)
+        return maximise(
+            diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS
+        ).point.left_over
+    normal, load = normal_equations(best.comparison, columns, best.marginal.scale, keep)
     step = np.linalg.solve(normal + PRIOR * np.eye(len(load)), load)
     step = np.clip(best.coordinates + step, 0.0, 1.0) - best.coordinates
     if np.abs(step).max(initial=0.0) > SHORT:
-        return climb(posed, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS).point.left_over
+        return maximise(
+            diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS
+        ).point.left_over
     moved = replace(best.comparison, residual=best.comparison.residual - columns @ step)
     return np.asarray(moved.residual - moved.nuisance @ marginal(moved, keep).shift)
 

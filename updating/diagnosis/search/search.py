@@ -14,11 +14,11 @@ import numpy as np
 from scipy.special import logsumexp
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.problem.face import Posed
+from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import CLIMBS, Explanation, explain, finish
 from updating.diagnosis.search.fit import sensitivities
 from updating.effects import Effect, Variant
-from updating.likelihood.gaussian import whiten
+from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
 
 REJECTED = 0.003
@@ -56,7 +56,7 @@ PAIR_PRIOR = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class Weighed:
+class Compared:
     """An explanation with its share of the probability and how well it fits.
 
     Parameters
@@ -97,25 +97,25 @@ class Search:
     ----------
     nothing : Explanation
         The nominal model with its tolerances.
-    weighed : tuple of Weighed
+    compared : tuple of Weighed
         All sets of effects, most probable first; the empty set is among them.
     not_examined : dict
         Effects left out, and why.
     """
 
     nothing: Explanation
-    weighed: tuple[Weighed, ...]
+    compared: tuple[Compared, ...]
     not_examined: dict[str, str]
 
 
-def examine(problem: Posed, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
+def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
     """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
     obstacles = {effect.name: problem.applies(effect) for effect in library}
     possible = [effect for effect in library if obstacles[effect.name] is None]
     return possible, {name: why for name, why in obstacles.items() if why is not None}
 
 
-def search(problem: Posed, library: Sequence[Effect]) -> Search:
+def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     """Weigh nothing, every single effect, and pairs if no single one fits.
 
     Parameters
@@ -132,35 +132,35 @@ def search(problem: Posed, library: Sequence[Effect]) -> Search:
     found = _finished(problem, [nothing, *drafts])
     if not _explained(problem, found):
         found = _finished(problem, found + _pairs(problem, found[1:]))
-    return Search(nothing, _merged(problem, _weigh(found)), obstacles)
+    return Search(nothing, _merged(problem, _compare(found)), obstacles)
 
 
-def _explained(problem: Posed, found: list[Explanation]) -> bool:
+def _explained(problem: DiagnosisProblem, found: list[Explanation]) -> bool:
     """Tell whether any of the probable explanations fits beyond doubt, and at a plausible size."""
-    rows = _weigh(found)
+    rows = _compare(found)
     top = max(row.probability for row in rows)
     near = [row for row in rows if row.probability > top * np.exp(-PROBABLE)]
     return any(row.p_value >= DOUBTED and not _extreme(problem, row.explanation) for row in near)
 
 
-def _finished(problem: Posed, found: list[Explanation]) -> list[Explanation]:
+def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
     """Weigh by predictions what drafts left within reach of the best; the rest stays as drafted."""
     finished = list(found)
-    for look in range(LOOKS):
-        rows = _weigh(finished)
+    for evaluation in range(LOOKS):
+        rows = _compare(finished)
         bar = max(row.probability for row in rows) * np.exp(-WITHIN_REACH)
-        left = [i for i, row in enumerate(rows) if row.explanation.draft and row.probability > bar]
+        left = [i for i, row in enumerate(rows) if row.explanation.laplace_only and row.probability > bar]
         if not left:
             break
         left.sort(key=lambda i: -rows[i].probability)
-        for i in left if look else left[:1]:  # the best first: it may put the others out of reach
+        for i in left if evaluation else left[:1]:  # the best first: it may put the others out of reach
             finished[i] = finish(problem, finished[i])
     return finished
 
 
-def _merged(problem: Posed, rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
+def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compared, ...]:
     """Add up the forms of each set of effects; the most probable form stands for them."""
-    forms: dict[frozenset[str], list[Weighed]] = {}
+    forms: dict[frozenset[str], list[Compared]] = {}
     for row in rows:
         forms.setdefault(frozenset(row.names), []).append(row)
     merged = []
@@ -170,11 +170,11 @@ def _merged(problem: Posed, rows: Sequence[Weighed]) -> tuple[Weighed, ...]:
         fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
         probability = sum(row.probability for row in own)
         extreme = _extreme(problem, top.explanation) if probability > POSSIBLE else ()
-        merged.append(Weighed(replace(top.explanation, log_evidence=total), probability, fits, extreme))
+        merged.append(Compared(replace(top.explanation, log_evidence=total), probability, fits, extreme))
     return tuple(sorted(merged, key=lambda row: -row.probability))
 
 
-def _extreme(problem: Posed, explanation: Explanation) -> tuple[str, ...]:
+def _extreme(problem: DiagnosisProblem, explanation: Explanation) -> tuple[str, ...]:
     """Return the parameters whose best value and most of whose posterior lie at an end that is a judgement."""
     found = []
     for i, (name, parameter) in enumerate(problem.parameters(explanation.candidate)):
@@ -185,14 +185,14 @@ def _extreme(problem: Posed, explanation: Explanation) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _weigh(found: list[Explanation]) -> list[Weighed]:
+def _compare(found: list[Explanation]) -> list[Compared]:
     prior = np.array([PAIR_PRIOR if len(e.names) > 1 else 1.0 for e in found])
     score = np.array([e.log_evidence for e in found]) + np.log(prior)
     probability = np.exp(score - logsumexp(score))
-    return [Weighed(e, float(p), e.p_value) for e, p in zip(found, probability, strict=True)]
+    return [Compared(e, float(p), e.p_value) for e, p in zip(found, probability, strict=True)]
 
 
-def _falls_short(problem: Posed, effects: list[Effect]) -> bool:
+def _falls_short(problem: DiagnosisProblem, effects: list[Effect]) -> bool:
     """Tell whether every effect must also be weighed on the better beam theory.
 
     It must where the theory shifts frequencies by more than a part of the noise, unless the better theory alone
@@ -211,7 +211,9 @@ def _falls_short(problem: Posed, effects: list[Effect]) -> bool:
     return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
 
 
-def _singles(problem: Posed, effects: list[Effect], nothing: Explanation, *, twin: bool) -> list[Explanation]:
+def _singles(
+    problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, *, twin: bool
+) -> list[Explanation]:
     """Weigh every form of every effect, the simple ones first: what they reach is the bar for the others."""
     forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
     forms.sort(key=lambda pair: len(problem.parameters(Candidate((pair[0],), chosen=(pair[1],)))))
@@ -222,25 +224,29 @@ def _singles(problem: Posed, effects: list[Effect], nothing: Explanation, *, twi
     return found
 
 
-def _single(problem: Posed, effect: Effect, form: Variant, *, twin: bool, bar: float) -> Explanation:
+def _single(
+    problem: DiagnosisProblem, effect: Effect, form: Variant, *, twin: bool, bar: float
+) -> Explanation:
     """Weigh one form of an effect; where the theory falls short, on either theory and half the evidence of each."""
-    plain = explain(problem, Candidate((effect,), chosen=(form,)), draft=True, bar=bar)
+    plain = explain(problem, Candidate((effect,), chosen=(form,)), laplace_only=True, bar=bar)
     if not twin or effect.name == "shear":
         return plain
-    better = explain(problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), draft=True, bar=bar)
+    better = explain(
+        problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), laplace_only=True, bar=bar
+    )
     total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
     chosen = max(plain, better, key=lambda e: e.log_evidence)
     return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
 
 
-def _pairs(problem: Posed, singles: list[Explanation]) -> list[Explanation]:
+def _pairs(problem: DiagnosisProblem, singles: list[Explanation]) -> list[Explanation]:
     """Weigh the pairs that a linear look at every pair finds the most promising."""
     possible = [e for e in singles if e.best.possible]
     if len(possible) < 2:
         return []
-    reached = _linear_looks(problem, possible)
+    reached = _score_tests(problem, possible)
     data = len(problem.at(Candidate(), np.zeros(0)).residual)
-    looks = []
+    evaluations = []
     for i, j in combinations(range(len(possible)), 2):
         first, second = possible[i], possible[j]
         if first.names == second.names:
@@ -248,31 +254,33 @@ def _pairs(problem: Posed, singles: list[Explanation]) -> list[Explanation]:
         if len(first.best.coordinates) + len(second.best.coordinates) >= data:
             continue  # as many parameters as data explain anything
         weight = first.candidate.log_weight + second.candidate.log_weight
-        looks.append((max(reached[i, j], reached[j, i]) + weight, first, second))
-    looks = [look for look in looks if np.isfinite(look[0])]
-    looks.sort(key=lambda look: -look[0])
+        evaluations.append((max(reached[i, j], reached[j, i]) + weight, first, second))
+    evaluations = [evaluation for evaluation in evaluations if np.isfinite(evaluation[0])]
+    evaluations.sort(key=lambda evaluation: -evaluation[0])
     chosen: dict[frozenset[str], tuple[Explanation, Explanation]] = {}
-    for _, first, second in looks:  # of every two effects, the most promising forms
+    for _, first, second in evaluations:  # of every two effects, the most promising forms
         chosen.setdefault(frozenset(first.names + second.names), (first, second))
     found: list[Explanation] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
     for first, second in list(chosen.values())[:PAIRS]:
-        halves = [(e.candidate, e.best.coordinates) for e in (first, second)]
-        found.append(_pair(problem, halves[0], halves[1], bar))
+        pair_parts = [(e.candidate, e.best.coordinates) for e in (first, second)]
+        found.append(_pair(problem, pair_parts[0], pair_parts[1], bar))
         bar = max(bar, found[-1].best.marginal.log_likelihood)
     found.sort(key=lambda e: -e.log_evidence)
     for i, pair in enumerate(found[:ANEW]):
-        again = _pair(problem, *_halves(problem, pair), bar, anew=True)
+        again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True)
         found[i] = max(pair, again, key=lambda e: e.log_evidence)
         bar = max(bar, found[i].best.marginal.log_likelihood)
     return found + _alike(problem, possible, found, bar)
 
 
-Half = tuple[Candidate, FloatArray]
+PairPart = tuple[Candidate, FloatArray]
 """One of the two effects of a pair, and prior quantiles to start from."""
 
 
-def _pair(problem: Posed, first: Half, second: Half, bar: float, *, anew: bool = False) -> Explanation:
+def _pair(
+    problem: DiagnosisProblem, first: PairPart, second: PairPart, bar: float, *, anew: bool = False
+) -> Explanation:
     """Draft a pair, from the best that each of the two has alone, and where asked from all its own starts anew.
 
     An effect that explains as much as it can alone bends to what the other does, so that its place alone may be far
@@ -288,11 +296,13 @@ def _pair(problem: Posed, first: Half, second: Half, bar: float, *, anew: bool =
     unlike = list(
         {tuple(u.tolist()): u for u in starts}.values()
     )  # of an effect without parameters all are alike
-    return explain(problem, both, starts=unlike, draft=True, climbs=CLIMBS if anew else 1, bar=bar)
+    return explain(
+        problem, both, starts=unlike, laplace_only=True, maximisations=CLIMBS if anew else 1, bar=bar
+    )
 
 
 def _alike(
-    problem: Posed, singles: list[Explanation], pairs: list[Explanation], bar: float
+    problem: DiagnosisProblem, singles: list[Explanation], pairs: list[Explanation], bar: float
 ) -> list[Explanation]:
     """Draft what some data cannot tell from the best pair: one of the two in the place of an effect like it.
 
@@ -303,8 +313,8 @@ def _alike(
         return []
     known, found = {frozenset(e.names) for e in pairs}, []
     data = len(best.best.comparison.residual)
-    halves = _halves(problem, best)
-    for (kept, place), (other, _) in (halves, halves[::-1]):
+    pair_parts = _parts_of_pair(problem, best)
+    for (kept, place), (other, _) in (pair_parts, pair_parts[::-1]):
         for rival in _like(other.effects[0], singles):
             names = frozenset(kept.names + rival.names)
             if len(names) == 2 and names not in known and len(place) + len(rival.best.coordinates) < data:
@@ -315,7 +325,7 @@ def _alike(
     return found
 
 
-def _halves(problem: Posed, pair: Explanation) -> tuple[Half, Half]:
+def _parts_of_pair(problem: DiagnosisProblem, pair: Explanation) -> tuple[PairPart, PairPart]:
     """Take a pair apart."""
     whole = pair.candidate
     first, second = (
@@ -337,7 +347,7 @@ def _like(effect: Effect, singles: list[Explanation]) -> list[Explanation]:
     return list(best.values())
 
 
-def _linear_looks(problem: Posed, singles: list[Explanation]) -> FloatArray:
+def _score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> FloatArray:
     """Return the log-likelihood that a linear step from each single's best, with each other, would reach.
 
     Returns
@@ -352,7 +362,7 @@ def _linear_looks(problem: Posed, singles: list[Explanation]) -> FloatArray:
     ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
     reached = np.full((len(singles), len(singles)), -np.inf)
     for i, leader in enumerate(singles):
-        normal, load = whiten(leader.best.comparison, everything, leader.best.marginal.scale)
+        normal, load = normal_equations(leader.best.comparison, everything, leader.best.marginal.scale)
         start = leader.best.marginal.log_likelihood
         mine = np.arange(ends[i] + 1, ends[i + 1])
         for j in range(len(singles)):

@@ -6,7 +6,7 @@ import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.measurement.points import channel_of, channel_point, indices, places, points_of
-from updating.effects.measurement.shape_screening import PROMISING, look_at
+from updating.effects.measurement.shape_screening import PROMISING, screen
 from updating.effects.obstacles import shape_obstacle
 from updating.models.state import Role, State
 from updating.prediction.predict import Predictor
@@ -49,7 +49,7 @@ class Polarity(Effect):
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the sets of points whose reversal brings the shapes nearest to the model's."""
         role = roving(predictor.measured)
-        found = look_at(predictor)
+        found = screen(predictor)
         points = points_of(predictor.measured, role)
         chosen: list[int] = []
         variants: list[Variant] = []

@@ -6,7 +6,7 @@ import numpy as np
 
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.measurement.points import indices, places, points_of
-from updating.effects.measurement.shape_screening import PROMISING, look_at
+from updating.effects.measurement.shape_screening import PROMISING, screen
 from updating.effects.obstacles import shape_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -49,7 +49,7 @@ class PositionError(Effect):
         """Return the points that spoil the agreement of the shapes most."""
         test = predictor.measured
         role = roving(test)
-        found = look_at(predictor)
+        found = screen(predictor)
         points = points_of(test, role)
         worst = np.argsort([found.without(role, p) for p in points])[:PROMISING]
         return tuple(Variant({"point": test.nodes[points[i]]}, 1.0 / len(points)) for i in worst)

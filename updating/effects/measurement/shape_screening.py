@@ -10,7 +10,7 @@ from acquisition.arrays import FloatArray
 from updating.models.state import Role, State
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
-from updating.test_data.chain import reading
+from updating.test_data.chain import measurement_chain
 from updating.test_data.measured import Measured
 
 PROMISING = 3
@@ -22,7 +22,7 @@ DOUBT = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class ShapeLook:
+class ShapeScreening:
     """The nominal model's shapes beside a test's, for a shortlist.
 
     Parameters
@@ -41,12 +41,12 @@ class ShapeLook:
 
     def misfit(self, gains: dict[Role, float], exchanged: tuple[tuple[str, int, int], ...] = ()) -> float:
         """Return the weighted misfit of the shapes, each mode scaled to fit [-]."""
-        read = reading(self.test, State(point_gains=gains, exchanged=exchanged))
+        read = measurement_chain(self.test, State(point_gains=gains, exchanged=exchanged))
         return self._left(read.gain[:, None] * read.product(self.shapes, self.shapes), self.weight)
 
     def without(self, role: str, point: int) -> float:
         """Return the misfit of the shapes without one point [-]."""
-        read = reading(self.test, State())
+        read = measurement_chain(self.test, State())
         stated = self.test.hit if role == "hit" else self.test.seen
         weight = np.where((stated == point)[:, None], 0.0, self.weight)
         return self._left(read.product(self.shapes, self.shapes), weight)
@@ -58,11 +58,11 @@ class ShapeLook:
         return float(np.sum(weight * data**2) - np.sum(overlap**2 / power))
 
 
-def look_at(predictor: Predictor) -> ShapeLook:
+def screen(predictor: Predictor) -> ShapeScreening:
     """Return the shapes of a predictor's test and model, modes paired."""
     test = predictor.measured
     prediction = predictor.predict(at_least=len(test.frequency) + 3)
     vectors = prediction.vectors[:, match(test, prediction, np.arange(len(test.frequency)))]
     shapes = predictor.nominal_rows["w"][:, : len(vectors)] @ vectors
     weight = 1.0 / (test.constants_sigma**2 + DOUBT * np.mean(test.constants**2, axis=0))
-    return ShapeLook(test, shapes, weight)
+    return ShapeScreening(test, shapes, weight)

@@ -8,7 +8,7 @@ import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.measurement.points import indices, places, points_of
-from updating.effects.measurement.shape_screening import PROMISING, look_at
+from updating.effects.measurement.shape_screening import PROMISING, screen
 from updating.effects.obstacles import shape_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -39,7 +39,7 @@ class SwappedPoints(Effect):
         """Return the pairs whose exchange brings the shapes nearest to the model's."""
         test = predictor.measured
         role = roving(test)
-        found = look_at(predictor)
+        found = screen(predictor)
         pairs = list(combinations(points_of(test, role), 2))
         misfits = [found.misfit({}, ((role, a, b),)) for a, b in pairs]
         best = np.argsort(misfits)[:PROMISING]

@@ -52,9 +52,11 @@ class FluidAddedMass(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the density of the fluid."""
-        told = predictor.environment.fluid_density
-        if told is not None:
-            return (Parameter("fluid_density", "kg/m^3", 0.97 * told, 1.03 * told, "the study states it"),)
+        stated = predictor.environment.fluid_density
+        if stated is not None:
+            return (
+                Parameter("fluid_density", "kg/m^3", 0.97 * stated, 1.03 * stated, "the study states it"),
+            )
         why = "liquids from light oils to brines; gases shift nothing that can be seen"
         return (Parameter("fluid_density", "kg/m^3", 100.0, 2000.0, why, log=True),)
 
@@ -102,14 +104,14 @@ class FluidDamping(Effect):
 
 def fluid_density(predictor: Predictor) -> float:
     """Return the density of the fluid [kg/m^3]: of an accepted added mass, of the environment, or water's."""
-    told = predictor.environment.fluid_density
+    stated = predictor.environment.fluid_density
     if predictor.base.mass:
         unit = unit_mass(predictor)
         for mass in predictor.base.mass:
             density = float(np.vdot(mass, unit) / np.vdot(unit, unit))
             if density > 0.0 and np.allclose(mass, density * unit, rtol=1e-9, atol=1e-9 * np.abs(mass).max()):
                 return density
-    return WATER if told is None else told
+    return WATER if stated is None else stated
 
 
 def unit_mass(predictor: Predictor) -> FloatArray:

@@ -100,8 +100,8 @@ class DampingPatch(Effect):
         """Return the place, and its mirror images where nothing but damping could tell them apart."""
         if predictor.spec.kind == "matrices":
             return (region_centre(predictor, int(values["region"])),)
-        at, told = place(values), predictor.measured.has_shapes and (values["mass"] or values["stiffness"])
-        return (at,) if told else mirror_images(predictor.spec, at)
+        at, stated = place(values), predictor.measured.has_shapes and (values["mass"] or values["stiffness"])
+        return (at,) if stated else mirror_images(predictor.spec, at)
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return loss factor times length covered, which data determine better than either."""

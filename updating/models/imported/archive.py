@@ -44,9 +44,9 @@ def read_archive(path: Path) -> Sparse:
         return _sparse(arrays, path) if "format" in arrays else _plain(arrays, path)
     except (ValueError, KeyError, OSError, EOFError, NotImplementedError, RuntimeError, zlib.error,
             zipfile.BadZipFile) as error:  # fmt: skip
-        said = " ".join(str(error).split())
+        statement = " ".join(str(error).split())
         raise StudyError(
-            f"{path}: not an .npz archive of one matrix ({said}); use scipy.sparse.save_npz"
+            f"{path}: not an .npz archive of one matrix ({statement}); use scipy.sparse.save_npz"
         ) from error
 
 

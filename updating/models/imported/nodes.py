@@ -69,10 +69,10 @@ class NodeTable:
 
     def _check_places(self) -> None:
         _, first, where = np.unique(self.node, return_index=True, return_inverse=True)
-        apart = np.abs(self.places - self.places[first[where]]).max(axis=1, initial=0.0)
+        distance = np.abs(self.places - self.places[first[where]]).max(axis=1, initial=0.0)
         reach = np.abs(self.places).max(initial=0.0)
-        if len(apart) and apart.max() > 1e-6 * reach:
-            worst = int(np.argmax(apart))
+        if len(distance) and distance.max() > 1e-6 * reach:
+            worst = int(np.argmax(distance))
             raise StudyError(
                 f"{self.source}: node {self.node[worst]} stands at two places, "
                 f"{self.places[first[where[worst]]].tolist()} and {self.places[worst].tolist()}"
@@ -116,8 +116,8 @@ def read_table(path: Path, order: int) -> NodeTable:
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
     except (ValueError, pd.errors.ParserError) as error:
-        said = " ".join(str(error).split())
-        raise StudyError(f"{path}: not a CSV table ({said}); columns: {', '.join(COLUMNS)}") from error
+        statement = " ".join(str(error).split())
+        raise StudyError(f"{path}: not a CSV table ({statement}); columns: {', '.join(COLUMNS)}") from error
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise StudyError(f"{path}: lines have more values than the header has names; name every column")
     table.columns = pd.Index([str(c).strip().lower() for c in table.columns])
@@ -142,10 +142,10 @@ def read_table(path: Path, order: int) -> NodeTable:
             f"{path}: no line has a row of the matrices; there must be one for each that is at a place"
         )
     for column in ("node", "direction", "row"):
-        told = values[column].to_numpy()
-        if (broken := ~np.isnan(told) & ((told != np.round(told)) | (np.abs(told) > 2**53))).any():
+        stated = values[column].to_numpy()
+        if (broken := ~np.isnan(stated) & ((stated != np.round(stated)) | (np.abs(stated) > 2**53))).any():
             line = int(np.flatnonzero(broken)[0])
-            raise StudyError(f"{path}, entry {line + 1}: {column} {told[line]:g} is no whole number")
+            raise StudyError(f"{path}, entry {line + 1}: {column} {stated[line]:g} is no whole number")
     found = NodeTable(
         values["node"].to_numpy(dtype=np.int64),
         values[["x", "y", "z"]].to_numpy(),

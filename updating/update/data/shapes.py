@@ -11,37 +11,37 @@ from collections.abc import Sequence
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.update.data.specimen import Look, Specimen
+from updating.update.data.specimen import Evaluation, Specimen
 
 
-def shape_residual(specimen: Specimen, look: Look) -> FloatArray:
+def shape_residual(specimen: Specimen, evaluation: Evaluation) -> FloatArray:
     """Return measured minus computed constants, as shapes with the best factor per mode, whitened (n,) [-]."""
     white, test = specimen.errors, specimen.measured.constants
     if specimen.level:
-        computed = look.prediction.constants
+        computed = evaluation.prediction.constants
         return white((test - computed * specimen.measured.same_signs(computed)).ravel())
-    span, _ = _factors(specimen, look)
+    span, _ = _factors(specimen, evaluation)
     measured = white(test.ravel())
     return np.asarray(measured - span @ (span.T @ measured))
 
 
-def shape_slopes(specimen: Specimen, values: Sequence[float], look: Look) -> FloatArray:
+def shape_slopes(specimen: Specimen, values: Sequence[float], evaluation: Evaluation) -> FloatArray:
     """Return the derivatives of the computed constants by the coordinates, whitened, (n, n_knobs) [-].
 
     The factors per mode are projected out (Golub and Pereyra 1973, with Kaufman's simplification).
     """
-    slopes = specimen.shape_slopes(values, look)
+    slopes = specimen.shape_slopes(values, evaluation)
     if specimen.level:
-        slopes = slopes * specimen.measured.same_signs(look.prediction.constants)[:, None]
+        slopes = slopes * specimen.measured.same_signs(evaluation.prediction.constants)[:, None]
         return specimen.errors(slopes.reshape(-1, slopes.shape[2]))
-    span, factor = _factors(specimen, look)
+    span, factor = _factors(specimen, evaluation)
     scaled = specimen.errors((slopes * factor[None, :, None]).reshape(-1, slopes.shape[2]))
     return np.asarray(scaled - span @ (span.T @ scaled))
 
 
-def _factors(specimen: Specimen, look: Look) -> tuple[FloatArray, FloatArray]:
+def _factors(specimen: Specimen, evaluation: Evaluation) -> tuple[FloatArray, FloatArray]:
     """Return an orthonormal basis of what the factors can do, (n, n_modes), and the best factors (n_modes,) [-]."""
-    shape = look.prediction.constants
+    shape = evaluation.prediction.constants
     size = np.maximum(np.linalg.norm(shape, axis=0), 1e-300)
     rows, modes = shape.shape
     block = np.zeros((rows, modes, modes))

@@ -19,7 +19,7 @@ from updating.update.data.shape_errors import constant_errors
 from updating.update.data.whitening import Whitening
 from updating.update.parameters.affine import Affine, affine, eligible
 from updating.update.parameters.basis import WIDE, extended, update_basis
-from updating.update.parameters.parameters import Knob, Panel
+from updating.update.parameters.parameters import ModelParameter, ParameterSet
 from updating.update.parameters.sensitivity import log_frequency_by
 
 STEP = 1e-4
@@ -27,7 +27,7 @@ STEP = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class Evaluation:
     """A specimen at one setting of its knobs.
 
     Parameters
@@ -61,7 +61,7 @@ class Specimen:
         Their numbers in the test, from 1.
     order : (n_modes,) int array
         Rank of each one's partner, for data without shapes.
-    panel : Panel
+    parameter_set : Panel
         The knobs.
     warnings : tuple of str
         What was left out.
@@ -79,21 +79,21 @@ class Specimen:
     measured: Measured
     number: IntArray
     order: IntArray
-    panel: Panel
+    parameter_set: ParameterSet
     warnings: tuple[str, ...]
     correction: FloatArray
     level: bool = False
     near: Prediction | None = None
 
-    def look(self, values: Sequence[float]) -> Look:
+    def evaluate(self, values: Sequence[float]) -> Evaluation:
         """Evaluate the model, and find the partner of every measured mode by MAC."""
         if self.affine is None:
-            prediction = self.predictor.predict(self.panel.state(self.predictor, values))
+            prediction = self.predictor.predict(self.parameter_set.state(self.predictor, values))
         else:
             prediction = self._quick(self.affine, np.log(values))
         partner = match(self.measured, prediction, self.order)
         chosen = prediction.select(partner)
-        return Look(chosen.frequency * self.correction, partner, chosen)
+        return Evaluation(chosen.frequency * self.correction, partner, chosen)
 
     def _quick(self, model: Affine, logs: FloatArray) -> Prediction:
         """Predict the lowest modes with no more than an update by factors needs."""
@@ -113,9 +113,9 @@ class Specimen:
     def affine(self) -> Affine | None:
         """The model as a function of its factors, where all knobs are factors."""
         base = self.predictor.base
-        if not eligible(self.panel.knobs) or base.released or base.theory is not None:
+        if not eligible(self.parameter_set.model_parameters) or base.released or base.theory is not None:
             return None
-        return affine(self.predictor.reduced, self.panel.knobs, base)
+        return affine(self.predictor.reduced, self.parameter_set.model_parameters, base)
 
     @cached_property
     def shape_rows(self) -> FloatArray:
@@ -139,62 +139,73 @@ class Specimen:
         """The modes of the model before the update."""
         return self.predictor.predict()
 
-    def slopes(self, values: Sequence[float], at: Look) -> FloatArray:
+    def slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:
         """Return d ln f / d coordinate, (n_modes, n_knobs): Eqs. 16 and 17 for factors, differences for the rest."""
         if self.affine is not None:
             eigenvalue = (2 * np.pi * at.prediction.frequency) ** 2
             return self.affine.slopes(np.log(values), eigenvalue, at.prediction.vectors)
         columns = [
-            self._analytic(knob, values, i, at) if knob.factor is not None else self._difference(i, values)
-            for i, knob in enumerate(self.panel.knobs)
+            self._analytic(model_parameter, values, i, at)
+            if model_parameter.factor is not None
+            else self._difference(i, values)
+            for i, model_parameter in enumerate(self.parameter_set.model_parameters)
         ]
         return np.stack(columns, axis=1)
 
-    def _analytic(self, knob: Knob, values: Sequence[float], index: int, at: Look) -> FloatArray:
-        total = self.predictor.base.plus(self.panel.state(self.predictor, values))
-        by = log_frequency_by(self.predictor.reduced, total, at.prediction, str(knob.factor), knob.regions)
-        return by * knob.chain(values[index])
+    def _analytic(
+        self, model_parameter: ModelParameter, values: Sequence[float], index: int, at: Evaluation
+    ) -> FloatArray:
+        total = self.predictor.base.plus(self.parameter_set.state(self.predictor, values))
+        by = log_frequency_by(
+            self.predictor.reduced, total, at.prediction, str(model_parameter.factor), model_parameter.regions
+        )
+        return by * model_parameter.chain(values[index])
 
-    def _ends(self, index: int, values: Sequence[float]) -> tuple[Look, Look, float]:
+    def _ends(self, index: int, values: Sequence[float]) -> tuple[Evaluation, Evaluation, float]:
         """Look on both sides of a knob's setting; return how far apart in its coordinate."""
-        knob = self.panel.knobs[index]
-        here, step = knob.coordinate(values[index]), STEP * knob.span()
-        ends = [max(here - step, knob.coordinate(knob.low)), min(here + step, knob.coordinate(knob.high))]
-        moved = [[*values[:index], knob.value(end), *values[index + 1 :]] for end in ends]
-        return self.look(moved[0]), self.look(moved[1]), ends[1] - ends[0]
+        model_parameter = self.parameter_set.model_parameters[index]
+        here, step = model_parameter.coordinate(values[index]), STEP * model_parameter.span()
+        ends = [
+            max(here - step, model_parameter.coordinate(model_parameter.low)),
+            min(here + step, model_parameter.coordinate(model_parameter.high)),
+        ]
+        moved = [[*values[:index], model_parameter.value(end), *values[index + 1 :]] for end in ends]
+        return self.evaluate(moved[0]), self.evaluate(moved[1]), ends[1] - ends[0]
 
     def _difference(self, index: int, values: Sequence[float]) -> FloatArray:
-        low, high, apart = self._ends(index, values)
-        return np.asarray((np.log(high.frequency) - np.log(low.frequency)) / apart)
+        low, high, spacing = self._ends(index, values)
+        return np.asarray((np.log(high.frequency) - np.log(low.frequency)) / spacing)
 
-    def _shape_difference(self, index: int, values: Sequence[float], at: Look) -> FloatArray:
-        low, high, apart = self._ends(index, values)
+    def _shape_difference(self, index: int, values: Sequence[float], at: Evaluation) -> FloatArray:
+        low, high, spacing = self._ends(index, values)
         here = at.prediction.constants
         # shapes without a reference come with the solver's sign
         ends = [
             k.prediction.constants * np.sign(np.sum(k.prediction.constants * here, axis=0))
             for k in (low, high)
         ]
-        return np.asarray((ends[1] - ends[0]) / apart)
+        return np.asarray((ends[1] - ends[0]) / spacing)
 
     @cached_property
-    def nominal(self) -> Look:
+    def nominal(self) -> Evaluation:
         """The model before the update: every factor 1, and no effect that the modeller has not accepted."""
         prediction = self.nominal_modes
         partner = match(self.measured, prediction, self.order)
-        return Look(prediction.frequency[partner], partner, prediction.select(partner))
+        return Evaluation(prediction.frequency[partner], partner, prediction.select(partner))
 
-    def mac(self, look: Look) -> FloatArray:
+    def mac(self, evaluation: Evaluation) -> FloatArray:
         """Return the MAC of every pair, nan where no shapes were measured [-]."""
         if not self.measured.has_shapes:
             return np.full(len(self.number), np.nan)
-        return np.diag(mac_of_constants(self.measured, look.prediction)).copy()
+        return np.diag(mac_of_constants(self.measured, evaluation.prediction)).copy()
 
-    def shape_slopes(self, values: Sequence[float], at: Look) -> FloatArray:
+    def shape_slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:
         """Return the derivatives of the partners' constants by the coordinates, (n_frf, n_modes, n_knobs) [1/kg]."""
         model = self.affine
         if model is None:
-            columns = [self._shape_difference(i, values, at) for i in range(len(self.panel.knobs))]
+            columns = [
+                self._shape_difference(i, values, at) for i in range(len(self.parameter_set.model_parameters))
+            ]
             return np.stack(columns, axis=-1)
         turned = model.turns(np.log(values), at.partner, self.rigid)
         here, change = self.shape_rows @ at.prediction.vectors, self.shape_rows @ turned
@@ -211,7 +222,7 @@ class Specimen:
         """Factor by which the measured level is off in what the model has accepted [-]."""
         return level_of(self.predictor.base.gain, self.measured)
 
-    def _signs(self, model: Affine, values: Sequence[float], at: Look) -> FloatArray:
+    def _signs(self, model: Affine, values: Sequence[float], at: Evaluation) -> FloatArray:
         vectors = model.eigen(np.log(values), model.rank)[1][:, at.partner + self.rigid]
         return np.asarray(np.sign(np.sum(vectors * at.prediction.vectors, axis=0)))
 
@@ -219,16 +230,19 @@ class Specimen:
     def errors(self) -> Whitening:
         """Covariance of the measured constants, calibration included where their level is data."""
         at = self.nominal.prediction if self.near is None else self.near
-        turned = any(knob.effect == "calibration_gain" for knob in self.panel.knobs)
+        turned = any(
+            model_parameter.effect == "calibration_gain"
+            for model_parameter in self.parameter_set.model_parameters
+        )
         return constant_errors(
             self.measured, at, self.measured.level_sigma if self.level and not turned else 0.0
         )
 
-    def settled(self, values: Sequence[float], look: Look) -> Specimen:
+    def settled(self, values: Sequence[float], evaluation: Evaluation) -> Specimen:
         """Return the same specimen with its errors judged by the model at some values of its knobs."""
-        count = int(look.partner.max()) + 1
-        near = self.predictor.predict(self.panel.state(self.predictor, values), count=count)
-        other = self._with(replace(self, near=near.select(look.partner)))
+        count = int(evaluation.partner.max()) + 1
+        near = self.predictor.predict(self.parameter_set.state(self.predictor, values), count=count)
+        other = self._with(replace(self, near=near.select(evaluation.partner)))
         other.__dict__.pop("errors", None)
         return other
 
@@ -250,9 +264,16 @@ class Specimen:
         if not plain or self.predictor.additions or not isinstance(structure, FieldStructure):
             return self
         highest, count = float(self.measured.frequency.max()), len(self.measured.frequency)
-        state = self.panel.state(self.predictor, values)
+        state = self.parameter_set.state(self.predictor, values)
         return self._on(
-            update_basis(structure, self.panel.knobs, highest=highest, count=count, state=state, answers=WIDE)
+            update_basis(
+                structure,
+                self.parameter_set.model_parameters,
+                highest=highest,
+                count=count,
+                state=state,
+                answers=WIDE,
+            )
         )
 
     def _on(self, reduced: Reduced) -> Specimen:

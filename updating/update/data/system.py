@@ -11,8 +11,8 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.update.data.shapes import shape_residual, shape_slopes
-from updating.update.data.specimen import Look, Specimen
-from updating.update.parameters.parameters import Knob
+from updating.update.data.specimen import Evaluation, Specimen
+from updating.update.parameters.parameters import ModelParameter
 
 Weights = Literal["covariance", "relative", "eigenvalue"] | Sequence[float]
 Quantity = Literal["frequency", "eigenvalue"]
@@ -30,14 +30,14 @@ class Linear:
         Derivatives of the computed quantity by the coordinates.
     weight : (n,) array
         Diagonal of W_s.
-    looks : tuple of Look
+    evaluations : tuple of Look
         The specimens.
     """
 
     residual: FloatArray
     sensitivity: FloatArray
     weight: FloatArray
-    looks: tuple[Look, ...]
+    evaluations: tuple[Evaluation, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class System:
         The specimens.
     index : tuple of int arrays
         For every specimen, which unknown each of its knobs is.
-    knobs : tuple of Knob
+    model_parameters : tuple of Knob
         One knob for each unknown; a shared one stands for all specimens that have it.
     owner : tuple of int
         Specimen of each unknown, -1 where it is shared.
@@ -69,7 +69,7 @@ class System:
 
     specimens: tuple[Specimen, ...]
     index: tuple[IntArray, ...]
-    knobs: tuple[Knob, ...]
+    model_parameters: tuple[ModelParameter, ...]
     owner: tuple[int, ...]
     weights: tuple[FloatArray, ...]
     quantity: Quantity
@@ -85,34 +85,34 @@ class System:
     @cached_property
     def low(self) -> FloatArray:
         """Lower bounds of the coordinates."""
-        return np.array([k.coordinate(k.low) for k in self.knobs])
+        return np.array([k.coordinate(k.low) for k in self.model_parameters])
 
     @cached_property
     def high(self) -> FloatArray:
         """Upper bounds of the coordinates."""
-        return np.array([k.coordinate(k.high) for k in self.knobs])
+        return np.array([k.coordinate(k.high) for k in self.model_parameters])
 
     @cached_property
     def start(self) -> FloatArray:
         """Coordinates of the nominal model."""
-        return np.array([k.coordinate(k.start) for k in self.knobs])
+        return np.array([k.coordinate(k.start) for k in self.model_parameters])
 
     @cached_property
     def doubt(self) -> FloatArray:
         """1-sigma scales of the coordinates."""
-        return np.array([k.doubt for k in self.knobs])
+        return np.array([k.doubt for k in self.model_parameters])
 
     @cached_property
     def prior(self) -> FloatArray:
         """Diagonal of W_theta: inverse variances of the parameters, 0 where none is told."""
-        tolerated = np.array([k.tolerated for k in self.knobs]) & self.regularised
+        tolerated = np.array([k.tolerated for k in self.model_parameters]) & self.regularised
         return np.where(tolerated, 1 / self.doubt**2, 0.0)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the unknowns, with their study where there are several."""
         alone = len(self.specimens) == 1
-        pairs = zip(self.knobs, self.owner, strict=True)
+        pairs = zip(self.model_parameters, self.owner, strict=True)
         return tuple(
             k.name if owner < 0 or alone else f"{k.name} ({self.specimens[owner].title})"
             for k, owner in pairs
@@ -127,23 +127,23 @@ class System:
 
     def values(self, theta: FloatArray, specimen: int) -> list[float]:
         """Return the factors and values of one specimen's knobs."""
-        return [self.knobs[i].value(theta[i]) for i in self.index[specimen]]
+        return [self.model_parameters[i].value(theta[i]) for i in self.index[specimen]]
 
-    def looks(self, theta: FloatArray) -> tuple[Look, ...]:
+    def evaluations(self, theta: FloatArray) -> tuple[Evaluation, ...]:
         """Evaluate every specimen."""
-        return tuple(s.look(self.values(theta, i)) for i, s in enumerate(self.specimens))
+        return tuple(s.evaluate(self.values(theta, i)) for i, s in enumerate(self.specimens))
 
-    def residual(self, looks: tuple[Look, ...]) -> FloatArray:
+    def residual(self, evaluations: tuple[Evaluation, ...]) -> FloatArray:
         """Return measured minus computed, shape (n,)."""
         parts = []
-        for specimen, look in zip(self.specimens, looks, strict=True):
+        for specimen, evaluation in zip(self.specimens, evaluations, strict=True):
             test = specimen.measured.frequency
             if self.quantity == "frequency":
-                parts.append(1 - look.frequency / test)
+                parts.append(1 - evaluation.frequency / test)
             else:
-                parts.append((2 * np.pi) ** 2 * (test**2 - look.frequency**2))
+                parts.append((2 * np.pi) ** 2 * (test**2 - evaluation.frequency**2))
         if self.shapes:
-            both = zip(self.specimens, looks, strict=True)
+            both = zip(self.specimens, evaluations, strict=True)
             parts += [shape_residual(s, k) for s, k in both if s.measured.has_shapes]
         return np.concatenate(parts)
 
@@ -159,28 +159,28 @@ class System:
         per = [w / (2 * (2 * np.pi * s.measured.frequency) ** 2) ** 2 for w, s in both]
         return np.concatenate(per)
 
-    def cost(self, theta: FloatArray, looks: tuple[Look, ...]) -> float:
+    def cost(self, theta: FloatArray, evaluations: tuple[Evaluation, ...]) -> float:
         """Return what Eq. 25 makes least."""
-        residual = self.residual(looks)
+        residual = self.residual(evaluations)
         return float(self.weight @ residual**2 + self.prior @ (theta - self.centre) ** 2)
 
-    def linear(self, theta: FloatArray, looks: tuple[Look, ...]) -> Linear:
+    def linear(self, theta: FloatArray, evaluations: tuple[Evaluation, ...]) -> Linear:
         """Return residuals and sensitivities, Eqs. 18 and 19."""
         blocks = []
-        for i, (specimen, look) in enumerate(zip(self.specimens, looks, strict=True)):
-            slopes = specimen.slopes(self.values(theta, i), look)
-            block = np.zeros((len(slopes), len(self.knobs)))
-            block[:, self.index[i]] = slopes * self._per_log(specimen, look)[:, None]
+        for i, (specimen, evaluation) in enumerate(zip(self.specimens, evaluations, strict=True)):
+            slopes = specimen.slopes(self.values(theta, i), evaluation)
+            block = np.zeros((len(slopes), len(self.model_parameters)))
+            block[:, self.index[i]] = slopes * self._per_log(specimen, evaluation)[:, None]
             blocks.append(block)
-        blocks += self._shape_blocks(theta, looks) if self.shapes else []
-        return Linear(self.residual(looks), np.vstack(blocks), self.weight, looks)
+        blocks += self._shape_blocks(theta, evaluations) if self.shapes else []
+        return Linear(self.residual(evaluations), np.vstack(blocks), self.weight, evaluations)
 
-    def _shape_blocks(self, theta: FloatArray, looks: tuple[Look, ...]) -> list[FloatArray]:
+    def _shape_blocks(self, theta: FloatArray, evaluations: tuple[Evaluation, ...]) -> list[FloatArray]:
         blocks = []
-        for i, (specimen, look) in enumerate(zip(self.specimens, looks, strict=True)):
+        for i, (specimen, evaluation) in enumerate(zip(self.specimens, evaluations, strict=True)):
             if specimen.measured.has_shapes:
-                slopes = shape_slopes(specimen, self.values(theta, i), look)
-                block = np.zeros((len(slopes), len(self.knobs)))
+                slopes = shape_slopes(specimen, self.values(theta, i), evaluation)
+                block = np.zeros((len(slopes), len(self.model_parameters)))
                 block[:, self.index[i]] = slopes
                 blocks.append(block)
         return blocks
@@ -190,18 +190,18 @@ class System:
         """Number of paired modes."""
         return sum(len(s.number) for s in self.specimens)
 
-    def _per_log(self, specimen: Specimen, look: Look) -> FloatArray:
+    def _per_log(self, specimen: Specimen, evaluation: Evaluation) -> FloatArray:
         if self.quantity == "frequency":
-            return look.frequency / specimen.measured.frequency
-        return 2 * (2 * np.pi * look.frequency) ** 2
+            return evaluation.frequency / specimen.measured.frequency
+        return 2 * (2 * np.pi * evaluation.frequency) ** 2
 
     def whitened(self, linear: Linear) -> FloatArray:
         """Return the sensitivities of ln f over what the measurement is good for, used modes only, (n, p) [-]."""
         rows = []
         end = 0
-        for specimen, look in zip(self.specimens, linear.looks, strict=True):
-            begin, end = end, end + len(look.frequency)
-            per_log = self._per_log(specimen, look)[:, None]
+        for specimen, evaluation in zip(self.specimens, linear.evaluations, strict=True):
+            begin, end = end, end + len(evaluation.frequency)
+            per_log = self._per_log(specimen, evaluation)[:, None]
             rows.append(
                 linear.sensitivity[begin:end] / per_log / np.sqrt(specimen.relative_variance)[:, None]
             )
@@ -220,9 +220,9 @@ class System:
         both = zip(self.specimens, factors, strict=True)
         return replace(self, specimens=tuple(s.corrected(s.correction * f) for s, f in both))
 
-    def settled(self, theta: FloatArray, looks: tuple[Look, ...]) -> System:
+    def settled(self, theta: FloatArray, evaluations: tuple[Evaluation, ...]) -> System:
         """Return the problem with the errors of points and calibration judged at a solution."""
-        both = enumerate(zip(self.specimens, looks, strict=True))
+        both = enumerate(zip(self.specimens, evaluations, strict=True))
         own = [s.settled(self.values(theta, i), k) if s.measured.has_shapes else s for i, (s, k) in both]
         return replace(self, specimens=tuple(own))
 

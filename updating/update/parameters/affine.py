@@ -17,7 +17,7 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.models.base import Structure
 from updating.models.reduced import Reduced
 from updating.models.state import State
-from updating.update.parameters.parameters import Knob
+from updating.update.parameters.parameters import ModelParameter
 
 NONE = frozenset[str]()
 """The releases of clamps that leave them all in place."""
@@ -47,22 +47,22 @@ class Group:
         return not any(self.powers)
 
 
-def groups(structure: Structure, knobs: Sequence[Knob]) -> tuple[Group, ...]:
+def groups(structure: Structure, model_parameters: Sequence[ModelParameter]) -> tuple[Group, ...]:
     """Sort a model's terms and regions into what the parameters scale alike."""
     found: dict[tuple[str, tuple[float, ...]], list[tuple[int, int]]] = {}
     for i, term in enumerate(structure.terms):
         for region in range(len(structure.spec.regions) + 1):
             powers = tuple(
                 term.powers.get(str(k.factor), 0.0) if not k.regions or region in k.regions else 0.0
-                for k in knobs
+                for k in model_parameters
             )
             found.setdefault((term.kind, powers), []).append((i, region))
     return tuple(Group(kind, powers, tuple(where)) for (kind, powers), where in found.items())
 
 
-def eligible(knobs: Sequence[Knob]) -> bool:
+def eligible(model_parameters: Sequence[ModelParameter]) -> bool:
     """Whether all parameters are factors of the model, or of no concern to its frequencies."""
-    return all(not k.effect for k in knobs)
+    return all(not k.effect for k in model_parameters)
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,14 +168,14 @@ class Affine:
         return np.asarray(np.sum((self.parts[kind] @ vectors) * vectors, axis=1) * scale[:, None])
 
 
-def affine(reduced: Reduced, knobs: Sequence[Knob], base: State) -> Affine:
+def affine(reduced: Reduced, model_parameters: Sequence[ModelParameter], base: State) -> Affine:
     """Sum the parts of a reduced model that parameters scale alike.
 
     Parameters
     ----------
     reduced : Reduced
         The model.
-    knobs : sequence of Knob
+    model_parameters : sequence of Knob
         Parameters; see :func:`eligible`.
     base : State
         What is in the model beforehand; must release no clamp.
@@ -188,7 +188,7 @@ def affine(reduced: Reduced, knobs: Sequence[Knob], base: State) -> Affine:
             constant[kind] += matrix[:n, :n]
     parts: dict[str, list[FloatArray]] = {"stiffness": [], "mass": []}
     powers: dict[str, list[tuple[float, ...]]] = {"stiffness": [], "mass": []}
-    for group in groups(reduced.structure, knobs):
+    for group in groups(reduced.structure, model_parameters):
         total = _total(reduced, group, base)[:n, :n]
         if group.constant:
             constant[group.kind] += total
@@ -198,7 +198,7 @@ def affine(reduced: Reduced, knobs: Sequence[Knob], base: State) -> Affine:
     return Affine(
         constant,
         {kind: np.array(p).reshape(-1, n, n) for kind, p in parts.items()},
-        {kind: np.array(p).reshape(-1, len(knobs)) for kind, p in powers.items()},
+        {kind: np.array(p).reshape(-1, len(model_parameters)) for kind, p in powers.items()},
     )
 
 

@@ -13,7 +13,7 @@ from updating.models.reduced import SMALL, Reduced
 from updating.models.state import NOMINAL, State
 from updating.models.structure import FieldStructure
 from updating.update.parameters.affine import NONE, Group, groups
-from updating.update.parameters.parameters import Knob
+from updating.update.parameters.parameters import ModelParameter
 
 RANGE = 1.6
 """Modes up to so many times the highest measured frequency are looked at."""
@@ -30,7 +30,7 @@ SAME = 1e-12
 
 def update_basis(
     structure: FieldStructure,
-    knobs: Sequence[Knob],
+    model_parameters: Sequence[ModelParameter],
     *,
     highest: float,
     count: int,
@@ -47,7 +47,7 @@ def update_basis(
     ----------
     structure : Structure
         The full model.
-    knobs : sequence of Knob
+    model_parameters : sequence of Knob
         The parameters.
     highest : float
         Highest measured frequency [Hz].
@@ -60,7 +60,7 @@ def update_basis(
     """
     stiffness, mass = structure.matrices(state)
     values, modes, solver = _modes(structure, stiffness, mass, highest, count)
-    changed = [g for g in groups(structure, knobs) if not g.constant]
+    changed = [g for g in groups(structure, model_parameters) if not g.constant]
     if modes.shape[1] == len(structure.free()) or not changed:
         return Reduced(structure, modes, {NONE: modes.shape[1]})
     first, each = structure.rigid_modes, max(2, answers[0] // len(changed))

@@ -42,7 +42,7 @@ UNTOLD = np.log(2.0)
 
 
 @dataclass(frozen=True, eq=False)
-class Knob:
+class ModelParameter:
     """One parameter of one specimen, and how it enters the model.
 
     The solution runs in a *coordinate*: the logarithm of a factor, the value itself for other parameters,
@@ -120,34 +120,38 @@ class Knob:
 
 
 @dataclass(frozen=True, eq=False)
-class Panel:
+class ParameterSet:
     """All knobs of one specimen.
 
     Parameters
     ----------
-    knobs : tuple of Knob
+    model_parameters : tuple of Knob
         The parameters to be updated.
     fixed : mapping of str to mapping
         Values of parameters that stay, by effect: those of effects only some of whose parameters are updated.
     """
 
-    knobs: tuple[Knob, ...]
+    model_parameters: tuple[ModelParameter, ...]
     fixed: Mapping[str, Mapping[str, float]] = field(default_factory=lambda: MappingProxyType({}))
 
     def state(self, predictor: Predictor, values: Sequence[float]) -> State:
         """Return the departure from the nominal model at given factors and values."""
         state = State()
         effects: dict[str, dict[str, float]] = {}
-        for knob, value in zip(self.knobs, values, strict=True):
-            if knob.effect:
-                effects.setdefault(knob.effect, dict(self.fixed.get(knob.effect, {})))[knob.parameter] = value
-            elif knob.damper is not None:
-                where = knob.regions or (WHOLE,)
-                state = state.plus(State(dampers={(i, knob.damper): value for i in where}))
-            elif knob.regions:
-                state = state.plus(State(regional={(i, str(knob.factor)): value for i in knob.regions}))
+        for model_parameter, value in zip(self.model_parameters, values, strict=True):
+            if model_parameter.effect:
+                effects.setdefault(model_parameter.effect, dict(self.fixed.get(model_parameter.effect, {})))[
+                    model_parameter.parameter
+                ] = value
+            elif model_parameter.damper is not None:
+                where = model_parameter.regions or (WHOLE,)
+                state = state.plus(State(dampers={(i, model_parameter.damper): value for i in where}))
+            elif model_parameter.regions:
+                state = state.plus(
+                    State(regional={(i, str(model_parameter.factor)): value for i in model_parameter.regions})
+                )
             else:
-                state = state.plus(State(factors={str(knob.factor): value}))
+                state = state.plus(State(factors={str(model_parameter.factor): value}))
         for name, given in effects.items():
             state = state.plus(LIBRARY[name].state(predictor, given))
         return state
@@ -155,18 +159,20 @@ class Panel:
     def effects(self, values: Sequence[float]) -> dict[str, dict[str, float]]:
         """Return the values of the effects among the knobs, by effect."""
         found: dict[str, dict[str, float]] = {}
-        for knob, value in zip(self.knobs, values, strict=True):
-            if knob.effect:
-                found.setdefault(knob.effect, dict(self.fixed.get(knob.effect, {})))[knob.parameter] = value
+        for model_parameter, value in zip(self.model_parameters, values, strict=True):
+            if model_parameter.effect:
+                found.setdefault(model_parameter.effect, dict(self.fixed.get(model_parameter.effect, {})))[
+                    model_parameter.parameter
+                ] = value
         return found
 
 
-def build_panel(
+def build_parameter_set(
     names: Sequence[str],
     predictor: Predictor,
     tolerances: Tolerances,
     fixed: Mapping[str, Mapping[str, float]],
-) -> Panel:
+) -> ParameterSet:
     """Find the knobs that names stand for.
 
     Parameters
@@ -186,22 +192,22 @@ def build_panel(
     StudyError
         If a name means nothing, stands twice, or cannot be examined on this specimen.
     """
-    knobs: list[Knob] = []
+    model_parameters: list[ModelParameter] = []
     for name in names:
-        knobs += _knobs(name, predictor, tolerances)
-    if not knobs:
+        model_parameters += _model_parameters(name, predictor, tolerances)
+    if not model_parameters:
         raise StudyError('update: no parameters; name some, for instance parameters = ["E"]')
-    seen = [knob.name for knob in knobs]
+    seen = [model_parameter.name for model_parameter in model_parameters]
     if twice := sorted({n for n in seen if seen.count(n) > 1}):
         raise StudyError(f"update: parameter {twice[0]!r} stands twice; name each once")
-    panel = Panel(tuple(knobs), fixed)
-    _check_complete(panel, predictor)
-    return panel
+    parameter_set = ParameterSet(tuple(model_parameters), fixed)
+    _check_complete(parameter_set, predictor)
+    return parameter_set
 
 
-def _check_complete(panel: Panel, predictor: Predictor) -> None:
+def _check_complete(parameter_set: ParameterSet, predictor: Predictor) -> None:
     """See that every effect with a knob has all its parameters."""
-    for name, given in panel.effects([k.start for k in panel.knobs]).items():
+    for name, given in parameter_set.effects([k.start for k in parameter_set.model_parameters]).items():
         missing = {p.name for p in LIBRARY[name].parameters(predictor) if p.default is None} - set(given)
         if missing:
             raise StudyError(
@@ -210,7 +216,7 @@ def _check_complete(panel: Panel, predictor: Predictor) -> None:
             )
 
 
-def _knobs(name: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob]:
+def _model_parameters(name: str, predictor: Predictor, tolerances: Tolerances) -> list[ModelParameter]:
     spec = predictor.spec
     head, _, tail = name.rpartition(".") if "." in name else (name, "", "")
     places = tuple(i for i, region in enumerate(spec.regions) if region.name == head)
@@ -233,7 +239,7 @@ def _knobs(name: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob
     )
 
 
-def _whole(name: str, spec: Spec, tolerances: Tolerances) -> Knob:
+def _whole(name: str, spec: Spec, tolerances: Tolerances) -> ModelParameter:
     _check_scales(name, name, spec)
     nominal = {
         "E": spec.material.E,
@@ -246,7 +252,9 @@ def _whole(name: str, spec: Spec, tolerances: Tolerances) -> Knob:
     )
 
 
-def _regional(name: str, places: tuple[int, ...], prop: str, spec: Spec, tolerances: Tolerances) -> Knob:
+def _regional(
+    name: str, places: tuple[int, ...], prop: str, spec: Spec, tolerances: Tolerances
+) -> ModelParameter:
     if prop not in REGIONAL or (prop in ("area", "inertia") and spec.kind != "beam"):
         choice = ", ".join(n for n in REGIONAL if spec.kind == "beam" or n not in ("area", "inertia"))
         raise StudyError(
@@ -285,7 +293,7 @@ def _general(prop: str, region: Region, spec: Spec) -> float:
     }[prop]
 
 
-def _damper(name: str, coefficient: str, predictor: Predictor, places: tuple[int, ...]) -> Knob:
+def _damper(name: str, coefficient: str, predictor: Predictor, places: tuple[int, ...]) -> ModelParameter:
     """Return a coefficient of damping, never negative, on the scale that gives a per cent within the test's band."""
     spec = predictor.spec
     given = getattr(spec.damping, coefficient)
@@ -294,7 +302,7 @@ def _damper(name: str, coefficient: str, predictor: Predictor, places: tuple[int
         given = given if own is None else own
     omega = 2 * np.pi * predictor.measured.frequency
     scale = MIDDLING * {"alpha": 2 * omega.min(), "beta": 2 / omega.max(), "loss_factor": 2.0}[coefficient]
-    return Knob(
+    return ModelParameter(
         name, DAMPERS[coefficient], 1.0, float(given or 0.0), 0.0, MOST * scale, scale, tolerated=False,
         log=False, damper=coefficient, regions=places,
     )  # fmt: skip
@@ -302,28 +310,30 @@ def _damper(name: str, coefficient: str, predictor: Predictor, places: tuple[int
 
 def _factor(
     name: str, unit: str, nominal: float, tolerance: float, factor: str, regions: tuple[int, ...]
-) -> Knob:
+) -> ModelParameter:
     low, high = FACTOR_RANGE
     doubt = tolerance or UNTOLD
-    return Knob(
+    return ModelParameter(
         name, unit, nominal, 1.0, low, high, doubt, tolerance > 0, log=True, factor=factor, regions=regions
     )
 
 
-def _effect(name: str, effect: Effect, tail: str, predictor: Predictor, tolerances: Tolerances) -> list[Knob]:
+def _effect(
+    name: str, effect: Effect, tail: str, predictor: Predictor, tolerances: Tolerances
+) -> list[ModelParameter]:
     obstacle = effect.why_not(predictor)
     if obstacle is not None:
         raise StudyError(f"update: {effect.name} cannot be updated: {obstacle}")
     parameters = effect.parameters(predictor)
-    told = [
+    stated = [
         p for p in parameters if p.default is None
     ]  # what has a default is updated only where it is named
-    chosen = [p for p in parameters if p.name == tail] if tail else told
+    chosen = [p for p in parameters if p.name == tail] if tail else stated
     if not chosen:
         own = ", ".join(p.name for p in parameters) or "none"
         raise StudyError(f"update: {effect.name} has no parameter {tail!r} (it has: {own})")
-    alone = len(told) == 1 and chosen == told
-    knobs = []
+    alone = len(stated) == 1 and chosen == stated
+    model_parameters = []
     for p in chosen:
         low, high = (p.low, p.high) if effect.channel != "mass" or p.name != "mass" else (0.0, p.high)
         log = p.log and low > 0 and (p.name == "factor" or high > 1e3 * low)
@@ -331,24 +341,24 @@ def _effect(name: str, effect: Effect, tail: str, predictor: Predictor, toleranc
             1.0 if p.name in ("factor", "gain") else (0.0 if low <= 0 <= high else float(np.sqrt(low * high)))
         )
         width = np.log(high / low) if log else high - low
-        knob = Knob(
+        model_parameter = ModelParameter(
             effect.name if alone else f"{effect.name}.{p.name}",
             p.unit, 1.0, start, low, high, float(width / np.sqrt(12)), False, log,
             effect=effect.name, parameter=p.name,
         )  # fmt: skip
-        knobs.append(_told(knob, predictor.spec, tolerances))
-    return knobs
+        model_parameters.append(_stated(model_parameter, predictor.spec, tolerances))
+    return model_parameters
 
 
-def _told(knob: Knob, spec: Spec, tolerances: Tolerances) -> Knob:
+def _stated(model_parameter: ModelParameter, spec: Spec, tolerances: Tolerances) -> ModelParameter:
     """Give the extension of the length its tolerance, and its place among the model's factors."""
-    if knob.effect != "length":
-        return knob
+    if model_parameter.effect != "length":
+        return model_parameter
     tolerance = tolerances.factors.get("length", 0.0) * spec.length
     return replace(
-        knob,
+        model_parameter,
         factor="length",
         reach=1 / spec.length,
-        doubt=tolerance or knob.doubt,
+        doubt=tolerance or model_parameter.doubt,
         tolerated=tolerance > 0,
     )

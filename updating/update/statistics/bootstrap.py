@@ -127,7 +127,7 @@ def bootstrap(
 
 def _repeat(fitted: Fitted, rng: np.random.Generator, n: int, given: Sequence[FloatArray | None]) -> Draws:
     system, theta = fitted.system.around(fitted.solution.theta), fitted.solution.theta
-    system.looks(theta)  # what all draws share is worked out before the first
+    system.evaluations(theta)  # what all draws share is worked out before the first
     if len(given) != len(system.specimens):
         raise StudyError(
             f"bootstrap: redrawn frequencies for {len(given)} of {len(system.specimens)} studies; give one set, or "
@@ -143,7 +143,7 @@ def _repeat(fitted: Fitted, rng: np.random.Generator, n: int, given: Sequence[Fl
         coordinates[i] = solution.theta
         rested += solution.converged
     values = np.stack(
-        [[k.value(t) for t in c] for k, c in zip(system.knobs, coordinates.T, strict=True)], axis=1
+        [[k.value(t) for t in c] for k, c in zip(system.model_parameters, coordinates.T, strict=True)], axis=1
     )
     return Draws(np.hstack(frequency), centre, coordinates, values, rested)
 
@@ -175,7 +175,7 @@ def _redrawn_shapes(specimen: Specimen, rng: np.random.Generator) -> FloatArray:
 def _with_intervals(update: Update, system: System, draws: Draws) -> Update:
     tails = (1 - LEVEL) / 2
     low, high = np.quantile(draws.values, [tails, 1 - tails], axis=0)
-    nominal = np.array([k.nominal for k in system.knobs])
+    nominal = np.array([k.nominal for k in system.model_parameters])
     ends = zip(update.parameters, low * nominal, high * nominal, strict=True)
     parameters = tuple(_interval(p, float(a), float(b)) for p, a, b in ends)
     warnings = list(update.warnings)

@@ -61,10 +61,10 @@ def assess(system: System, linear: Linear, theta: FloatArray) -> Statistics:
     chi^2 / dof where the misfit is beyond what the measurement explains. With any other weights the scatter of
     the residuals stands in for the measurement's variance.
     """
-    told = _told(system, linear)
-    undetermined = told.alone > 1.0
-    both = zip(linear.looks, system.specimens, strict=True)
-    residual = np.concatenate([1 - look.frequency / s.measured.frequency for look, s in both])
+    stated = _stated(system, linear)
+    undetermined = stated.alone > 1.0
+    both = zip(linear.evaluations, system.specimens, strict=True)
+    residual = np.concatenate([1 - evaluation.frequency / s.measured.frequency for evaluation, s in both])
     variance = np.concatenate([s.relative_variance for s in system.specimens])
     behind = system.count_of_frequencies
     chi2 = float(np.sum((residual**2 / variance)[system.used]))
@@ -79,10 +79,10 @@ def assess(system: System, linear: Linear, theta: FloatArray) -> Statistics:
     covariance[hopeless, :] = 0.0
     covariance[:, hopeless] = 0.0
     covariance[hopeless, hopeless] = np.inf
-    couplings = tuple(replace(c, sigma=tuple(inflation * v for v in c.sigma)) for c in told.couplings)
-    told = replace(told, couplings=couplings)
+    couplings = tuple(replace(c, sigma=tuple(inflation * v for v in c.sigma)) for c in stated.couplings)
+    stated = replace(stated, couplings=couplings)
     strain = _strain(system, theta)
-    return Statistics(covariance, undetermined, chi2, dof, inflation, told, strain, beliefs)
+    return Statistics(covariance, undetermined, chi2, dof, inflation, stated, strain, beliefs)
 
 
 def _strain(system: System, theta: FloatArray) -> float:
@@ -95,17 +95,17 @@ def _strain(system: System, theta: FloatArray) -> float:
     return float(np.sqrt(moved / count))
 
 
-def _told(system: System, linear: Linear) -> Determinability:
+def _stated(system: System, linear: Linear) -> Determinability:
     """Return what the data determine at the solution, and what explains the nominal model's residual."""
-    looks = system.looks(system.start)
-    start = system.linear(system.start, looks)
-    both, behind = zip(looks, system.specimens, strict=True), system.count_of_frequencies
+    evaluations = system.evaluations(system.start)
+    start = system.linear(system.start, evaluations)
+    both, behind = zip(evaluations, system.specimens, strict=True), system.count_of_frequencies
     residual = [(1 - k.frequency / s.measured.frequency) / np.sqrt(s.relative_variance) for k, s in both]
     return determinability(
         system.whitened(linear) * system.doubt,
         system.names,
         doubt=system.doubt,
-        log=np.array([k.log for k in system.knobs]),
+        log=np.array([k.log for k in system.model_parameters]),
         at_start=system.whitened(start) * system.doubt,
         residual=np.concatenate(
             [np.concatenate(residual)[system.used], np.sqrt(start.weight[behind:]) * start.residual[behind:]]
@@ -118,7 +118,7 @@ def _covariance(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the covariance of Eq. 25's linear answer to errors of the data, and to errors of the tolerances."""
     per_log = np.concatenate(
-        [system._per_log(s, k) for k, s in zip(linear.looks, system.specimens, strict=True)]
+        [system._per_log(s, k) for k, s in zip(linear.evaluations, system.specimens, strict=True)]
     )
     behind = inflation**2 / linear.weight[len(variance) :]
     noise = np.concatenate([variance * per_log**2, behind])

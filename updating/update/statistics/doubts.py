@@ -9,7 +9,7 @@ import numpy as np
 
 from updating.effects.box import mirror_images
 from updating.prediction.assignment import mac_of_constants
-from updating.update.data.specimen import Look, Specimen
+from updating.update.data.specimen import Evaluation, Specimen
 from updating.update.data.system import System
 from updating.update.solve import Solution
 
@@ -31,12 +31,12 @@ def doubts(system: System, solution: Solution, dof: int) -> Iterator[str]:
         Data less parameters that no tolerance holds [-].
     """
     if dof <= 0:
-        yield untested(system.count, len(system.knobs))
-    for specimen, look, index in zip(system.specimens, solution.looks, system.index, strict=True):
-        yield from _poor_pairs(specimen, look)
+        yield untested(system.count, len(system.model_parameters))
+    for specimen, evaluation, index in zip(system.specimens, solution.evaluations, system.index, strict=True):
+        yield from _poor_pairs(specimen, evaluation)
         if not system.shapes:
-            knobs = specimen.panel.knobs
-            at = [k.value(float(t)) for k, t in zip(knobs, solution.theta[index], strict=True)]
+            model_parameters = specimen.parameter_set.model_parameters
+            at = [k.value(float(t)) for k, t in zip(model_parameters, solution.theta[index], strict=True)]
             yield from _mirrored(specimen, at)
 
 
@@ -48,12 +48,12 @@ def untested(data: int, parameters: int) -> str:
     )
 
 
-def _poor_pairs(specimen: Specimen, look: Look) -> Iterator[str]:
+def _poor_pairs(specimen: Specimen, evaluation: Evaluation) -> Iterator[str]:
     """Name the pairs whose shapes do not agree, by the channels by which modes were paired."""
     test = specimen.measured
     if not test.has_shapes:
         return
-    mac = np.diag(mac_of_constants(test, look.prediction, test.trusted))
+    mac = np.diag(mac_of_constants(test, evaluation.prediction, test.trusted))
     poor = np.flatnonzero(mac < POOR_MAC)
     if len(poor):
         named = ", ".join(f"{specimen.number[i]} (MAC {mac[i]:.2f})" for i in poor[:6].tolist())
@@ -67,9 +67,9 @@ def _mirrored(specimen: Specimen, values: list[float]) -> Iterator[str]:
     """Name places that have a mirror image which frequencies do not tell from them, known masses left aside."""
     spec = replace(specimen.predictor.spec, masses=())
     found: dict[str, dict[str, float]] = {}
-    for knob, value in zip(specimen.panel.knobs, values, strict=True):
-        if knob.effect and knob.parameter in ("x", "y"):
-            found.setdefault(knob.effect, {})[knob.parameter] = value
+    for model_parameter, value in zip(specimen.parameter_set.model_parameters, values, strict=True):
+        if model_parameter.effect and model_parameter.parameter in ("x", "y"):
+            found.setdefault(model_parameter.effect, {})[model_parameter.parameter] = value
     for effect, at in found.items():
         here = (at.get("x", 0.0), at.get("y", 0.0), 0.0)
         for x, y, _ in mirror_images(spec, here)[1:]:

@@ -12,10 +12,10 @@ import numpy as np
 from scipy.stats import chi2, norm, qmc
 
 from acquisition.arrays import FloatArray
-from updating.update.data.specimen import Look, Specimen
+from updating.update.data.specimen import Evaluation, Specimen
 from updating.update.data.system import System
 from updating.update.parameters.affine import eligible
-from updating.update.parameters.parameters import Knob
+from updating.update.parameters.parameters import ModelParameter
 from updating.update.result import Estimate
 from updating.update.solve import Solution, solve
 from updating.update.statistics.mixture import NOTICED, Mixture, laplace
@@ -75,7 +75,7 @@ def best_solution(system: System) -> tuple[Solution, Others]:
         The problem.
     """
     first = solve(system)
-    plain = all(eligible(s.panel.knobs) for s in system.specimens)
+    plain = all(eligible(s.parameter_set.model_parameters) for s in system.specimens)
     if not plain or not np.all(system.prior > 0):
         return first, NONE
     doubtful = _doubtful(system, first)
@@ -97,20 +97,22 @@ def mixture(system: System, best: Solution, covariance: FloatArray, others: Othe
     """Weigh the solutions against one another; ``covariance`` (p, p) is that about the best."""
     about = [covariance]
     for solution in others.solutions:
-        linear = system.linear(solution.theta, system.looks(solution.theta))
+        linear = system.linear(solution.theta, system.evaluations(solution.theta))
         scaled = np.sqrt(linear.weight)[:, None] * linear.sensitivity
         about.append(np.asarray(np.linalg.inv(scaled.T @ scaled + np.diag(system.prior))))
     centre = np.stack([best.theta, *(s.theta for s in others.solutions)])
     return laplace(np.append(0.0, others.cost), centre, np.stack(about))
 
 
-def within(estimate: Estimate, knob: Knob, several: Mixture, index: int) -> Estimate:
+def within(estimate: Estimate, model_parameter: ModelParameter, several: Mixture, index: int) -> Estimate:
     """Return an estimate with the interval that holds all solutions."""
-    low, high = (knob.nominal * knob.value(float(end)) for end in several.interval()[index])
+    low, high = (
+        model_parameter.nominal * model_parameter.value(float(end)) for end in several.interval()[index]
+    )
     return replace(estimate, interval=(low, high))
 
 
-def said(system: System, several: Mixture | None) -> tuple[str, ...]:
+def statement(system: System, several: Mixture | None) -> tuple[str, ...]:
     """Say which parameters other solutions turn otherwise."""
     if several is None:
         return ()
@@ -138,10 +140,10 @@ def _starts(system: System, power: int) -> list[FloatArray]:
 
 def _doubtful(system: System, solution: Solution) -> bool:
     """Tell whether frequencies, shapes, or all data together are missed by more than chance allows."""
-    left = float(system.weight @ system.residual(solution.looks) ** 2)
+    left = float(system.weight @ system.residual(solution.evaluations) ** 2)
     if system.shapes and chi2.sf(left, system.count) < IMPROBABLE:
         return True
-    both = zip(system.specimens, solution.looks, strict=True)
+    both = zip(system.specimens, solution.evaluations, strict=True)
     parts = [(_frequency_misfit(s, k), len(k.frequency), *shape_misfit(s, k)) for s, k in both]
     wrong = sum(p[0] for p in parts), sum(p[1] for p in parts)
     shapes = sum(p[2] for p in parts), sum(p[3] for p in parts)
@@ -149,15 +151,17 @@ def _doubtful(system: System, solution: Solution) -> bool:
 
 
 def _price(system: System, solution: Solution) -> float:
-    shapes = [shape_misfit(s, k)[0] for s, k in zip(system.specimens, solution.looks, strict=True)]
-    return system.cost(solution.theta, solution.looks) + float(sum(shapes))
+    shapes = [shape_misfit(s, k)[0] for s, k in zip(system.specimens, solution.evaluations, strict=True)]
+    return system.cost(solution.theta, solution.evaluations) + float(sum(shapes))
 
 
-def _frequency_misfit(specimen: Specimen, look: Look) -> float:
-    return float(np.sum((1 - look.frequency / specimen.measured.frequency) ** 2 / specimen.relative_variance))
+def _frequency_misfit(specimen: Specimen, evaluation: Evaluation) -> float:
+    return float(
+        np.sum((1 - evaluation.frequency / specimen.measured.frequency) ** 2 / specimen.relative_variance)
+    )
 
 
-def shape_misfit(specimen: Specimen, look: Look) -> tuple[float, int]:
+def shape_misfit(specimen: Specimen, evaluation: Evaluation) -> tuple[float, int]:
     """Return the misfit of the shapes up to a factor per mode, in variances, and its degrees of freedom.
 
     The variance is that of the constants with the error of the points hit left to ``SHAPE_ERROR``.
@@ -165,7 +169,7 @@ def shape_misfit(specimen: Specimen, look: Look) -> tuple[float, int]:
     test = specimen.measured
     if not test.has_shapes:
         return 0.0, 0
-    a, b = test.constants, look.prediction.constants
+    a, b = test.constants, evaluation.prediction.constants
     own = SHAPE_ERROR**2 * np.mean(a**2, axis=0, keepdims=True)
     weight = 1 / (test.constants_sigma**2 + own)
     scale = np.sum(weight * a * b, axis=0) / np.maximum(np.sum(weight * b * b, axis=0), 1e-300)

@@ -36,7 +36,7 @@ class Wetted:
         Added mass between these places for unit density: symmetric, positive definite [m3].
     jump : (n, n) array
         Jump of potential over a panel for unit velocity of another [m].
-    grams : two arrays
+    gram_matrices : two arrays
         What integrates the squared slope of the jump along x, as factors along x and across [1/m], [m].
     turned : two arrays
         Likewise its slope along y [m], [1/m].
@@ -45,7 +45,7 @@ class Wetted:
     places: FloatArray
     matrix: FloatArray
     jump: FloatArray
-    grams: tuple[FloatArray, FloatArray]
+    gram_matrices: tuple[FloatArray, FloatArray]
     turned: tuple[FloatArray, FloatArray]
 
     def slip(self, velocity: FloatArray) -> FloatArray:
@@ -61,9 +61,9 @@ class Wetted:
         (n_modes, n_modes) array
             The potential is half its jump on either side [m4/s2].
         """
-        jump = (self.jump @ velocity).reshape(len(self.grams[0]), len(self.grams[1]), -1)
+        jump = (self.jump @ velocity).reshape(len(self.gram_matrices[0]), len(self.gram_matrices[1]), -1)
         whole = np.zeros((velocity.shape[1],) * 2)
-        for along, across in (self.grams, self.turned):
+        for along, across in (self.gram_matrices, self.turned):
             whole += np.einsum(
                 "ijr,ijs->rs", jump, np.einsum("ik,kls,jl->ijs", along, jump, across, optimize=True)
             )
