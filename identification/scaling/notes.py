@@ -122,8 +122,8 @@ def _negative(point: str, wrong: IntArray, others: np.bool_) -> str:
     statement = f"the drive point {point} has a negative modal constant in mode(s) {_listed(wrong)}"
     if others:
         return Consequential(
-            f"{statement} and a positive one in others: hit and sensor cannot have been at one place, so it gives the mode "
-            "shapes no scale; check the node numbers"
+            f"{statement} and a positive one in others: hit and sensor cannot have been at one place, "
+            "so it gives the mode shapes no scale; check the node numbers"
         )
     return Consequential(f"{statement}: check the direction signs of hammer and sensor")
 

@@ -81,12 +81,12 @@ def _show(made: SimulatedTest) -> None:
     ]
     if rows:
         show_table(pd.DataFrame(rows), "In it, beyond the study's model")
-    plan = made.test_setup.plan
+    plan, (low, high) = made.test_setup.plan, made.test_setup.band
     count = sum(len(test.points) for test in made.tests)
     out.print(
         f"{counted(plan.hits, 'hit')} at each of {counted(count, 'point')}, "
         f"{counted(len(dict.fromkeys(made.test_setup.responses)), 'response')} ({plan.form}); "
-        f"{plan.samples} samples at {plan.rate:g} Hz, band {made.test_setup.band[0]:g} to {made.test_setup.band[1]:g} Hz."
+        f"{plan.samples} samples at {plan.rate:g} Hz, band {low:g} to {high:g} Hz."
     )
     noise = (
         f"{plan.response_noise:g} of each record"

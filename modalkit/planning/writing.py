@@ -43,7 +43,12 @@ _OF_RECORDS = ("exponential_window",)
 
 
 def write_scene(
-    scene: Scene, before: Scene, known_test: KnownTest, folder: Path, *, rngs: tuple[np.random.Generator, np.random.Generator]
+    scene: Scene,
+    before: Scene,
+    known_test: KnownTest,
+    folder: Path,
+    *,
+    rngs: tuple[np.random.Generator, np.random.Generator],
 ) -> Path:  # fmt: skip
     """Write the files of a test, with modes alone where the user's data are no more.
 

@@ -24,7 +24,8 @@ def systems(model: Simulated, test_setup: TestSetup, state: State = NOMINAL) -> 
     Parameters
     ----------
     model : Simulated
-        The model; where points were misplaced, seen from all places of :func:`updating.test_data.chain.measurement_chain`.
+        The model; where points were misplaced, seen from all places of
+        :func:`updating.test_data.chain.measurement_chain`.
     test_setup : Rig
         How it is hit.
     state : State

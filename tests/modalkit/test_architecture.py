@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import ast
+import io
+import re
 import subprocess
 import sys
+import tokenize
 from pathlib import Path
 
 import pytest
@@ -54,3 +57,48 @@ def test_nothing_is_plotted_below_the_face() -> None:
 def test_pyplot_and_its_global_state_are_not_used() -> None:
     for path in sources(*ROOMS):
         assert "matplotlib.pyplot" not in imported(path), path
+
+
+PRIVATE = {
+    *(
+        "said",
+        "says",
+        "told",
+        "tell",
+        "tells",
+        "heard",
+        "hears",
+        "look",
+        "looks",
+        "looking",
+        "climb",
+        "climbs",
+    ),
+    *(
+        "seat",
+        "seats",
+        "knob",
+        "knobs",
+        "whiten",
+        "weighed",
+        "secret",
+        "posed",
+        "shortfall",
+        "thinned",
+        "thinning",
+    ),
+    *("leftover", "overrule", "remark", "remarks", "handling", "grams"),
+}
+"""Words of which docs/nomenclature.md says what the field calls them."""
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_names_are_words_of_the_field(room: str) -> None:
+    for path in sources(room):
+        names = {
+            token.string
+            for token in tokenize.generate_tokens(io.StringIO(path.read_text(encoding="utf-8")).readline)
+            if token.type == tokenize.NAME
+        }
+        parts = {name: {part.lower() for part in re.findall(r"[A-Z]?[a-z]+", name)} for name in names}
+        assert not {name for name in names if parts[name] & PRIVATE}, path

@@ -276,7 +276,8 @@ def _solve(
     number, parameter_set = numbered
     if len(parameter_set.model_parameters) > 2 * frfs.values.size:
         raise StudyError(
-            f"update: {len(parameter_set.model_parameters)} parameters and {2 * frfs.values.size} data; name fewer parameters"
+            f"update: {len(parameter_set.model_parameters)} parameters and {2 * frfs.values.size} data; "
+            "name fewer parameters"
         )
     latest = {step.number: step for step in done}
     others = NOMINAL

@@ -161,6 +161,7 @@ def on_levels(measured: Measured, *, fluid: bool) -> list[str]:
     stated = f"frequencies follow the force of the hits: {size:+.2g} % on average at {measured.level:.3g} N"
     if fluid:
         return [
-            f"{stated}; so the fluid is not still, or a joint is not linear: added mass for small motion is at its limit"
+            f"{stated}; so the fluid is not still, or a joint is not linear: "
+            "added mass for small motion is at its limit"
         ]
     return [f"{stated}: the structure is not linear at the level of this test; hit more softly"]
