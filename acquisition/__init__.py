@@ -8,9 +8,10 @@ if TYPE_CHECKING:
     from acquisition.columns import Layout, layout_from, read_columns, read_frf_columns, read_layout
     from acquisition.dof import Dof
     from acquisition.errors import EstimationError, InputError, ModalkitError, StudyError
+    from acquisition.form import FORMS
     from acquisition.frfs.bootstrap import bootstrap_frfs
     from acquisition.frfs.estimators import estimate_frfs, random_error
-    from acquisition.frfs.frf import FORMS, FrfSet
+    from acquisition.frfs.frf import FrfSet
     from acquisition.frfs.reciprocity import reciprocity
     from acquisition.frfs.scatter import HitGroup, HitScatter, variance_of_groups
     from acquisition.frfs.sensor_mass import remove_sensor_mass
@@ -109,7 +110,8 @@ load_on_demand(
         ".dof": "Dof",
         ".errors": "EstimationError InputError ModalkitError StudyError",
         ".frfs.estimators": "estimate_frfs random_error",
-        ".frfs.frf": "FORMS FrfSet",
+        ".form": "FORMS",
+        ".frfs.frf": "FrfSet",
         ".geometry": "Geometry",
         ".hits.hammer": "HammerTest Hits",
         ".mat.read": "read_mat",

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from acquisition.columns.mat_layout import MatLayout, mat_layout
 from acquisition.columns.units import QUANTITIES
 from acquisition.dof import Dof
 from acquisition.encoding import not_utf8
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
-from acquisition.mat.layout import MatLayout, mat_layout
 from acquisition.si_units import si_value
 
 DIRECTIONS = {"x": 1, "y": 2, "z": 3, "rx": 4, "ry": 5, "rz": 6}

@@ -17,7 +17,7 @@ from acquisition.columns.units import QUANTITIES, factor_to_si
 from acquisition.display import named_files
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from acquisition.frfs.frf import Form
+from acquisition.form import Form
 from acquisition.geometry import Geometry
 from acquisition.hits.hammer import HammerTest, Hits
 

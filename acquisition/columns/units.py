@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from acquisition.errors import InputError
-from acquisition.frfs.frf import Form
+from acquisition.form import Form
 
 GRAVITY = 9.80665
 INCH, FOOT, POUND = 0.0254, 0.3048, 4.4482216152605

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,12 +12,9 @@ from acquisition.arrays import ComplexArray, FloatArray, IntArray, frozen_array
 from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
+from acquisition.form import FORMS, UNITS, Form
 from acquisition.frfs.scatter import HitScatter, complex_type
 from acquisition.geometry import Geometry
-
-Form = Literal["receptance", "mobility", "accelerance"]
-FORMS: tuple[Form, ...] = ("receptance", "mobility", "accelerance")
-UNITS: dict[Form, str] = {"receptance": "m/N", "mobility": "m/(N s)", "accelerance": "1/kg"}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError
-from acquisition.frfs.frf import FORMS, FrfSet
+from acquisition.form import FORMS
+from acquisition.frfs.frf import FrfSet
 from acquisition.frfs.scatter import HitGroup, HitScatter
 
 

@@ -11,7 +11,7 @@ from acquisition.arrays import AnyArray, frozen_array
 from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from acquisition.frfs.frf import Form
+from acquisition.form import Form
 from acquisition.geometry import Geometry
 
 if TYPE_CHECKING:

@@ -10,13 +10,13 @@ import numpy as np
 
 from acquisition.arrays import AnyArray, FloatArray
 from acquisition.columns.layout import Layout, dof_of, read_layout
+from acquisition.columns.mat_layout import AXES, MatLayout
 from acquisition.columns.units import QUANTITIES, factor_to_si
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frfs.frf import FrfSet
 from acquisition.geometry import Geometry
 from acquisition.mat.file import variables
-from acquisition.mat.layout import AXES, MatLayout
 from acquisition.modal_data import ModalData
 from acquisition.modes.checks import check_frequencies, checked
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from acquisition.errors import InputError
-from acquisition.frfs.frf import FORMS, Form
+from acquisition.form import FORMS, Form
 
 BadHit = Literal["double", "clipped", "weak", "cut", "wrong place"]
 BAD_HITS: tuple[BadHit, ...] = ("double", "clipped", "weak", "cut", "wrong place")

@@ -11,7 +11,7 @@ import scipy.fft
 
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.errors import InputError
-from acquisition.frfs.frf import FORMS
+from acquisition.form import FORMS
 from acquisition.geometry import Geometry
 from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.synthetic.faults import clip, coloured, cut_off, quantise

@@ -142,15 +142,29 @@ def draw_specimen(
         masses=masses,
         damping=Damping(alpha, beta),
     )
-    off = {n: float(np.exp(v * rng.standard_normal())) for n, v in tolerances.items()}
-    body = Body(
-        kind, length * off["length"], width * off["width"], thickness * off["thickness"],
-        E * off["E"], density * off["density"], poisson, edges,
-    )  # fmt: skip
-    sensors = tuple((*shares(spec, np.array(m.at), body), m.mass, 0.0) for m in masses if m.mass)
+    body = _draw_body(rng, spec, tolerances)
     scatter = np.exp(doubt * (rng.standard_normal() + rng.standard_normal(60)))
     stated = rng.random() < 0.5
-    rig = Rig(
+    rig = _draw_rig(rng, points, sensor, modes, absolute=absolute, baseline=baseline)
+    around = Environment(fluid_density=998.0) if stated else Environment()
+    return Specimen(spec, Tolerances(tolerances, doubt), around, body, scatter, rig)
+
+
+def _draw_body(rng: np.random.Generator, spec: Spec, tolerances: dict[str, float]) -> Body:
+    """Return what is really there: each property off by its tolerance, and the sensors that have a mass."""
+    off = {n: float(np.exp(v * rng.standard_normal())) for n, v in tolerances.items()}
+    body = Body(
+        spec.kind, spec.length * off["length"], spec.width * off["width"], spec.thickness * off["thickness"],
+        spec.material.E * off["E"], spec.material.density * off["density"], spec.material.poisson, spec.clamped,
+    )  # fmt: skip
+    sensors = tuple((*shares(spec, np.array(m.at), body), m.mass, 0.0) for m in spec.masses if m.mass)
+    return body.but(masses=sensors)
+
+
+def _draw_rig(
+    rng: np.random.Generator, points: Floats, sensor: int, modes: int, *, absolute: bool, baseline: bool
+) -> Rig:
+    return Rig(
         points, sensor, modes, absolute, baseline,
         noise=float(np.exp(rng.uniform(*np.log([0.005, 0.02])))),
         frequency_noise=float(np.exp(rng.uniform(*np.log([5e-5, 5e-4])))),
@@ -162,8 +176,6 @@ def draw_specimen(
         level=float(rng.uniform(20.0, 200.0)),
         span=float(rng.choice([1.3, 2.5, 5.0])),
     )  # fmt: skip
-    around = Environment(fluid_density=998.0) if stated else Environment()
-    return Specimen(spec, Tolerances(tolerances, doubt), around, body.but(masses=sensors), scatter, rig)
 
 
 def with_rig(specimen: Specimen, **changes: object) -> Specimen:

@@ -6,7 +6,7 @@ import numpy as np
 
 from acquisition.arrays import AnyArray, ComplexArray
 from acquisition.errors import InputError
-from acquisition.frfs.frf import FORMS, Form
+from acquisition.form import FORMS, Form
 
 
 def modal_constants(residues: AnyArray, poles: AnyArray, form: Form = "receptance") -> ComplexArray:

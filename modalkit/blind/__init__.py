@@ -5,9 +5,10 @@ It shares no model code with the candidates: it imports nothing from the room th
 
 from modalkit.blind.diagnoser import Diagnose, Diagnoser, diagnosers
 from modalkit.blind.outcome import Outcome
-from modalkit.blind.run import BlindResult, run_blind, run_trial
+from modalkit.blind.run import BlindResult, run_blind
 from modalkit.blind.scoring.score import Score, score
 from modalkit.blind.seal import Seal, open_seal, seal
+from modalkit.blind.single import run_trial
 from modalkit.blind.store import Checked, Store, check_store
 from modalkit.blind.trial import Trial, Truth, draw_trial, write_trial
 from modalkit.simulator.drawing.ranges import DrawRanges

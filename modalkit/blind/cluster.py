@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from acquisition.errors import EstimationError
 from modalkit.blind.diagnoser import Diagnose, diagnose_by
 from modalkit.blind.outcome import Outcome
-from modalkit.blind.run import Announce, run_trial
+from modalkit.blind.single import Announce, run_trial
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.workers.cluster import Ended, announce_event, connected, keeper
 
@@ -37,7 +37,7 @@ def cluster_outcomes(
         Called with a trial's number and commitment before its outcome is yielded; the worker sends it off before
         it begins the diagnosis.
     diagnose : callable, optional
-        In place of ``modalkit diagnose``; importable on the workers.
+        In place of ``modalkit diagnose``; importable on the workers, which then start no process.
     command : sequence of str
         What is started on the workers to diagnose; empty for the usual one.
 
@@ -50,7 +50,7 @@ def cluster_outcomes(
     """
     published: dict[int, str] = {}
     early: dict[int, Outcome] = {}
-    with connected(scheduler, command=command) as cluster:
+    with connected(scheduler, command=command if diagnose is None else None) as cluster:
         for event in cluster.happens(_task, [(index, seed, plan, diagnose) for index in indices]):
             if isinstance(event, Ended):
                 outcome = Outcome.from_json(json.loads(event.result))

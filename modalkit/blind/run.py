@@ -1,28 +1,23 @@
-"""Run blind trials: draw, seal, measure, have diagnosed in another process, open, and keep the outcome."""
+"""Run blind trials, on this machine or on a cluster, and keep their outcomes as they come."""
 
 from __future__ import annotations
 
-import tempfile
-import time
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, closing, nullcontext
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from pathlib import Path
 
-from acquisition.errors import ModalkitError, StudyError
-from modalkit.blind.answer import read_answer
+from acquisition.errors import StudyError
+from modalkit.blind.cluster import cluster_outcomes
 from modalkit.blind.diagnoser import Diagnose, diagnosers
-from modalkit.blind.outcome import Outcome, slim
-from modalkit.blind.seal import open_seal, seal
-from modalkit.blind.shrunk import true_shrinkage
+from modalkit.blind.outcome import Outcome
+from modalkit.blind.single import Announce, run_trial
 from modalkit.blind.store import Store
-from modalkit.blind.trial import Truth, draw_trial, write_trial
 from modalkit.simulator.drawing.ranges import DrawRanges
+from modalkit.workers.cluster import check_scheduler
 from modalkit.workers.pool import in_flight
-
-Announce = Callable[[int, str], None]
-"""Called with a trial's number and its commitment before its diagnosis begins."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,53 +37,6 @@ class BlindResult:
     seed: int
     plan: DrawRanges = field(default_factory=DrawRanges)
     outcomes: tuple[Outcome, ...] = ()
-
-
-def run_trial(
-    seed: int,
-    index: int,
-    *,
-    diagnose: Diagnose,
-    plan: DrawRanges | None = None,
-    announce: Announce | None = None,
-) -> Outcome:
-    """Run one trial from the draw to the opened seal.
-
-    Parameters
-    ----------
-    seed, index : int
-        Of the run, and of the trial in it.
-    diagnose : callable
-        Study file, and effects to leave out of the library, to diagnosis.
-    plan : Plan, optional
-        What may be drawn.
-    announce : callable, optional
-        Called with the trial's number and commitment before the diagnosis begins.
-
-    Returns
-    -------
-    Outcome
-        With the failure's message in place of an answer where the diagnosis failed.
-    """
-    trial = draw_trial(seed, index, plan=plan or DrawRanges())
-    sealed = seal(trial.truth.to_json())
-    commitment = sealed.commitment
-    if announce is not None:
-        announce(index, commitment)
-    answer, document, failure, shrinkage = None, None, None, None
-    with tempfile.TemporaryDirectory(prefix="test-", ignore_cleanup_errors=True) as name:
-        study = write_trial(trial, Path(name))
-        begin = time.perf_counter()
-        try:
-            document = slim(diagnose(study, trial.truth.without))
-            answer = read_answer(document)
-        except (ModalkitError, OSError, ValueError, ArithmeticError, LookupError, TypeError) as error:
-            document, failure = None, f"{type(error).__name__}: {error}"
-        seconds = time.perf_counter() - begin
-    truth = Truth.from_json(open_seal(sealed, commitment))
-    if answer is not None:
-        shrinkage = true_shrinkage(trial, answer)
-    return Outcome(index, truth, answer, document, failure, sealed, seconds, shrinkage)
 
 
 def run_blind(
@@ -145,35 +93,44 @@ def run_blind(
     if trials < 1 or workers < 1:
         raise StudyError(f"{trials} trials with {workers} workers; both must be at least 1")
     if scheduler is not None:
-        from modalkit.workers.cluster import check_scheduler
-
         check_scheduler(scheduler)
     plan = plan or DrawRanges()
     outcomes: dict[int, Outcome] = {}
-
-    def came(outcome: Outcome) -> None:
-        outcomes[outcome.index] = outcome if documents else replace(outcome, document=None)
-        if progress is not None:
-            progress(outcome)
-
-    with nullcontext() if store is None else Store(store, seed=seed, plan=plan, resume=resume) as kept:
-        for index, outcome in sorted(kept.found.items() if kept else ()):
-            if index < trials:
-                came(outcome)
-
-        def publish(index: int, commitment: str) -> None:
-            if kept is not None:
-                kept.commit(index, commitment)
-            if announce is not None:
-                announce(index, commitment)
-
-        missing = [index for index in range(trials) if index not in outcomes]
-        with closing(_running(missing, seed, plan, workers, scheduler, diagnose, publish)) as running:
-            for outcome in running:
-                if kept is not None:
-                    kept.keep(outcome)
-                came(outcome)
+    with ExitStack() as stack:
+        kept = None
+        if store is not None:
+            kept = stack.enter_context(Store(store, seed=seed, plan=plan, resume=resume))
+        found = [outcome for i, outcome in sorted(kept.found.items()) if i < trials] if kept else []
+        missing = sorted(set(range(trials)) - {outcome.index for outcome in found})
+        publish = _publisher(kept, announce)
+        running = _running(missing, seed, plan, workers, scheduler, diagnose, publish)
+        coming = stack.enter_context(closing(_stored(running, kept)))
+        for outcome in chain(found, coming):
+            outcomes[outcome.index] = outcome if documents else replace(outcome, document=None)
+            if progress is not None:
+                progress(outcome)
     return BlindResult(seed, plan, tuple(outcomes[i] for i in range(trials)))
+
+
+def _publisher(store: Store | None, announce: Announce | None) -> Announce:
+    """Return what publishes a commitment: in the store first, then to the one who listens."""
+
+    def publish(index: int, commitment: str) -> None:
+        if store is not None:
+            store.commit(index, commitment)
+        if announce is not None:
+            announce(index, commitment)
+
+    return publish
+
+
+def _stored(running: Generator[Outcome, None, None], store: Store | None) -> Generator[Outcome, None, None]:
+    """Yield outcomes, each after it is in the store."""
+    with closing(running):
+        for outcome in running:
+            if store is not None:
+                store.keep(outcome)
+            yield outcome
 
 
 def _running(
@@ -189,8 +146,6 @@ def _running(
     if not indices:
         return
     if scheduler is not None:
-        from modalkit.blind.cluster import cluster_outcomes
-
         yield from cluster_outcomes(
             indices, seed=seed, plan=plan, scheduler=scheduler, diagnose=diagnose, publish=publish
         )
@@ -198,9 +153,8 @@ def _running(
     workers = min(workers, len(indices))
     with ExitStack() as stack:
         pool = stack.enter_context(ThreadPoolExecutor(max_workers=workers))
-        use = diagnose or stack.enter_context(
-            diagnosers(workers)
-        )  # ended first, so that no thread waits for it
+        # the processes are ended before the pool is, so that no thread waits for one
+        use = diagnose or stack.enter_context(diagnosers(workers))
 
         def run(index: int) -> Outcome:
             return run_trial(seed, index, diagnose=use, plan=plan, announce=publish)

@@ -26,6 +26,34 @@ _USED = {
     "--real": ("--json",),
     "--check": ("--seed",),
 }
+_DOCUMENTS = {"": "blind", "STUDY": "plan", "--real": "real", "--check": "blind"}
+"""What is written as JSON."""
+
+OwnStudy = Annotated[
+    Path | None, typer.Argument(help="your own study: what can its test tell apart? (docs/planning.md)")
+]
+Trials = Annotated[int | None, typer.Option(help="number of trials; left out: 60, with a STUDY none")]
+Seed = Annotated[int | None, typer.Option(help="seed of the run; left out: drawn, and said at the end")]
+Workers = Annotated[int, typer.Option(help="trials in flight at a time")]
+Scheduler = Annotated[
+    str | None, typer.Option(help="address of a Dask scheduler whose workers run the trials")
+]
+StoreFile = Annotated[Path | None, typer.Option(help="file for commitments and outcomes as they come")]
+Resume = Annotated[bool, typer.Option("--resume", help="go on with the store of a run")]
+Kinds = Annotated[
+    str, typer.Option(help="specimens, of beam, plate and solid (needs CalculiX); left out: beam,plate")
+]
+Effects = Annotated[str, typer.Option(help="what may be hidden, comma-separated; left out: all")]
+LeaveOut = Annotated[
+    bool, typer.Option("--leave-out", help="take the true effect out of the library in every trial")
+]
+Real = Annotated[
+    bool, typer.Option("--real", help="real structures with their cause withheld, in place of trials")
+]
+Data = Annotated[Path | None, typer.Option(help="folder of measured data for --real")]
+Check = Annotated[Path | None, typer.Option(help="check the seals of a stored run, and run nothing")]
+Json = Annotated[Path | None, typer.Option("--json", help="file for the score as JSON")]
+Markdown = Annotated[Path | None, typer.Option(help="file for the score as markdown; marks in it are kept")]
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -34,39 +62,21 @@ def add_commands(app: typer.Typer) -> None:
 
 
 def blind(
-    study: Annotated[
-        Path | None, typer.Argument(help="your own study: what can its test tell apart? (docs/planning.md)")
-    ] = None,
-    trials: Annotated[
-        int | None, typer.Option(help="number of trials; left out: 60, with a STUDY none")
-    ] = None,
-    seed: Annotated[
-        int | None, typer.Option(help="seed of the run; left out: drawn, and said at the end")
-    ] = None,
-    workers: Annotated[int, typer.Option(help="trials in flight at a time")] = 2,
-    scheduler: Annotated[
-        str | None, typer.Option(help="address of a Dask scheduler whose workers run the trials")
-    ] = None,
-    store: Annotated[Path | None, typer.Option(help="file for commitments and outcomes as they come")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="go on with the store of a run")] = False,
-    kinds: Annotated[
-        str, typer.Option(help="specimens, of beam, plate and solid (needs CalculiX); left out: beam,plate")
-    ] = "",
-    effects: Annotated[str, typer.Option(help="what may be hidden, comma-separated; left out: all")] = "",
-    leave_out: Annotated[
-        bool, typer.Option("--leave-out", help="take the true effect out of the library in every trial")
-    ] = False,
-    real: Annotated[
-        bool, typer.Option("--real", help="real structures with their cause withheld, in place of trials")
-    ] = False,
-    data: Annotated[Path | None, typer.Option(help="folder of measured data for --real")] = None,
-    check: Annotated[
-        Path | None, typer.Option(help="check the seals of a stored run, and run nothing")
-    ] = None,
-    json: Annotated[Path | None, typer.Option("--json", help="file for the score as JSON")] = None,
-    markdown: Annotated[
-        Path | None, typer.Option(help="file for the score as markdown; marks in it are kept")
-    ] = None,
+    study: OwnStudy = None,
+    trials: Trials = None,
+    seed: Seed = None,
+    workers: Workers = 2,
+    scheduler: Scheduler = None,
+    store: StoreFile = None,
+    resume: Resume = False,
+    kinds: Kinds = "",
+    effects: Effects = "",
+    leave_out: LeaveOut = False,
+    real: Real = False,
+    data: Data = None,
+    check: Check = None,
+    json: Json = None,
+    markdown: Markdown = None,
     figures: Figures = None,
 ) -> None:
     """Hide effects in simulated rigs, diagnose them without telling, and score the answers."""
@@ -76,37 +86,38 @@ def blind(
         "--figures": figures,
     }  # fmt: skip
     asked = {"STUDY": study is not None, "--real": real or data is not None, "--check": check is not None}
-    _check_together(
-        [what for what, is_asked in asked.items() if is_asked],
-        [name for name, value in given.items() if value is not None and value is not False and value != ""],
-    )
-    _check_numbers(trials, seed, workers, least=1 if study is None else 0)
-    schema = "plan" if study is not None else "real" if real or data is not None else "blind"
+    job = _only_one([name for name, is_asked in asked.items() if is_asked])
+    _check_together(job, [name for name, value in given.items() if _is_given(value)])
+    _check_numbers(trials, seed, workers, least=0 if study is not None else 1)
     check_outputs(
-        (json, json_of(f"modalkit.{schema}/1")),
+        (json, json_of(f"modalkit.{_DOCUMENTS[job]}/1")),
         (markdown, MARKDOWN),
         (store, store_of("modalkit.blindrun/1")),
         reads=read_by([study] if study is not None else []),
     )
     check_folder(figures)
     if check is not None:
-        return _check(check, seed)
-    if real or data is not None:
+        _check(check, seed)
+    elif job == "--real":
         from modalkit.cli.real import show_real
 
-        return show_real(data, json, workers)
-    if study is not None:
+        show_real(data, json, workers)
+    elif study is not None:
         from modalkit.cli.planning import plan_study
 
-        own_seed = 1 if seed is None else seed
-        return plan_study(
-            study, trials=trials or 0, seed=own_seed, workers=workers, json=json, figures=figures
+        seed = 1 if seed is None else seed
+        plan_study(study, trials=trials or 0, seed=seed, workers=workers, json=json, figures=figures)
+    else:
+        plan = DrawRanges(
+            kinds=_names(kinds) or DrawRanges().kinds, effects=_names(effects), leave_out=leave_out
         )
-    known = DrawRanges()
-    plan = DrawRanges(kinds=_names(kinds) or known.kinds, effects=_names(effects), leave_out=leave_out)
-    result = _run(
-        60 if trials is None else trials, _seed(seed, store, resume), plan, workers, scheduler, store, resume
-    )
+        count, drawn = 60 if trials is None else trials, _seed(seed, store, resume)
+        result = _run(count, drawn, plan, workers, scheduler, store, resume)
+        _show(result, json, markdown, figures)
+
+
+def _show(result: BlindResult, json: Path | None, markdown: Path | None, figures: Path | None) -> None:
+    """Print the score of a run, and write it where it is wanted."""
     table = score(result)
     show_score(table)
     out.print(f"seed: {result.seed}", markup=False)
@@ -117,22 +128,29 @@ def blind(
         write_markdown(markdown, table)
         out.print(f"written: {markdown}", markup=False)
     show_figures(figures, lambda: score_figures(table))
-    return None
 
 
 def _names(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
-def _check_together(asked: Sequence[str], given: Sequence[str]) -> None:
-    """Refuse what does not go together."""
+def _is_given(value: object) -> bool:
+    return value is not None and value is not False and value != ""
+
+
+def _only_one(asked: Sequence[str]) -> str:
+    """Return what is asked for in place of trials; "" for trials."""
     if len(asked) > 1:
         raise InputError(f"{' and '.join(asked)}: each is something else to do; give one")
-    for what in asked:
-        idle = [name for name in given if name not in _USED[what]]
-        if idle:
-            do, them = ("does", "it") if len(idle) == 1 else ("do", "them")
-            raise InputError(f"{', '.join(idle)} {do} not go with {what}; leave {them} out")
+    return asked[0] if asked else ""
+
+
+def _check_together(job: str, given: Sequence[str]) -> None:
+    """Refuse options that do not go together."""
+    idle = [name for name in given if job and name not in _USED[job]]
+    if idle:
+        do, them = ("does", "it") if len(idle) == 1 else ("do", "them")
+        raise InputError(f"{', '.join(idle)} {do} not go with {job}; leave {them} out")
     if "--resume" in given and "--store" not in given:
         raise InputError("--resume: go on with what? give the --store of the run")
 

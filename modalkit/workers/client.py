@@ -17,7 +17,9 @@ from typing import Any, Self
 from acquisition.errors import EstimationError
 from modalkit.module_path import child_environment
 
-COMMAND = (sys.executable, "-P", "-m", "modalkit.workers")
+COMMAND = (sys.executable, "-P", "-m", "modalkit.cli.warm")
+"""Starts what serves modalkit's commands; another command may serve others."""
+
 TIMEOUT = 900.0
 ATTEMPTS = 3
 _GRACE = 60.0  # s beyond a command's time in which the process must have answered

@@ -29,14 +29,14 @@ class Keeper:
     ----------
     version : str
         Of modalkit; a worker with another one is refused.
-    command : sequence of str
-        What is started there; empty for the usual one with the worker's own interpreter.
+    command : sequence of str, optional
+        What is started there; empty for the usual one with the worker's own interpreter, None for no process at all.
     """
 
-    def __init__(self, *, version: str = __version__, command: Sequence[str] = ()) -> None:
+    def __init__(self, *, version: str = __version__, command: Sequence[str] | None = ()) -> None:
         """Say what is to be started, and with which version."""
         self.version = version
-        self.command = tuple(command)
+        self.command = command
 
     def setup(self, worker: Any) -> None:
         """Start the processes.
@@ -51,7 +51,9 @@ class Keeper:
                 f"worker {worker.address} has modalkit {__version__}, the run {self.version}; install the same"
             )
         self.stack = ExitStack()
-        self.run = self.stack.enter_context(warm_pool(worker.state.nthreads, command=self.command or COMMAND))
+        if self.command is not None:
+            pool = warm_pool(worker.state.nthreads, command=self.command or COMMAND)
+            self.run = self.stack.enter_context(pool)
 
     def teardown(self, worker: Any) -> None:
         """End the processes."""
@@ -149,15 +151,15 @@ def announce_event(name: str, document: dict[str, Any]) -> None:
 
 
 @contextmanager
-def connected(scheduler: str, *, command: Sequence[str] = ()) -> Iterator[Cluster]:
+def connected(scheduler: str, *, command: Sequence[str] | None = ()) -> Iterator[Cluster]:
     """Connect to a cluster and keep warm processes on its workers, those that join later too.
 
     Parameters
     ----------
     scheduler : str
         Address of the scheduler, ``tcp://host:8786``.
-    command : sequence of str
-        What is started on the workers; empty for the usual one.
+    command : sequence of str, optional
+        What is started on the workers; empty for the usual one, None for nothing, where tasks need no warm process.
 
     Yields
     ------
@@ -181,7 +183,7 @@ def connected(scheduler: str, *, command: Sequence[str] = ()) -> Iterator[Cluste
                 client.unregister_worker_plugin(name)
 
 
-def _plugin(command: Sequence[str]) -> Any:
+def _plugin(command: Sequence[str] | None) -> Any:
     from distributed import WorkerPlugin
 
     return type("Keeper", (Keeper, WorkerPlugin), {})(command=command)

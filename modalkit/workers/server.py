@@ -11,24 +11,30 @@ import select
 import signal
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO, Literal, NoReturn
 
 from modalkit import __version__
-from modalkit.cli import main
-from modalkit.cli.on_demand import load_all
+
+Program = Callable[[], None]
+"""What is served: it takes its words from ``sys.argv`` and ends as programs do, or returns."""
 
 _LAST = 4000  # bytes of a command's messages that are kept
 
 
-def serve_standard() -> None:
-    """Serve on standard input and output until the input ends.
+def serve_standard(program: Program) -> None:
+    """Serve a program, which is loaded already, on standard input and output until the input ends.
 
     Each line in is ``{"folder", "arguments", "timeout"}``: where the command runs, its words without
     ``modalkit``, and the longest time it may take [s]. Each line out is ``{"code", "signal", "late",
     "message"}``: the exit code or the signal that ended it, whether its time was over, and its last line on
     standard error. The first line out, ``{"ready": version}``, says that everything is loaded.
+
+    Parameters
+    ----------
+    program : callable
+        What each command runs.
     """
     requests = os.fdopen(os.dup(0), "rb", buffering=0)
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
@@ -36,25 +42,26 @@ def serve_standard() -> None:
     os.dup2(nothing, 0)
     os.dup2(nothing, 1)
     os.close(nothing)
-    serve(requests, answers)
+    serve(program, requests, answers)
 
 
-def serve(requests: BinaryIO, answers: BinaryIO) -> None:
+def serve(program: Program, requests: BinaryIO, answers: BinaryIO) -> None:
     """Answer requests until they end.
 
     Parameters
     ----------
+    program : callable
+        What each command runs.
     requests, answers : binary file
         Unbuffered; one JSON document a line.
     """
-    load_all()
     gc.collect()
     gc.freeze()  # what is loaded is shared with the forks; collecting in it would copy it
     answers.write(_line({"ready": __version__}))
     run = _forked if hasattr(os, "fork") else _here
     while line := requests.readline():
         request = json.loads(line)
-        answer = run(request, requests)
+        answer = run(program, request, requests)
         if answer is None:
             return
         answers.write(_line(answer))
@@ -64,12 +71,12 @@ def _line(content: Mapping[str, Any]) -> bytes:
     return json.dumps(content).encode() + b"\n"
 
 
-def _forked(request: Mapping[str, Any], requests: BinaryIO) -> dict[str, Any] | None:
+def _forked(program: Program, request: Mapping[str, Any], requests: BinaryIO) -> dict[str, Any] | None:
     """Run a command in a fork; None where nobody is left who waits for the answer."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
-        _become(writing, Path(request["folder"]), request["arguments"])
+        _become(program, writing, Path(request["folder"]), request["arguments"])
     os.close(writing)
     statement, ended = _listen(reading, requests, time.monotonic() + float(request["timeout"]))
     os.close(reading)
@@ -110,36 +117,36 @@ def _listen(reading: int, requests: BinaryIO, end: float) -> tuple[bytes, Litera
     return statement, "late"
 
 
-def _become(saying: int, folder: Path, arguments: Sequence[str]) -> NoReturn:
+def _become(program: Program, saying: int, folder: Path, arguments: Sequence[str]) -> NoReturn:
     """Turn a fork into the command: own group, own folder, no descriptor but the one it speaks to."""
     code = 70
     try:
         os.setsid()
         os.dup2(saying, 2)
         os.closerange(3, os.sysconf("SC_OPEN_MAX"))
-        code = _command(folder, arguments)
+        code = _command(program, folder, arguments)
         sys.stderr.flush()
     finally:
         os._exit(code)
 
 
-def _command(folder: Path, arguments: Sequence[str]) -> int:
+def _command(program: Program, folder: Path, arguments: Sequence[str]) -> int:
     """Run a command in a folder and return its exit code."""
     os.chdir(folder)
     sys.argv = ["modalkit", *arguments]
     try:
-        main()
+        program()
     except SystemExit as ended:
         return ended.code if isinstance(ended.code, int) else int(ended.code is not None)
     return 0
 
 
-def _here(request: Mapping[str, Any], _: BinaryIO) -> dict[str, Any]:
+def _here(program: Program, request: Mapping[str, Any], _: BinaryIO) -> dict[str, Any]:
     """Run a command in this process, where there are no forks."""
     home, words, statement = Path.cwd(), sys.argv, io.StringIO()
     try:
         with contextlib.redirect_stderr(statement):
-            code = _command(Path(request["folder"]), request["arguments"])
+            code = _command(program, Path(request["folder"]), request["arguments"])
     finally:
         os.chdir(home)
         sys.argv = words

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, EstimationError, FrfSet, InputError
-from acquisition.frfs.frf import FORMS
+from acquisition.form import FORMS
 from acquisition.frfs.scatter import HitGroup, HitScatter
 from acquisition.frfs.sensor_mass import remove_sensor_mass
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from acquisition.dof import Dof
-from acquisition.frfs.frf import FORMS, Form, FrfSet
+from acquisition.form import FORMS, Form
+from acquisition.frfs.frf import FrfSet
 
 BENCH_HZ = (62.0, 118.0, 187.0, 243.0, 310.0, 402.0, 405.5, 478.0, 566.0, 655.0, 763.0, 884.0)
 BENCH_DAMPING = (0.02, 0.012, 0.009, 0.007, 0.006, 0.005, 0.004, 0.0035, 0.003, 0.0028, 0.0024, 0.002)

@@ -135,7 +135,10 @@ def test_a_folder_in_tables_out(
         pytest.importorskip("pyarrow")
     fleet, store = stored
     shutil.copy(store, tmp_path / f"table.{ending}.jsonl")
-    assert modalkit(monkeypatch, "batch", fleet, "-o", table, "--json-dir", parts, "--resume") == 0
+    assert (
+        modalkit(monkeypatch, "batch", fleet, "-o", table, "--json-dir", parts, "--resume", "--workers", 1)
+        == 0
+    )
     message = capsys.readouterr().out
     assert "skipped: a_broken.toml: not a valid TOML file" in message
     assert "skipped: misspelt.toml: unknown key test.file" in message

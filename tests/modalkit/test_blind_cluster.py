@@ -114,9 +114,17 @@ def test_a_missing_extra_is_an_error_that_names_it(monkeypatch: pytest.MonkeyPat
         run_blind(1, 5, plan=FAST, scheduler="tcp://127.0.0.1:8786")
 
 
-def test_another_version_on_a_worker_is_refused() -> None:
-    class Worker:
-        address = "tcp://worker:1"
+class Worker:
+    address = "tcp://worker:1"
 
+
+def test_another_version_on_a_worker_is_refused() -> None:
     with pytest.raises(InputError, match=r"the run 9\.9; install the same"):
         Keeper(version="9.9").setup(Worker())
+
+
+def test_no_process_is_started_on_a_worker_where_none_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster_module, "warm_pool", None)  # cannot be called
+    keeper = Keeper(command=None)
+    keeper.setup(Worker())
+    keeper.teardown(Worker())

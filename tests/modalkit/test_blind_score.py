@@ -10,11 +10,14 @@ import numpy as np
 import pandas as pd
 import pytest
 from blind_outcomes import diagnosis, honest_run, interval, outcome, run_of, truth
+from scipy.stats import binomtest
+from scipy.stats import bootstrap as scipy_bootstrap
 
+from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, DrawRanges, Truth, score
 from modalkit.blind.answer import read_answer
-from modalkit.blind.scoring.intervals import bootstrap, wilson
+from modalkit.blind.scoring.intervals import RESAMPLES, bootstrap, wilson
 from modalkit.blind.scoring.judge import commits, credit, holds, is_right, top_is_right
 from modalkit.blind.scoring.markdown import BEGIN, END, into_page, score_markdown
 from modalkit.blind.scoring.score import score_again
@@ -337,19 +340,33 @@ def test_several_hidden_places_are_compared_with_as_many() -> None:
     assert table[["nearest", "first"]].to_numpy().tolist() == [[0.0, 0.0]]
 
 
-# Agresti and Coull, The American Statistician 52 (1998) 119: 0 of 10 and 5 of 10
-def test_wilson_interval() -> None:
-    assert wilson(0, 10) == pytest.approx((0.0, 0.2775), abs=5e-4)
-    assert wilson(5, 10) == pytest.approx((0.2366, 0.7634), abs=5e-4)
+@pytest.mark.parametrize(("count", "total"), [(0, 10), (5, 10), (10, 10), (0, 1), (999, 1000)])
+def test_wilson_interval_of_whole_counts_is_scipys(count: int, total: int) -> None:
+    assert wilson(count, total) == pytest.approx(binomtest(count, total).proportion_ci(method="wilson"))
+
+
+def test_wilson_interval_of_fractions_lies_between_those_of_whole_counts() -> None:
+    low, high = wilson([2, 2.5, 3], [10, 10, 10])
+    assert low[0] < low[1] < low[2]
+    assert high[0] < high[1] < high[2]
     assert np.isnan(wilson(0, 0)).all()
-    low, high = wilson([0, 5], [10, 10])
-    assert low == pytest.approx([0.0, 0.2366], abs=5e-4)
-    assert high == pytest.approx([0.2775, 0.7634], abs=5e-4)
 
 
-def test_bootstrap_of_a_mean_is_as_wide_as_its_standard_error() -> None:
+def test_bootstrap_interval_of_a_mean_is_scipys_of_the_same_draws() -> None:
     values = np.random.default_rng(4).normal(3.0, 2.0, 400)
     found = bootstrap(values, np.random.default_rng(5))
-    half = 1.96 * values.std() / np.sqrt(400)
+    theirs = scipy_bootstrap(
+        (values,), np.mean, n_resamples=RESAMPLES, method="percentile", random_state=np.random.default_rng(5)
+    ).confidence_interval
     assert found["value"] == pytest.approx(values.mean())
-    assert found["high95"] - found["low95"] == pytest.approx(2 * half, rel=0.1)
+    assert (found["low95"], found["high95"]) == pytest.approx((theirs.low, theirs.high))
+
+
+def test_bootstrap_leaves_out_samples_in_which_the_statistic_is_not_defined() -> None:
+    def of_any(values: FloatArray) -> FloatArray:
+        return np.where(values.any(axis=1), 2.0, np.nan)
+
+    found = bootstrap(np.array([0.0, 1.0]), np.random.default_rng(5), statistic=of_any)
+    assert (found["low95"], found["high95"]) == (2.0, 2.0)
+    alone = bootstrap(np.array([7.0]), np.random.default_rng(5))
+    assert (alone["low95"], alone["high95"]) == (7.0, 7.0)

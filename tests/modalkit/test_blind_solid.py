@@ -18,8 +18,8 @@ from modalkit.simulator.bodies.complex_modes import complex_modes
 from modalkit.simulator.bodies.parts import Attached, Stretch
 from modalkit.simulator.bodies.plate.parts import PlateAttached
 from modalkit.simulator.bodies.plate.plate import Plate
+from modalkit.simulator.bodies.solid import deck as solid_deck
 from modalkit.simulator.bodies.solid.solid import Cut, Solid, available
-from modalkit.simulator.bodies.solid.solid import deck as solid_deck
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup
 from modalkit.simulator.hidden import HIDDEN_EFFECTS
@@ -129,7 +129,7 @@ def test_trial_hides_an_effect_in_bricks(name: str) -> None:
 @needs_ccx
 def test_trials_of_all_sorts_are_drawn() -> None:
     trials = [
-        draw_trial(3, index, plan=replace(SOLIDS, none=0.3, pairs=0.3, outside=0.2)) for index in range(12)
+        draw_trial(3, index, plan=replace(SOLIDS, none=0.3, pairs=0.3, outside=0.2)) for index in range(9)
     ]
     assert {len(trial.truth.effects) for trial in trials} == {0, 1, 2}
     assert not all(trial.truth.in_library for trial in trials)

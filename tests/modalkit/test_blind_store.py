@@ -247,7 +247,7 @@ import blind_stub
 from modalkit.blind import Plan, diagnosers, run_blind
 plan = Plan(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
 with diagnosers(2, command=blind_stub.command("slow", "0.2")) as diagnose:
-    run_blind(8, 5, plan=plan, workers=2, diagnose=diagnose, store=Path(sys.argv[1]), resume=True)
+    run_blind(5, 5, plan=plan, workers=2, diagnose=diagnose, store=Path(sys.argv[1]), resume=True)
 """
 
 
@@ -265,9 +265,9 @@ def test_a_killed_run_loses_at_most_what_is_in_flight(tmp_path: Path) -> None:
     assert len(kept.in_flight) <= 2
     subprocess.run(words, check=True)
     done = check_store(path)
-    assert sorted(done.outcomes) == list(range(8))
+    assert sorted(done.outcomes) == list(range(5))
     assert all(done.outcomes[i].sealed == kept.outcomes[i].sealed for i in kept.outcomes)
-    run_blind(8, 5, plan=FAST, diagnose=always_none, store=tmp_path / "whole.jsonl")
+    run_blind(5, 5, plan=FAST, diagnose=always_none, store=tmp_path / "whole.jsonl")
     assert records(path) == records(tmp_path / "whole.jsonl")
 
 

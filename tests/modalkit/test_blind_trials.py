@@ -211,9 +211,14 @@ def test_plates_are_drawn_as_often_as_said() -> None:
     assert scipy.stats.binomtest(kinds["plate"], 120, 0.3).pvalue > 1e-4
 
 
+@pytest.fixture(scope="module")
+def plates() -> list[Trial]:
+    return [draw_trial(14, index, plan=PLATES) for index in range(4)]
+
+
 @pytest.mark.parametrize("index", range(4))
-def test_plates_are_stated_thin_and_hit_inside(index: int) -> None:
-    trial = draw_trial(14, index, plan=PLATES)
+def test_plates_are_stated_thin_and_hit_inside(plates: list[Trial], index: int) -> None:
+    trial = plates[index]
     setup = trial.scene.setup
     study = tomllib.loads(study_text(setup, test_file="a.uff", baseline_file="b.uff"))
     assert study["model"]["type"] == trial.truth.kind == "plate"
@@ -238,10 +243,8 @@ def test_plates_are_stated_thin_and_hit_inside(index: int) -> None:
         ("fluid_added_mass", {"fluid_density": 998.0}),
     ],
 )
-def test_plates_move_the_way_they_must(name: str, values: dict[str, float]) -> None:
-    setup = next(
-        s for s in (draw_trial(14, i, plan=PLATES).scene.setup for i in range(9)) if "x0" in s.clamped
-    )
+def test_plates_move_the_way_they_must(plates: list[Trial], name: str, values: dict[str, float]) -> None:
+    setup = next(trial.scene.setup for trial in plates if "x0" in trial.scene.setup.clamped)
     setup = replace(setup, sensor_mass=0.0)
     before = nominal_scene(setup)
     after = HIDDEN_EFFECTS[name].act(before, values)

@@ -117,5 +117,8 @@ def test_a_foreign_module_under_the_name_of_a_room_is_refused(tmp_path: Path) ->
 
 
 def test_what_runs_commands_in_forks_has_loaded_them_before() -> None:
-    body = "import io\nfrom modalkit.workers.server import serve\nserve(io.BytesIO(), io.BytesIO())"
+    body = (
+        "import runpy\nfrom modalkit.workers import server\nserver.serve_standard = lambda program: None\n"
+        "runpy.run_module('modalkit.cli.warm', run_name='__main__')"
+    )
     assert {"modalkit.batch.part", "updating.diagnosis.diagnose", "scipy.stats"} <= modules_after(body)

@@ -112,8 +112,10 @@ def test_calculix_is_never_taken_from_the_current_folder(
 
 
 def test_figures_do_not_follow_a_matplotlibrc_of_the_current_folder(folder: Path) -> None:
-    frf = [*SCRIPT, "frf", "test.uff", "-o"]
-    run(folder, [*frf, "one.uff", "--figures", "plain"])
+    for name in ("published.toml", "modes.csv"):
+        shutil.copy(ROOT / "sample_data/beam_dry" / name, folder)
+    update = [*SCRIPT, "update", "published.toml", "--figures"]
+    run(folder, [*update, "plain"])
     (folder / "matplotlibrc").write_text("axes.facecolor: red\nfont.size: 30\n", encoding="utf-8")
-    run(folder, [*frf, "two.uff", "--figures", "styled"])
-    assert (folder / "plain/frf.png").read_bytes() == (folder / "styled/frf.png").read_bytes()
+    run(folder, [*update, "styled"])
+    assert (folder / "plain/update.png").read_bytes() == (folder / "styled/update.png").read_bytes()

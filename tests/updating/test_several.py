@@ -184,7 +184,7 @@ def test_an_effect_that_cannot_be_on_one_specimen_is_sought_on_the_other(
     states = problem.place(found.candidate, found.best.coordinates)
     assert [bool(state.stiffness) for state in states] == [k == "plate" for k in order]
     for i, kind in enumerate(order):
-        part = problem.restrict(found, i)
+        part = found.restricted(*problem.part(found.candidate, i))
         assert part.names == (("orthotropy",) if kind == "plate" else ())
         assert part.samples.shape[1] == (kind == "plate")
 

@@ -20,6 +20,7 @@ from updating.diagnosis.next_test import propose
 from updating.diagnosis.problem.doubtful import notes_on_doubtful
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
+from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.search import Search, search
 from updating.effects import LIBRARY, Effect
@@ -180,10 +181,13 @@ def _locate(problem: DiagnosisProblem, found: Search, *, significant: bool) -> W
     if not isinstance(problem, Several):
         return locate(problem.specimens[0], found, significant=significant)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
-    acting = [len(problem.restrict(leader, i).names) for i in range(len(problem.specimens))]
-    i = int(np.argmax(acting))
-    rows = tuple(replace(row, explanation=problem.restrict(row.explanation, i)) for row in found.compared)
-    part = replace(found, nothing=problem.restrict(found.nothing, i), compared=rows)
+
+    def on(one: Explanation, i: int) -> Explanation:
+        return one.restricted(*problem.part(one.candidate, i))
+
+    i = int(np.argmax([len(on(leader, j).names) for j in range(len(problem.specimens))]))
+    rows = tuple(replace(row, explanation=on(row.explanation, i)) for row in found.compared)
+    part = replace(found, nothing=on(found.nothing, i), compared=rows)
     return locate(problem.specimens[i], part, significant=significant, whole=found)
 
 

@@ -22,7 +22,7 @@ from updating.frf_update.stage import Stage
 from updating.frf_update.step import Step, last_steps
 from updating.models.state import NOMINAL, combine
 from updating.test_data.measured_frfs import MeasuredFrfs
-from updating.update.statistics.bootstrap import FEWEST, LEVEL
+from updating.update.resampling import FEWEST, LEVEL
 
 ROUNDS = 2
 """How often the stages are gone through for each draw, from the solution of the data at hand."""

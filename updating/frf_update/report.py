@@ -21,9 +21,9 @@ from updating.prediction.matching import mac_of_constants, match
 from updating.prediction.predict import Predictor
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.data.specimen import Specimen
+from updating.update.estimate import Estimate
 from updating.update.parameters.exact import full_modes
 from updating.update.parameters.parameters import ModelParameter
-from updating.update.result import Estimate
 from updating.update.statistics.determined import correlations
 
 NOTEWORTHY = 0.01

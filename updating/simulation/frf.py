@@ -11,7 +11,7 @@ from scipy import linalg
 from acquisition import FORMS, Dof, FrfSet
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.errors import StudyError
-from acquisition.frfs.frf import Form
+from acquisition.form import Form
 from updating.models.response import receptance
 from updating.simulation.model import Simulated
 from updating.simulation.poles import damped_modes, modal_damping, uncoupled

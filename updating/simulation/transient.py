@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 from acquisition import FORMS
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.errors import InputError
-from acquisition.frfs.frf import Form
+from acquisition.form import Form
 from updating.simulation.model import Simulated
 from updating.simulation.poles import damped_modes
 

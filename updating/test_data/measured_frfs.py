@@ -9,7 +9,8 @@ import numpy as np
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from acquisition.errors import StudyError
-from acquisition.frfs.frf import FORMS, FrfSet
+from acquisition.form import FORMS
+from acquisition.frfs.frf import FrfSet
 from identification import ModalModel
 from identification.arrangement import signs
 from identification.fit.noise.levels import from_statistics, scatter

@@ -12,9 +12,10 @@ from acquisition.arrays import FloatArray
 from updating.case import Case
 from updating.update.building import BEYOND, build_specimen, build_system, check_data, per_case
 from updating.update.data.system import Quantity, System, Weights
+from updating.update.estimate import Estimate
 from updating.update.parameters.exact import full_modes
 from updating.update.parameters.parameters import ModelParameter
-from updating.update.result import Estimate, Update
+from updating.update.result import Update
 from updating.update.solve import Solution, solve
 from updating.update.statistics.determined import Statistics, assess, correlations
 from updating.update.statistics.doubts import doubts

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from updating.update.result import Estimate, Update
+    from updating.update.estimate import Estimate
+    from updating.update.result import Update
 
 NOTABLE = 0.5
 """Correlations above it are listed [-]."""

@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import AnyArray
 from acquisition.dof import Dof
 from acquisition.errors import InputError
-from acquisition.frfs.frf import Form
+from acquisition.form import Form
 from acquisition.geometry import Geometry
 from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.uff.functions.measurements import Measurement

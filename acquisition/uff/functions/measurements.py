@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -147,8 +147,8 @@ def measure(
     minimum, step = _even_abscissa(located)
     seconds = abscissa_factor(header.abscissa)
     key = _checked(located, found, minimum, digest)
-    complete = {"values": located.stored, "minimum": minimum * seconds, "step": step * seconds, "key": key}
-    return Measurement(**{**found.__dict__, **complete}), notes
+    complete = replace(found, values=located.stored, minimum=minimum * seconds, step=step * seconds, key=key)
+    return complete, notes
 
 
 def described(

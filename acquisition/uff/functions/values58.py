@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from mmap import mmap
@@ -17,11 +15,9 @@ from acquisition.uff.functions.header58 import Header58, parse_header
 from acquisition.uff.functions.stored import Stored
 from acquisition.uff.text.blocks import HEADER_LINES, Block, header_end
 from acquisition.uff.text.columns import LineForms, form_of
+from acquisition.uff.text.numbers import numbers_of
 from acquisition.uff.text.source import Source
 
-_TOUCHING = re.compile(rb"(?<=[\d.])(?=[+-])")
-_FORTRAN = re.compile(rb"[dD](?=[+\-\d ])")
-_NO_LETTER = re.compile(rb"(?<=\d)([+-]\d{3})(?=[\s+-]|\Z)")  # Fortran's 1.00000-105
 _CHUNK = 1 << 22
 _PER_LINE = {4: 6, 8: 4}  # real numbers on a line of single and of double precision, as the format has it
 
@@ -209,46 +205,6 @@ def _pieces(data: mmap, start: int, stop: int) -> Iterator[bytes]:
             end = newline + 1 if newline >= 0 else min(start + 64 * _CHUNK, stop)
         yield data[start:end]
         start = end
-
-
-def numbers_of(text: bytes) -> FloatArray:
-    """Return all numbers of a text, which may touch each other or carry Fortran's D.
-
-    Raises
-    ------
-    InputError
-        If something else stands among them.
-    """
-    if _signs_touch(text):
-        text = _TOUCHING.sub(b" ", _NO_LETTER.sub(rb"E\1", text))
-    if b"D" in text or b"d" in text:
-        text = _FORTRAN.sub(b"E", text)
-    if not text.strip():
-        return np.zeros(0)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            return np.asarray(np.fromstring(text, dtype=np.float64, sep=" "))
-    except (DeprecationWarning, ValueError):
-        raise InputError(f"{_first_bad(text)!r} stands among its values and is no number") from None
-
-
-def _signs_touch(text: bytes) -> bool:
-    """Tell whether a sign follows a digit or a point somewhere."""
-    code = np.frombuffer(text, np.uint8)
-    after, before = code[1:], code[:-1]
-    sign = np.flatnonzero((after == ord("+")) | (after == ord("-")))
-    ahead = before[sign]
-    return bool((((ahead >= ord("0")) & (ahead <= ord("9"))) | (ahead == ord("."))).any())
-
-
-def _first_bad(text: bytes) -> str:
-    for word in text.split():
-        try:
-            float(word)
-        except ValueError:
-            return word.decode("latin-1")[:40]
-    return "something"
 
 
 def _enough(found: int, announced: int) -> None:

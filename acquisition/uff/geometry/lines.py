@@ -8,8 +8,8 @@ import numpy as np
 
 from acquisition.arrays import IntArray
 from acquisition.errors import InputError
-from acquisition.uff.functions.values58 import numbers_of
 from acquisition.uff.text.columns import check_columns
+from acquisition.uff.text.numbers import numbers_of
 
 _BEAMS = (11, 21, 22, 23, 24)
 _SOLIDS = {  # by number of corner nodes

@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from acquisition.uff.functions.units import Units
-from acquisition.uff.functions.values58 import numbers_of
+from acquisition.uff.text.numbers import numbers_of
 
 CARTESIAN, CYLINDRICAL = 0, 1
 

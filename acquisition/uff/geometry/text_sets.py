@@ -12,8 +12,8 @@ import pyuff
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import InputError
 from acquisition.uff.functions.units import Units, units_of
-from acquisition.uff.functions.values58 import numbers_of
 from acquisition.uff.text.columns import check_columns, check_digits
+from acquisition.uff.text.numbers import numbers_of
 from acquisition.uff.text.record_lines import check_record_lines
 
 _FACTORS = 4  # of length, force and temperature, and the offset of temperature

@@ -11,8 +11,8 @@ from acquisition.arrays import AnyArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import InputError
 from acquisition.uff.functions.id_lines import LENGTH
 from acquisition.uff.functions.units import Units
-from acquisition.uff.functions.values58 import numbers_of
 from acquisition.uff.text.columns import check_columns, check_digits
+from acquisition.uff.text.numbers import numbers_of
 from acquisition.uff.text.record_lines import check_record_lines
 
 # How far the MAC of a mode with its copy, printed with five digits, may be from 1. Doubling it changes nothing: the

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from acquisition.errors import InputError
-from acquisition.uff.functions.values58 import numbers_of
+from acquisition.uff.text.numbers import numbers_of
 
 
 def check_record_lines(text: bytes, *, columns: int, first: Collection[int]) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from acquisition.arrays import AnyArray, FloatArray, IntArray
 from acquisition.dof import Dof
-from acquisition.frfs.frf import Form
+from acquisition.form import Form
 from acquisition.geometry import Geometry
 
 Format = Literal["binary", "ascii"]

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.frfs.frf import FORMS, Form, FrfSet, Record
+from acquisition.form import FORMS, Form
+from acquisition.frfs.frf import FrfSet, Record
 
 BASIC_TERMS: tuple[int, ...] = (-2, 0)
 _NOTHING = 1e-9  # what is cut off is worth its cost from here on [-]

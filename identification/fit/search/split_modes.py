@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from acquisition.frfs.frf import FORMS, FrfSet
+from acquisition.form import FORMS
+from acquisition.frfs.frf import FrfSet
 from identification.fit.equations.normal_equations import Weights
 
 _CLOSE = 2.5  # half-power half-widths between poles that may be one mode

@@ -1,4 +1,8 @@
-"""Intervals: Wilson's for shares, the bootstrap over trials for everything else."""
+"""Intervals: Wilson's for shares, the bootstrap over trials for everything else.
+
+Those of scipy.stats, and the same numbers, wherever scipy has them. Here counts may be fractions and come in arrays,
+one trial is enough, a statistic may be undefined in some samples, and a trial may have several numbers.
+"""
 
 from __future__ import annotations
 

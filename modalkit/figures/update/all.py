@@ -11,7 +11,7 @@ from modalkit.figures.update.evolution import Course, Courses, evolution_figure
 from modalkit.figures.update.frac import frac_figure
 from updating.frf_update import FrfUpdate
 from updating.update import Update
-from updating.update.result import Estimate
+from updating.update.estimate import Estimate
 
 LINES = 6
 """Most lines in a panel of the evolution; doubled, their labels touch."""

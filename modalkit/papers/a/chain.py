@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition import InputError
+from modalkit.module_path import HOME
 from modalkit.papers.a.printed import TABLES, Printed, PrintedTable
 from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
@@ -24,8 +25,7 @@ def sample_folder() -> Path:
     InputError
         If the samples were not installed.
     """
-    home = Path(__file__).resolve().parents[1]
-    for folder in (home / "_sample_data", home.parent / "sample_data"):
+    for folder in (Path(HOME) / "modalkit" / "_sample_data", Path(HOME) / "sample_data"):
         if (folder / "beam_dry" / "study.toml").exists():
             return folder
     raise InputError("the sample studies are not installed; clone the repository and run the command there")

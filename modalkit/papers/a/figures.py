@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from acquisition import FrfSet
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.frfs.frf import FORMS
+from acquisition.form import FORMS
 from modalkit.figures.curves import Curve, Panel, curves_figure
 from modalkit.figures.words import percent
 from modalkit.papers.a.chain import Walk, Walked

@@ -13,7 +13,7 @@ from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from updating import Case
 from updating.update import Update, update
-from updating.update.result import Estimate
+from updating.update.estimate import Estimate
 
 COMMON = ("length", "sensor_mass")
 """What beam and plate share in every variant: one clamp, one accelerometer."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from acquisition import FrfSet, InputError
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.frfs.frf import FORMS
+from acquisition.form import FORMS
 from identification import ModalModel, frac, identify
 from modalkit.papers.b.printed import FREQUENCY, STUDY
 from modalkit.study.read import read_study

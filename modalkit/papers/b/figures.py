@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from matplotlib.figure import Figure
 
-from acquisition.frfs.frf import FORMS, UNITS
+from acquisition.form import FORMS, UNITS
 from modalkit.figures.curves import Curve, Panel, curves_figure
 from modalkit.figures.update.evolution import Course, Courses, evolution_figure
 from modalkit.figures.update.frac import frac_figure

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
-from updating.diagnosis.search.evidence import Explanation
+from acquisition.arrays import FloatArray, IntArray
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.likelihood.comparison import Comparison, join
 from updating.models.state import State
@@ -214,9 +213,9 @@ class Several:
         """Compare all data with one state of every specimen."""
         return join([problem.compare(state) for problem in self.specimens])
 
-    def restrict(self, explanation: Explanation, i: int = 0) -> Explanation:
-        """Return that part of an explanation that concerns one specimen."""
-        candidate, start = explanation.candidate, 0
+    def part(self, candidate: Candidate, i: int) -> tuple[Candidate, IntArray]:
+        """Return the effects of a candidate that act on one specimen, and which of its coordinates are theirs."""
+        start = 0
         columns: list[int] = []
         kept: list[tuple[Effect, Variant]] = []
         for effect, form, specimen_index, own in self._blocks(candidate):
@@ -227,8 +226,4 @@ class Several:
                 kept.append((effect, form))
             start = end
         part = Candidate(tuple(e for e, _ in kept), candidate.theory, tuple(f for _, f in kept))
-        chosen = np.array(columns, dtype=np.int64)
-        best = replace(explanation.best, coordinates=explanation.best.coordinates[chosen])
-        return replace(
-            explanation, candidate=part, best=best, samples=explanation.samples[:, chosen], peaks=()
-        )
+        return part, np.array(columns, dtype=np.int64)

@@ -15,7 +15,7 @@ from scipy.special import logsumexp
 from scipy.stats import qmc
 from scipy.stats import t as student
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.fit import Peak, Point, evaluate, maximise
 from updating.diagnosis.search.goodness import p_value
@@ -94,6 +94,11 @@ class Explanation:
     def p_value(self) -> float:
         """How well the best parameters fit: the p-value of chi-squared over all data and each channel [-]."""
         return p_value(self.best, self.samples.shape[1])
+
+    def restricted(self, candidate: Candidate, columns: IntArray) -> Explanation:
+        """Return what it says of some of its effects alone, of those whose coordinates are ``columns``."""
+        best = replace(self.best, coordinates=self.best.coordinates[columns])
+        return replace(self, candidate=candidate, best=best, samples=self.samples[:, columns], peaks=())
 
 
 def explain(

@@ -14,9 +14,9 @@ from scipy.stats import chi2, norm, qmc
 from acquisition.arrays import FloatArray
 from updating.update.data.specimen import Evaluation, Specimen
 from updating.update.data.system import System
+from updating.update.estimate import Estimate
 from updating.update.parameters.affine import eligible
 from updating.update.parameters.parameters import ModelParameter
-from updating.update.result import Estimate
 from updating.update.solve import Solution, solve
 from updating.update.statistics.mixture import NOTICED, Mixture, laplace
 

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 import scipy.optimize
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, frozen_array
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(80)
 
@@ -80,7 +80,7 @@ def _flat_plate(aspect: float, along: int, across: int) -> tuple[FloatArray, Flo
     strength = np.linalg.solve(influence, spread)
     area = np.outer(np.diff(edge_x), np.diff(edge_y)).ravel()
     matrix = spread.T @ (area[:, None] * strength)
-    return x, 0.5 * (matrix + matrix.T)
+    return frozen_array(x), frozen_array(0.5 * (matrix + matrix.T))
 
 
 def _cosine(length: float, count: int) -> tuple[FloatArray, FloatArray]:

@@ -17,7 +17,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, frozen_array
 from modalkit.simulator.bodies.beam.water import slip_factor, thickness_factor
 from modalkit.simulator.bodies.plate.panel_slip import slip_gram
 
@@ -78,7 +78,7 @@ def _lattice(length: float, width: float, wall: bool, along: int, across: int) -
     influence = _velocity(x, edge_x, y, edge_y)
     if wall:
         influence = influence + _velocity(-x, edge_x, y, edge_y)
-    return edge_x, edge_y, x, y, np.asarray(np.linalg.inv(influence), float)
+    return tuple(frozen_array(a) for a in (edge_x, edge_y, x, y, np.linalg.inv(influence)))
 
 
 def _velocity(x: FloatArray, edge_x: FloatArray, y: FloatArray, edge_y: FloatArray) -> FloatArray:

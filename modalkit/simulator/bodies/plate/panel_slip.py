@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, frozen_array
 
 _EXTRA = 24
 
@@ -47,4 +47,4 @@ def slip_gram(length: float, count: int, cut: float, *, half: bool) -> FloatArra
     fitted = np.linalg.solve(np.sin(np.outer(angles, orders)).T, slopes.T).T
     if half:
         fitted = (fitted[:, count:] + fitted[:, count - 1 :: -1]) * np.sqrt(0.5)
-    return np.asarray(fitted.T @ fitted)
+    return frozen_array(fitted.T @ fitted)

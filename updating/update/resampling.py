@@ -13,7 +13,8 @@ from acquisition.errors import StudyError
 from updating.case import Case
 from updating.update.data.specimen import Specimen
 from updating.update.data.system import Quantity, System, Weights
-from updating.update.result import Estimate, Update
+from updating.update.estimate import Estimate
+from updating.update.result import Update
 from updating.update.run import Fitted, fit, report
 from updating.update.solve import solve
 
