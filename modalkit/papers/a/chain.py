@@ -24,7 +24,7 @@ def sample_folder() -> Path:
     InputError
         If the samples were not installed.
     """
-    home = Path(__file__).resolve().parents[1]
+    home = Path(__file__).resolve().parents[2]
     for folder in (home / "_sample_data", home.parent / "sample_data"):
         if (folder / "beam_dry" / "study.toml").exists():
             return folder
