@@ -11,6 +11,8 @@ from pathlib import Path
 os.environ.setdefault(
     "OPENBLAS_NUM_THREADS", "1"
 )  # before numpy: two threads are slower on small eigenproblems
+# a process that a test starts takes seconds longer where it must compile every module anew
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 import numpy as np
 import pytest

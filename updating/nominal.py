@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from updating.case import Case
 from updating.effects import accepted_state
@@ -12,10 +12,16 @@ from updating.prediction.predict import Predictor
 
 def predictor_of(case: Case) -> Predictor:
     """Return the nominal model of a case with the accepted effects, on the theory they ask for."""
-    additions = tuple(_accepted(name, values) for name, values in case.accepted)
-    predictor = Predictor(case.spec, case.measured, case.environment, additions)
+    predictor = Predictor(case.spec, case.measured, case.environment, accepted_additions(case.accepted))
     theory = predictor.base.theory
     return predictor if theory is None else predictor.under(theory)
+
+
+def accepted_additions(
+    accepted: Iterable[tuple[str, Mapping[str, float]]],
+) -> tuple[Callable[[Predictor], State], ...]:
+    """Return what puts accepted effects, each a name and its values, into a predictor's model."""
+    return tuple(_accepted(name, values) for name, values in accepted)
 
 
 def _accepted(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:

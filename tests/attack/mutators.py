@@ -352,11 +352,33 @@ def _zipped(members: Mapping[str, bytes]) -> bytes:
 @cache
 def zip_bomb(name: str) -> bytes:
     """Return an archive of one huge array of zeros."""
+    crc, size, packed = _bomb()
+    info = zipfile.ZipInfo(name)
+    info.compress_type = zipfile.ZIP_DEFLATED
+    info.CRC, info.file_size, info.compress_size, info.header_offset = crc, size, len(packed), 0
+    plain = io.BytesIO()
+    with zipfile.ZipFile(plain, "w") as file:
+        plain.write(info.FileHeader() + packed)
+        file.filelist.append(info)
+        file.start_dir = plain.tell()
+    return plain.getvalue()
+
+
+@cache
+def _bomb() -> tuple[int, int, bytes]:
+    """Return checksum, size and packed bytes of the array, which are the same whatever it is called: packing takes
+    seconds.
+    """
     plain = io.BytesIO()
     np.lib.format.write_array_header_1_0(
         plain, {"descr": "<f8", "fortran_order": False, "shape": (BOMB // 8,)}
     )
-    return _zipped({name: plain.getvalue() + bytes(BOMB)})
+    zeros, pack = bytes(BOMB // 100), zlib.compressobj(1, wbits=-zlib.MAX_WBITS)
+    crc, size, packed = 0, 0, []
+    for part in [plain.getvalue(), *[zeros] * 100]:
+        crc, size = zlib.crc32(part, crc), size + len(part)
+        packed.append(pack.compress(part))
+    return crc, size, b"".join([*packed, pack.flush()])
 
 
 @cache

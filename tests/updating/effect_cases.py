@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
 from imported_cases import imported_beam, seen_from, spec_of
 from scipy import sparse
 from updating_cases import BEAM, PLATE, POINTS, blank
@@ -47,6 +48,20 @@ LOOK = {
 def admits(name: str, place: str) -> bool:
     """Tell whether an effect can be examined."""
     return LIBRARY[name].why_not(LOOK[place]) is None
+
+
+def admitted(
+    names: Iterable[str] = LIBRARY, places: Iterable[str] = LOOK, *, formed: bool = False
+) -> pytest.MarkDecorator:
+    """Run a test for every name and place where the effect can be examined, and has a form if ``formed``."""
+    places = tuple(places)
+    cases = [
+        (name, place)
+        for name in names
+        for place in places
+        if admits(name, place) and (not formed or LIBRARY[name].variants(LOOK[place]))
+    ]
+    return pytest.mark.parametrize(("name", "place"), cases)
 
 
 def form(effect: Effect, predictor: Predictor, quantile: float = 0.45, **ends: float) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from effect_cases import CHANGES, CONTRACT, LOOK, THIN, VANISHING, admits, form, full_modes, scaled
+from effect_cases import CHANGES, CONTRACT, LOOK, THIN, VANISHING, admits, admitted, form, full_modes, scaled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from updating_cases import BEAM, POINTS, blank
@@ -48,14 +48,12 @@ def test_what_is_mistaken_for_each_other_says_so_of_each_other(name: str) -> Non
         assert name in LIBRARY[other].equivalent_to, other
 
 
-@every
-@pytest.mark.parametrize("place", ["beam", "plate"])
+@admitted(places=["beam", "plate"])
 def test_names_and_parameters_are_those_of_the_contract(name: str, place: str) -> None:
-    if admits(name, place):
-        names = {p.name for p in LIBRARY[name].parameters(LOOK[place])} | set(LIBRARY[name].labels)
-        assert name in CONTRACT
-        assert names <= CONTRACT[name]
-        assert names >= CONTRACT[name] - ({"y", "dy"} if place == "beam" else set())
+    names = {p.name for p in LIBRARY[name].parameters(LOOK[place])} | set(LIBRARY[name].labels)
+    assert name in CONTRACT
+    assert names <= CONTRACT[name]
+    assert names >= CONTRACT[name] - ({"y", "dy"} if place == "beam" else set())
 
 
 @every
@@ -71,12 +69,9 @@ def test_the_contract_is_kept_whole() -> None:
     assert set(LIBRARY) >= set(CONTRACT)
 
 
-@every
-@places
+@admitted()
 def test_forms_have_shares_and_fix_what_is_known(name: str, place: str) -> None:
     effect, predictor = LIBRARY[name], LOOK[place]
-    if not admits(name, place):
-        return
     forms = effect.variants(predictor)
     assert 0 < sum(f.weight for f in forms) <= 1 + 1e-9
     known = {p.name for p in effect.parameters(predictor)} | {*effect.labels}
@@ -97,13 +92,10 @@ def test_what_cannot_be_examined_is_said() -> None:
     assert "damping" in (LIBRARY["exponential_window"].obstacle(LOOK["beam"].for_test(unknown)) or "")
 
 
-@every
-@places
+@admitted()
 @settings(max_examples=15, deadline=None)
 @given(u=st.floats(0.0, 1.0))
 def test_priors_have_a_range_and_quantiles_go_there_and_back(name: str, place: str, u: float) -> None:
-    if not admits(name, place):
-        return
     effect = LIBRARY[name]
     for parameter in effect.parameters(LOOK[place]):
         assert parameter.low < parameter.high
@@ -120,11 +112,8 @@ def test_priors_have_a_range_and_quantiles_go_there_and_back(name: str, place: s
     assert len(effect.values(LOOK[place], [u] * count)) == count
 
 
-@every
-@places
+@admitted()
 def test_any_state_within_the_prior_has_modes(name: str, place: str) -> None:
-    if not admits(name, place):
-        return
     effect, predictor = LIBRARY[name], LOOK[place]
     stage = predictor.under("timoshenko") if name == "shear" else predictor
     for u in (0.0, 0.5, 1.0):
@@ -142,24 +131,18 @@ def test_any_state_within_the_prior_has_modes(name: str, place: str) -> None:
                 assert unit
 
 
-@pytest.mark.parametrize("name", [n for n in LIBRARY if n in CHANGES])
-@pytest.mark.parametrize("place", ["beam", "timoshenko", "plate", "free"])
+@admitted([n for n in LIBRARY if n in CHANGES], ["beam", "timoshenko", "plate", "free"], formed=True)
 @pytest.mark.parametrize("quantile", [0.25, 0.6])
 def test_the_small_model_agrees_with_the_full_one(name: str, place: str, quantile: float) -> None:
     """Sparse matrices of the whole model, the effect put in by hand: to 0.05 % of every frequency."""
-    if not admits(name, place) or not LIBRARY[name].variants(LOOK[place]):
-        return
     effect, predictor = LIBRARY[name], LOOK[place]
     values = form(effect, predictor, quantile)
     found = predictor.predict(effect.state(predictor, values), count=5).frequency
     assert found == pytest.approx(full_modes(name, predictor, values, 5), rel=5e-4)
 
 
-@pytest.mark.parametrize("name", [n for n in VANISHING if n in LIBRARY])
-@places
+@admitted([n for n in VANISHING if n in LIBRARY])
 def test_an_effect_of_nothing_is_the_nominal_model(name: str, place: str) -> None:
-    if not admits(name, place):
-        return
     effect, predictor = LIBRARY[name], LOOK[place]
     values = {k: v for k, v in form(effect, predictor).items() if k not in VANISHING[name]}
     values |= {k: v for k, v in VANISHING[name].items() if k != "dy" or predictor.spec.kind == "plate"}
@@ -175,11 +158,8 @@ def test_an_effect_of_nothing_is_the_nominal_model(name: str, place: str) -> Non
     assert np.abs(found.constants) == pytest.approx(np.abs(plain.constants), abs=2e-3 * size)
 
 
-@every
-@pytest.mark.parametrize("place", ["beam", "plate"])
+@admitted(places=["beam", "plate"])
 def test_the_order_of_the_points_does_not_matter(name: str, place: str) -> None:
-    if not admits(name, place):
-        return
     effect, here = LIBRARY[name], LOOK[place]
     test = here.measured
     turned = np.random.default_rng(4).permutation(len(test.points))
@@ -197,12 +177,9 @@ SCALING = sorted({"E", "thickness", "length", "clamp_rotation", "clamp_translati
                  | {"axial_load", "fluid_added_mass", "lumped_mass", "damping_patch", "shear"})  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SCALING)
-@pytest.mark.parametrize("place", ["beam", "plate"])
+@admitted(SCALING, ["beam", "plate"])
 def test_units_are_those_of_the_specimen(name: str, place: str) -> None:
     """Twice as large in all directions of the same material: every prior follows, and every frequency halves."""
-    if not admits(name, place):
-        return
     effect, here = LIBRARY[name], LOOK[place]
     test = replace(here.measured, points=2 * here.measured.points, frequency=here.measured.frequency / 2)
     there = Predictor(scaled(here.spec, 2.0), test)

@@ -13,11 +13,14 @@ from acquisition.errors import InputError
 from updating import Case, Predictor, Spec, Tolerances
 from updating.diagnosis.answer.result import Diagnosis
 from updating.diagnosis.diagnose import diagnose_together, pose
+from updating.diagnosis.problem.recent import Recent
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.evidence import explain
 from updating.effects import LIBRARY
+from updating.likelihood.comparison import Comparison
 from updating.models.state import NOMINAL, State, combine
 from updating.problem.candidate import Candidate
+from updating.problem.specimen import SpecimenProblem
 
 BEAM = FINE.with_elements(12)
 PLATE = FINE_PLATE.with_elements(8, 5)
@@ -201,3 +204,23 @@ def test_no_effect_on_either_is_no_gap() -> None:
     found = diagnose_together([specimen_of("beam", "strip"), specimen_of("plate", "sheet")], library=FEW)
     assert not found.significant
     assert found.verdict == "none"
+
+
+def test_while_one_specimen_moves_the_others_are_not_compared_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem, made = replace(sharing(), recent=Recent()), []
+    compare = SpecimenProblem.compare
+
+    def counted(self: SpecimenProblem, *args: object, **options: object) -> Comparison:
+        made.append(self)
+        return compare(self, *args, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(SpecimenProblem, "compare", counted)
+    candidate = Candidate((STIFF,))  # a modulus of each
+    first = problem.at(candidate, np.array([0.4, 0.4]))
+    moved = problem.at(candidate, np.array([0.4, 0.5]))
+    assert made == [*problem.specimens, problem.specimens[1]]
+    again = replace(problem, recent=Recent())
+    for u, found in ((0.4, first), (0.5, moved)):
+        anew = again.at(candidate, np.array([0.4, u]))
+        assert np.array_equal(anew.residual, found.residual)
+        assert np.array_equal(anew.nuisance, found.nuisance)

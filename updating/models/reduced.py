@@ -138,7 +138,8 @@ class Reduced:
         n = self.ranks[state.released]
         total = {"stiffness": np.zeros((n, n)), "mass": self.point_masses[:n, :n].copy()}
         for term, parts in zip(self.structure.terms, self._totals(state), strict=True):
-            total[term.kind] += parts[:n, :n] * term.scale(state.factors)
+            scale = term.scale(state.factors)
+            total[term.kind] += parts[:n, :n] if scale == 1.0 else parts[:n, :n] * scale
         for kind, added in (("stiffness", state.stiffness), ("mass", state.mass)):
             for matrix in added:
                 total[kind] += matrix[:n, :n]

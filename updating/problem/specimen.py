@@ -447,13 +447,19 @@ class SpecimenProblem:
 
     def _position_columns(self, along: FloatArray) -> FloatArray:
         """Return one column per point hit and direction: the effect of having hit beside it."""
-        place = np.where(self.measured.hit < 0, self.measured.seen, self.measured.hit)
-        columns = [
-            (self._place_sigma(p, axis) * np.where((place == p)[:, None], slope, 0.0)).ravel()
-            for p in np.unique(place)
-            for axis, slope in enumerate(along)
-        ]
-        return np.stack(columns, axis=1)
+        return self._columns_by_point(
+            np.where(self.measured.hit < 0, self.measured.seen, self.measured.hit), along
+        )
+
+    def _columns_by_point(self, place: IntArray, along: FloatArray) -> FloatArray:
+        """Return one column per point and direction of slopes (dim, n_frf, n_modes), each times the doubt there."""
+        points, rank = np.unique(place, return_inverse=True)
+        n_dim, n_frf, n_modes = along.shape
+        columns = np.zeros((n_frf, n_modes, len(points), n_dim))
+        for axis, slope in enumerate(along):
+            sigma = np.array([self._place_sigma(int(p), axis) for p in points])
+            columns[np.arange(n_frf), :, rank, axis] = sigma[rank, None] * slope
+        return columns.reshape(n_frf * n_modes, -1)
 
     @cached_property
     def _loose_length(self) -> float:
@@ -484,12 +490,7 @@ class SpecimenProblem:
         """Return one column per sensor and direction: the effect of having mounted it beside its point."""
         if (self.measured.hit < 0).all():
             return np.zeros((along[0].size, 0))
-        columns = [
-            (self._place_sigma(p, axis) * np.where((self.measured.seen == p)[:, None], slope, 0.0)).ravel()
-            for p in np.unique(self.measured.seen)
-            for axis, slope in enumerate(along)
-        ]
-        return np.stack(columns, axis=1)
+        return self._columns_by_point(self.measured.seen, along)
 
 
 def _projection(data: FloatArray, model: FloatArray, *, axis: int | None) -> FloatArray:

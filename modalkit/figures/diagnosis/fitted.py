@@ -11,7 +11,7 @@ from acquisition.arrays import FloatArray
 from updating import LIBRARY, Case, Diagnosis, Predictor
 from updating.diagnosis.answer.result import ParameterEstimate
 from updating.diagnosis.diagnose import pose
-from updating.diagnosis.search.fit import Point, evaluate, maximise
+from updating.diagnosis.search.fit import Point, evaluate, highest
 from updating.effects import Variant
 from updating.models.state import State
 from updating.problem.candidate import Candidate
@@ -78,11 +78,7 @@ def fitted(diagnosis: Diagnosis, case: Case, *, alone: bool = True) -> Fitted:
         forms = tuple(Variant(stated[n]) if n in stated else _form(n, given) for n in applying)
         candidate = Candidate(tuple(LIBRARY[n] for n in applying), theory, forms)  # type: ignore[arg-type]
         start = _start(problem, candidate, given)
-        point = (
-            maximise(problem, candidate, start, rounds=6).point
-            if alone
-            else evaluate(problem, candidate, start)
-        )
+        point = highest(problem, candidate, start, rounds=6) if alone else evaluate(problem, candidate, start)
         found.append((candidate, point))
     candidate, point = max(found, key=lambda one: one[1].marginal.log_likelihood)
     return Fitted(problem, candidate, point) if point.possible else Fitted(problem)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,7 @@ from updating import Case
 from updating.effects.structure.fluid import mass_within
 from updating.environment import Environment
 from updating.models.state import State
-from updating.nominal import predictor_of
+from updating.nominal import accepted_additions, predictor_of
 from updating.prediction.baseline import correct
 from updating.prediction.matching import pair_modes
 from updating.prediction.predict import Predictor
@@ -109,15 +109,16 @@ def _table(
     number: str, title: str, case: Case, starts: Sequence[Start], counts: tuple[int, ...]
 ) -> PaperTable:
     rows, errors = [], []
+    plain = predictor_of(case)
     for start in starts:
-        predictor = _predictor(case, start)
+        predictor = _predictor(plain, case, start)
         for name, around in surroundings(case).items():
             for thickness in ("thin", "thick"):
                 found = predict_wet(predictor, around, thick=thickness == "thick")
                 wrong = [100 * (f[: counts[-1]] / case.measured.frequency - 1) for f in found]
                 rows.append(_row(start.name, name, thickness, wrong, counts))
         errors.append({"variant": f"{start.name}; {name}, {thickness}, coupled", **_by_mode(wrong[1])})
-    rows += _uniform(case, counts)
+    rows += _uniform(plain, case, counts)
     return PaperTable(
         "A", f"{number} by potential flow", title, pd.DataFrame(rows), pd.DataFrame(errors), NOTES
     )
@@ -180,12 +181,11 @@ def predict_wet(predictor: Predictor, around: Environment, *, thick: bool) -> tu
     return np.sqrt(alone) / (2 * np.pi), np.sqrt(coupled) / (2 * np.pi)
 
 
-def _predictor(case: Case, start: Start) -> Predictor:
-    """Return the dry model of a start, looked at from the wet test."""
-    if start.values is not None:
-        return predictor_of(replace(case, accepted=tuple(start.values.items())))
-    plain = predictor_of(case)
-    return plain.for_test(case.measured, (_corrected(case),))
+def _predictor(plain: Predictor, case: Case, start: Start) -> Predictor:
+    """Return the dry model of a start, looked at from the wet test, on the basis of the model without any."""
+    if start.values is None:
+        return plain.for_test(case.measured, (_corrected(case),))
+    return plain.for_test(case.measured, accepted_additions(start.values.items()))
 
 
 def _corrected(case: Case) -> Callable[[Predictor], State]:
@@ -197,10 +197,10 @@ def _corrected(case: Case) -> Callable[[Predictor], State]:
     return build
 
 
-def _uniform(case: Case, counts: tuple[int, ...]) -> list[dict[str, object]]:
+def _uniform(plain: Predictor, case: Case, counts: tuple[int, ...]) -> list[dict[str, object]]:
     """Return what the paper's one factor on the mass leaves, and what the best one could."""
     assert case.baseline is not None
-    dry = {"nominal": predictor_of(case).predict().frequency, "measured dry": case.baseline.frequency}
+    dry = {"nominal": plain.predict().frequency, "measured dry": case.baseline.frequency}
     rows = [_printed(case, counts)]
     for name, frequency in dry.items():
         row: dict[str, object] = {

@@ -12,7 +12,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.answer.result import Place
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import maximise
+from updating.diagnosis.search.fit import highest
 from updating.problem.specimen import SpecimenProblem
 
 LEAST = 0.05
@@ -193,7 +193,7 @@ def _mirrored(
     leaders = {c.likely_place: c for c in sorted(found, key=lambda c: c.weight)}
     more: list[Cluster] = []
     for flipped in _flips(problem, explanation):
-        peak = maximise(problem, explanation.candidate, flipped, rounds=4).point
+        peak = highest(problem, explanation.candidate, flipped, rounds=4)
         likely = np.exp(min(peak.marginal.log_likelihood - best.marginal.log_likelihood, 0.0))
         if likely < LEAST:
             continue

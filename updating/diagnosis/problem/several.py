@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.diagnosis.problem.recent import Recent
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.likelihood.comparison import Comparison, join
 from updating.models.state import State
@@ -34,11 +35,14 @@ class Several:
         Their names.
     shared : frozenset of str
         Effects whose parameters have one value on all specimens; those of all others have one on each.
+    recent : Recent
+        The comparisons made last.
     """
 
     specimens: tuple[SpecimenProblem, ...]
     titles: tuple[str, ...]
     shared: frozenset[str] = field(default_factory=frozenset)
+    recent: Recent = field(default_factory=Recent)
 
     @property
     def predictor(self) -> Predictor:
@@ -199,15 +203,28 @@ class Several:
         self, candidate: Candidate, coordinates: FloatArray, shift: FloatArray | None = None
     ) -> Comparison:
         """Compare all data with a candidate at prior quantiles; see :meth:`Problem.at`."""
-        states = self.place(candidate, coordinates)
         parts: list[Comparison] = []
         start = 0
-        for problem, state in zip(self.specimens, states, strict=True):
+        for i, (problem, own) in enumerate(
+            zip(self.specimens, self._split(candidate, coordinates), strict=True)
+        ):
             stated = None if shift is None else shift[start : start + len(problem.names)]
-            part = problem.compare(state, stated, doubt=candidate.doubt_on(problem.predictor))
+            part = self._compared(candidate, i, own, stated)
             start += part.nuisance.shape[1]
             parts.append(part)
         return join(parts)
+
+    def _compared(
+        self, candidate: Candidate, i: int, own: Mapping[str, Values], shift: FloatArray | None
+    ) -> Comparison:
+        """Compare one specimen's data, unless that was done just before with the same values."""
+        problem, doubt = self.specimens[i], candidate.doubt_on(self.specimens[i].predictor)
+        acting = tuple((e, tuple(own[e.name].items())) for e in candidate.effects if e.name in own)
+        stage = candidate.stage(problem.predictor)
+        key = (i, candidate.theory, stage, acting, doubt, None if shift is None else shift.tobytes())
+        return self.recent.get(
+            key, lambda: problem.compare(self._state(candidate, problem, own), shift, doubt=doubt)
+        )
 
     def compare(self, state: State) -> Comparison:
         """Compare all data with one state of every specimen."""

@@ -7,6 +7,7 @@ several peaks, and for a parameter the data do not see, where a Laplace approxim
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,7 +18,7 @@ from scipy.stats import t as student
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.diagnosis.search.fit import Peak, Point, evaluate, maximise
+from updating.diagnosis.search.fit import Peak, Point, evaluate, highest, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.problem.candidate import Candidate
 
@@ -212,33 +213,35 @@ def _moments(
     problem: DiagnosisProblem, candidate: Candidate, samples: FloatArray, weights: FloatArray
 ) -> Peak:
     """Return a component about the mean of the weighted samples: where the first ones missed the bulk."""
-    best = maximise(problem, candidate, samples[int(np.argmax(weights))], rounds=4)
-    spread = samples - best.point.coordinates
+    best = highest(problem, candidate, samples[int(np.argmax(weights))], rounds=4)
+    spread = samples - best.coordinates
     covariance = (spread.T * weights) @ spread + 1e-6 * np.eye(samples.shape[1])
-    return Peak(best.point, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
+    return Peak(best, np.asarray(np.linalg.inv(covariance)), np.zeros(samples.shape[1]))
 
 
 def _peaks(
     problem: DiagnosisProblem, candidate: Candidate, places: list[FloatArray], maximisations: int, bar: float
 ) -> list[Peak]:
     if len(places) > maximisations:
-        evaluations = [evaluate(problem, candidate, place).marginal.log_likelihood for place in places]
-        nearest = [places[i] for i in np.argsort(evaluations)[::-1][:TRIED]]
-        tried = [maximise(problem, candidate, place, rounds=FEW, bar=bar) for place in nearest]
-        tried.sort(key=lambda p: -p.point.marginal.log_likelihood)
-        places = [peak.point.coordinates for peak in _distinct(tried)[:maximisations]]
-    found = _distinct([maximise(problem, candidate, place, bar=bar) for place in places])
+        evaluations = [evaluate(problem, candidate, place) for place in places]
+        nearest = np.argsort([evaluation.marginal.log_likelihood for evaluation in evaluations])[::-1][:TRIED]
+        tried = [highest(problem, candidate, evaluations[i], rounds=FEW, bar=bar) for i in nearest]
+        tried.sort(key=lambda p: -p.marginal.log_likelihood)
+        peaks = [maximise(problem, candidate, tried[i], bar=bar) for i in _distinct(tried)[:maximisations]]
+    else:
+        peaks = [maximise(problem, candidate, place, bar=bar) for place in places]
+    found = [peaks[i] for i in _distinct([peak.point for peak in peaks])]
     top = found[0].point.marginal.log_likelihood
     return [peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < BEHIND]
 
 
-def _distinct(peaks: list[Peak]) -> list[Peak]:
-    """Return the peaks that are not the same as a higher one, the highest first."""
-    kept: list[Peak] = []
-    for peak in sorted(peaks, key=lambda p: -p.point.marginal.log_likelihood):
-        here = peak.point.coordinates
-        if all(np.abs(here - other.point.coordinates).max() >= SAME_PLACE for other in kept):
-            kept.append(peak)
+def _distinct(points: Sequence[Point]) -> list[int]:
+    """Return which points are not in the same place as a higher one, the highest first."""
+    kept: list[int] = []
+    for i in sorted(range(len(points)), key=lambda i: -points[i].marginal.log_likelihood):
+        here = points[i].coordinates
+        if all(np.abs(here - points[j].coordinates).max() >= SAME_PLACE for j in kept):
+            kept.append(i)
     return kept
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -131,13 +131,13 @@ def _linearised(
 
 def sensitivities(problem: DiagnosisProblem, candidate: Candidate, point: Point) -> FloatArray:
     """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
-    return _slopes(problem, candidate, point, None)[0]
+    return _differences(problem, candidate, point, None)[0]
 
 
-def _slopes(
+def _differences(
     problem: DiagnosisProblem, candidate: Candidate, point: Point, keep: BoolArray | None
-) -> tuple[FloatArray, FloatArray]:
-    """Return the change of the prediction (n, k) and that of the log-likelihood (k,) per prior quantile."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the change of the prediction (n, k) and of the log-likelihood (k,) per prior quantile, and the steps."""
     columns, rises, steps = [], [], []
     for i, u in enumerate(point.coordinates):
         step = STEP if u < 0.5 else -STEP
@@ -149,16 +149,46 @@ def _slopes(
         steps.append(step)
     count = len(point.comparison.residual)
     whole = np.stack(columns, axis=1) if columns else np.zeros((count, 0))
-    if not columns:
-        return whole, np.zeros(0)
-    curve = np.diag(_curvature(point, whole, keep)[0])  # a difference is the slope half a step away
-    return whole, np.array(rises) + 0.5 * np.array(steps) * curve
+    return whole, np.array(rises), np.array(steps)
+
+
+@dataclass(frozen=True, eq=False)
+class _Slope:
+    """How the log-likelihood goes on from a point.
+
+    Parameters
+    ----------
+    columns : (n, k) array
+        Sensitivities of the prediction [-].
+    normal : (k, k) array
+        Fisher information, the nuisances integrated out [-].
+    load : (k,) array
+        Slope of the log-likelihood, the noise as it is [-].
+    noise_gradient : (k,) array
+        What the noise's own change with the parameters adds to it [-].
+    fresh : bool
+        Whether the sensitivities were taken at this very point.
+    """
+
+    columns: FloatArray
+    normal: FloatArray
+    load: FloatArray
+    noise_gradient: FloatArray
+    fresh: bool
+
+
+def _slope(problem: DiagnosisProblem, candidate: Candidate, point: Point, keep: BoolArray | None) -> _Slope:
+    """Take the slope at a point by differences."""
+    columns, rise, steps = _differences(problem, candidate, point, keep)
+    normal, load = _curvature(point, columns, keep)
+    rise = rise + 0.5 * steps * np.diag(normal)  # a difference is the slope half a step away
+    return _Slope(columns, normal, load, _finite(rise - load), fresh=True)
 
 
 def maximise(
     problem: DiagnosisProblem,
     candidate: Candidate,
-    start: FloatArray,
+    start: FloatArray | Point,
     *,
     keep: BoolArray | None = None,
     rounds: int = 20,
@@ -172,8 +202,8 @@ def maximise(
         Test and model.
     candidate : Candidate
         Effects.
-    start : (k,) array
-        Prior quantiles to start from.
+    start : (k,) array or Point
+        Prior quantiles to start from, or a point evaluated there with the same ``keep``.
     keep : (n,) bool array, optional
         Data to use; left out, all.
     rounds : int
@@ -181,46 +211,71 @@ def maximise(
     bar : float
         Log-likelihood that has been reached elsewhere: a climb far below that gains little ends.
     """
-    point = evaluate(problem, candidate, start, keep=keep)
+    point, slope = _ascend(problem, candidate, start, keep, rounds, bar)
     if not point.possible:
-        return Peak(point, np.eye(len(start)), np.zeros(len(start)))
-    damping, stretch, fresh = 1e-3, 1.0, True
-    columns, rise = _slopes(problem, candidate, point, keep)
-    normal, load = _curvature(point, columns, keep)
-    noise_gradient = _finite(rise - load)  # what the noise's own change with the parameters adds to the slope
-    for step_number in range(rounds if len(start) else 0):
-        gradient = load + noise_gradient
+        return Peak(point, np.eye(len(point.coordinates)), np.zeros(len(point.coordinates)))
+    if slope is None or (not slope.fresh and bar - point.marginal.log_likelihood < HOPELESS):
+        slope = _slope(problem, candidate, point, keep)
+    return Peak(point, slope.normal, slope.load + slope.noise_gradient)
+
+
+def highest(
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    start: FloatArray | Point,
+    *,
+    keep: BoolArray | None = None,
+    rounds: int = 20,
+    bar: float = -np.inf,
+) -> Point:
+    """Return where :func:`climb` ends, without the curvature there, which costs an evaluation per parameter."""
+    return _ascend(problem, candidate, start, keep, rounds, bar)[0]
+
+
+def _ascend(
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    start: FloatArray | Point,
+    keep: BoolArray | None,
+    rounds: int,
+    bar: float,
+) -> tuple[Point, _Slope | None]:
+    """Return where a climb ends and the slope it was last on; None where that is to be taken anew."""
+    point = start if isinstance(start, Point) else evaluate(problem, candidate, start, keep=keep)
+    damping, stretch = 1e-3, 1.0
+    slope: _Slope | None = None
+    for step_number in range(rounds if point.possible and len(point.coordinates) else 0):
+        slope = slope or _slope(problem, candidate, point, keep)
+        gradient = slope.load + slope.noise_gradient
         free = ~((point.coordinates <= 0) & (gradient < 0) | (point.coordinates >= 1) & (gradient > 0))
         if not free.any():
             break
-        step = _step(normal, gradient, free, damping, stretch)
+        step = _step(slope.normal, gradient, free, damping, stretch)
         if not np.isfinite(step).all():
             break
         there = np.clip(point.coordinates + step, 0.0, 1.0)
         trial = evaluate(problem, candidate, there, keep=keep)
         gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
-        promised = float(step @ gradient - 0.5 * step @ normal @ step)
+        promised = float(step @ gradient - 0.5 * step @ slope.normal @ step)
         stretch = 2 * stretch if gain > UNDERSTEPPED * promised > 0 else 1.0
         if gain > 0:
-            noise_gradient = noise_gradient * min(trial.marginal.chi2 / max(point.marginal.chi2, 1e-12), 1.0)
-            columns, fresh = _secant(columns, point, trial), False
+            quieter = min(trial.marginal.chi2 / max(point.marginal.chi2, 1e-12), 1.0)
+            columns = _secant(slope.columns, point, trial)
+            slope = replace(
+                slope, columns=columns, noise_gradient=slope.noise_gradient * quieter, fresh=False
+            )
             point, damping = trial, damping / 5
-        elif fresh:
+        elif slope.fresh:
             damping *= 10
         missing = LITTLE * (bar - point.marginal.log_likelihood) if step_number >= PATIENCE else 0.0
         if abs(gain) < max(AT_REST, missing) or damping > 1e6:
             break
-        if not fresh and (gain <= 0 or len(start) <= CHEAP):
-            columns, rise = _slopes(problem, candidate, point, keep)
-            fresh = True
-        normal, load = _curvature(point, columns, keep)
-        if fresh:
-            noise_gradient = _finite(rise - load)
-    if not fresh and bar - point.marginal.log_likelihood < HOPELESS:
-        columns, rise = _slopes(problem, candidate, point, keep)
-        normal, load = _curvature(point, columns, keep)
-        noise_gradient = _finite(rise - load)
-    return Peak(point, normal, load + noise_gradient)
+        if not slope.fresh and (gain <= 0 or len(point.coordinates) <= CHEAP):
+            slope = None
+        elif gain > 0:
+            normal, load = _curvature(point, slope.columns, keep)
+            slope = replace(slope, normal=normal, load=load)
+    return point, slope
 
 
 def _secant(columns: FloatArray, before: Point, now: Point) -> FloatArray:

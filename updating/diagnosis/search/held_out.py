@@ -11,7 +11,7 @@ from scipy.optimize import lsq_linear
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import CHEAP, maximise, sensitivities
+from updating.diagnosis.search.fit import CHEAP, highest, sensitivities
 from updating.likelihood.comparison import SHAPES, Comparison
 from updating.likelihood.gaussian import marginal, normal_equations
 from updating.problem.candidate import Candidate
@@ -110,16 +110,16 @@ def _refitted(
     """Return what is left of all data when some of them were fitted: of many parameters by a short linear step."""
     best = explanation.best
     if columns.shape[1] <= CHEAP:
-        return maximise(
+        return highest(
             diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS
-        ).point.left_over
+        ).left_over
     normal, load = normal_equations(best.comparison, columns, best.marginal.scale, keep)
     step = np.linalg.solve(normal + PRIOR * np.eye(len(load)), load)
     step = np.clip(best.coordinates + step, 0.0, 1.0) - best.coordinates
     if np.abs(step).max(initial=0.0) > SHORT:
-        return maximise(
+        return highest(
             diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS
-        ).point.left_over
+        ).left_over
     moved = replace(best.comparison, residual=best.comparison.residual - columns @ step)
     return np.asarray(moved.residual - moved.nuisance @ marginal(moved, keep).shift)
 
