@@ -39,7 +39,8 @@ if TYPE_CHECKING:
     from acquisition.mat.read import read_mat
     from acquisition.modal_data import ModalData
     from acquisition.modes.read import read_modes
-    from acquisition.readers import installed_readers, read_test, written_as_uff
+    from acquisition.own_readers import installed_readers, register_reader
+    from acquisition.readers import read_test, written_as_uff
     from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
     from acquisition.uff import DatasetInfo, UffContent, read_functions, read_uff, write_uff
 
@@ -91,6 +92,7 @@ __all__ = [
     "read_test",
     "read_uff",
     "reciprocity",
+    "register_reader",
     "rejected_points",
     "remove_sensor_mass",
     "split_hits",
@@ -118,7 +120,8 @@ load_on_demand(
         ".modal_data": "ModalData",
         ".modes.read": "read_modes",
         ".hits.quality": "judge_hits",
-        ".readers": "installed_readers read_test written_as_uff",
+        ".own_readers": "installed_readers register_reader",
+        ".readers": "read_test written_as_uff",
         ".frfs.reciprocity": "reciprocity",
         ".frfs.scatter": "HitGroup HitScatter variance_of_groups",
         ".frfs.sensor_mass": "remove_sensor_mass",

@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from importlib.metadata import entry_points
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from acquisition.columns import Layout, read_columns, read_frf_columns, read_layout
 from acquisition.errors import InputError
 from acquisition.frfs.frf import FrfSet
-from acquisition.hits.hammer import HammerTest
 from acquisition.mat.read import read_mat
 from acquisition.modal_data import ModalData
+from acquisition.own_readers import Found, Reader, installed_readers, read_by, with_dot
 from acquisition.uff import UffContent, read_uff
 
-Reader = Callable[[Path], HammerTest | FrfSet]
-GROUP = "modalkit.readers"
 UFF = frozenset({".uff", ".unv", ".uf", ".bunv"})
 """Endings of universal files."""
 COLUMNS = frozenset({".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm"})
 """Endings of column text."""
-
-
-def installed_readers() -> dict[str, Reader]:
-    """Return the readers that installed packages offer, by file ending.
-
-    A package offers one as an entry point of the group ``modalkit.readers`` whose name is the ending, as
-    ``".abc"``, and whose object is a function from a path to a `HammerTest` or `FrfSet`.
-    """
-    return {point.name.lower(): point.load() for point in entry_points(group=GROUP)}
 
 
 def read_test(
@@ -36,7 +24,7 @@ def read_test(
     *,
     layout: Layout | Path | str | None = None,
     readers: Mapping[str, Reader] | None = None,
-) -> list[HammerTest | FrfSet]:
+) -> list[Found]:
     """Read files of any known kind.
 
     Parameters
@@ -51,8 +39,9 @@ def read_test(
 
     Returns
     -------
-    list of HammerTest or FrfSet
-        What the files hold, in the order own readers, UFF, column text.
+    list of HammerTest, FrfSet or ModalData
+        What the files hold, in the order own readers, UFF, column text; modes are read by own readers alone, all other
+        files of modes by `read_modes`.
 
     Raises
     ------
@@ -60,7 +49,7 @@ def read_test(
         If no reader is known for a file, it cannot be read, or nothing in the files can be used.
     """
     files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
-    own = {**installed_readers(), **{_ending(k): v for k, v in (readers or {}).items()}}
+    own = {**installed_readers(), **{with_dot(k): v for k, v in (readers or {}).items()}}
     special = [f for f in files if f.suffix.lower() in own]
     rest = [f for f in files if f not in special]
     uff = [f for f in rest if f.suffix.lower() in UFF or written_as_uff(f)]
@@ -69,7 +58,7 @@ def read_test(
     if unknown:
         raise InputError(f"{unknown[0]}: {_advice(unknown[0], own)}")
     content = UffContent()
-    found: list[HammerTest | FrfSet] = [_checked(own[f.suffix.lower()], f) for f in special]
+    found: list[Found] = [read_by(own[f.suffix.lower()], f) for f in special]
     if uff:
         content = read_uff(uff)
         found += [*content.tests, *([] if content.frfs is None else [content.frfs])]
@@ -96,7 +85,7 @@ def _frfs_of_mat(path: Path, layout: Layout) -> FrfSet:
 
 def _nothing(files: Sequence[Path], content: UffContent) -> str:
     """Say why universal files gave neither hits nor FRFs."""
-    bad = [f"{d.place}: {d.message}" for d in content.datasets if not d.ok]
+    bad = [d.fault for d in content.datasets if not d.ok]
     why = bad[0] if bad else next(iter(content.warnings), "no time records with a force, and no FRFs, in it")
     return why if bad else f"{', '.join(map(str, files[:3]))}: {why}"
 
@@ -119,10 +108,6 @@ def written_as_uff(path: Path | str) -> bool:
     return [line.strip() for line in start.strip().splitlines()[:1]] == [b"-1"]
 
 
-def _ending(name: str) -> str:
-    return name.lower() if name.startswith(".") else f".{name.lower()}"
-
-
 def _advice(path: Path, own: Mapping[str, Reader]) -> str:
     if path.suffix.lower() == ".mat":
         return "a MATLAB file needs a layout file with a table [mat] that names its variables; see docs/readers.md"
@@ -130,12 +115,3 @@ def _advice(path: Path, own: Mapping[str, Reader]) -> str:
         return "column text needs a layout file with rate, units and points; see docs/readers.md"
     known = ", ".join(sorted({*UFF, *COLUMNS, ".mat", *own}))
     return f"no reader for {path.suffix or 'files without ending'}; known are {known}; see docs/readers.md"
-
-
-def _checked(reader: Reader, path: Path) -> HammerTest | FrfSet:
-    result = reader(path)
-    if not isinstance(result, HammerTest | FrfSet):
-        raise InputError(
-            f"{path}: its reader returned {type(result).__name__}; a reader returns a HammerTest or an FrfSet"
-        )
-    return result

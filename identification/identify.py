@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -13,6 +12,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError, InputError
 from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
+from acquisition.quantities import hertz, percent
 from acquisition.warned import Consequential
 from identification.arrangement import arrange, signs, unsigned
 from identification.band.uninformed import uninformed_modes
@@ -47,7 +47,7 @@ def identify(
     *,
     band: tuple[float, float] | None = None,
     order: int | None = None,
-    method: Literal["lsce", "lscf"] = "lscf",
+    method: str = "lscf",
     add: Sequence[float] = (),
     drop: Sequence[float] = (),
 ) -> ModalModel:
@@ -64,8 +64,8 @@ def identify(
         Lowest and highest frequency; default all lines [Hz].
     order : int, optional
         Largest number of poles tried; default 60, fewer if there are few lines [-].
-    method : {"lscf", "lsce"}
-        Pole estimator that supplies the candidates.
+    method : str
+        Pole estimator that supplies the candidates, one of `ESTIMATORS`: lscf, lsce, or one of your own.
     add, drop : sequence of float
         The user's word against the automatic choice: frequencies at which a mode is kept that the data
         alone would not bear out, and modes that are none, hum of the mains for instance. What is dropped stays
@@ -99,7 +99,8 @@ def _identified(
 ) -> ModalModel:
     data, points_rejected = _usable(frfs, band)
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
-    sets = ESTIMATORS[method](data, orders=order_list(data, order, method))
+    estimator = ESTIMATORS[method]
+    sets = estimator(data, orders=order_list(data, order, poly_reference=estimator.poly_reference))
     chart = stabilise(sets, band=limits)
     start = candidates(chart)
     if len(start) == 0:
@@ -142,15 +143,15 @@ def _usable(frfs: FrfSet, band: tuple[float, float] | None) -> tuple[FrfSet, tup
     return (data.select(np.flatnonzero(~dead)) if dead.any() else data), names
 
 
-def order_list(frfs: FrfSet, order: int | None, method: str) -> list[int]:
-    """Return the degrees to try: up to ``order`` poles, in some 25 steps, as far as the lines carry them.
+def order_list(frfs: FrfSet, order: int | None, *, poly_reference: bool) -> list[int]:
+    """Return the orders to try: up to ``order`` poles, in some 25 steps, as far as the lines carry them.
 
     Raises
     ------
     InputError
         If the order is under 2 or beyond 400.
     """
-    columns = len(arrange(frfs).columns) if method == "lscf" else 1
+    columns = len(arrange(frfs).columns) if poly_reference else 1
     wanted = _ORDER if order is None else order
     if wanted < 2:
         raise InputError(f"order {wanted} leaves no room for a mode; use 2 or more")
@@ -265,7 +266,7 @@ def _modal_data(data: FrfSet, poles: ComplexArray, spread: np.ndarray, shapes: S
 def _struck(poles: ComplexArray) -> tuple[str, ...]:
     if not len(poles):
         return ()
-    named = ", ".join(f"{abs(p) / (2 * np.pi):.5g} Hz" for p in poles)
+    named = ", ".join(hertz(abs(p) / (2 * np.pi)) for p in poles)
     return (
         f"what the fit has at {named} was taken for no mode: the data do not tell its frequency or its damping; "
         "name it with add if it is one",
@@ -277,9 +278,9 @@ def _warnings(fitted: Fitted, poles: ComplexArray) -> tuple[str, ...]:
     shift = np.sqrt(fitted.drift.at(poles).variance)
     if np.any(shift > _DRIFT * -poles.real / np.abs(poles)):
         notes.append(
-            f"the frequencies differ from FRF to FRF by {100 * shift.max():.2g} % (one standard deviation): a sensor "
-            "or hammer that roves and loads the structure, or temperature; the FRFs are carried over to common poles, "
-            "and what that leaves in doubt is in the standard deviations"
+            f"the frequencies differ from FRF to FRF by {percent(100 * shift.max())} (one standard deviation): a "
+            "sensor or hammer that roves and loads the structure, or temperature; the FRFs are carried over to common "
+            "poles, and what that leaves in doubt is in the standard deviations"
         )
     if not fitted.fit.converged:
         notes.append("the refinement of the poles did not converge; standard deviations may be too small")

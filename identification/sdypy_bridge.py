@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.dof import Dof
 from acquisition.errors import EstimationError, InputError
 from acquisition.frfs.frf import FrfSet
-from acquisition.geometry import Geometry
 from acquisition.modal_data import ModalData
 from identification.arrangement import signs
 from identification.model import ModalModel
@@ -44,50 +41,6 @@ def frfs_to_sdypy(frfs: FrfSet, *, order: int = 60) -> Any:
     other.frf, other.freq = np.array(frfs.values), np.array(frfs.frequency)
     other.omega = 2 * np.pi * other.freq
     return other
-
-
-def frfs_from_sdypy(
-    model: Any,
-    responses: Sequence[Dof],
-    references: Sequence[Dof],
-    *,
-    geometry: Geometry | None = None,
-    fitted: bool = False,
-) -> FrfSet:
-    """Return the FRFs an sdypy-EMA ``Model`` holds, with the degrees of freedom it does not know.
-
-    Parameters
-    ----------
-    model : sdypy.EMA.Model
-        The model; its last line is missing if it was built with an upper limit.
-    responses, references : sequence of Dof
-        Degrees of freedom of its FRFs.
-    geometry : Geometry, optional
-        Nodes.
-    fitted : bool
-        Whether to return what it reconstructed in place of what was measured.
-
-    Returns
-    -------
-    FrfSet
-
-    Raises
-    ------
-    InputError
-        If nothing was reconstructed, or numbers disagree.
-    """
-    values = getattr(model, "H" if fitted else "frf", None)
-    if values is None:
-        raise InputError("the sdypy-EMA model holds no reconstructed FRFs; call get_constants first")
-    return FrfSet(
-        np.asarray(model.freq, dtype=float),
-        np.atleast_2d(np.asarray(values, dtype=complex)),
-        tuple(responses),
-        tuple(references),
-        form=model.frf_form,
-        geometry=geometry or Geometry.empty(),
-        source="sdypy-EMA",
-    )
 
 
 def to_sdypy(model: ModalModel) -> Any:

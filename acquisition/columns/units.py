@@ -6,9 +6,7 @@ import re
 
 from acquisition.errors import InputError
 from acquisition.form import Form
-
-GRAVITY = 9.80665
-INCH, FOOT, POUND = 0.0254, 0.3048, 4.4482216152605
+from acquisition.units import FORCES, GRAVITY, LENGTHS
 
 QUANTITIES: dict[str, Form | None] = {
     "force": None,
@@ -19,27 +17,13 @@ QUANTITIES: dict[str, Form | None] = {
     "mobility": "mobility",
     "receptance": "receptance",
 }
-_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": INCH, "ft": FOOT}
-_FORCES = {
-    "n": 1.0,
-    "newton": 1.0,
-    "newtons": 1.0,
-    "kn": 1e3,
-    "mn": 1e-3,
-    "lbf": POUND,
-    "lb": POUND,
-    "kgf": GRAVITY,
-}
-_ACCELERATIONS = {f"{name}/s2": factor for name, factor in _LENGTHS.items()} | {
-    "g": GRAVITY,
-    "mg": 1e-3 * GRAVITY,
-}
-_VELOCITIES = {f"{name}/s": factor for name, factor in _LENGTHS.items()}
+_GRAVITIES = {"g": GRAVITY, "mg": 1e-3 * GRAVITY}
+_NEWTONS = {"newton": 1.0, "newtons": 1.0}
 _TABLES = {
-    "force": _FORCES,
-    "acceleration": _ACCELERATIONS,
-    "velocity": _VELOCITIES,
-    "displacement": _LENGTHS,
+    "force": {name.lower(): factor for name, factor in FORCES.items()} | _NEWTONS,
+    "acceleration": {f"{name}/s2": factor for name, factor in LENGTHS.items()} | _GRAVITIES,
+    "velocity": {f"{name}/s": factor for name, factor in LENGTHS.items()},
+    "displacement": LENGTHS,
 }
 RESPONSES = {"accelerance": "acceleration", "mobility": "velocity", "receptance": "displacement"}
 

@@ -22,7 +22,7 @@ from acquisition.frfs.spectra import (
 )
 from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.hits.impulse import impulse_places
-from acquisition.hits.verdicts import HitVerdict, verdicts_of
+from acquisition.hits.verdicts import HitVerdict, usual_fault, verdicts_of
 from acquisition.hits.windows import Windows, windowed
 
 
@@ -199,9 +199,5 @@ def kept_hits(test: HammerTest, verdicts: Sequence[HitVerdict] | None = None) ->
 
 def _most(verdicts: Sequence[HitVerdict]) -> str:
     """Say what speaks against most hits."""
-    kinds = [verdict.reasons[0].split(":")[0] for verdict in verdicts if not verdict.used and verdict.reasons]
-    if not kinds:
-        return ""
-    often = max(dict.fromkeys(kinds), key=kinds.count)
-    one = next(v.reasons[0] for v in verdicts if not v.used and v.reasons and v.reasons[0].startswith(often))
-    return f" ({kinds.count(often)} of {len(verdicts)} refused for: {one})"
+    usual = usual_fault(verdicts)
+    return "" if usual is None else f" ({usual[0]} of {len(verdicts)} refused for: {usual[1]})"

@@ -25,6 +25,7 @@ from acquisition.hits.checks import (
     upright,
     why_broken,
 )
+from acquisition.hits.faults import Fault
 from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.hits.verdicts import HitVerdict
 from acquisition.hits.windows import unstated_window
@@ -79,8 +80,8 @@ def _those(hits: Hits, wanted: list[bool]) -> Hits:
     return hits if all(wanted) else replace(hits, force=hits.force[wanted], motion=hits.motion[wanted])
 
 
-def _unjudged(hits: Hits, number: int, why: str) -> HitVerdict:
-    return HitVerdict(hits.reference, number, False, (why,), peak=0.0, width=0.0, band10=0.0, band20=0.0)
+def _unjudged(hits: Hits, number: int, why: Fault) -> HitVerdict:
+    return HitVerdict(hits.reference, number, False, (str(why),), 0.0, 0.0, 0.0, 0.0, kind=why.kind)
 
 
 def _judge_sound(whole: HammerTest, points: list[Hits]) -> list[HitVerdict]:
@@ -168,7 +169,7 @@ def _verdict(
     hits: Hits,
     number: int,
     pulse: tuple[FloatArray, float, tuple[float, float]],
-    faults: list[str],
+    faults: list[Fault],
     more: tuple[str, ...],
     test: HammerTest,
 ) -> HitVerdict:
@@ -178,28 +179,29 @@ def _verdict(
         point=hits.reference,
         hit=number + 1,
         used=not faults,
-        reasons=(*faults, *notes),
+        reasons=(*map(str, faults), *notes),
         peak=float(wave.max()),
         width=width,
         band10=bands[0],
         band20=bands[1],
+        kind=faults[0].kind if faults else "",
     )
 
 
-def _force_faults(wave: FloatArray, usual: float, rate: float) -> list[str]:
+def _force_faults(wave: FloatArray, usual: float, rate: float) -> list[Fault]:
     faults = []
     doubles = second_hits(wave)
     if doubles:
         place, height = max(doubles, key=lambda d: d[1])
         delay = 1e3 * (place - int(wave.argmax())) / rate
-        faults.append(f"double hit: {100 * height:.0f} % of the peak, {delay:+.1f} ms from it")
+        faults.append(Fault("double hit", f"{100 * height:.0f} % of the peak, {delay:+.1f} ms from it"))
     peak, noise = float(wave.max()), noise_level(wave)
     if peak < TOO_WEAK * usual:
-        faults.append(f"too weak: {peak:.3g} N, the usual peak is {usual:.3g} N")
+        faults.append(Fault("too weak", f"{peak:.3g} N, the usual peak is {usual:.3g} N"))
     elif peak < BURIED * noise:
-        faults.append(f"too weak: {peak:.3g} N over noise of {noise:.2g} N")
+        faults.append(Fault("too weak", f"{peak:.3g} N over noise of {noise:.2g} N"))
     elif peak > TOO_STRONG * usual:
-        faults.append(f"outlier in level: {peak:.3g} N, the usual peak is {usual:.3g} N")
+        faults.append(Fault("outlier in level", f"{peak:.3g} N, the usual peak is {usual:.3g} N"))
     return faults
 
 
@@ -210,21 +212,26 @@ def _channel_faults(
     alive: FloatArray,
     still: FloatArray,
     dead: BoolArray,
-) -> list[str]:
+) -> list[Fault]:
     def named(which: BoolArray) -> str:
         return _named(hits, which)
 
-    faults = ["overload: the force is clipped, its top is flat"] if over_force else []
+    faults = [Fault("overload", "the force is clipped, its top is flat")] if over_force else []
     over_motion = over_motion & ~dead
     if dead.all():
-        faults.append(f"no response: {named(dead)} dead, the record is constant")
+        faults.append(Fault("no response", f"{named(dead)} dead, the record is constant"))
     if over_motion.any():
-        faults.append(f"overload: response {named(over_motion)} is clipped, its tops are flat")
+        faults.append(Fault("overload", f"response {named(over_motion)} is clipped, its tops are flat"))
     if (alive < 1).any():
         part = 100 * alive.min()
-        faults.append(f"response cut off after {part:.0f} % of the record at {named(alive < 1)}")
+        faults.append(
+            Fault("response cut off", f"after {part:.0f} % of the record at {named(alive < 1)}", " ")
+        )
     if (still > 0).any():
-        faults.append(f"response drops out for {100 * still.max():.1f} % of the record at {named(still > 0)}")
+        part = 100 * still.max()
+        faults.append(
+            Fault("response drops out", f"for {part:.1f} % of the record at {named(still > 0)}", " ")
+        )
     return faults
 
 
@@ -232,7 +239,7 @@ def _named(hits: Hits, which: BoolArray) -> str:
     return ", ".join(str(d) for d, yes in zip(hits.responses, which, strict=True) if yes)
 
 
-def _odd_pair(hits: Hits, faults: list[list[str]], band: float) -> dict[int, tuple[str, ...]]:
+def _odd_pair(hits: Hits, faults: list[list[Fault]], band: float) -> dict[int, tuple[str, ...]]:
     """Return a note on both of the only two good hits at a point where they disagree."""
     good = [i for i, fault in enumerate(faults) if not fault]
     if len(good) != 2 or len(faults) != 2:
@@ -260,14 +267,19 @@ def _notes(hits: Hits, number: int, wave: FloatArray, test: HammerTest) -> list[
     return notes
 
 
-def _add_outliers(hits: Hits, faults: list[list[str]], widths: FloatArray, band: float) -> None:
+def _add_outliers(hits: Hits, faults: list[list[Fault]], widths: FloatArray, band: float) -> None:
     """Add a reason to hits that differ from the other good hits at the point."""
     good = [i for i, fault in enumerate(faults) if not fault]
     usual = float(np.median(widths[good])) if good else 0.0
     for i in good if len(good) > 2 else ():
         if not usual / ODD_WIDTH <= widths[i] <= usual * ODD_WIDTH:
             faults[i].append(
-                f"outlier in shape: the pulse lasts {1e3 * widths[i]:.2g} ms, usually {1e3 * usual:.2g} ms"
+                Fault(
+                    "outlier in shape",
+                    f"the pulse lasts {1e3 * widths[i]:.2g} ms, usually {1e3 * usual:.2g} ms",
+                )
             )
     for i, left in odd_responses(hits, [i for i in good if not faults[i]], band).items():
-        faults[i].append(f"outlier: the other hits leave {100 * left:.0f} % of the response unexplained")
+        faults[i].append(
+            Fault("outlier", f"the other hits leave {100 * left:.0f} % of the response unexplained")
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -11,6 +12,7 @@ import pandas as pd
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.hits.hammer import HammerTest
+from acquisition.quantities import hertz
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,8 @@ class HitVerdict:
         Length of the pulse above a tenth of its peak [s].
     band10, band20 : float
         Frequencies at which the force spectrum is 10 and 20 dB down [Hz].
+    kind : str
+        Kind of the first fault that speaks against it; empty if none does.
     """
 
     point: Dof
@@ -43,6 +47,7 @@ class HitVerdict:
     width: float
     band10: float
     band20: float
+    kind: str = ""
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,7 @@ class ForceRange:
         """Return it in one line."""
         return (
             f"peaks of {self.weakest:.3g} to {self.strongest:.3g} N, pulses of {1e3 * self.width:.3g} ms, "
-            f"10 dB down at {self.band10:.4g} Hz, 20 dB down at {self.band20:.4g} Hz"
+            f"10 dB down at {hertz(self.band10)}, 20 dB down at {hertz(self.band20)}"
         )
 
 
@@ -81,6 +86,15 @@ def force_range(verdicts: Iterable[HitVerdict]) -> ForceRange | None:
     peaks = [v.peak for v in used]
     width, band10, band20 = np.median([(v.width, v.band10, v.band20) for v in used], axis=0)
     return ForceRange(min(peaks), max(peaks), float(width), float(band10), float(band20))
+
+
+def usual_fault(verdicts: Iterable[HitVerdict]) -> tuple[int, str] | None:
+    """Return how many hits are refused for the most frequent kind of fault, and the first of their reasons."""
+    refused = [v for v in verdicts if not v.used and v.reasons]
+    if not refused:
+        return None
+    ((kind, count),) = Counter(v.kind for v in refused).most_common(1)
+    return count, next(v.reasons[0] for v in refused if v.kind == kind)
 
 
 def verdicts_of(test: HammerTest, verdicts: Sequence[HitVerdict]) -> list[list[HitVerdict | None]]:

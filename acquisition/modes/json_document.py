@@ -39,11 +39,7 @@ def read_modes_json(path: Path | str) -> ModalData:
         If it cannot be read, is of another schema, or an entry is not what it should be.
     """
     path = Path(path)
-    record = _record(path)
-    try:
-        return _modal(record, path)
-    except InputError as error:
-        raise error if str(error).startswith(str(path)) else InputError(f"{path}: {error}") from None
+    return _modal(_record(path), path)
 
 
 def _modal(record: Mapping[str, Any], path: Path) -> ModalData:
@@ -64,17 +60,24 @@ def _modal(record: Mapping[str, Any], path: Path) -> ModalData:
         )
     values = np.array([[shape[dof] for shape in shapes] for dof in dofs]).reshape(len(dofs), len(modes), 3)
     errors = values[..., 2]
-    return ModalData(
-        frequency=_column(modes, "frequency_hz", path, needed=True),
-        frequency_sigma=_column(modes, "frequency_sigma_hz", path),
-        damping=_column(modes, "damping_ratio", path),
-        damping_sigma=_column(modes, "damping_sigma", path),
-        dofs=dofs,
-        shapes=values[..., 0] + 1j * values[..., 1] if dofs else None,
-        shape_sigma=errors if dofs and not np.isnan(errors).all() else None,
-        scaled=bool(dofs) and all(mode.get("scaled") is True for mode in modes),
-        geometry=_geometry(record, path),
+    frequency, frequency_sigma, damping, damping_sigma = (
+        _column(modes, key, path, needed=key == _OF_MODE[0]) for key in _OF_MODE[:4]
     )
+    nodes, places = _nodes(record, path)
+    try:
+        return ModalData(
+            frequency=frequency,
+            frequency_sigma=frequency_sigma,
+            damping=damping,
+            damping_sigma=damping_sigma,
+            dofs=dofs,
+            shapes=values[..., 0] + 1j * values[..., 1] if dofs else None,
+            shape_sigma=errors if dofs and not np.isnan(errors).all() else None,
+            scaled=bool(dofs) and all(mode.get("scaled") is True for mode in modes),
+            geometry=Geometry(nodes, places) if nodes else Geometry.empty(),
+        )
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
 
 
 def _record(path: Path) -> Mapping[str, Any]:
@@ -116,14 +119,12 @@ def _shape(mode: Mapping[str, Any], where: str) -> dict[Dof, tuple[float, float,
     return shape
 
 
-def _geometry(record: Mapping[str, Any], path: Path) -> Geometry:
-    """Return the nodes of the record, where it has any."""
+def _nodes(record: Mapping[str, Any], path: Path) -> tuple[tuple[int, ...], FloatArray]:
+    """Return the numbers and the places [m] of the nodes of the record, where it has any."""
     where = f"{path}: nodes"
     nodes = [_mapping(node, where) for node in _list(record, "nodes", str(path))]
-    if not nodes:
-        return Geometry.empty()
     places = [[_number(node, axis, where, needed=True) for axis in "xyz"] for node in nodes]
-    return Geometry(tuple(_whole(node, "node", where) for node in nodes), np.array(places))
+    return tuple(_whole(node, "node", where) for node in nodes), np.array(places)
 
 
 def _column(modes: list[Mapping[str, Any]], key: str, path: Path, *, needed: bool = False) -> FloatArray:

@@ -16,6 +16,7 @@ from acquisition.modal_data import ModalData
 from acquisition.modes.checks import check_frequencies, checked
 from acquisition.modes.columns import HEADINGS, check_headings, column, components, dof, numbers, plain
 from acquisition.modes.json_document import read_modes_json
+from acquisition.own_readers import Reader, installed_readers, read_by
 from acquisition.uff import read_uff
 
 TABLES = (".csv", ".txt")
@@ -45,6 +46,9 @@ def read_modes(path: Path | str) -> ModalData:
         If the file cannot be read, a column is missing, or an entry is no number.
     """
     path = Path(path)
+    own = installed_readers().get(path.suffix.lower())
+    if own is not None:
+        return checked(_of_own(own, path), path)
     if path.suffix.lower() == ".json":
         return checked(read_modes_json(path), path)
     if path.suffix.lower() not in TABLES:
@@ -77,6 +81,15 @@ def read_modes(path: Path | str) -> ModalData:
         geometry=_geometry(coordinates, dofs, path),
     )
     return checked(modal, path)
+
+
+def _of_own(reader: Reader, path: Path) -> ModalData:
+    found = read_by(reader, path)
+    if not isinstance(found, ModalData):
+        raise InputError(
+            f"{path}: its reader returned {type(found).__name__}, but modes are asked for; use files"
+        )
+    return found
 
 
 def _of_universal_file(path: Path) -> ModalData:

@@ -35,6 +35,8 @@ class DatasetInfo:
         What is wrong with it or odd about it; empty if nothing.
     unused : str
         What it is called in the list of what is not used, in the plural; empty if it is used.
+    warning : str
+        What the warnings say of it; empty if nothing.
     """
 
     file: str
@@ -45,6 +47,7 @@ class DatasetInfo:
     ok: bool = True
     message: str = ""
     unused: str = ""
+    warning: str = ""
 
     @property
     def place(self) -> str:
@@ -52,6 +55,11 @@ class DatasetInfo:
         if self.number == 0:
             return f"{self.file}, line {self.line}"
         return f"{self.file}, data set {self.number} at line {self.line}"
+
+    @property
+    def fault(self) -> str:
+        """What is wrong with it, with its place."""
+        return f"{self.place}: {self.message}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -154,8 +154,15 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
     solved, doubts = solve_modes(finds.modes, finds.sigmas)
     modal = join_modes(solved, nodes.geometry) if solved else None
     taken = {m.stated.place: describe(m) for m in solved}
-    infos = tuple(replace(info, description=taken.get(info.place, info.description)) for info in finds.infos)
-    reported = [_stated(info, broken.get(info.place)) for info in finds.infos if info.message and info.line]
+    infos = tuple(
+        replace(
+            info,
+            description=taken.get(info.place, info.description),
+            warning=_stated(info, broken.get(info.place)) if info.message and info.line else "",
+        )
+        for info in finds.infos
+    )
+    reported = [info.warning for info in infos if info.warning]
     notes = [note] if note else []
     warnings = dict.fromkeys(
         [*reported, *finds.warnings, *copies, *nodes.notes, *notes, *lost, *odd, *doubts]
@@ -167,4 +174,4 @@ def _stated(info: DatasetInfo, hit: str | None) -> str:
     """Say what is wrong with a data set, and which hit goes with it, in one line."""
     left_out = "it is left out" if hit is None else f"it is left out and {hit} with it"
     end = "" if info.ok else f"; {left_out}, export it again if it is needed"
-    return f"{info.place}: {info.message}{end}"
+    return f"{info.fault}{end}"

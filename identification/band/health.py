@@ -5,13 +5,13 @@ What reciprocity and drive points show, tones, and records that end too early is
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
 
 from acquisition import HitVerdict
 from acquisition.arrays import FloatArray
+from acquisition.hits.verdicts import usual_fault
 from identification.model import ModalModel
 
 COHERENT = 0.9
@@ -74,8 +74,8 @@ def _on_hits(hits: Sequence[HitVerdict]) -> tuple[str, ...]:
     refused = [v for v in hits if not v.used]
     if len(refused) <= MANY * len(hits):
         return ()
-    reasons = Counter(reason for v in refused for reason in v.reasons[:1])
-    often = f", most for: {reasons.most_common(1)[0][0]}" if reasons else ""
+    usual = usual_fault(refused)
+    often = "" if usual is None else f", most for: {usual[1]}"
     return (
         f"{len(refused)} of {len(hits)} hits are not used{often}; repeat the test rather than explain it",
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.frfs.frf import FrfSet
+from acquisition.quantities import hertz
 from identification.band.informed import LOST, PASSED, best_coherence
 
 FEWEST = 64
@@ -33,7 +34,7 @@ def uninformed_modes(frfs: FrfSet, frequency: FloatArray) -> tuple[str, ...]:
     filtered = frequency[frequency > _passed(frfs)]
     if len(filtered):
         statement.append(
-            f"mode(s) at {_named(filtered)} lie above {_passed(frfs):.4g} Hz, the sampling rate over {PASSED:g}, where "
+            f"mode(s) at {_named(filtered)} lie above {hertz(_passed(frfs))}, the sampling rate over {PASSED:g}, where "
             "the filter before the converter falls: what is folded back from beyond half the rate may pass for a mode; "
             "sample faster, or leave them out with drop"
         )
@@ -41,7 +42,7 @@ def uninformed_modes(frfs: FrfSet, frequency: FloatArray) -> tuple[str, ...]:
 
 
 def _named(frequency: FloatArray) -> str:
-    return ", ".join(f"{f:.5g} Hz" for f in frequency)
+    return ", ".join(hertz(f) for f in frequency)
 
 
 def _passed(frfs: FrfSet) -> float:

@@ -14,6 +14,7 @@ from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
+from acquisition.quantities import hertz
 from identification.mac.coordinates import comac, ecomac
 from identification.mac.frfs import frac
 from identification.mac.shapes import auto_mac, mac, mpc
@@ -71,7 +72,7 @@ def _rows(modes: ModalData, place: dict[Dof, tuple[int, int]], wanted: tuple[Dof
 
 def mode_names(modes: ModalData) -> list[str]:
     """Name modes by number and frequency: ``3: 187.02 Hz``."""
-    return [f"{i}: {f:.5g} Hz" for i, f in enumerate(modes.frequency, start=1)]
+    return [f"{i}: {hertz(f)}" for i, f in enumerate(modes.frequency, start=1)]
 
 
 def modes_table(modes: ModalData) -> pd.DataFrame:

@@ -1,9 +1,12 @@
-"""Pole estimators, all with one signature."""
+"""Pole estimators, all with one signature, and the registry by whose names `identify` knows them."""
 
-from identification.poles.base import PoleEstimator, PoleSets
+from identification.poles.base import Baseband, PoleEstimator, PoleSets, row_scale
 from identification.poles.lsce import lsce
 from identification.poles.lscf import lscf
 
-ESTIMATORS: dict[str, PoleEstimator] = {"lscf": lscf, "lsce": lsce}
+ESTIMATORS: dict[str, PoleEstimator] = {
+    "lscf": PoleEstimator(lscf, poly_reference=True),
+    "lsce": PoleEstimator(lsce),
+}
 
-__all__ = ["ESTIMATORS", "PoleEstimator", "PoleSets", "lsce", "lscf"]
+__all__ = ["ESTIMATORS", "Baseband", "PoleEstimator", "PoleSets", "lsce", "lscf", "row_scale"]

@@ -33,7 +33,7 @@ class PoleSets(Displayed):
     participation: tuple[ComplexArray, ...]
 
 
-class PoleEstimator(Protocol):
+class FindPoles(Protocol):
     """A way from FRFs to the poles of many model orders."""
 
     def __call__(self, frfs: frf.FrfSet, *, orders: Sequence[int]) -> PoleSets:
@@ -44,9 +44,29 @@ class PoleEstimator(Protocol):
         frfs : FrfSet
             The FRFs, already cut to the band.
         orders : sequence of int
-            Model orders: degree of the complex polynomial, that is the number of poles per reference [-].
+            Model orders: the number of poles, or, of a poly-reference estimator, of poles per reference [-].
         """
         ...
+
+
+@dataclass(frozen=True)
+class PoleEstimator:
+    """An entry of the registry of estimators.
+
+    Parameters
+    ----------
+    find : callable
+        The estimator, ``find(frfs, orders=...)``.
+    poly_reference : bool
+        Whether an order counts the poles of each reference; if not, those of all together.
+    """
+
+    find: FindPoles
+    poly_reference: bool = False
+
+    def __call__(self, frfs: frf.FrfSet, *, orders: Sequence[int]) -> PoleSets:
+        """Return the poles at each order."""
+        return self.find(frfs, orders=orders)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
+from acquisition.quantities import quantity
 from acquisition.warned import Consequential
 from identification.arrangement import Arrangement
 
@@ -36,7 +37,7 @@ def _nearest(frfs: FrfSet) -> str:
     distance = np.linalg.norm(ends[0] - ends[1], axis=1)
     best = int(distance.argmin())
     name = f"{frfs.responses[same[best]]}/{frfs.references[same[best]]}"
-    return f" (the nearest are {name}, {1e3 * distance[best]:.3g} mm apart)"
+    return f" (the nearest are {name}, {quantity(distance[best], 'm')} apart)"
 
 
 def not_tied(points: Sequence[str]) -> str:

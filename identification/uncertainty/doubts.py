@@ -7,6 +7,7 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from acquisition.frfs.reciprocity import reciprocity
+from acquisition.quantities import hertz, percent
 from acquisition.warned import Consequential
 
 _AT_REST = 0.02  # part of a mode left at the end of a record that is worth a word
@@ -67,7 +68,7 @@ def _tones(frfs: FrfSet, poles: ComplexArray, others: ComplexArray) -> tuple[str
     disagreement = np.abs(2 * np.pi * pure[:, None] - poles.imag[None, :]) / np.abs(poles.real)[None, :]
     pure = pure[(disagreement > _SKIRT).all(axis=1)]
     if len(pure):
-        named = ", ".join(f"{f:.5g} Hz" for f in pure)
+        named = ", ".join(hertz(f) for f in pure)
         stated.append(f"a tone at {named} that does not decay{_hum(frfs, pure)} was taken for no mode")
     if not len(narrow):
         return tuple(stated)
@@ -79,10 +80,10 @@ def _tones(frfs: FrfSet, poles: ComplexArray, others: ComplexArray) -> tuple[str
     )
 
 
-def _hum(frfs: FrfSet, hertz: FloatArray) -> str:
+def _hum(frfs: FrfSet, tones: FloatArray) -> str:
     """Name the frequencies that are multiples of the mains."""
     off = 0.1 * min(1.0, frfs.df)
-    near = [f"{f:.5g} Hz" for f in hertz if any(abs(f / m - round(f / m)) * m < off for m in _MAINS)]
+    near = [hertz(f) for f in tones if any(abs(f / m - round(f / m)) * m < off for m in _MAINS)]
     return f" ({', '.join(near)}: a multiple of the mains)" if near else ""
 
 
@@ -109,8 +110,8 @@ def _drifting(poles: ComplexArray, scatter: FloatArray) -> tuple[str, ...]:
         return ()
     worst = 100 * (scatter[which] / np.abs(poles[which])).max()
     return (
-        f"the frequency of mode(s) {_numbers(which)} differs from FRF to FRF by {worst:.2g} %: a sensor or hammer that "
-        "roves and loads the structure, or drift; damping comes out too large and shapes suffer",
+        f"the frequency of mode(s) {_numbers(which)} differs from FRF to FRF by {percent(worst)}: a sensor or hammer "
+        "that roves and loads the structure, or drift; damping comes out too large and shapes suffer",
     )
 
 

@@ -10,6 +10,7 @@ import typer
 
 from acquisition.display import counted
 from acquisition.errors import InputError
+from acquisition.quantities import percent
 from identification import Correlation as Comparison
 from modalkit.cli.common import (
     check_folder,
@@ -76,7 +77,7 @@ def correlate(
     result = compare(session.case, None if identified is None else identified.frfs)
     pairs = result.table
     out.print(
-        f"{session.study.name}: {result.rms_percent:.3g} % r.m.s. over {len(pairs)} pairs", style="bold"
+        f"{session.study.name}: {percent(result.rms_percent)} r.m.s. over {len(pairs)} pairs", style="bold"
     )
     show_table(pairs, digits={"test [Hz]": 3, "model [Hz]": 3, "error [%]": 3, "sigma [%]": 3, "MAC": 3})
     for table, whose in ((result.unpaired_test, "Measured"), (result.unpaired_model, "Model")):

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 
+from acquisition.quantities import percent
 from modalkit.cli.common import (
     check_folder,
     check_once,
@@ -24,13 +25,12 @@ from modalkit.cli.options import Figures
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.library import effects_record, effects_table
 from modalkit.output.records import diagnosis_record
-from modalkit.output.summary import separated, summary_text
+from modalkit.output.summary import separates, summary_text
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
 from updating import Diagnosis
-from updating.diagnosis.answer.result import NextTest
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -103,7 +103,7 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     digits = {"test [Hz]": 3, "model [Hz]": 3, "error [%]": 3, "sigma [%]": 3, "MAC": 3}
     gap = diagnosis.gap
     modes = gap.modes if len(sessions) > 1 else gap.modes.drop(columns="study", errors="ignore")
-    show_table(modes, f"Gap: {gap.rms_percent:.3g} % r.m.s. over {len(gap.modes)} modes", digits=digits)
+    show_table(modes, f"Gap: {percent(gap.rms_percent)} r.m.s. over {len(gap.modes)} modes", digits=digits)
     show_table(
         diagnosis.table().head(10).reset_index(),
         "Explanations, most probable first",
@@ -111,18 +111,13 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     )
     if diagnosis.next_test:
         rows = [
-            {"measure next": t.measure, "separates": _separates(t), "sigma": t.expected_sigma}
+            {"measure next": t.measure, "separates": separates(t), "sigma": t.expected_sigma}
             for t in diagnosis.next_test
         ]
         show_table(pd.DataFrame(rows), "What to measure next")
     if diagnosis.not_examined:
         out.print("Not examined: " + _not_examined(diagnosis.not_examined), markup=False)
     show_warnings([*diagnosis.warnings, *warnings_of(sessions)])
-
-
-def _separates(test: NextTest) -> str:
-    """Return what a test separates, for a table whose last column says how well."""
-    return separated(test).removeprefix("separates ").partition(" by ")[0]
 
 
 def _not_examined(effects: dict[str, str]) -> str:

@@ -104,10 +104,9 @@ def inspect(
         show_modes(Modes(content.modal, named_files(files)))
     bad = [d for d in content.datasets if not d.ok]
     all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
-    error = f"{bad[0].place}: {bad[0].message}" if all_bad else ""
-    show_warnings([w for w in (*content.warnings, *warnings) if not error or not w.startswith(error)])
-    if error:
-        raise InputError(error)
+    show_warnings([w for w in (*content.warnings, *warnings) if not all_bad or w != bad[0].warning])
+    if all_bad:
+        raise InputError(bad[0].fault)
 
 
 def _in_short(content: UffContent) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from modalkit.cli.common import out, progress, show_figures, show_table, working
 from modalkit.output.whole import write_json
 from modalkit.planning import Advice, Forecast, KnownTest, TestForecast, forecast
-from modalkit.planning.document import statement, to_json
+from modalkit.planning.document import family_of, statement, to_json
 from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.from_study import known_test_of
 from modalkit.planning.separability import CLASS, NONE, SEEN, SURE
@@ -177,23 +178,16 @@ def show_tables(found: Forecast) -> None:
 
 
 def _thresholds(now: TestForecast) -> pd.DataFrame:
-    """Return the limits in words, those after the first without what they begin alike with."""
+    """Return the limits in words, those after the first as mere amounts."""
     rows = []
     for name, limit in now.limits.items():
-        sizes = (limit.seen, limit.separated, limit.sure, limit.clear)
-        words = [statement(now, name, q) or "never" for q in sizes]
-        alike = _alike([w.split() for w in words if w != "never"])
-        rest = [w if w == "never" else " ".join(w.split()[alike:]) for w in words[1:]]
+        family = family_of(now, name)
+        first, *rest = (limit.seen, limit.separated, limit.sure, limit.clear)
+        words = [family.amount(q) if math.isfinite(q) else "never" for q in rest]
         keys = ("seen from", "told from", "surely from", "asked about")
-        known_test = dict(zip(keys, (words[0], *rest), strict=True))
+        known_test = dict(zip(keys, (statement(now, name, first) or "never", *words), strict=True))
         rows.append({"effect": name, **known_test, "nearest": f"{limit.nearest} ({limit.sigma:.1f})"})
     return pd.DataFrame(rows)
-
-
-def _alike(words: list[list[str]]) -> int:
-    """Return how many words some texts have in common at their beginning."""
-    same = [len(set(each)) == 1 for each in zip(*words, strict=False)]
-    return same.index(False) if False in same else 0
 
 
 def _separations(now: TestForecast) -> pd.DataFrame:

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from acquisition.quantities import percent
 from modalkit.cli.common import (
     check_folder,
     check_once,
@@ -60,7 +61,7 @@ def update(
     before, after = result.rms_percent("before"), result.rms_percent("after")
     state = "converged" if result.converged else "NOT converged"
     out.print(
-        f"{', '.join(s.study.name for s in sessions)}: {before:.3g} % -> {after:.3g} % r.m.s., "
+        f"{', '.join(s.study.name for s in sessions)}: {percent(before)} -> {percent(after)} r.m.s., "
         f"{state} after {result.iterations} iterations",
         style="bold",
     )

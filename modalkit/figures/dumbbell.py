@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from acquisition.arrays import FloatArray
+from acquisition.quantities import hertz
 from modalkit.figures.style import BAND, BLUE, FAINT, INK, MUTED, PALE, SMALL, tidy
-from modalkit.figures.words import hertz
 
 
 def dumbbells(

@@ -9,6 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from acquisition import FrfSet, HammerTest, InputError, ModalData, judge_hits
+from acquisition.quantities import hertz
 from identification import Correlation, ModalModel
 from modalkit.figures.diagnosis import diagnosis_figure
 from modalkit.figures.save import save_figures
@@ -19,7 +20,6 @@ from modalkit.figures.test.frf import frf_figure
 from modalkit.figures.test.hits import hits_figure
 from modalkit.figures.test.stabilisation import stabilisation_figure
 from modalkit.figures.update.all import update_figures
-from modalkit.figures.words import hertz
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.identification import Processed
 from updating import Diagnosis

@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import combinations
 
-from modalkit.output.quantities import number, place, size
+from acquisition.quantities import number, p_value, percent, place, probability
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
 from updating.diagnosis.search.held_out import BELIEVED
 
+
+@dataclass(frozen=True)
+class Equal:
+    """Why effects make one and the same change, and what to do about it."""
+
+    why: str
+    remedy: str
+
+
 EQUAL_BY_PHYSICS = {
-    frozenset({"calibration_gain", "section_scale"}): (
-        "both scale every FRF and nothing else: no hammer test tells them apart; calibrate the chain, or weigh and "
-        "measure the specimen"
+    frozenset({"calibration_gain", "section_scale"}): Equal(
+        "both scale every FRF and nothing else", "calibrate the chain, or weigh and measure the specimen"
     ),
-    frozenset({"exponential_window", "uniform_damping"}): (
-        "both add one decay to every mode: no hammer test tells them apart; look the window up in the analyser's "
-        "settings"
+    frozenset({"exponential_window", "uniform_damping"}): Equal(
+        "both add one decay to every mode", "look the window up in the analyser's settings"
     ),
 }
-"""Effects that make one and the same change, and what to do about it."""
+"""Effects that no hammer test tells apart."""
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
 """Parameters that the line on the place tells."""
@@ -35,13 +42,18 @@ LIKELY = 0.5
 
 def summary_text(diagnosis: Diagnosis) -> list[str]:
     """Return five lines: what, where, how far, how sure, what next."""
-    return [
-        f"Cause:   {_cause(diagnosis)}",
-        f"Where:   {_where(diagnosis)}",
-        f"Closes:  {_closes(diagnosis)}",
-        f"Sure:    {_sure(diagnosis)}",
-        f"Next:    {_next(diagnosis)}",
-    ]
+    return [f"{f'{name}:':<9}{text}" for name, text in answers(diagnosis).items()]
+
+
+def answers(diagnosis: Diagnosis) -> dict[str, str]:
+    """Return the answer to each of the five questions."""
+    return {
+        "Cause": _cause(diagnosis),
+        "Where": _where(diagnosis),
+        "Closes": _closes(diagnosis),
+        "Sure": _sure(diagnosis),
+        "Next": _next(diagnosis),
+    }
 
 
 def _cause(diagnosis: Diagnosis) -> str:
@@ -62,21 +74,20 @@ def _cause(diagnosis: Diagnosis) -> str:
         return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
     statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     exact = _equal(diagnosis)
-    return f"{statement}; {exact.partition(':')[0]}" if exact else statement
+    return statement if exact is None else f"{statement}; {exact.why}"
 
 
 def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
     """Return the values of one effect of the first set, by their own names."""
     row = _row(diagnosis, diagnosis.sets[0])
-    found = {} if row is None else row.parameters
-    return {n.removeprefix(f"{effect}."): e.value for n, e in found.items() if n.startswith(f"{effect}.")}
+    return {} if row is None else {name: e.value for name, e in row.of(effect).items()}
 
 
-def _equal(diagnosis: Diagnosis) -> str:
-    """Return what is said of a class whose members make one and the same change, or nothing."""
+def _equal(diagnosis: Diagnosis) -> Equal | None:
+    """Return what is known of a class whose members make one and the same change, or None."""
     if any(len(names) > 1 for names in diagnosis.sets):
-        return ""
-    return EQUAL_BY_PHYSICS.get(frozenset(diagnosis.effects), "")
+        return None
+    return EQUAL_BY_PHYSICS.get(frozenset(diagnosis.effects))
 
 
 def _row(diagnosis: Diagnosis, names: tuple[str, ...]) -> Ranked | None:
@@ -96,9 +107,7 @@ def _values(diagnosis: Diagnosis) -> str:
             continue
         bare = parameter.replace("_", " ")
         whose = f"{effect} " if parameter == "factor" and len(row.effects) > 1 else ""
-        stated.append(
-            f"{whose}{bare} {size(estimate)}" + (", the end of its range" if estimate.at_bound else "")
-        )
+        stated.append(f"{whose}{bare} {estimate}" + (", the end of its range" if estimate.at_bound else ""))
     text = f"({'; '.join(stated[:SHOWN])}; 95 % in brackets)" if stated else ""
     return (
         text
@@ -115,8 +124,7 @@ def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
     (estimate,) = row.parameters.values()
     if not isinstance(estimate.value, float):
         return statement
-    bare = size(estimate).partition(" (")[0]
-    return f"{statement} ({'x ' if estimate.unit == '-' else ''}{bare})"
+    return f"{statement} ({'x ' if estimate.unit == '-' else ''}{estimate.bare})"
 
 
 def _where(diagnosis: Diagnosis) -> str:
@@ -126,7 +134,7 @@ def _where(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unknown":
         band = f"{where.band} " if where.band else ""
         return f"{band}The {where.channel} is where the least bad explanations act; do not trust it."
-    text = f"{where.channel} ({100 * where.channels[where.channel]:.0f} %)"
+    text = f"{where.channel} ({probability(where.channels[where.channel])})"
     if where.location is None:
         return text + (
             ", spread over the whole structure" if where.channel != "measurement" else _points(where.points)
@@ -154,7 +162,7 @@ def _listed(points: tuple[int, ...]) -> str:
 
 def _closes(diagnosis: Diagnosis) -> str:
     shrink = diagnosis.shrink
-    say = _teller(shrink)
+    say = shrink.size
     what = (
         "misfit of all data"
         if shrink.metric == "combined"
@@ -172,17 +180,10 @@ def _closes(diagnosis: Diagnosis) -> str:
         others.insert(0, f"runner-up {say(shrink.held_runner_up)}")
     text += "; held out, " + ", ".join(others)
     if shrink.points is not None:
-        text += f"; on points held out {number(shrink.points.before)} % -> {number(shrink.points.after)} %"
+        text += f"; on points held out {percent(shrink.points.before)} -> {percent(shrink.points.after)}"
     if shrink.closed is not None and diagnosis.verdict != "unknown":
-        c = shrink.closed
-        text += f"; closes {c.value:.0f} % ({c.low95:.0f} to {c.high95:.0f}) of what can be closed"
+        text += f"; closes {shrink.closed} of what can be closed"
     return text
-
-
-def _teller(shrink: Shrink) -> Callable[[float], str]:
-    if shrink.metric == "combined":
-        return lambda value: f"{number(float(f'{value / 100:.2g}'))} sigma"
-    return lambda value: f"{float(f'{value:.2g}' if value < 10 else f'{value:.3g}'):g} %"
 
 
 def _stretched(shrink: Shrink) -> str:
@@ -192,8 +193,7 @@ def _stretched(shrink: Shrink) -> str:
 
 
 def _sure(diagnosis: Diagnosis) -> str:
-    least = f"p = {diagnosis.p_value:.1g}" if diagnosis.p_value > 0 else "p < 1e-300"
-    chance = f"chance alone makes such a gap with {least}"
+    chance = f"chance alone makes such a gap with {p_value(diagnosis.p_value)}"
     if diagnosis.verdict == "none":
         return chance
     if diagnosis.verdict == "unknown":
@@ -201,17 +201,10 @@ def _sure(diagnosis: Diagnosis) -> str:
     chosen = [row for row in diagnosis.ranking if row.effects in diagnosis.sets]
     total, fit = sum(row.probability for row in chosen), max(row.p_value for row in chosen)
     rest = [row for row in diagnosis.ranking if row.effects not in diagnosis.sets]
-    behind = f"; next {' + '.join(rest[0].effects)} {_percent(rest[0].probability)}" if rest else ""
+    behind = f"; next {' + '.join(rest[0].effects)} {probability(rest[0].probability)}" if rest else ""
     fits = "fits within the noise" if fit >= 0.05 else "fits, but not well"
-    together = f"{_percent(total)} probable" + (" together" if len(diagnosis.sets) > 1 else "")
-    return f"{together}{behind}; {fits} (p = {fit:.2g}); {chance}"
-
-
-def _percent(share: float) -> str:
-    """Return a probability in per cent, never rounded to certainty."""
-    if share > 0.999:
-        return "over 99.9 %"
-    return "below 0.1 %" if share < 0.001 else f"{100 * share:.3g} %"
+    together = f"{probability(total)} probable" + (" together" if len(diagnosis.sets) > 1 else "")
+    return f"{together}{behind}; {fits} ({p_value(fit)}); {chance}"
 
 
 def _left_out(diagnosis: Diagnosis) -> str:
@@ -228,7 +221,7 @@ def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "nothing; the model may be used within its tolerances"
     if diagnosis.verdict == "class" and (exact := _equal(diagnosis)):
-        return exact.partition("; ")[2]
+        return exact.remedy
     if diagnosis.next_test:
         test = diagnosis.next_test[0]
         if diagnosis.verdict == "unknown":
@@ -246,24 +239,34 @@ def _next(diagnosis: Diagnosis) -> str:
 
 def separated(test: NextTest) -> str:
     """Say what a test separates, and how well."""
+    what = separates(test)
+    if not what:
+        return ""
     by = "" if math.isnan(test.expected_sigma) else f" by {number(round(test.expected_sigma))} sigma"
+    return f"separates {what}{by}"
+
+
+def separates(test: NextTest) -> str:
+    """Say what a test separates: ``E from density``; empty where it is mere advice."""
     if not test.pairs:
-        return f"separates {' from '.join(test.separates)}{by}" if test.separates else ""
+        return " from ".join(test.separates)
     firsts = list(dict.fromkeys(a for a, _ in test.pairs))
     seconds = list(dict.fromkeys(b for _, b in test.pairs))
     if test.whole and len(firsts) > 1:
-        return f"separates all that is left{by}"
+        return "all that is left"
     common = [s for s in firsts + seconds if all(s in pair for pair in test.pairs)]
     if common:
         others = list(dict.fromkeys(b if a == common[0] else a for a, b in test.pairs))
-        return f"separates {' + '.join(common[0])} from {_either(others)}{by}"
+        return f"{' + '.join(common[0])} from {_either(others)}"
     every = list(dict.fromkeys(firsts + seconds))
     lacking = [(a, b) for a, b in combinations(every, 2) if not {(a, b), (b, a)} & set(test.pairs)]
     if len(lacking) < len(test.pairs):
-        but = [f"{' + '.join(a)} from {' + '.join(b)}" for a, b in lacking]
-        return f"separates all but {' and '.join(but)}{by}"
-    each = [f"{' + '.join(a)} from {' + '.join(b)}" for a, b in test.pairs]
-    return f"separates {'; '.join(each)}{by}"
+        return f"all but {' and '.join(_from(pair) for pair in lacking)}"
+    return "; ".join(_from(pair) for pair in test.pairs)
+
+
+def _from(pair: tuple[tuple[str, ...], tuple[str, ...]]) -> str:
+    return " from ".join(" + ".join(names) for names in pair)
 
 
 def _either(sets: list[tuple[str, ...]]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from modalkit.planning.family import Family
 from modalkit.planning.forecast import Advice, TestForecast
-from modalkit.planning.separability import CLASS, EQUAL, NONE, SURE, Distances, at_severity, crossing
+from modalkit.planning.separability import EQUAL, NONE, SURE, Distances, at_severity, crossing
 from modalkit.simulator.hidden import HIDDEN_EFFECTS, Values
 from modalkit.simulator.setup import Setup
 
@@ -30,8 +30,6 @@ class Case:
         Distance to the nearest rival, as the test is and once the advice is followed [-].
     rival_now, rival_then : str
         Who that is.
-    rivals_now, rivals_then : tuple of str
-        All that lie under 2 sigma.
     """
 
     family: Family
@@ -41,8 +39,6 @@ class Case:
     then: float
     rival_now: str
     rival_then: str
-    rivals_now: tuple[str, ...]
-    rivals_then: tuple[str, ...]
 
     @property
     def values(self) -> Values:
@@ -122,8 +118,6 @@ def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:
         SURE if size <= most else float(after[own].min()),
         now.rivals[own[int(np.argmin(before[own]))]],
         then.rivals[own[int(np.argmin(after[own]))]],
-        tuple(now.rivals[i] for i in own if before[i] < CLASS),
-        tuple(then.rivals[i] for i in own if after[i] < CLASS),
     )
 
 

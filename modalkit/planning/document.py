@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from modalkit.planning.effects import NOT_FORECAST
+from modalkit.planning.family import Family
 from modalkit.planning.forecast import Advice, Forecast, TestForecast
 
 SCHEMA = "modalkit.plan/1"
@@ -72,8 +73,12 @@ def _advice(one: Advice) -> dict[str, Any]:
 
 def statement(evaluation: TestForecast, name: str, q: float) -> str | None:
     """Return a severity in words; None where there is none that is told."""
-    family = evaluation.found[evaluation.names.index(name)].curve.family
-    return family.say(q) if math.isfinite(q) else None
+    return family_of(evaluation, name).say(q) if math.isfinite(q) else None
+
+
+def family_of(evaluation: TestForecast, name: str) -> Family:
+    """Return the family of an effect."""
+    return evaluation.found[evaluation.names.index(name)].curve.family
 
 
 def _number(value: Any) -> float | None:

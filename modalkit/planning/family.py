@@ -30,8 +30,10 @@ class Family:
         Range of ``q``; ``low`` is 0 where the effect has one sign [SI].
     clear : float
         Size of ``q`` that is asked about: a clear case [SI].
-    say : callable
-        ``say(q)`` is the severity in physical units, as in 'a sensor heavier than ...'.
+    words : str
+        What a severity is said of: 'a sensor heavier than stated by'.
+    amount : callable
+        ``amount(q)`` is the severity in physical units, as text that continues the words.
     places : (n,) array
         Where it may sit [m], or which of its forms it takes; empty where there is but one.
     separately : bool
@@ -47,11 +49,16 @@ class Family:
     low: float
     high: float
     clear: float
-    say: Callable[[float], str]
+    words: str
+    amount: Callable[[float], str]
     places: FloatArray = field(default_factory=lambda: np.zeros(0))
     separately: bool = False
     always: bool = False
     graded: bool = True
+
+    def say(self, q: float) -> str:
+        """Return a severity [SI] in words."""
+        return f"{self.words} {self.amount(q)}"
 
     def act(self, scene: Scene, q: float, place: float) -> Scene:
         """Return a scene with the effect.
@@ -89,12 +96,6 @@ class Family:
 def _steps(end: float) -> FloatArray:
     count = int(np.ceil(np.log(1 / _FINEST) / np.log(_RATIO)))
     return np.asarray(end * _RATIO ** -np.arange(count, -1.0, -1.0))
-
-
-def short(value: float) -> str:
-    """Return a number in up to three digits, with an exponent only where it is very large or small."""
-    rounded = float(f"{value:.2g}") if abs(value) < 100 else float(f"{value:.3g}")
-    return f"{rounded:.6g}" if rounded == 0 or 1e-3 <= abs(rounded) < 1e6 else f"{rounded:.2e}"
 
 
 Maker = Callable[[Setup], Family | None]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from modalkit.planning.family import Family, Maker, short
+from acquisition.quantities import severity
+from modalkit.planning.family import Family, Maker
 from modalkit.simulator.setup import Setup
 
 _PLACES = 17
@@ -27,7 +28,8 @@ def _sensor(setup: Setup) -> Family:
         0.0,
         _HEAVIEST * setup.mass,
         _CLEAR_MASS * setup.mass,
-        lambda q: f"a sensor heavier than stated by {short(1e3 * q)} g",
+        "a sensor heavier than stated by",
+        lambda q: f"{severity(1e3 * q)} g",
     )
 
 
@@ -38,7 +40,8 @@ def _lump(setup: Setup) -> Family:
         0.0,
         _HEAVIEST * setup.mass,
         _CLEAR_MASS * setup.mass,
-        lambda q: f"a body heavier than {short(1e3 * q)} g",
+        "a body heavier than",
+        lambda q: f"{severity(1e3 * q)} g",
         _along(setup, low=0.0),
     )
 
@@ -55,7 +58,8 @@ def _soft_spot(setup: Setup) -> Family:
         0.0,
         6 * extent,
         extent,
-        lambda q: f"a place softer by {100 * loss(q):.0f} % over {short(1e3 * extent)} mm",
+        "a place softer by",
+        lambda q: f"{100 * loss(q):.0f} % over {severity(1e3 * extent)} mm",
         _along(setup, low=0.1, high=0.1, clamped=0.03),
     )
 
@@ -68,7 +72,8 @@ def _layer(setup: Setup) -> Family:
         0.0,
         0.5,
         0.1,
-        lambda q: f"a layer over {short(1e3 * extent)} mm with a loss factor above {short(q)}",
+        f"a layer over {severity(1e3 * extent)} mm with a loss factor above",
+        severity,
         _along(setup, low=_LAYER / 2, high=_LAYER / 2, clamped=_LAYER / 2),
     )
 
@@ -81,7 +86,8 @@ def _strayed(setup: Setup) -> Family:
         -_MOST_ERROR * setup.length,
         _MOST_ERROR * setup.length,
         _CLEAR_ERROR * setup.length,
-        lambda q: f"a point off by more than {short(1e3 * abs(q))} mm",
+        "a point off by more than",
+        lambda q: f"{severity(1e3 * abs(q))} mm",
         np.array([i for i in range(len(setup.points)) if setup.drive or i != setup.sensor], dtype=float),
         separately=True,
     )

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import inf
 
 import numpy as np
 
-from modalkit.planning.family import Family, Maker, short
+from acquisition.quantities import severity
+from modalkit.planning.family import Family, Maker
 from modalkit.simulator.setup import Setup
 
 _SOFTEST_CLAMP, _SOFT_CLAMP = 1.5, 20.0
@@ -16,8 +16,8 @@ _CLEAR_LOAD, _MOST_LOAD = 0.25, 0.7
 _MIDDLE = 1
 
 
-def _off(noun: str) -> Callable[[float], str]:
-    return lambda q: f"{noun} off by more than {short(100 * abs(np.expm1(q)))} %"
+def _per_cent(q: float) -> str:
+    return f"{severity(100 * abs(np.expm1(q)))} %"
 
 
 def _factor(name: str, noun: str, *, most: float, clear: float) -> Maker:
@@ -28,7 +28,8 @@ def _factor(name: str, noun: str, *, most: float, clear: float) -> Maker:
         -float(np.log(most)),
         float(np.log(most)),
         clear,
-        _off(noun),
+        f"{noun} off by more than",
+        _per_cent,
         always=True,
     )
 
@@ -42,7 +43,8 @@ def _length(setup: Setup) -> Family | None:
         -0.06 * setup.length,
         0.12 * setup.length,
         0.03 * setup.length,
-        lambda q: f"a free length off by more than {short(1e3 * abs(q))} mm",
+        "a free length off by more than",
+        lambda q: f"{severity(1e3 * abs(q))} mm",
         always=True,
     )
 
@@ -57,7 +59,8 @@ def _clamp(setup: Setup) -> Family | None:
         0.0,
         1 / (_SOFTEST_CLAMP * unit),
         1 / (_SOFT_CLAMP * unit),
-        lambda q: f"a clamp softer than {short(1 / q)} N m/rad ({short(1 / q / unit)} EI/L)",
+        "a clamp softer than",
+        lambda q: f"{severity(1 / q)} N m/rad ({severity(1 / q / unit)} EI/L)",
     )
 
 
@@ -71,7 +74,8 @@ def _slide(setup: Setup) -> Family | None:
         0.0,
         1 / (_SOFTEST_SLIDE * unit),
         1 / (_SOFT_SLIDE * unit),
-        lambda q: f"a clamp that shifts, softer than {short(1 / q)} N/m",
+        "a clamp that shifts, softer than",
+        lambda q: f"{severity(1 / q)} N/m",
     )
 
 
@@ -86,7 +90,8 @@ def _load(setup: Setup) -> Family | None:
         -_MOST_LOAD * buckling,
         2 * buckling,
         _CLEAR_LOAD * buckling,
-        lambda q: f"an axial load above {short(abs(q))} N",
+        "an axial load above",
+        lambda q: f"{severity(abs(q))} N",
     )
 
 
@@ -97,7 +102,8 @@ def _gain(setup: Setup) -> Family:
         -float(np.log(2.5)),
         float(np.log(2.5)),
         0.2,
-        _off("a level"),
+        "a level off by more than",
+        _per_cent,
     )
 
 
@@ -109,7 +115,8 @@ def _fluid(setup: Setup) -> Family:
         0.0,
         2000.0 if known_test is None else known_test,
         known_test or 998.0,
-        lambda q: f"a fluid denser than {short(q)} kg/m3",
+        "a fluid denser than",
+        lambda q: f"{severity(q)} kg/m3",
     )
 
 
@@ -121,7 +128,8 @@ def _viscous(setup: Setup) -> Family:
         0.0,
         1.0,
         0.1,
-        lambda q: f"a fluid more viscous than {short(1e3 * q**2)} mPa s",
+        "a fluid more viscous than",
+        lambda q: f"{severity(1e3 * q**2)} mPa s",
     )
 
 
@@ -139,7 +147,8 @@ def _window(setup: Setup) -> Family:
         0.0,
         max(70.0, 20 * decay),
         1.5 * decay,
-        lambda q: f"a window of more than {short(q)} 1/s",
+        "a window of more than",
+        lambda q: f"{severity(q)} 1/s",
     )
 
 
@@ -158,7 +167,8 @@ def _uniform(setup: Setup) -> Family:
         0.0,
         20.0,
         1.5,
-        lambda q: f"damping {short(1 + q)} times that expected in the middle",
+        "damping",
+        lambda q: f"{severity(1 + q)} times that expected in the middle",
         np.arange(3.0),
         separately=True,
     )

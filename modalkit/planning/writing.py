@@ -39,9 +39,6 @@ def write_case(case: Case | None, known_test: KnownTest, folder: Path, *, seed: 
     return write_scene(scene, before, known_test, folder, rngs=(first, second))
 
 
-_OF_RECORDS = ("exponential_window",)
-
-
 def write_scene(
     scene: Scene,
     before: Scene,
@@ -64,33 +61,22 @@ def write_scene(
         For the test and its baseline.
     """
     setup = known_test.setup
-    text = study_text(setup, test_file="test.uff", baseline_file="baseline.uff")
-    if not known_test.damping_known:
-        text = _without_damping(text)
-    names = [("test", scene, rngs[0]), *([("baseline", before, rngs[1])] if setup.baseline else [])]
-    for name, one, rng in names:
+    ending = "uff" if known_test.shapes else "csv"
+    names = {"test": (scene, rngs[0])} | ({"baseline": (before, rngs[1])} if setup.baseline else {})
+    for name, (one, rng) in names.items():
         if known_test.shapes:
             record(one, folder / f"{name}.uff", rng=rng)
         else:
             _write_modes(one, known_test, folder / f"{name}.csv", rng)
-            text = text.replace(f'files = ["{name}.uff"]', f'modes = "{name}.csv"')
-    if not known_test.shapes:
-        text = _without_records(text)
     study = folder / "study.toml"
+    text = study_text(
+        setup,
+        test_file=f"test.{ending}",
+        baseline_file=f"baseline.{ending}",
+        expects_damping=known_test.damping_known,
+    )
     study.write_text(text, encoding="utf-8")
     return study
-
-
-def _without_records(text: str) -> str:
-    """Leave out what is stated of records and FRFs: modes have none."""
-    return "".join(line for line in text.splitlines(keepends=True) if line.split(" =")[0] not in _OF_RECORDS)
-
-
-def _without_damping(text: str) -> str:
-    lines = text.splitlines()
-    start = lines.index("[model.damping]")
-    end = next((i for i in range(start + 1, len(lines)) if lines[i].startswith("[")), len(lines))
-    return "\n".join([*lines[:start], *lines[end:]]) + "\n"
 
 
 def _write_modes(scene: Scene, known_test: KnownTest, path: Path, rng: np.random.Generator) -> None:

@@ -7,8 +7,9 @@ import math
 import pandas as pd
 
 from acquisition.display import counted
-from modalkit.figures.words import METRICS, chance, gap_size, percent, quantity, share
-from modalkit.output.summary import separated, summary_text
+from acquisition.quantities import bare_p, p_value, percent, probability
+from modalkit.figures.words import METRICS
+from modalkit.output.summary import answers, separates
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import Ranked
@@ -30,8 +31,7 @@ def _signed(value: float, digits: int) -> str:
 
 def the_summary(diagnosis: Diagnosis) -> Raw:
     """Return the five lines."""
-    lines = dict(line.partition(":")[::2] for line in summary_text(diagnosis))
-    return definitions({k: v.strip() for k, v in lines.items()}, class_=f"letter {diagnosis.verdict}")
+    return definitions(answers(diagnosis), class_=f"letter {diagnosis.verdict}")
 
 
 def the_gap(diagnosis: Diagnosis) -> Raw:
@@ -39,7 +39,7 @@ def the_gap(diagnosis: Diagnosis) -> Raw:
     gap = diagnosis.gap
     words = (
         f"{percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}; chance alone, with the tolerances "
-        f"stated, makes a gap like this with {chance(diagnosis.p_value)}."
+        f"stated, makes a gap like this with {p_value(diagnosis.p_value)}."
     )
     studies = list(dict.fromkeys(gap.modes["study"]))
     tables = [_mode_table(gap.modes[gap.modes["study"] == name], name, len(studies) > 1) for name in studies]
@@ -78,7 +78,7 @@ def the_place(diagnosis: Diagnosis) -> Raw:
     parts.append(
         table(
             "Which part of the model or the measurement, given that there is a cause.",
-            [Column("channel"), Column("probability", share)],
+            [Column("channel"), Column("probability", probability)],
             [[n, v] for n, v in rest.items()],
             marked=[n == where.channel and diagnosis.verdict in {"named", "class"} for n in rest],
         )
@@ -104,7 +104,7 @@ def _places(diagnosis: Diagnosis) -> Raw:
     columns = [
         Column("place", lambda value: f"{value:.0f}"),
         *(Column(f"{'xyz'[k]} [m]") for k in used),
-        Column("probability", share),
+        Column("probability", probability),
     ]
     rows: list[list[Cell | Raw]] = [
         [
@@ -132,13 +132,13 @@ def _zones(diagnosis: Diagnosis) -> Raw:
         return Raw("")
     values = [zone.probability for zone in where.zones]
     if max(values) - min(values) < ALIKE:
-        return element("p", f"All {len(values)} zones are alike: {share(values[0])} each.")
+        return element("p", f"All {len(values)} zones are alike: {probability(values[0])} each.")
     statement = "Zones and the probability that the cause sits in each."
     if where.zones_by == "regions":
         statement = (
             "Zones as if one of them alone were changed: nothing explains the gap, so this is a hint at most."
         )
-    columns = [Column("zone"), Column("centre [m]"), Column("probability", share)]
+    columns = [Column("zone"), Column("centre [m]"), Column("probability", probability)]
     used = [k for k in range(3) if any(zone.center[k] for zone in where.zones)]
     centre = [", ".join(f"{'xyz'[k]} = {_signed(z.center[k], 3)}" for k in used) for z in where.zones]
     return table(
@@ -171,8 +171,8 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     alone = max(0.0, 1.0 - sum(r.probability for r in rows))
     columns = [
         Column("effects"),
-        Column("probability", share),
-        Column("fits with p", lambda value: "< 1e-15" if value < 1e-15 else f"{value:.2g}"),
+        Column("probability", probability),
+        Column("fits with p", bare_p),
         Column("parameters, with 95 % intervals"),
         Column("not told apart from"),
     ]
@@ -188,7 +188,9 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     parts = [table(f"Explanations, most probable first. {statement}", columns, cells, marked=marked)]
     if len(rows) > len(shown):
         left = sum(r.probability for r in rows if r not in shown)
-        parts.append(element("p", f"{len(rows) - len(shown)} more, together {share(left)}.", class_="quiet"))
+        parts.append(
+            element("p", f"{len(rows) - len(shown)} more, together {probability(left)}.", class_="quiet")
+        )
     parts += [_known(name) for name in diagnosis.effects if name in LIBRARY]
     return joined(*parts)
 
@@ -200,7 +202,7 @@ def _explanation(row: Ranked) -> list[Cell | Raw]:
             continue  # which form of the effect it is
         bound = ", at the end of its range" if estimate.at_bound else ""
         statement = name if len(row.effects) > 1 else name.partition(".")[2]
-        stated.append(f"{statement} = {quantity(estimate)}{bound}")
+        stated.append(f"{statement} = {estimate}{bound}")
     if not row.plausible and not any(e.at_bound for e in row.parameters.values()):
         stated.append("(hardly believable)")
     near = [" + ".join(names) for names in row.equivalents[:3]]
@@ -228,11 +230,11 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
     best = " + ".join(diagnosis.ranking[0].effects) if diagnosis.ranking else "best explanation"
     rows += [[best, shrink.after, shrink.held_after], ["noise of the test", None, shrink.floor]]
     statement = f"R.m.s. {METRICS[metric]} gap; held out: each mode predicted from all others."
-
-    def size(value: float) -> str:
-        return gap_size(value, metric)
-
-    columns = [Column("explanation"), Column("on fitted data", size), Column("on modes held out", size)]
+    columns = [
+        Column("explanation"),
+        Column("on fitted data", shrink.size),
+        Column("on modes held out", shrink.size),
+    ]
     marked = [False] * (len(rows) - 2) + [diagnosis.verdict in {"named", "class"}, False]
     parts = [table(statement, columns, rows, marked=marked)]
     if (points := shrink.points) is not None:
@@ -244,23 +246,19 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
             )
         )
     if shrink.closed is not None and diagnosis.verdict in {"named", "class"}:
-        closed = shrink.closed
-        interval = f"(95 %: {closed.low95:.0f} to {closed.high95:.0f} %)"
-        statement = f"Of what can be closed, {closed.value:.0f} % closes {interval}."
-        parts.append(element("p", statement))
+        parts.append(element("p", f"Of what can be closed, {shrink.closed} closes, with 95 % in brackets."))
     return joined(*parts)
 
 
 def the_next_test(diagnosis: Diagnosis) -> Raw:
     """Return what to measure next."""
     if not diagnosis.next_test:
-        last = summary_text(diagnosis)[-1].partition(":")[2].strip()
+        last = answers(diagnosis)["Next"]
         return element("p", last[:1].upper() + last[1:] + ".")
     rows: list[list[Cell | Raw]] = []
     for test in diagnosis.next_test:
-        what = separated(test).removeprefix("separates ").partition(" by ")[0]
         sigma = None if math.isnan(test.expected_sigma) else test.expected_sigma
-        rows.append([test.measure, what, sigma])
+        rows.append([test.measure, separates(test), sigma])
     columns = [Column("measure next"), Column("separates"), Column("by [σ], at least", lambda v: f"{v:.1f}")]
     if not any(row[1] for row in rows):
         return table("What would show more.", columns[:1], [row[:1] for row in rows])

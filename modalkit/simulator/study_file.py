@@ -7,7 +7,7 @@ from typing import Any
 from modalkit.simulator.setup import Setup
 
 
-def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
+def study_text(setup: Setup, *, test_file: str, baseline_file: str, expects_damping: bool = True) -> str:
     """Return the study as TOML.
 
     Parameters
@@ -15,7 +15,10 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
     setup : Setup
         Everything that is stated.
     test_file, baseline_file : str
-        Names of the test files, relative to the study; the second is used where there is a baseline.
+        Names of the test files, relative to the study: of hits, or, as ``.csv``, of modes; the second is used where
+        there is a baseline.
+    expects_damping : bool
+        Whether the study says what damping the modeller expects.
 
     Returns
     -------
@@ -23,9 +26,9 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
         A study as the contract has it.
     """
     test: dict[str, Any] = {
-        "files": [test_file],
+        **_data(test_file),
         "band": list(setup.band),
-        "exponential_window": setup.window,
+        **({} if _of_modes(test_file) else {"exponential_window": setup.window}),
         "calibration": setup.calibration,
         "repeatability": setup.repeatability,
         "position_sigma": setup.position_sigma,
@@ -33,7 +36,7 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
     tolerances = {name: getattr(setup.tolerances, name) for name in setup.tolerances.__dataclass_fields__}
     tables: list[tuple[str, dict[str, Any]]] = [("[test]", test)]
     if setup.baseline:
-        tables.append(("[baseline]", test | {"files": [baseline_file]}))
+        tables.append(("[baseline]", test | _data(baseline_file)))
     model = {
         "type": "plate" if setup.kind == "plate" else "beam",
         "length": setup.length,
@@ -46,7 +49,7 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
     tables += [
         ("[model]", model),
         ("[model.material]", {"E": setup.E, "density": setup.density, "poisson": setup.poisson}),
-        ("[model.damping]", {"alpha": setup.alpha, "beta": setup.beta}),
+        *([("[model.damping]", {"alpha": setup.alpha, "beta": setup.beta})] if expects_damping else []),
         ("[tolerances]", tolerances),
     ]
     if setup.sensor_mass:
@@ -62,6 +65,15 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str) -> str:
     for header, entries in tables:
         lines += [header, *(f"{key} = {_value(value)}" for key, value in entries.items())]
     return "\n".join(lines) + "\n"
+
+
+def _of_modes(file: str) -> bool:
+    return file.endswith(".csv")
+
+
+def _data(file: str) -> dict[str, Any]:
+    """Return the key that names a test's data."""
+    return {"modes": file} if _of_modes(file) else {"files": [file]}
 
 
 def _value(value: Any) -> str:

@@ -7,6 +7,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from acquisition.errors import StudyError
+from acquisition.si_units import si_value
 
 if TYPE_CHECKING:
     from modalkit.study.tables import MaterialTable, ModelTable
@@ -23,11 +24,11 @@ DENSITIES = (1.0, 30e3)
 USUAL_DENSITIES = (100.0, 25e3)
 """The same where a unit is guessed: balsa to osmium [kg/m3]."""
 
-MODULI = {"Pa": 1.0, "GPa": 1e9, "MPa": 1e6, "psi": 6894.757, "ksi": 6.894757e6}
-"""Units in which moduli are written, and what they are in SI [Pa]."""
+MODULI = ("Pa", "GPa", "MPa", "psi", "ksi")
+"""Units in which moduli are written."""
 
-MASSES = {"kg/m^3": 1.0, "g/cm^3": 1e3, "t/mm^3": 1e12, "lb/in^3": 27679.9}
-"""Units in which densities are written, and what they are in SI [kg/m3]."""
+MASSES = ("kg/m^3", "g/cm^3", "t/mm^3", "lb/in^3")
+"""Units in which densities are written."""
 
 SIZES = (1e-7, 1e4)
 """Sizes of what is struck or modelled as a beam or plate: a micro-cantilever's thickness to a bridge [m]."""
@@ -75,7 +76,8 @@ def _guess(modulus: float, density: float) -> str | None:
     """Return the units with which the numbers are those of a usual solid, one that is not SI before two."""
     pairs = sorted(product(MODULI, MASSES), key=lambda pair: (pair[0] != "Pa") + (pair[1] != "kg/m^3"))
     for one, other in pairs:
-        if _solid(modulus * MODULI[one], density * MASSES[other], USUAL_SPEEDS, USUAL_DENSITIES):
+        found = modulus * si_value(f"1 {one}", "Pa"), density * si_value(f"1 {other}", "kg/m^3")
+        if _solid(*found, USUAL_SPEEDS, USUAL_DENSITIES):
             statement = [f'E = "{modulus:g} {one}"'] if one != "Pa" else []
             statement += [f'density = "{density:g} {other}"'] if other != "kg/m^3" else []
             return " and ".join(statement) or None

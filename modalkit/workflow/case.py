@@ -255,10 +255,8 @@ def _with_levels(measured: Measured, processed: Processed, identified: ModalMode
 
 @contextmanager
 def _naming(study: Study) -> Iterator[None]:
-    """Put the study's path before an error that does not name it."""
+    """Put the study's path before an error of the rooms below, which do not know it."""
     try:
         yield
     except StudyError as error:
-        if str(error).startswith(str(study.path)):
-            raise
         raise StudyError(f"{study.path}: {error}") from error

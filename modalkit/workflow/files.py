@@ -69,12 +69,19 @@ def read_files(
     )
     tests = [*content.tests, *(t for t in found if isinstance(t, HammerTest))]
     sets = [s for s in (content.frfs, *found) if isinstance(s, FrfSet)]
+    modal = [m for m in (content.modal, *found) if isinstance(m, ModalData)]
+    if len(modal) > 1:
+        raise InputError(f"{others[-1]}: {_SEVERAL}")
     return replace(
         content,
+        modal=modal[0] if modal else None,
         tests=tuple(t if t.geometry.nodes else replace(t, geometry=geometry) for t in tests),
         frfs=_placed(together(sets), geometry) if sets else None,
         geometry=geometry,
     )
+
+
+_SEVERAL = "several files of modes are no one test; give one, or compare them"
 
 
 def _of_modes(path: Path, layout: Layout | None) -> bool:
@@ -95,7 +102,7 @@ def _with_modes(content: UffContent, paths: Sequence[Path], layout: Layout | Non
     if not paths:
         return content
     if len(paths) > 1 or content.modal is not None:
-        raise InputError(f"{paths[-1]}: several files of modes are no one test; give one, or compare them")
+        raise InputError(f"{paths[-1]}: {_SEVERAL}")
     modal = _modes(paths[0], layout)
     return replace(
         content, modal=modal, geometry=content.geometry if content.geometry.nodes else modal.geometry

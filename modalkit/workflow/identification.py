@@ -25,6 +25,7 @@ from acquisition import (
     state_window,
 )
 from acquisition.display import Displayed, named_files
+from acquisition.quantities import hertz
 from acquisition.warned import Consequential, in_order
 from modalkit.workflow.existing import Modes, existing
 from modalkit.workflow.files import Progress, read_files
@@ -141,7 +142,7 @@ class Processed(Displayed):
             return identify(self.frfs, band=band, order=order, add=add, drop=drop)
         model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
         statement = Consequential(
-            f"the force is 20 dB down at {reach[1]:.4g} Hz: modes are looked for below that; give a band to go "
+            f"the force is 20 dB down at {hertz(reach[1])}: modes are looked for below that; give a band to go "
             "further"
         )
         return replace(model, warnings=(*model.warnings, statement))

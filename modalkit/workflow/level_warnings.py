@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acquisition import HammerTest, HitVerdict, Windows
+from acquisition.quantities import hertz
 
 if TYPE_CHECKING:
     from identification import ModalModel
@@ -46,7 +47,7 @@ def with_level_warning(
         return model
     change = 100 * found.slope * (found.strongest - found.weakest)
     named = ", ".join(
-        f"{model.modal.frequency[i]:.5g} Hz by {change[i]:+.2g} %" for i in np.flatnonzero(sure)
+        f"{hertz(model.modal.frequency[i])} by {change[i]:+.2g} %" for i in np.flatnonzero(sure)
     )
     statement = (
         f"frequencies follow the force of the hits, from {found.weakest:.3g} to {found.strongest:.3g} N: {named}. A "

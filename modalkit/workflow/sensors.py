@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from acquisition import Dof, FrfSet, InputError, remove_sensor_mass
+from acquisition.quantities import quantity
 from acquisition.warned import Consequential
 
 
@@ -43,7 +44,7 @@ def without_sensors(frfs: FrfSet, masses: Sequence[tuple[str, float]], warnings:
             raise InputError(f"{frfs.source}: the mass of the sensor at {name} is given twice; give it once")
         given[dof] = mass
     result = remove_sensor_mass(frfs, mass=dict.fromkeys(there, 0.0) | given)
-    stated = ", ".join(f"{1e3 * mass:g} g at {dof}" for dof, mass in given.items())
+    stated = ", ".join(f"{quantity(mass, 'kg')} at {dof}" for dof, mass in given.items())
     warnings.append(Consequential(f"the mass of the accelerometers was taken out of the FRFs: {stated}"))
     return result
 

@@ -8,8 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from acquisition import Dof, FrfSet, HammerTest, InputError
-from acquisition import readers as doors
+from acquisition import (
+    Dof,
+    FrfSet,
+    HammerTest,
+    InputError,
+    ModalData,
+    own_readers,
+    read_modes,
+    register_reader,
+)
 from acquisition.columns import layout_from
 from acquisition.readers import read_test
 
@@ -68,8 +76,38 @@ def test_readers_of_installed_packages_are_found(abc, monkeypatch):
         def load(self):
             return run(examples()[1])["read_abc"]
 
-    monkeypatch.setattr(doors, "entry_points", lambda group: [Point()] if group == "modalkit.readers" else [])
+    monkeypatch.setattr(
+        own_readers, "entry_points", lambda group: [Point()] if group == "modalkit.readers" else []
+    )
     assert read_test(abc[0])[0].rate == 2048.0
+
+
+@pytest.fixture
+def registered(monkeypatch):
+    """A registry that is empty again afterwards."""
+    monkeypatch.setattr(own_readers, "_REGISTERED", {})
+
+
+def test_the_page_s_reader_of_modes_is_known_everywhere_once_it_is_registered(tmp_path, registered):
+    path = tmp_path / "beam.XYZ"
+    np.savetxt(path, [[24.5, 0.006], [153.9, 0.0012]])
+    run(examples()[2])
+    (modes,) = read_test(path)
+    assert isinstance(modes, ModalData)
+    assert modes.frequency.tolist() == read_modes(path).frequency.tolist() == [24.5, 153.9]
+    assert modes.damping[1] == 0.0012
+
+
+def test_a_registered_reader_may_return_frfs_or_hits_but_not_where_modes_are_asked_for(abc, registered):
+    path, _ = abc
+    register_reader("ABC", run(examples()[1])["read_abc"])
+    (test,) = read_test(path)
+    assert isinstance(test, HammerTest)
+    with pytest.raises(InputError, match="returned HammerTest, but modes are asked for"):
+        read_modes(path)
+    same = run(examples()[0])["same"]
+    register_reader(".abc", lambda _: same)
+    assert read_test(path) == [same]
 
 
 def test_column_text_goes_through_the_same_door(tmp_path):

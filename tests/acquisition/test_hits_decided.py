@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from acquisition import Dof, HitVerdict, InputError
-from acquisition.hits.verdicts import decide, rejected_points
+from acquisition.hits.verdicts import decide, rejected_points, usual_fault
 
 
 def verdict(point, hit, used=True, reasons=()):
@@ -45,3 +47,11 @@ def test_agreeing_with_the_proposal_changes_only_what_is_said():
 def test_hits_that_do_not_exist_are_named(use, leave, message):
     with pytest.raises(InputError, match=message):
         decide(VERDICTS, use=use, leave=leave)
+
+
+def test_the_usual_fault_is_counted_by_its_kind_whatever_its_numbers() -> None:
+    weak = [replace(verdict(Dof(1, 3), k, False, [f"too weak: {k} N"]), kind="too weak") for k in (1, 2)]
+    double = replace(verdict(Dof(1, 3), 3, False, ["double hit: 40 %"]), kind="double hit")
+    fine = verdict(Dof(1, 3), 4, True)
+    assert usual_fault([double, *weak, fine]) == (2, "too weak: 1 N")
+    assert usual_fault([fine]) is None

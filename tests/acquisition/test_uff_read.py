@@ -8,7 +8,8 @@ import pyuff
 
 from acquisition import Dof, estimate_frfs, judge_hits, read_functions, read_uff
 from acquisition.uff.functions.header58 import Axis
-from acquisition.uff.functions.units import GRAVITY, Units, ratio_of, to_si, unit_of, units_of
+from acquisition.uff.functions.units import Units, ratio_of, to_si, unit_of, units_of
+from acquisition.units import GRAVITY
 
 TWINS = ("case1", "case3", "case5", "case6")
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from identification_cases import bench, column, lines, structure
 
 from acquisition.errors import EstimationError
+from identification import identify
 from identification.poles import ESTIMATORS, lscf
 from identification.poles.lsce import prediction_normal
 from identification.poles.lscf import _reduced_normal
@@ -118,3 +122,17 @@ def test_says_when_there_are_too_few_lines(name):
     frfs = bench().frfs(lines(low=390.0, high=420.0), column())
     with pytest.raises(EstimationError, match=f"61 lines cannot carry {name.upper()} of order 40"):
         ESTIMATORS[name](frfs, orders=[40])
+
+
+def test_the_estimator_on_the_page_identifies(monkeypatch, rng):
+    page = (Path(__file__).resolve().parents[2] / "docs" / "identification.md").read_text(encoding="utf-8")
+    (block,) = (b for b in re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL) if "ESTIMATORS[" in b)
+    assert len([line for line in block.splitlines() if line.strip()]) <= 20
+    monkeypatch.setitem(ESTIMATORS, "htls", ESTIMATORS["lsce"])  # it is gone again after the test
+    exec(compile(block, "docs/identification.md", "exec"), {})
+    truth = bench()
+    frfs = truth.frfs(lines(low=250.0, high=700.0), column(), noise=0.003, rng=rng)
+    wanted = truth.poles[truth.within(250, 700)]
+    found = identify(frfs, method="htls").poles
+    assert len(found) == len(wanted)
+    assert nearest_error(found, wanted) < 1e-3

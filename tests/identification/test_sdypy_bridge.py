@@ -11,7 +11,7 @@ from identification_cases import bench, column, lines, structure
 
 from acquisition.errors import InputError
 from identification import beside, from_sdypy, identify, mac, second_opinion, to_sdypy
-from identification.sdypy_bridge import frfs_from_sdypy, frfs_to_sdypy, opinion_warnings
+from identification.sdypy_bridge import opinion_warnings
 
 
 @pytest.fixture
@@ -70,19 +70,6 @@ def test_order_of_the_chart_is_the_polynomial_order(case):
     _, frfs, _ = case
     few = second_opinion(frfs, band=(10.0, 300.0), order=4)
     assert len(few) <= 2
-
-
-def test_frfs_survive_there_and_back_line_by_line(case):
-    _, frfs, model = case
-    there = frfs_to_sdypy(frfs)
-    back = frfs_from_sdypy(there, frfs.responses, frfs.references)
-    np.testing.assert_array_equal(back.values, frfs.values)
-    np.testing.assert_array_equal(back.frequency, frfs.frequency)
-    assert back.form == frfs.form
-    fitted = frfs_from_sdypy(to_sdypy(model), frfs.responses, frfs.references, fitted=True)
-    np.testing.assert_array_equal(fitted.values, model.synthesise().values)
-    with pytest.raises(InputError, match="no reconstructed FRFs"):
-        frfs_from_sdypy(there, frfs.responses, frfs.references, fitted=True)
 
 
 def test_poles_and_residues_handed_over_make_the_same_frfs(case):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from acquisition import Dof, FrfSet, estimate_frfs, hammer_test
+from acquisition.quantities import hertz
 from acquisition.synthetic import HammerPlan, modal_system
 from identification import identify
 from identification.band.uninformed import uninformed_modes
@@ -45,7 +46,7 @@ def test_what_is_found_beyond_the_force_or_the_filter_is_named(case: Case) -> No
     model = identify(hit(beyond, **plan), band=band)
     doubtful = false_of(model.modal.frequency, TRUE)
     for frequency in doubtful:
-        assert any(f"{frequency:.5g} Hz" in warning for warning in model.warnings)
+        assert any(hertz(frequency) in warning for warning in model.warnings)
     assert len(doubtful) or case is not LONG  # a real mode that the force hardly reaches is found
 
 
@@ -57,7 +58,7 @@ def test_the_warning_names_why_a_mode_is_doubted(case: Case, frequency: float, w
     beyond, plan, band = case
     frfs = hit(beyond, **plan)
     warnings = uninformed_modes(frfs.band(*band) if band else frfs, np.array([frequency]))
-    assert any(word in warning and f"{frequency:.5g} Hz" in warning for warning in warnings)
+    assert any(word in warning and hertz(frequency) in warning for warning in warnings)
 
 
 def test_modes_that_the_force_reaches_are_not_doubted() -> None:

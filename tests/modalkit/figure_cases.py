@@ -181,6 +181,8 @@ def diagnosis_of(
     error = np.linspace(-3, 5, modes)
     table = pd.DataFrame({"test [Hz]": frequency, "error [%]": error, "sigma [%]": np.full(modes, 0.1)})
     zones = zones_of(spec_of(kind))
+    if place is not None and kind == "beam":
+        place = (place[0], 0.0, 0.0)
     seated = place if verdict != "none" else None
     channel = "none" if verdict == "none" else "stiffness"
     where = Where(

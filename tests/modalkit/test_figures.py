@@ -15,8 +15,6 @@ from matplotlib.figure import Figure
 from acquisition import InputError
 from modalkit.figures import mac_figure, save_figures
 from modalkit.figures.style import broken, grouped, shortened, text_width
-from modalkit.figures.words import percent, quantity, share
-from updating.diagnosis.answer.result import ParameterEstimate
 
 
 def test_the_check_of_legibility_finds_what_it_is_for() -> None:
@@ -47,15 +45,6 @@ def test_text_is_broken_and_shortened_to_its_room(text: str, room: float) -> Non
     assert " ".join(lines).split() == text.split()
     assert all(text_width(line, 11) <= room or " " not in line for line in lines)
     assert text_width(shortened(text, room, 11), 11) <= room
-
-
-def test_numbers_are_written_as_they_are_meant() -> None:
-    assert [percent(v) for v in (0.0123, 1.234, 12.34, 123.4)] == ["0.012 %", "1.23 %", "12.3 %", "123 %"]
-    assert [share(v) for v in (1.0, 0.0, 0.5, 0.034)] == ["> 99.9 %", "< 0.1 %", "50 %", "3.4 %"]
-    assert quantity(ParameterEstimate(0.0125, "m", 0.0119, 0.0131, False)) == "12.5 mm [11.9, 13.1]"
-    assert quantity(ParameterEstimate(0.9, "-", 0.89, 0.91, False)) == "0.900 [0.890, 0.910]"
-    stiff = ParameterEstimate(9354.0, "N m/rad", 8164.0, 11340.0, False)
-    assert quantity(stiff) == "9354 N m/rad [8164, 11300]"
 
 
 def test_files_are_whole_and_nothing_else_is_left(tmp_path: Path) -> None:

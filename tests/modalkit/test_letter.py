@@ -167,7 +167,7 @@ def test_a_gap_too_small_to_close_says_no_share() -> None:
 
 def test_a_fault_of_the_measurement_has_no_place_on_the_structure() -> None:
     chain = Where("measurement", {"measurement": 1.0}, None, (), (), ())
-    assert lines(replace(NAMED, where=chain))["Where"] == "Where:   measurement (100 %)"
+    assert lines(replace(NAMED, where=chain))["Where"] == "Where:   measurement (> 99.9 %)"
 
 
 def test_a_place_on_a_plate_has_two_coordinates_and_its_mirror_images() -> None:

@@ -19,7 +19,7 @@ from modalkit.planning.curves import Curve, solve_curve
 from modalkit.planning.design import Design, columns, present, whitener
 from modalkit.planning.document import to_json
 from modalkit.planning.effects import families
-from modalkit.planning.family import Family, short
+from modalkit.planning.family import Family
 from modalkit.planning.forecast import Forecast, TestForecast
 from modalkit.planning.from_study import known_test_of
 from modalkit.planning.responses import Stations
@@ -298,12 +298,6 @@ def test_what_the_rig_has_no_body_for_is_refused_with_what_can_be_done(tmp_path:
     assert done.exit_code != 0
     with pytest.raises(StudyError, match="plan with a beam"):
         known_test_of(read_study(SAMPLES / "plate_dry" / "study.toml"))
-
-
-def test_numbers_are_said_in_two_or_three_digits() -> None:
-    assert [short(v) for v in (0.0123, 8.46, 76.2, 1234.5, 19400.0, 7.53e7, 0.0)] == [
-        "0.012", "8.5", "76", "1230", "19400", "7.53e+07", "0",
-    ]  # fmt: skip
 
 
 def test_a_family_without_signs_is_asked_once_and_one_with_signs_twice() -> None:

@@ -14,9 +14,11 @@ from acquisition import (
     HammerTest,
     Hits,
     InputError,
+    ModalData,
     estimate_frfs,
     hammer_test,
     judge_hits,
+    register_reader,
     remove_sensor_mass,
     write_uff,
 )
@@ -252,3 +254,15 @@ def test_a_sensor_written_otherwise_is_refused(text: str) -> None:
     with pytest.raises(InputError, match="POINT=MASS"):
         sensor_mass(text)
     assert sensor_mass(" 25+Z = 0.0086") == ("25+Z", 0.0086)
+
+
+def test_modes_of_a_registered_reader_are_a_test_s_modes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("acquisition.own_readers._REGISTERED", {})
+    (tmp_path / "beam.xyz").write_text("24.5 153.9 429.2")
+    register_reader(".xyz", lambda path: ModalData(np.loadtxt(path), 1e-3 * np.loadtxt(path)))
+    modes = read(tmp_path / "beam.xyz")
+    assert modes.identify(band=(100, 500)).table().iloc[:, 0].tolist() == [153.9, 429.2]
+    with pytest.raises(InputError, match="several files of modes"):
+        read([tmp_path / "beam.xyz", tmp_path / "beam.xyz"])

@@ -11,12 +11,13 @@ from scipy.linalg import eigh
 from updating_cases import BEAM, PLATE, STEEL, ExactBeam, blank
 
 from acquisition.errors import StudyError
+from acquisition.quantities import hertz
 from updating import Measured, Predictor, Region, Spec, build_structure
 from updating.models.state import State
 from updating.problem.gates import (
     discrepancy,
     missing_mode,
-    on_convergence,
+    notes_on,
     on_levels,
     on_modes,
     theory_error,
@@ -138,12 +139,14 @@ def test_narrow_regions_and_accepted_theories_are_no_trouble() -> None:
 def test_remarks_name_what_is_off_by_more_than_the_noise() -> None:
     coarse = evaluate(replace(THIN, elements=(6,)))
     test, order = coarse.measured, np.array([1, 3])
-    message = " ".join(on_convergence(coarse, test, order))
+    found = theory_error(coarse, order)
+    message = " ".join(notes_on(found, test, coarse.spec))
     assert "use more elements" in message
     assert 'theory = "timoshenko"' in message
-    assert on_convergence(evaluate(replace(BEAM, elements=(80,))), test, order) == []
+    fine = evaluate(replace(BEAM, elements=(80,)))
+    assert notes_on(theory_error(fine, order), test, fine.spec) == []
     blind = replace(test, repeatability=0.05)
-    assert on_convergence(coarse, blind, order) == []
+    assert notes_on(found, blind, coarse.spec) == []
 
 
 @pytest.mark.parametrize("skipped", [1, 2, 4])
@@ -176,7 +179,7 @@ def test_few_and_missing_modes_are_said() -> None:
     assert "only 2 modes" in on_modes(bare(model[:2]), model)[0]
     assert on_modes(bare(model[:5]), model) == []
     (message,) = on_modes(bare(np.delete(model, 2)[:5]), model)
-    assert f"{model[2]:.4g} Hz" in message
+    assert hertz(model[2]) in message
     assert on_modes(bare(np.delete(model, 2)[:5]), model, np.array([0, 1, 3, 4, 5])) == [], (
         "paired so already"
     )

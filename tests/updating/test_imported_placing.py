@@ -154,7 +154,7 @@ def test_directions_that_the_node_table_lacks_are_left_out() -> None:
 def test_points_between_nodes_are_said_to_be() -> None:
     at = np.array([[0.125, 0.1, 0.0], [0.2, 0.1, 0.0]])
     test = measured_from_modes(modes((Dof(7, 3), Dof(8, 3)), at), AXES, spec_of(plate()))
-    assert any("point 7 is 0.025 m from the nearest" in warning for warning in test.warnings)
+    assert any("point 7 is 25 mm from the nearest" in warning for warning in test.warnings)
     on = measured_from_modes(
         modes((Dof(8, 3), Dof(9, 3)), at[[1, 1]] + [[0, 0, 0], [0.1, 0, 0]]), AXES, spec_of(plate())
     )

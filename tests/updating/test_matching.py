@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from updating_cases import BEAM, POINTS, blank
 
 from acquisition.errors import EstimationError
+from acquisition.quantities import hertz
 from updating import Measured, Predictor
 from updating.models.state import State
 from updating.prediction.matching import mac_of_constants, match, pair_modes
@@ -94,7 +95,7 @@ def test_a_mode_that_the_model_lacks_is_left_out_and_said() -> None:
     strange[:, 2] = basis * np.linalg.norm(strange[:, 2])
     paired = pair_modes(replace(test, constants=strange), MODEL.select(np.arange(4)))
     assert paired.order.tolist() == [0, 1, 3]
-    assert f"{test.frequency[2]:.2f} Hz has no partner" in paired.warnings[0]
+    assert f"{hertz(test.frequency[2])} has no partner" in paired.warnings[0]
 
 
 def test_a_mode_that_drowns_in_noise_is_left_out_and_said() -> None:
@@ -156,7 +157,7 @@ def test_a_false_mode_between_true_ones_gets_no_partner_and_costs_no_point(seed:
     paired = pair_modes(seen, MODEL)
     assert paired.trusted is None
     assert false not in paired.measured.frequency and paired.order.tolist() == [0, 1, 2]
-    assert any(f"{false:.2f} Hz has no partner" in w for w in paired.warnings)
+    assert any(f"{hertz(false)} has no partner" in w for w in paired.warnings)
 
 
 def two_sensors() -> Predictor:

@@ -11,6 +11,7 @@ import pandas as pd
 from acquisition import Dof, FrfSet
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.display import Displayed, counted
+from acquisition.quantities import percent
 from updating.case import Case
 from updating.correlation.frfs import CorrelatedFrfs, correlate_frfs
 from updating.nominal import predictor_of
@@ -58,7 +59,7 @@ class Correlation(Displayed):
         return float(np.sqrt(np.mean(self.table["error [%]"] ** 2)))
 
     def _headline(self) -> str:
-        return f"{self.rms_percent:.3g} % r.m.s. frequency error over {counted(len(self.table), 'pair')}"
+        return f"{percent(self.rms_percent)} r.m.s. frequency error over {counted(len(self.table), 'pair')}"
 
 
 def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray, IntArray
+from acquisition.quantities import percent
 from identification import frac
 from updating.frf_update.columns import columns
 from updating.frf_update.evaluation import evaluate
@@ -217,7 +218,7 @@ def _warnings(specimen: Specimen, last: Sequence[Step], exact: bool) -> list[str
             )
         if step.solved.discrepancy > NOTEWORTHY:
             found.append(
-                f"stage {i}: the updated model misses the FRFs by {100 * step.solved.discrepancy:.1f} %, which no "
+                f"stage {i}: the updated model misses the FRFs by {percent(100 * step.solved.discrepancy)}, which no "
                 "noise explains; the standard deviations allow for it"
             )
     if not exact:

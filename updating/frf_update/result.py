@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from acquisition.quantities import percent
 from updating.models.state import State
 from updating.update.result import Update
 
@@ -44,7 +45,8 @@ class FrfUpdate(Update):
         names = ["all together"] if together else [f"stage {i + 1}" for i in range(len(self.discrepancy))]
         rows = zip(names, self.lines, self.discrepancy, strict=True)
         stated = [
-            f"    {name}: {len(lines)} lines from {lines[0]:.4g} to {lines[-1]:.4g} Hz, model off by {100 * size:.2g} %"
+            f"    {name}: {len(lines)} lines from {lines[0]:.4g} to {lines[-1]:.4g} Hz, "
+            f"model off by {percent(100 * size)}"
             for name, lines, size in rows
         ]
         steps = "    iterations, stage after stage: " + ", ".join(str(n) for n in self.stages)

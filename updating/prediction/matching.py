@@ -8,6 +8,7 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, IntArray
 from acquisition.errors import EstimationError
+from acquisition.quantities import hertz, percent
 from identification import pair
 from updating.prediction.assignment import mac_of_constants, match
 from updating.prediction.predict import Prediction
@@ -96,7 +97,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
             "check axes, points, boundary conditions, and the model's units (m, Pa, kg/m3)"
         )
     lost += [
-        f"mode at {f:.2f} Hz has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f}) "
+        f"mode at {hertz(f)} has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f}) "
         "and is left out"
         for f, m, r in zip(measured.frequency[~keep], mac[~keep], ratio[~keep], strict=True)
     ]
@@ -125,7 +126,8 @@ def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
             f"{measured.title or 'test'}: every mode's shape drowns in noise; average more hits or narrow the band"
         )
     lost = [
-        f"mode at {f:.2f} Hz is too faint to compare (its constants are uncertain by {100 * d:.0f} %) and is left out"
+        f"mode at {hertz(f)} is too faint to compare (its constants are uncertain by {percent(100 * d)}) "
+        "and is left out"
         for f, d in zip(measured.frequency[faint], doubt[faint], strict=True)
     ]
     return measured.modes(~faint), lost
@@ -146,7 +148,7 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
         raise EstimationError(f"{measured.title or 'test'}: no measured frequency has a partner in the model")
     keep = np.zeros(len(measured.frequency), dtype=bool)
     keep[rows] = True
-    lost = [f"mode at {f:.2f} Hz has no partner in the model" for f in measured.frequency[~keep]]
+    lost = [f"mode at {hertz(f)} has no partner in the model" for f in measured.frequency[~keep]]
     return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))
 
 

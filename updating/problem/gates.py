@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from acquisition.quantities import hertz, percent, quantity
 from updating.models.spec import Spec
-from updating.prediction.predict import Predictor
 from updating.problem.theory_error import TheoryError, discrepancy, theory_error
 from updating.test_data.measured import Measured
 
@@ -28,30 +28,24 @@ __all__ = [
     "discrepancy",
     "missing_mode",
     "notes_on",
-    "on_convergence",
     "on_levels",
     "on_modes",
     "theory_error",
 ]
 
 
-def on_convergence(predictor: Predictor, measured: Measured, order: IntArray) -> list[str]:
+def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
     """Return remarks where mesh or theory are off by more than the noise of the frequencies.
 
     Parameters
     ----------
-    predictor : Predictor
-        The model.
+    found : Shortfall
+        What mesh and theory are off by, of the modes measured.
     measured : Measured
-        The test, its modes those of ``order``.
-    order : (n_modes,) int array
-        Rank of each mode among the model's.
+        The test.
+    spec : Spec
+        The model.
     """
-    return notes_on(theory_error(predictor, order), measured, predictor.spec)
-
-
-def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
-    """Return what a shortfall that was worked out already says beside the noise; see `on_convergence`."""
     if not found.known:
         return ["imported matrices cannot be refined: whether they have converged is not examined"]
     noise = np.hypot(measured.frequency_sigma / measured.frequency, measured.repeatability)
@@ -78,7 +72,7 @@ def _advice(spec: Spec) -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{100 * abs(share):.2g} %"
+    return percent(100 * abs(share))
 
 
 def on_modes(measured: Measured, predicted: FloatArray, order: IntArray | None = None) -> list[str]:
@@ -104,7 +98,7 @@ def on_modes(measured: Measured, predicted: FloatArray, order: IntArray | None =
     if skipped is not None:
         notes.append(
             f"without shapes, modes are paired by rank; from mode {skipped + 1} on they fit far better as if the test "
-            f"had missed the model's mode {skipped + 1} at {predicted[skipped]:.4g} Hz: check that none is missing"
+            f"had missed the model's mode {skipped + 1} at {hertz(predicted[skipped])}: check that none is missing"
         )
     return notes
 
@@ -158,7 +152,7 @@ def on_levels(measured: Measured, *, fluid: bool) -> list[str]:
     if abs(slope) < 4 * sigma and not beyond:
         return []
     size = 100 * slope * measured.level
-    stated = f"frequencies follow the force of the hits: {size:+.2g} % on average at {measured.level:.3g} N"
+    stated = f"frequencies follow the force of the hits: {size:+.2g} % on average at {quantity(measured.level, 'N')}"
     if fluid:
         return [
             f"{stated}; so the fluid is not still, or a joint is not linear: "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from acquisition.quantities import quantity
 from updating.test_data.measured import Measured
 
 APART = 3.0
@@ -83,5 +84,5 @@ def _where(test: Measured, baseline: Measured, nodes: list[int]) -> str:
             away: FloatArray = (
                 test.points[test.nodes.index(node)] - baseline.points[baseline.nodes.index(node)]
             )
-            return f" (number {node} lies {1e3 * float(np.linalg.norm(away)):.3g} mm from where it has it)"
-    return f" (none lies within {1e3 * reach(test, baseline):.2g} mm)"
+            return f" (number {node} lies {quantity(float(np.linalg.norm(away)), 'm')} from where it has it)"
+    return f" (none lies within {quantity(reach(test, baseline), 'm')})"

@@ -9,6 +9,7 @@ import numpy as np
 from acquisition import Dof, Geometry
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
+from acquisition.quantities import quantity
 from updating.models import Spec
 from updating.models.imported.placing import Found
 from updating.test_data.axes import Axes
@@ -129,7 +130,9 @@ def check_among(points: FloatArray, keys: tuple[Key, ...], spec: Spec) -> tuple[
         return ()
     places = spec.imported.places
     if (stated := _thousandfold(points, spec)) and len(points) > 1:
-        raise StudyError(f"the test spans {np.ptp(points, axis=0).max():.3g} m of the model's axes: {stated}")
+        raise StudyError(
+            f"the test spans {quantity(np.ptp(points, axis=0).max(), 'm')} of the model's axes: {stated}"
+        )
     between: dict[int, float] = {}
     for point, (node, direction) in zip(points, keys, strict=True):
         for axis in np.flatnonzero(np.abs(direction) > 1e-9).tolist():
@@ -145,7 +148,7 @@ def check_among(points: FloatArray, keys: tuple[Key, ...], spec: Spec) -> tuple[
     worst = max(between, key=lambda n: between[n])
     return (
         f"{len(between)} test point(s) lie beside the model's nodes and are interpolated: point {worst} is "
-        f"{between[worst]:.3g} m from the nearest",
+        f"{quantity(between[worst], 'm')} from the nearest",
     )
 
 
@@ -170,6 +173,6 @@ def _astray(point: FloatArray, node: int, found: Found, spec: Spec) -> str:
     at = np.round(places.at[found.nearest], 4).tolist()
     return (
         f"test point {node} lies at {np.round(point, 4).tolist()} m in model axes, off the imported structure: the "
-        f"nearest node {int(places.node[found.nearest])} at {at} m is {found.distance:.3g} m away (nodes are "
-        f"{found.spacing:.3g} m apart there); check axes in [test], the units of the file, and the node table"
+        f"nearest node {int(places.node[found.nearest])} at {at} m is {quantity(found.distance, 'm')} away (nodes are "
+        f"{quantity(found.spacing, 'm')} apart there); check axes in [test], the units of the file, and the node table"
     )

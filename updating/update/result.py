@@ -9,6 +9,7 @@ import pandas as pd
 
 from acquisition.arrays import FloatArray
 from acquisition.display import Displayed, counted
+from acquisition.quantities import percent
 from updating.update.estimate import Estimate
 from updating.update.statistics.identifiability import Determinability
 from updating.update.text import report_text
@@ -113,6 +114,7 @@ class Update(Displayed):
     def _headline(self) -> str:
         end = "converged" if self.converged else "not converged"
         return (
-            f"{counted(len(self.parameters), 'parameter')}, r.m.s. frequency error {self.rms_percent('before'):.3g} -> "
-            f"{self.rms_percent('after'):.3g} %, {end} after {counted(self.iterations, 'iteration')}"
+            f"{counted(len(self.parameters), 'parameter')}, r.m.s. frequency error "
+            f"{percent(self.rms_percent('before'))} -> {percent(self.rms_percent('after'))}, {end} "
+            f"after {counted(self.iterations, 'iteration')}"
         )

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from acquisition.quantities import percent, uncertainty
+
 if TYPE_CHECKING:
     from updating.update.estimate import Estimate
     from updating.update.result import Update
@@ -46,7 +48,7 @@ def _statistics(update: Update) -> Iterator[str]:
         ("degrees of freedom", f"{update.dof}{'' if update.dof > 0 else ': NOTHING IS TESTED'}"),
         ("reduced chi-square", f"{update.reduced_chi2:.4g}" if update.dof > 0 else ""),
         ("sigmas raised by", f"{update.inflation:.3g}"),
-        ("r.m.s. error", f"{update.rms_percent('before'):.4g} % -> {update.rms_percent():.4g} %"),
+        ("r.m.s. error", f"{percent(update.rms_percent('before'))} -> {percent(update.rms_percent())}"),
     ]
     width = max(len(name) for name, _ in rows)
     yield from (f"{name:<{width}} = {value}" for name, value in rows if value)
@@ -62,7 +64,7 @@ def _parameters(update: Update) -> Iterator[str]:
 def _value(p: Estimate, undetermined: bool) -> str:
     text = f"{p.value:.6g}"
     if np.isfinite(p.sigma):
-        share = f" ({100 * abs(p.sigma / p.value):.2g} %)" if p.value else ""
+        share = f" ({uncertainty(abs(p.sigma / p.value))})" if p.value else ""
         text += f" +- {p.sigma:.2g} {p.unit}{share}"
     else:
         text += f" {p.unit}, no standard deviation"

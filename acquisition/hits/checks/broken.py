@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from acquisition.hits.faults import Fault
 from acquisition.hits.hammer import Hits
 
 SHORTEST = 32
@@ -14,7 +15,7 @@ STEADY = 1e-9
 """Change of a force, relative to its largest value, that is rounding of a constant [-]."""
 
 
-def why_broken(hits: Hits) -> list[str | None]:
+def why_broken(hits: Hits) -> list[Fault | None]:
     """Return for each hit at a point why nothing can be said of it, None where it can be judged.
 
     Parameters
@@ -25,13 +26,15 @@ def why_broken(hits: Hits) -> list[str | None]:
     length = hits.force.shape[-1]
     if length < SHORTEST:
         plural = "" if length == 1 else "s"
-        return [f"too short: a record of {length} sample{plural}; {SHORTEST} are the least"] * hits.count
+        return [
+            Fault("too short", f"a record of {length} sample{plural}; {SHORTEST} are the least")
+        ] * hits.count
     return [_why(force, motion) for force, motion in zip(hits.force, hits.motion, strict=True)]
 
 
-def _why(force: FloatArray, motion: FloatArray) -> str | None:
+def _why(force: FloatArray, motion: FloatArray) -> Fault | None:
     if not (np.isfinite(force).all() and np.isfinite(motion).all()):
-        return "broken record: values that are not finite"
+        return Fault("broken record", "values that are not finite")
     if np.ptp(force) <= STEADY * np.abs(force).max():
-        return f"no force: the record is constant, {float(force[0]):.3g} N throughout"
+        return Fault("no force", f"the record is constant, {float(force[0]):.3g} N throughout")
     return None

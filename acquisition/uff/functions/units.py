@@ -8,9 +8,9 @@ from typing import Literal
 
 from acquisition.errors import InputError
 from acquisition.uff.functions.header58 import Axis
+from acquisition.units import FOOT, FORCES, GRAVITY, INCH, LENGTHS, POUND, POUNDAL
 
 Quantity = Literal["receptance", "mobility", "accelerance", "force", "pressure", "other"]
-GRAVITY = 9.80665
 
 # data types of records 8 to 11 -> what is measured, exponent of length and of force (I-DEAS, data set 58)
 _KINDS: dict[int, tuple[Quantity, int, int]] = {
@@ -24,16 +24,15 @@ _KINDS: dict[int, tuple[Quantity, int, int]] = {
 # units code of data set 164 -> factors of length and force (divide by them to reach SI)
 _SYSTEMS: dict[int, tuple[float, float]] = {
     1: (1.0, 1.0),
-    2: (1 / 0.3048, 1 / 4.4482216152605),
+    2: (1 / FOOT, 1 / POUND),
     3: (1.0, 1 / GRAVITY),
-    4: (1 / 0.3048, 1 / 0.138254954376),
+    4: (1 / FOOT, 1 / POUNDAL),
     5: (1e3, 1e3),
     6: (1e2, 1e2),
-    7: (1 / 0.0254, 1 / 4.4482216152605),
+    7: (1 / INCH, 1 / POUND),
     8: (1e3, 1 / GRAVITY),
 }
-_LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
-_FORCES = {"N": 1.0, "kN": 1e3, "mN": 1e-3, "lbf": 4.4482216152605, "lb": 4.4482216152605, "kgf": GRAVITY}
+_LENGTHS = LENGTHS | {"inch": INCH}
 _TIMES = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6}
 _FREQUENCIES = {"hz": 1.0, "khz": 1e3, "rad/s": 0.15915494309189535}
 
@@ -115,8 +114,8 @@ def to_si(axis: Axis, units: Units, *, rotation: bool = False) -> tuple[Quantity
 def unit_of(label: str) -> tuple[Quantity, float] | None:
     """Return the quantity and the SI factor of a unit such as ``m/s^2``, ``g``, ``lbf``; None if unknown."""
     text = _bare(label)
-    if text in _FORCES:
-        return "force", _FORCES[text]
+    if text in FORCES:
+        return "force", FORCES[text]
     text = text.lower()
     if text in ("g", "gn", "g's", "gs"):
         return "accelerance", GRAVITY

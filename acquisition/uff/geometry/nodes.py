@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,8 +13,6 @@ from acquisition.errors import InputError
 from acquisition.geometry import Geometry
 from acquisition.uff.functions.units import Units
 from acquisition.uff.geometry.systems import Placed, System, place_system
-
-Turn = Callable[[Dof], Dof]
 
 
 @dataclass(frozen=True, eq=False)

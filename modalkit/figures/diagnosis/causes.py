@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 
+from acquisition.quantities import probability
 from modalkit.figures.style import (
     BLUE,
     FAINT,
@@ -19,7 +20,7 @@ from modalkit.figures.style import (
     shortened,
     text_width,
 )
-from modalkit.figures.words import parameters, share, short
+from modalkit.figures.words import parameters, short
 from updating import Diagnosis
 from updating.diagnosis.search.search import REJECTED
 
@@ -80,7 +81,7 @@ def draw_causes(axes: Axes, diagnosis: Diagnosis, *, width: float, height: float
         tall = ROW + LINE * len(under)
         last = i == len(found) - 1
         if i == ROWS or down + tall + (0.0 if last else LINE) > height:
-            total = share(sum(other.probability for other in found[i:]))
+            total = probability(sum(other.probability for other in found[i:]))
             statement = f"{len(found) - i} more, together {total}"
             axes.text(0, -down - 0.17, statement, fontsize=SMALL, color=MUTED)
             break
@@ -111,7 +112,7 @@ def _bar(axes: Axes, row: _Row, bottom: float, width: float) -> None:
     axes.barh(bottom, width, height=0.09, color=GRID, align="edge")
     axes.barh(bottom, width * min(row.probability, 1.0), height=0.09, color=colour, align="edge")
     weight, line = ("bold" if row.answer else "normal"), bottom + 0.145
-    value = share(row.probability)
+    value = probability(row.probability)
     room = 72 * width - text_width(value, TEXT, weight=weight) - 10
     label = shortened(row.label, room, TEXT, weight=weight)
     axes.text(0, line, label, fontsize=TEXT, color=INK, fontweight=weight)

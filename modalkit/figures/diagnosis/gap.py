@@ -8,7 +8,7 @@ from acquisition.display import counted
 from modalkit.figures.diagnosis.errors import ModeErrors
 from modalkit.figures.dumbbell import dumbbells
 from modalkit.figures.style import MARGIN, WIDTH, caption, caption_height, new_figure, place
-from modalkit.figures.words import METRICS, gap_size
+from modalkit.figures.words import METRICS
 from updating import Diagnosis
 
 ROW, INDENT = 0.3, 1.25
@@ -58,11 +58,11 @@ def _title(diagnosis: Diagnosis, errors: ModeErrors, *, of_several: bool) -> str
         return f"{_capital(name)}, {modes}: what is off stays within tolerances and noise"
     if errors.after is None:
         return f"{_capital(name)} is what gives the gap away ({modes})"
-    shrink, metric = diagnosis.shrink, diagnosis.shrink.metric
-    if errors.channel != metric or of_several:
+    shrink = diagnosis.shrink
+    if errors.channel != shrink.metric or of_several:
         return f"{_capital(name)} of {modes}, before and after"
     left = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
-    before, after = gap_size(shrink.before, metric), gap_size(shrink.after, metric)
+    before, after = shrink.size(shrink.before), shrink.size(shrink.after)
     return f"{_capital(name)} of {modes}: {before} r.m.s. before, {after} {left}"
 
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from modalkit.figures.style import BLUE, FAINT, GRID, INK, MUTED, SMALL, TEXT, shortened, tidy
-from modalkit.figures.words import METRICS, gap_size, short
+from modalkit.figures.words import METRICS, short
 from updating import Diagnosis
 
 
@@ -58,7 +58,7 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float, fitted: bool
             [values[i]], [i], s=95 if best else 70, color=colour, edgecolor="white", zorder=4, clip_on=False
         )
         axes.annotate(
-            gap_size(value, metric),
+            diagnosis.shrink.size(value),
             (values[i], i),
             xytext=(9, 0),
             textcoords="offset points",
@@ -68,7 +68,7 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float, fitted: bool
             fontweight="bold" if best else "normal",
         )
     if inside is not None:
-        _ring(axes, inside, len(rows) - 1, metric)
+        _ring(axes, inside, len(rows) - 1, diagnosis.shrink.size(inside))
     names = [shortened(label, 72 * room, TEXT, weight="bold") for label, _, _ in rows]
     axes.set_yticks(range(len(rows)), names, fontsize=TEXT)
     for label, (_, _, best) in zip(axes.get_yticklabels(), rows, strict=True):
@@ -78,7 +78,7 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float, fitted: bool
     axes.spines["left"].set_visible(False)
     wide = np.log(max(floor, low) / low) > 0.25 * np.log(high / low)
     axes.annotate(
-        f"noise {gap_size(floor, metric)}",
+        f"noise {diagnosis.shrink.size(floor)}",
         (max(floor, low), -0.62),
         xytext=(-5 if wide else 5, 0),
         textcoords="offset points",
@@ -92,13 +92,13 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float, fitted: bool
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
-def _ring(axes: Axes, value: float, row: int, metric: str) -> None:
+def _ring(axes: Axes, value: float, row: int, size: str) -> None:
     """Mark the gap on the fitted data, and say below what it is."""
     axes.scatter(
         [value], [row], s=70, facecolor="white", edgecolor=BLUE, linewidth=1.6, zorder=5, clip_on=False
     )
     axes.annotate(
-        f"{gap_size(value, metric)} fitted",
+        f"{size} fitted",
         (value, row),
         xytext=(0, -13),
         textcoords="offset points",

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
+from acquisition.quantities import hertz, probability
 from modalkit.figures.diagnosis.where import Frame, draw_where, outline, spans
 from modalkit.figures.style import (
     BLUE,
@@ -29,8 +30,9 @@ from modalkit.figures.style import (
     shortened,
     text_width,
 )
-from modalkit.figures.words import located, phrase, share
+from modalkit.figures.words import located, phrase
 from updating import Case, Diagnosis
+from updating.diagnosis.answer.contributions import columns_of
 
 LEFT, RIGHT = 7.1, 3.6
 """Widths of the structure and of the list of zones [in]."""
@@ -127,10 +129,10 @@ def _note(diagnosis: Diagnosis) -> str:
     return "  ·  ".join(part for part in (where.band.rstrip("."), by) if part)
 
 
-def _columns(diagnosis: Diagnosis) -> list[str]:
-    """Return the kinds of data that the table of modes holds."""
+def _columns(diagnosis: Diagnosis) -> dict[str, str]:
+    """Return the kinds of data that the table of modes holds, each with its column."""
     modes = diagnosis.where.modes
-    return [] if modes is None else [str(name) for name in modes.columns if str(name).endswith("[sigma]")]
+    return {} if modes is None else columns_of(modes)
 
 
 def _concerned(axes: Axes, diagnosis: Diagnosis, case: Case | None, tall: float) -> None:
@@ -176,15 +178,17 @@ def _list(axes: Axes, diagnosis: Diagnosis, tall: float) -> None:
         axes.text(left - 0.1, y, name, fontsize=SMALL, color=INK, ha="right", va="center")
         axes.barh(y, full, left=left, height=0.1, color=GRID)
         axes.barh(y, full * min(zone.probability, 1.0), left=left, height=0.1, color=BLUE)
-        axes.text(RIGHT, y, share(zone.probability), fontsize=SMALL, color=INK, ha="right", va="center")
+        axes.text(RIGHT, y, probability(zone.probability), fontsize=SMALL, color=INK, ha="right", va="center")
     if len(zones) > LISTED:
-        rest = f"{len(zones) - LISTED} more, together {share(sum(z.probability for z in zones[LISTED:]))}"
+        rest = (
+            f"{len(zones) - LISTED} more, together {probability(sum(z.probability for z in zones[LISTED:]))}"
+        )
         axes.text(
             left, -(LISTED + 0.5) * height / (LISTED + 1), rest, fontsize=SMALL, color=MUTED, va="center"
         )
 
 
-def _table(axes: Axes, diagnosis: Diagnosis, columns: list[str], height: float) -> None:
+def _table(axes: Axes, diagnosis: Diagnosis, columns: dict[str, str], height: float) -> None:
     """Draw modes from left to right, kinds of data from above to below."""
     bare(axes)
     modes = diagnosis.where.modes
@@ -193,18 +197,17 @@ def _table(axes: Axes, diagnosis: Diagnosis, columns: list[str], height: float) 
     axes.set_xlim(0, wide)
     axes.set_ylim(-height, 0)
     kept = np.sort(np.argsort(-modes["share [%]"].to_numpy(float), kind="stable")[:MOST])
-    names = [column.removesuffix(" [sigma]") for column in columns]
-    left = max(text_width(name, TEXT) for name in [*names, "mode"]) / 72 + 0.15
+    left = max(text_width(name, TEXT) for name in [*columns, "mode"]) / 72 + 0.15
     cell = min((wide - left) / max(len(kept), 1), 1.1)
-    hertz = modes["test [Hz]"].to_numpy(float)
-    labels = [f"{mode + 1}: {hertz[mode]:.4g} Hz" for mode in kept.tolist()]
+    tested = modes["test [Hz]"].to_numpy(float)
+    labels = [f"{mode + 1}: {hertz(tested[mode])}" for mode in kept.tolist()]
     if max(text_width(label, SMALL) for label in labels) > 72 * cell - 4:
         labels = [f"{mode + 1}" for mode in kept.tolist()]
     for i, label in enumerate(labels):
         x = left + (i + 0.5) * cell
         axes.text(x, -0.5 * ROW, label, fontsize=SMALL, color=MUTED, ha="center", va="center")
     axes.text(left - 0.12, -0.5 * ROW, "mode", fontsize=TEXT, color=MUTED, ha="right", va="center")
-    for k, (name, column) in enumerate(zip(names, columns, strict=True)):
+    for k, (name, column) in enumerate(columns.items()):
         y = -(k + 1.5) * ROW
         axes.text(left - 0.12, y, name, fontsize=TEXT, color=INK, ha="right", va="center")
         _cells(axes, modes[column].to_numpy(float)[kept], left, y, cell)

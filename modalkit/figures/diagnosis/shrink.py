@@ -6,7 +6,6 @@ from matplotlib.figure import Figure
 
 from modalkit.figures.diagnosis.held_out import draw_held_out, rivals
 from modalkit.figures.style import MARGIN, WIDTH, caption, caption_height, new_figure, place
-from modalkit.figures.words import gap_size
 from updating import Diagnosis
 
 ROOM, ROW = 4.2, 0.42
@@ -42,11 +41,9 @@ def _title(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unknown":
         return "What the least bad explanation would close; it does not fit"
     if shrink.closed is None:
-        before, after = (gap_size(v, shrink.metric) for v in (shrink.held_before, shrink.held_after))
+        before, after = map(shrink.size, (shrink.held_before, shrink.held_after))
         return f"{before} becomes {after} on modes held out"
-    low, high = shrink.closed.low95, shrink.closed.high95
-    interval = f" ({low:.0f} to {high:.0f} %)" if f"{low:.0f}" != f"{high:.0f}" else ""
-    return f"{shrink.closed.value:.0f} % of what can close does close{interval}"
+    return f"Closes {shrink.closed} of what can close"
 
 
 def _note(diagnosis: Diagnosis) -> str:

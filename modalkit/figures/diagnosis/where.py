@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
+from acquisition.quantities import probability
 from modalkit.figures.style import (
     BLUE,
     FAINT,
@@ -23,7 +24,7 @@ from modalkit.figures.style import (
     bare,
     text_width,
 )
-from modalkit.figures.words import located, share
+from modalkit.figures.words import located
 from updating import LIBRARY, Case, Diagnosis, Measured
 from updating.models.imported import Imported
 
@@ -198,22 +199,22 @@ class Frame:
 
 
 def _zones(axes: Axes, body: Outline, frame: Frame, *, coloured: bool) -> None:
-    for x0, x1, y0, y1, probability in body.zones:
+    for x0, x1, y0, y1, held in body.zones:
         low = frame.y(y0)
         high = frame.y(y1) if body.width else frame.top
         corner, wide = (frame.x(x0), low), frame.scale * (x1 - x0)
-        colour = PROBABILITY(probability) if coloured else GRID
+        colour = PROBABILITY(held) if coloured else GRID
         axes.add_patch(
             Rectangle(corner, wide, high - low, facecolor=colour, edgecolor="white", linewidth=1.2)
         )
-        label = f"{100 * probability:.0f}"
-        if probability >= 0.005 and coloured and text_width(label, SMALL - 1) < 72 * wide - 2:
+        label = f"{100 * held:.0f}"
+        if held >= 0.005 and coloured and text_width(label, SMALL - 1) < 72 * wide - 2:
             axes.text(
                 corner[0] + wide / 2,
                 (low + high) / 2,
                 label,
                 fontsize=SMALL - 1,
-                color="white" if probability > 0.45 else INK,
+                color="white" if held > 0.45 else INK,
                 ha="center",
                 va="center",
                 zorder=4,
@@ -321,5 +322,5 @@ def draw_channels(axes: Axes, diagnosis: Diagnosis, *, width: float, height: flo
         axes.barh(y, full, left=left, height=0.09, color=GRID)
         axes.barh(y, full * value, left=left, height=0.09, color=BLUE if top else FAINT)
         axes.text(
-            width, y, share(value), fontsize=SMALL, ha="right", va="center", color=INK if top else MUTED
+            width, y, probability(value), fontsize=SMALL, ha="right", va="center", color=INK if top else MUTED
         )

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from acquisition import InputError, ModalData
 from acquisition.arrays import FloatArray
+from acquisition.quantities import hertz
 from identification import auto_mac
 from modalkit.figures.style import (
     INK,
@@ -22,7 +23,6 @@ from modalkit.figures.style import (
     place,
     text_width,
 )
-from modalkit.figures.words import hertz
 
 WRITTEN = 14
 """Up to so many rows or columns the values are written into the cells."""

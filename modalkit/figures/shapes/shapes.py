@@ -12,6 +12,7 @@ from matplotlib.tri import Triangulation
 
 from acquisition import ModalData
 from acquisition.display import counted
+from acquisition.quantities import hertz
 from modalkit.figures.shapes.shaped import Shapes, from_measured, from_modal
 from modalkit.figures.shapes.surfaces import grid_values, spans
 from modalkit.figures.style import (
@@ -31,7 +32,6 @@ from modalkit.figures.style import (
     place,
     tidy,
 )
-from modalkit.figures.words import hertz
 from updating import Measured, Predictor
 
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from acquisition import Dof, HammerTest, HitVerdict, verdicts_of
 from acquisition.arrays import AnyArray, BoolArray, FloatArray
 from acquisition.display import counted
+from acquisition.quantities import hertz
 from modalkit.figures.style import (
     BLUE,
     FAINT,
@@ -174,7 +175,7 @@ def _spectra(axes: Axes, test: HammerTest, hits: _Row, verdicts: Sequence[HitVer
             )
             far = edge > 0.55 * lines[-1]
             axes.annotate(
-                f"{name} down at {edge:.0f} Hz",
+                f"{name} down at {hertz(edge)}",
                 (edge, down),
                 xytext=(-4 if far else 5, 4),
                 textcoords="offset points",

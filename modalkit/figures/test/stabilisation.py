@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from acquisition.arrays import BoolArray
 from acquisition.display import counted
+from acquisition.quantities import bare_hertz
 from identification import ModalModel, StabilisationChart
 from modalkit.figures.style import (
     BLUE,
@@ -24,7 +25,9 @@ from modalkit.figures.style import (
     tidy,
 )
 from modalkit.figures.test.modes import mark_modes
-from modalkit.figures.words import hertz
+
+LISTED = 24
+"""Frequencies of so many modes are listed; of more, the first and the last."""
 
 NEAR = 0.01
 """Poles of two orders within this relative distance are taken for stable in frequency."""
@@ -43,12 +46,9 @@ def stabilisation_figure(model: ModalModel) -> Figure:
     Figure
     """
     title = f"{counted(len(model), 'mode')} selected from {counted(len(model.chart.poles), 'pole')}"
-    listed = [hertz(f) for f in model.modal.frequency]
-    note = (
-        ", ".join(f.removesuffix(" Hz") for f in listed) + " Hz"
-        if len(listed) <= 24
-        else f"{listed[0]} to {listed[-1]}"
-    )
+    listed = [bare_hertz(f) for f in model.modal.frequency]
+    few = len(listed) <= LISTED
+    note = f"{', '.join(listed)} Hz" if few else f"{listed[0]} to {listed[-1]} Hz"
     top = caption_height(title, note) + 0.55
     figure = new_figure(top + 4.9)
     caption(figure, title, note)

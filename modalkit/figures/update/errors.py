@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from acquisition import InputError
 from acquisition.arrays import FloatArray
 from acquisition.display import counted
+from acquisition.quantities import percent
 from modalkit.figures.dumbbell import dumbbells
 from modalkit.figures.style import (
     BLUE,
@@ -27,7 +28,6 @@ from modalkit.figures.style import (
     place,
     tidy,
 )
-from modalkit.figures.words import percent
 
 
 def update_figure(

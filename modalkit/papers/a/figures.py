@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from acquisition import FrfSet
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.form import FORMS
+from acquisition.quantities import percent
 from modalkit.figures.curves import Curve, Panel, curves_figure
-from modalkit.figures.words import percent
 from modalkit.papers.a.chain import Walk, Walked
 from updating.models.state import NOMINAL, State
 from updating.nominal import predictor_of

@@ -7,9 +7,8 @@ from typing import Any
 
 import pandas as pd
 
+from acquisition.quantities import estimate, number, quantity
 from modalkit.papers.real.running import RealOutcome
-
-_HANDY = {"m": (1e3, "mm"), "kg": (1e3, "g")}
 
 
 def real_table(outcomes: Sequence[RealOutcome]) -> pd.DataFrame:
@@ -75,20 +74,10 @@ def _ranked(document: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def _size(name: str, parameter: Mapping[str, Any]) -> str:
-    unit = "" if parameter["unit"] == "-" else parameter["unit"]
-    values = [parameter[key] for key in ("value", "low95", "high95")]
-    small = all(v is None or abs(v) < 1.0 for v in values)
-    scale, handy = _HANDY.get(unit, (1.0, unit)) if small else (1.0, unit)
-    value, low, high = ("?" if v is None else number(v * scale) for v in values)
     what = name.split(".", 1)[1].replace("_", " ")
-    return f"{what} {value}{' ' + handy if handy else ''} ({low} to {high})"
-
-
-def number(value: float) -> str:
-    """Return a number with three digits, and no exponent where none is needed."""
-    if value != 0 and not 1e-3 <= abs(value) < 1e5:
-        return f"{value:.2e}"
-    return f"{float(f'{value:.3g}'):.10g}"
+    value, unit, low, high = (parameter[key] for key in ("value", "unit", "low95", "high95"))
+    known = low is not None and high is not None
+    return f"{what} {estimate(value, unit, low, high) if known else quantity(value, unit)}"
 
 
 def _gap(document: Mapping[str, Any]) -> str:

@@ -10,6 +10,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.stats import chi2 as chi_square
 
 from acquisition.arrays import FloatArray, IntArray
+from acquisition.quantities import bare_hertz, hertz, number
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.models.state import NOMINAL
@@ -82,6 +83,12 @@ def contributions(problem: DiagnosisProblem, comparison: Comparison | None = Non
     return Contributions(table, _sentence(frequency, excess, [_name(k) for k in kinds]))
 
 
+def columns_of(modes: pd.DataFrame) -> dict[str, str]:
+    """Return the kinds of data that a table of contributions holds, each with its column."""
+    columns = {name: f"{name} [sigma]" for name in NAMES.values()}
+    return {name: column for name, column in columns.items() if column in modes.columns}
+
+
 def _name(channel: int) -> str:
     return NAMES[CHANNELS[channel]]
 
@@ -107,15 +114,15 @@ def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str]) -> st
     order = np.argsort(frequency)
     band = _band(column[order], max(NOTABLE, 0.5 * float(column.max())))
     modes = order[band]
-    hertz = frequency[modes]
+    at = frequency[modes]
     what = names[worst]
     if len(modes) == len(frequency) > 1:
         which = f"of all {len(frequency)} modes"
     elif len(modes) == 1:
-        which = f"of mode {modes[0] + 1} ({hertz[0]:.4g} Hz)"
+        which = f"of mode {modes[0] + 1} ({hertz(at[0])})"
     else:
-        which = f"of modes {modes[0] + 1} to {modes[-1] + 1} ({hertz[0]:.4g} to {hertz[-1]:.4g} Hz)"
-    return f"The gap is carried most by the {what} {which}: up to {_plain(column.max())} sigma."
+        which = f"of modes {modes[0] + 1} to {modes[-1] + 1} ({bare_hertz(at[0])} to {hertz(at[-1])})"
+    return f"The gap is carried most by the {what} {which}: up to {number(column.max())} sigma."
 
 
 def _band(values: FloatArray, bar: float) -> IntArray:
@@ -129,9 +136,4 @@ def _band(values: FloatArray, bar: float) -> IntArray:
     return np.arange(low, high + 1)
 
 
-__all__ = ["Contributions", "contributions"]
-
-
-def _plain(value: float) -> str:
-    """Return a number with three digits and no exponent below a million."""
-    return f"{float(f'{value:.3g}'):.10g}" if value < 1e6 else f"{value:.3g}"
+__all__ = ["Contributions", "columns_of", "contributions"]

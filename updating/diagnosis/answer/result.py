@@ -10,6 +10,16 @@ import pandas as pd
 
 from acquisition.arrays import FloatArray
 from acquisition.display import Displayed, counted
+from acquisition.quantities import (
+    bare_p,
+    closed,
+    estimate,
+    percent,
+    place,
+    probability,
+    quantity,
+    sigmas,
+)
 
 Verdict = Literal["named", "class", "unknown", "none"]
 Metric = Literal["frequency", "damping", "frf", "combined"]
@@ -41,8 +51,8 @@ class Gap(Displayed):
 
     def _headline(self) -> str:
         return (
-            f"{self.rms_percent:.3g} % r.m.s. frequency error over {counted(len(self.modes), 'mode')}, "
-            f"noise floor {self.floor_percent:.2g} %"
+            f"{percent(self.rms_percent)} r.m.s. frequency error over {counted(len(self.modes), 'mode')}, "
+            f"noise floor {percent(self.floor_percent)}"
         )
 
     def _frame(self) -> pd.DataFrame:
@@ -68,10 +78,21 @@ class ParameterEstimate:
             return self.value
         if isinstance(self.value, tuple):
             return ", ".join(map(str, self.value))
-        unit = "" if self.unit in {"-", "node"} else f" {self.unit}"
-        if self.low95 is None:
-            return f"{self.value:g}"
-        return f"{self.value:.4g} [{self.low95:.4g}, {self.high95:.4g}]{unit}"
+        if self.low95 is None or self.high95 is None:
+            return quantity(self.value, self.unit)
+        return estimate(self.value, self.unit, self.low95, self.high95)
+
+    @property
+    def whole(self) -> str:
+        """Value and interval, with its level, as text."""
+        if isinstance(self.value, str | tuple) or self.low95 is None or self.high95 is None:
+            return str(self)
+        return estimate(self.value, self.unit, self.low95, self.high95, level="95 %")
+
+    @property
+    def bare(self) -> str:
+        """The value alone, as text."""
+        return quantity(self.value, self.unit) if isinstance(self.value, float) else str(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +107,14 @@ class Ranked(Displayed):
     p_value: float
     forms: tuple[Mapping[str, Any], ...] = ()
 
+    def of(self, effect: str) -> dict[str, ParameterEstimate]:
+        """Return the parameters of one of the effects by their own names."""
+        start = f"{effect}."
+        return {n.removeprefix(start): e for n, e in self.parameters.items() if n.startswith(start)}
+
     def _headline(self) -> str:
         sizes = "; ".join(f"{n} = {e}" for n, e in self.parameters.items())
-        return f"{' + '.join(self.effects) or '(tolerances alone)'}, {100 * self.probability:.4g} %: {sizes}"
+        return f"{' + '.join(self.effects) or '(tolerances alone)'}, {probability(self.probability)}: {sizes}"
 
 
 @dataclass(frozen=True)
@@ -163,9 +189,9 @@ class Where(Displayed):
     nearest: tuple[int, ...] = ()
 
     def _headline(self) -> str:
-        share = 100 * self.channels.get(self.channel, 0.0)
-        places = " and ".join(f"({', '.join(f'{x:.3g}' for x in at)}) m" for at in self.locations[:3])
-        return f"{self.channel} ({share:.0f} %)" + (f", at {places}" if places else "")
+        share = probability(self.channels.get(self.channel, 0.0))
+        places = " and ".join(place(at) for at in self.locations[:3])
+        return f"{self.channel} ({share})" + (f", at {places}" if places else "")
 
 
 @dataclass(frozen=True)
@@ -175,6 +201,9 @@ class Closed:
     value: float
     low95: float
     high95: float
+
+    def __str__(self) -> str:
+        return closed(self.value, self.low95, self.high95)
 
 
 @dataclass(frozen=True)
@@ -220,6 +249,10 @@ class Shrink(Displayed):
     closed: Closed | None
     stretch: float = 0.0
     points: HeldPoints | None = None
+
+    def size(self, value: float) -> str:
+        """Return one of its errors [%] as text; of all data together, in standard deviations."""
+        return sigmas(value / 100) if self.metric == "combined" else percent(value)
 
 
 @dataclass(frozen=True)
@@ -326,11 +359,11 @@ class Diagnosis(Displayed):
                 "effects": " + ".join(r.effects) or "(tolerances alone)",
                 "parameter": name,
                 "probability": f"{r.probability:.4f}",
-                "fits (p)": f"{r.p_value:.3g}",
-                "size": "" if estimate is None else str(estimate),
+                "fits (p)": bare_p(r.p_value),
+                "size": "" if size is None else str(size),
             }
             for r in self.ranking[:count]
-            for name, estimate in r.parameters.items() or [("", None)]
+            for name, size in r.parameters.items() or [("", None)]
         ]
         columns = ["effects", "parameter", "probability", "fits (p)", "size"]
         return pd.DataFrame(rows, columns=columns).set_index(["effects", "parameter"])

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from acquisition.quantities import quantity
 from updating.diagnosis.next_test.base import Maker, Outcome, Rival, Site, Trial
 from updating.diagnosis.next_test.places import statement, telling_places
 from updating.diagnosis.next_test.repeat import Repeat
@@ -34,9 +35,8 @@ class AddedMass(Repeat):
 
     def __init__(self, site: Site, place: FloatArray, mass: float) -> None:
         """Take a place [m] and a mass [kg]."""
-        self.measure = (
-            f"repeat the test with a weighed mass of {1000 * mass:.2g} g fixed at {statement(site, place)}"
-        )
+        compared = quantity(float(f"{mass:.2g}"), "kg")
+        self.measure = f"repeat the test with a weighed mass of {compared} fixed at {statement(site, place)}"
         self.place, self.mass = place, mass
 
     def problem(self, site: Site) -> SpecimenProblem:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from acquisition.quantities import place as written
 from updating.diagnosis.next_test.base import Site
 from updating.models.spec import Spec
 from updating.problem.specimen import SpecimenProblem
@@ -56,4 +57,4 @@ def statement(site: Site, place: FloatArray) -> str:
         away = np.linalg.norm(test.points - place, axis=1)
         if away.min() < 1e-6:
             return f"point {test.nodes[int(np.argmin(away))]}"
-    return ", ".join(f"{axis} = {1000 * v:.0f} mm" for axis, v in zip("xyz", place.tolist(), strict=False))
+    return written(place.tolist(), plate=len(place) > 1)

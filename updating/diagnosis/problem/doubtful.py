@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from acquisition.quantities import hertz, percent
 from updating.problem.specimen import SpecimenProblem
 
 ALONE = 0.08
@@ -35,7 +36,7 @@ def notes_on_doubtful(problem: SpecimenProblem) -> list[str]:
     if np.sqrt(np.mean(np.expm1(error) ** 2)) > ANOTHER:
         size = 100 * np.sqrt(np.mean(np.expm1(error) ** 2))
         notes.append(
-            f"frequencies are {size:.0f} % off (r.m.s.): test and model are hardly the same structure, or the modes "
+            f"frequencies are {percent(size)} off (r.m.s.): test and model are hardly the same structure, or the modes "
             "are wrongly paired; check size, material, clamps and band before anything else"
         )
         return notes
@@ -43,7 +44,7 @@ def notes_on_doubtful(problem: SpecimenProblem) -> list[str]:
         away = np.abs(error - np.median(error))
         bar = max(ALONE, OUTLYING * float(np.median(away)))
         notes += [
-            f"the mode at {test.frequency[i]:.4g} Hz stands alone: the model is {100 * np.expm1(error[i]):+.0f} % off "
+            f"the mode at {hertz(test.frequency[i])} stands alone: the model is {100 * np.expm1(error[i]):+.0f} % off "
             f"there and {100 * np.expm1(np.median(error)):+.0f} % in most others; a slip, or a mode mistaken for "
             "another? Nothing should be concluded before that is settled"
             for i in np.flatnonzero(away > bar).tolist()

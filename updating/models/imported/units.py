@@ -10,13 +10,14 @@ import numpy as np
 from scipy import sparse
 
 from acquisition.errors import StudyError
+from acquisition.units import INCH, POUND
 from updating.models.fields import Sparse
 from updating.models.imported.nodes import NodeTable
 
 SI = "m-kg-s"
 
 UNITS: Mapping[str, tuple[float, float]] = MappingProxyType(
-    {SI: (1.0, 1.0), "mm-t-s": (1e-3, 1.0), "in-lbf-s": (0.0254, 4.4482216152605)}
+    {SI: (1.0, 1.0), "mm-t-s": (1e-3, 1.0), "in-lbf-s": (INCH, POUND)}
 )
 """Length [m] and force [N] of systems of units; mass is force times second squared per length."""
 

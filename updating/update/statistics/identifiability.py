@@ -11,6 +11,7 @@ from scipy.stats import chi2
 
 from acquisition.arrays import BoolArray, FloatArray
 from acquisition.display import Displayed
+from acquisition.quantities import uncertainty
 
 FLOOR = 1e-10
 """Singular values under this share of the largest are none [-]."""
@@ -54,7 +55,7 @@ class Coupling:
         if not self.determined:
             return f"{names}: the data determine no combination of them"
         known = "; ".join(
-            f"{text} (to {100 * sigma:.2g} %)"
+            f"{text} (to {uncertainty(sigma)})"
             for text, sigma in zip(self.determined, self.sigma, strict=True)
         )
         return f"{names}: not each by itself, only {known}"

@@ -1,0 +1,58 @@
+"""The pages name what there is: every file, module and name of the rooms that stands on one exists."""
+
+from __future__ import annotations
+
+import importlib
+import re
+from functools import reduce
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
+ROOMS = "acquisition|identification|updating|modalkit"
+SLASHED = re.compile(rf"(?<![\w/.-])(?:{ROOMS}|benchmarks|docs|examples|sample_data|tests)/[\w./-]*[\w/]")
+DOTTED = re.compile(rf"(?<![\w/.\"-])(?:{ROOMS})(?:\.[A-Za-z_]\w*)+(?![\w/])")
+ELSEWHERE = frozenset({"modalkit.readers"})
+"""What looks like a module and is the name of something else: a group of entry points."""
+
+
+def exists(name: str) -> bool:
+    """Tell whether a dotted name is that of a module, or of something in one."""
+    parts = name.split(".")
+    for k in range(len(parts), 0, -1):
+        try:
+            module = importlib.import_module(".".join(parts[:k]))
+        except ModuleNotFoundError:
+            continue
+        try:
+            reduce(getattr, parts[k:], module)
+        except AttributeError:
+            return False
+        return True
+    return False
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_file_and_module_that_a_page_names_exists(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    files = {found for found in SLASHED.findall(text) if not (ROOT / found).exists()}
+    dotted = {found for found in DOTTED.findall(text) if found not in ELSEWHERE and not found.endswith(".md")}
+    names = {found for found in dotted if not exists(found)}
+    assert not files
+    assert not names
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_page_that_a_page_links_to_exists(page: Path) -> None:
+    links = re.findall(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
+    assert not {link for link in links if not (page.parent / link).exists()}
+
+
+@pytest.mark.parametrize("room", ROOMS.split("|"))
+def test_the_page_of_a_room_names_each_of_its_sub_rooms(room: str) -> None:
+    page = (ROOT / "docs" / "rooms" / f"{room}.md").read_text(encoding="utf-8")
+    inside = {path.parent.name for path in (ROOT / room).glob("*/__init__.py")}
+    assert not {name for name in inside if f"`{name}`" not in page}
+    assert len(page.splitlines()) <= 60, "a page of a room is at most a screen"
