@@ -9,19 +9,8 @@ from itertools import combinations
 from modalkit.output.quantities import number, place, size
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
-from updating.diagnosis.search.held_out import BELIEVED
-
-EQUAL_BY_PHYSICS = {
-    frozenset({"calibration_gain", "section_scale"}): (
-        "both scale every FRF and nothing else: no hammer test tells them apart; calibrate the chain, or weigh and "
-        "measure the specimen"
-    ),
-    frozenset({"exponential_window", "uniform_damping"}): (
-        "both add one decay to every mode: no hammer test tells them apart; look the window up in the analyser's "
-        "settings"
-    ),
-}
-"""Effects that make one and the same change, and what to do about it."""
+from updating.effects import Lack, Twin, twin_of
+from updating.thresholds import BELIEVED_DOUBT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
 """Parameters that the line on the place tells."""
@@ -61,8 +50,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         summary = " ".join(LIBRARY[n].sentence(_stated(diagnosis, n)) for n in names if n in LIBRARY)
         return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
     statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
-    exact = _equal(diagnosis)
-    return f"{statement}; {exact.partition(':')[0]}" if exact else statement
+    twin = _twin(diagnosis)
+    return f"{statement}; {twin.why}" if twin else statement
 
 
 def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
@@ -72,11 +61,11 @@ def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
     return {n.removeprefix(f"{effect}."): e.value for n, e in found.items() if n.startswith(f"{effect}.")}
 
 
-def _equal(diagnosis: Diagnosis) -> str:
-    """Return what is said of a class whose members make one and the same change, or nothing."""
+def _twin(diagnosis: Diagnosis) -> Twin | None:
+    """Return what is said of a class whose two members make one and the same change, or None."""
     if any(len(names) > 1 for names in diagnosis.sets):
-        return ""
-    return EQUAL_BY_PHYSICS.get(frozenset(diagnosis.effects), "")
+        return None
+    return twin_of(frozenset(diagnosis.effects))
 
 
 def _row(diagnosis: Diagnosis, names: tuple[str, ...]) -> Ranked | None:
@@ -186,9 +175,10 @@ def _teller(shrink: Shrink) -> Callable[[float], str]:
 
 
 def _stretched(shrink: Shrink) -> str:
-    if shrink.stretch <= BELIEVED:
+    if shrink.stretch <= BELIEVED_DOUBT:
         return ""
-    return f" (kept within {BELIEVED:g} sigma; to explain it they would have to be {shrink.stretch:.0f} sigma off)"
+    needed = f"to explain it they would have to be {shrink.stretch:.0f} sigma off"
+    return f" (kept within {BELIEVED_DOUBT:g} sigma; {needed})"
 
 
 def _sure(diagnosis: Diagnosis) -> str:
@@ -216,9 +206,7 @@ def _percent(share: float) -> str:
 
 def _left_out(diagnosis: Diagnosis) -> str:
     """Say how many effects the data did not allow to examine: one of them may be it."""
-    lacking = [
-        why for why in diagnosis.not_examined.values() if why.startswith(("no ", "it takes", "the data"))
-    ]
+    lacking = [why for why in diagnosis.not_examined.values() if why.lack is Lack.DATA]
     if not lacking:
         return ""
     return f"; {len(lacking)} effects could not be examined for want of data (listed below)"
@@ -227,8 +215,8 @@ def _left_out(diagnosis: Diagnosis) -> str:
 def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "nothing; the model may be used within its tolerances"
-    if diagnosis.verdict == "class" and (exact := _equal(diagnosis)):
-        return exact.partition("; ")[2]
+    if diagnosis.verdict == "class" and (twin := _twin(diagnosis)):
+        return twin.instead
     if diagnosis.next_test:
         test = diagnosis.next_test[0]
         if diagnosis.verdict == "unknown":

@@ -100,7 +100,7 @@ def spaced(spec: Spec, count: int | None) -> FloatArray:
     StudyError
         If the model has no shape of its own.
     """
-    if spec.kind == "matrices":
+    if not spec.outlined:
         raise StudyError(
             "imported matrices do not say where to hit: give [test] files with points, or shapes"
         )
