@@ -60,7 +60,7 @@ def truly_closed(
         return None
     nothing = problem.at(Candidate(), np.zeros(0))
     now = problem.at(best.candidate, best.best.coordinates)
-    rows = now.channel == CHANNELS.index(metric)
+    rows = now.of(metric)
     left = now.residual - now.nuisance @ best.best.marginal.shift
     before, after = (_relative(r[rows], metric) for r in (nothing.residual, left))
     closable = np.mean(before**2) - floor**2

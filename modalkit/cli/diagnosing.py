@@ -31,6 +31,7 @@ from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
 from updating import Diagnosis
+from updating.effects import Obstacle
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -120,11 +121,11 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
     show_warnings([*diagnosis.warnings, *warnings_of(sessions)])
 
 
-def _not_examined(effects: dict[str, str]) -> str:
+def _not_examined(effects: dict[str, Obstacle]) -> str:
     """Return the effects that could not be examined, gathered by the reason."""
     by_reason: dict[str, list[str]] = {}
     for name, why in effects.items():
-        by_reason.setdefault(why, []).append(name)
+        by_reason.setdefault(str(why), []).append(name)
     return "; ".join(f"{', '.join(names)} ({why})" for why, names in by_reason.items())
 
 

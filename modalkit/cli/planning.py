@@ -13,7 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from modalkit.cli.common import out, progress, show_figures, show_table, working
 from modalkit.output.whole import write_json
-from modalkit.planning import Advice, Forecast, KnownTest, TestForecast, forecast
+from modalkit.planning import Advice, DesignForecast, Forecast, KnownTest, forecast
 from modalkit.planning.document import family_of, statement, to_json
 from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.from_study import known_test_of
@@ -114,13 +114,13 @@ def note(found: Forecast) -> list[str]:
     return lines
 
 
-def _separates(now: TestForecast) -> str:
+def _separates(now: DesignForecast) -> str:
     pairs = list(now.pairs.values())
     separately = sum(value >= SEEN for value in pairs)
     return f"Tells:   {separately} of {len(pairs)} pairs of effects apart, each effect as strong as asked about below."
 
 
-def _cannot(now: TestForecast) -> list[str]:
+def _cannot(now: DesignForecast) -> list[str]:
     lines, groups = [], [" = ".join(group) for group in now.classes]
     if groups:
         lines.append(
@@ -148,7 +148,7 @@ def _separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
     return [f"shows {a}" if b == NONE else f"{a} from {b}" for a, b in pairs]
 
 
-def _from_when(now: TestForecast) -> str:
+def _from_when(now: DesignForecast) -> str:
     """Return the effects that need to be largest, against what is asked about, to be told."""
     hard = sorted(now.limits, key=lambda name: -now.limits[name].separated / now.limits[name].clear)[:_LINES]
     words = []
@@ -177,7 +177,7 @@ def show_tables(found: Forecast) -> None:
     show_table(_changes(found), "What a change buys", digits={"times smaller": 2, "share told": 3})
 
 
-def _thresholds(now: TestForecast) -> pd.DataFrame:
+def _thresholds(now: DesignForecast) -> pd.DataFrame:
     """Return the limits in words, those after the first as mere amounts."""
     rows = []
     for name, limit in now.limits.items():
@@ -190,7 +190,7 @@ def _thresholds(now: TestForecast) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _separations(now: TestForecast) -> pd.DataFrame:
+def _separations(now: DesignForecast) -> pd.DataFrame:
     """Return the matrix with short names as columns, in whole sigma above ten."""
 
     def cell(value: float) -> str:

@@ -30,7 +30,7 @@ from modalkit.figures.style import (
     text_width,
     tidy,
 )
-from modalkit.planning import Forecast, TestForecast
+from modalkit.planning import DesignForecast, Forecast
 from modalkit.planning.separability import CLASS, NONE, SEEN
 
 _ROW = 0.3
@@ -95,7 +95,7 @@ def _plain(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _thresholds(axes: Axes, now: TestForecast, after: TestForecast | None) -> None:
+def _thresholds(axes: Axes, now: DesignForecast, after: DesignForecast | None) -> None:
     """Draw a bar from the severity that is seen to the one that is told, over the one asked about."""
     tidy(axes, x="severity over the one that is asked about (right) [-]", grid="x")
     axes.set_xscale("log")
@@ -126,14 +126,14 @@ def _thresholds(axes: Axes, now: TestForecast, after: TestForecast | None) -> No
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, frameon=False, fontsize=SMALL)
 
 
-def _over_clear(evaluation: TestForecast, name: str) -> FloatArray:
+def _over_clear(evaluation: DesignForecast, name: str) -> FloatArray:
     """Return severities over those asked about, within the axes [-]."""
     each = [getattr(limit, name) / limit.clear for limit in evaluation.limits.values()]
     shown: FloatArray = np.clip(np.array(each, dtype=float), _LEAST, _MOST)
     return shown
 
 
-def _separations(axes: Axes, now: TestForecast, names: list[str]) -> None:
+def _separations(axes: Axes, now: DesignForecast, names: list[str]) -> None:
     values = now.matrix[names].to_numpy(float)
     axes.pcolormesh(
         np.clip(values, 0, _FULL),

@@ -5,36 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from acquisition.quantities import p_value, percent, place
-from updating import Diagnosis
+from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import Ranked
-
-PHRASES = {
-    "E": "the modulus of elasticity",
-    "density": "the density",
-    "thickness": "the thickness",
-    "section_scale": "the scale of the section",
-    "length": "the length",
-    "clamp_rotation": "a clamp that rotates",
-    "clamp_translation": "a clamp that gives way",
-    "sensor_mass": "the mass of the sensor",
-    "lumped_mass": "a mass left out of the model",
-    "local_stiffness": "a soft spot",
-    "shear": "shear and rotary inertia",
-    "orthotropy": "orthotropy",
-    "axial_load": "an axial load",
-    "fluid_added_mass": "the mass of the fluid around it",
-    "fluid_damping": "the viscosity of the fluid around it",
-    "damping_patch": "a damping patch",
-    "uniform_damping": "damping spread over the whole structure",
-    "joint_nonlinearity": "a joint that is not linear",
-    "exponential_window": "an exponential window left in the data",
-    "calibration_gain": "a wrong calibration",
-    "time_delay": "a time delay between the channels",
-    "polarity": "a transducer of wrong polarity",
-    "swapped_points": "swapped test points",
-    "position_error": "a misplaced test point",
-}
-"""Effects as a sentence names them; any other goes by its own name."""
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
@@ -54,7 +26,9 @@ def short(names: Sequence[str]) -> str:
 
 def phrase(names: Sequence[str]) -> str:
     """Name a set of effects in a sentence."""
-    return " together with ".join(PHRASES.get(name, name.replace("_", " ")) for name in names)
+    return " together with ".join(
+        (LIBRARY[name].words() if name in LIBRARY else name.replace("_", " ")) for name in names
+    )
 
 
 def parameters(row: Ranked) -> str:

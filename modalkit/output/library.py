@@ -2,28 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import cache
-from typing import Any
+from typing import Any, get_args
 
-import numpy as np
-
-from updating import LIBRARY, Effect, Material, Measured, Parameter, Predictor, Spec
-
-KINDS = ("beam", "plate", "matrices")
-
-STEEL = Material(210e9, 7850.0)
-
-SPECIMENS = {
-    "beam": Spec("beam", 0.376, 0.0305, 0.0047625, (10,), ("x0",), "euler-bernoulli", STEEL),
-    "plate": Spec("plate", 0.376, 0.200, 0.003175, (10, 6), ("x0",), "kirchhoff", STEEL),
-}
-"""Steel cantilevers whose priors the list shows."""
-
-SHOWN = (
-    "a steel cantilever beam of 376 x 30.5 x 4.7625 mm, or plate of 376 x 200 x 3.175 mm, hit at 20 to 400 Hz"
-)
-"""What they are, in words."""
+from updating import LIBRARY, Effect, Parameter
+from updating.effects.specimens import SHOWN, example, kinds_of
+from updating.models.spec import Kind
 
 
 def effects_record() -> dict[str, Any]:
@@ -37,7 +20,7 @@ def effects_record() -> dict[str, Any]:
 
 def effect_record(effect: Effect) -> dict[str, Any]:
     """Return one effect: sentences, and its parameters on the first kind of model that has each of them."""
-    kinds = [kind for kind in SPECIMENS if kind in effect.models]
+    kinds = kinds_of(effect)
     named: dict[str, Parameter] = {}
     for kind in kinds:
         named = {p.name: p for p in effect.parameters(example(kind))} | named
@@ -48,7 +31,7 @@ def effect_record(effect: Effect) -> dict[str, Any]:
         "summary": effect.summary,
         "footprint": effect.footprint,
         "models": list(effect.models),
-        "not_for": [kind for kind in KINDS if kind not in effect.models],
+        "not_for": [kind for kind in get_args(Kind) if kind not in effect.models],
         "equivalent_to": list(effect.equivalent_to),
         "separated_by": effect.separated_by,
         "fidelity": effect.fidelity,
@@ -60,29 +43,6 @@ def effect_record(effect: Effect) -> dict[str, Any]:
         "labels": list(effect.labels),
         "of_sensor": effect.of_sensor,
     }
-
-
-@cache
-def example(kind: str) -> Predictor:
-    """Return the specimen of a kind as seen by a complete test: three points, a sensor at the last."""
-    spec = SPECIMENS[kind]
-    x = np.linspace(0.2, 0.376, 3)
-    points = x[:, None] if kind == "beam" else np.column_stack([x, np.full(3, 0.2)])
-    two, constants = np.ones(2), np.ones((3, 2))
-    measured = Measured(
-        np.array([20.0, 400.0]),
-        two,
-        two,
-        two,
-        points,
-        (1, 2, 3),
-        np.full(3, 2),
-        np.arange(3),
-        constants,
-        constants,
-        absolute=True,
-    )
-    return Predictor(spec, replace(measured, level=100.0))
 
 
 def effects_table(record: dict[str, Any]) -> str:

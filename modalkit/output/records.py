@@ -137,7 +137,7 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
             }
             for t in diagnosis.next_test
         ],
-        "not_examined": diagnosis.not_examined,
+        "not_examined": {name: str(why) for name, why in diagnosis.not_examined.items()},
         "warnings": [*diagnosis.warnings, *warnings],
     }
 

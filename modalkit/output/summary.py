@@ -3,32 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import combinations
 
 from acquisition.quantities import number, p_value, percent, place, probability
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
-from updating.diagnosis.search.held_out import BELIEVED
-
-
-@dataclass(frozen=True)
-class Equal:
-    """Why effects make one and the same change, and what to do about it."""
-
-    why: str
-    remedy: str
-
-
-EQUAL_BY_PHYSICS = {
-    frozenset({"calibration_gain", "section_scale"}): Equal(
-        "both scale every FRF and nothing else", "calibrate the chain, or weigh and measure the specimen"
-    ),
-    frozenset({"exponential_window", "uniform_damping"}): Equal(
-        "both add one decay to every mode", "look the window up in the analyser's settings"
-    ),
-}
-"""Effects that no hammer test tells apart."""
+from updating.effects import Lack, Twin, twin_of
+from updating.thresholds import BELIEVED_DOUBT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
 """Parameters that the line on the place tells."""
@@ -73,8 +54,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         summary = " ".join(LIBRARY[n].sentence(_stated(diagnosis, n)) for n in names if n in LIBRARY)
         return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
     statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
-    exact = _equal(diagnosis)
-    return statement if exact is None else f"{statement}; {exact.why}"
+    twin = _twin(diagnosis)
+    return f"{statement}; {twin.why}" if twin else statement
 
 
 def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
@@ -83,11 +64,11 @@ def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:
     return {} if row is None else {name: e.value for name, e in row.of(effect).items()}
 
 
-def _equal(diagnosis: Diagnosis) -> Equal | None:
-    """Return what is known of a class whose members make one and the same change, or None."""
+def _twin(diagnosis: Diagnosis) -> Twin | None:
+    """Return what is said of a class whose two members make one and the same change, or None."""
     if any(len(names) > 1 for names in diagnosis.sets):
         return None
-    return EQUAL_BY_PHYSICS.get(frozenset(diagnosis.effects))
+    return twin_of(frozenset(diagnosis.effects))
 
 
 def _row(diagnosis: Diagnosis, names: tuple[str, ...]) -> Ranked | None:
@@ -187,9 +168,10 @@ def _closes(diagnosis: Diagnosis) -> str:
 
 
 def _stretched(shrink: Shrink) -> str:
-    if shrink.stretch <= BELIEVED:
+    if shrink.stretch <= BELIEVED_DOUBT:
         return ""
-    return f" (kept within {BELIEVED:g} sigma; to explain it they would have to be {shrink.stretch:.0f} sigma off)"
+    needed = f"to explain it they would have to be {shrink.stretch:.0f} sigma off"
+    return f" (kept within {BELIEVED_DOUBT:g} sigma; {needed})"
 
 
 def _sure(diagnosis: Diagnosis) -> str:
@@ -209,9 +191,7 @@ def _sure(diagnosis: Diagnosis) -> str:
 
 def _left_out(diagnosis: Diagnosis) -> str:
     """Say how many effects the data did not allow to examine: one of them may be it."""
-    lacking = [
-        why for why in diagnosis.not_examined.values() if why.startswith(("no ", "it takes", "the data"))
-    ]
+    lacking = [why for why in diagnosis.not_examined.values() if why.lack is Lack.DATA]
     if not lacking:
         return ""
     return f"; {len(lacking)} effects could not be examined for want of data (listed below)"
@@ -220,8 +200,8 @@ def _left_out(diagnosis: Diagnosis) -> str:
 def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "nothing; the model may be used within its tolerances"
-    if diagnosis.verdict == "class" and (exact := _equal(diagnosis)):
-        return exact.remedy
+    if diagnosis.verdict == "class" and (twin := _twin(diagnosis)):
+        return twin.instead
     if diagnosis.next_test:
         test = diagnosis.next_test[0]
         if diagnosis.verdict == "unknown":

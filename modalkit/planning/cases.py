@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modalkit.planning.family import Family
-from modalkit.planning.forecast import Advice, TestForecast
+from modalkit.planning.forecast import Advice, DesignForecast
 from modalkit.planning.separability import EQUAL, NONE, SURE, Distances, at_severity, crossing
 from modalkit.simulator.hidden import HIDDEN_EFFECTS, Values
 from modalkit.simulator.setup import Setup
@@ -59,7 +59,7 @@ class Case:
 
 
 def choose(
-    now: TestForecast, advice: Advice | None, count: int, rng: np.random.Generator
+    now: DesignForecast, advice: Advice | None, count: int, rng: np.random.Generator
 ) -> tuple[Case, ...]:
     """Return cases about the thresholds: half are effects that the advice newly tells apart, then others in turn.
 
@@ -85,7 +85,7 @@ def choose(
     return tuple(_case(_found(now, name), _found(after, name), rng) for name in names)
 
 
-def _possible(names: Sequence[str], now: TestForecast, after: TestForecast) -> list[str]:
+def _possible(names: Sequence[str], now: DesignForecast, after: DesignForecast) -> list[str]:
     """Return names once each, without those that a baseline has too."""
     kept = dict.fromkeys(names)
     return [n for n in kept if not (after.design.baseline and _found(now, n).curve.family.always)]
@@ -95,7 +95,7 @@ def _in_turn(names: Sequence[str], count: int) -> list[str]:
     return [names[i % len(names)] for i in range(count)]
 
 
-def _found(evaluation: TestForecast, name: str) -> Distances:
+def _found(evaluation: DesignForecast, name: str) -> Distances:
     return evaluation.found[evaluation.names.index(name)]
 
 

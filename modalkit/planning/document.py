@@ -7,7 +7,7 @@ from typing import Any
 
 from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.family import Family
-from modalkit.planning.forecast import Advice, Forecast, TestForecast
+from modalkit.planning.forecast import Advice, DesignForecast, Forecast
 
 SCHEMA = "modalkit.plan/1"
 
@@ -30,12 +30,12 @@ def to_json(found: Forecast) -> dict[str, Any]:
         "said": list(found.known_test.statement),
         "left_out": list(found.known_test.left_out),
         "not_forecast": [*NOT_FORECAST, *found.known_test.without],
-        "now": _test_forecast(found.now),
+        "now": _design_forecast(found.now),
         "advice": [_advice(one) for one in found.advice],
     }
 
 
-def _test_forecast(evaluation: TestForecast) -> dict[str, Any]:
+def _design_forecast(evaluation: DesignForecast) -> dict[str, Any]:
     matrix = evaluation.matrix
     return {
         "effects": [
@@ -67,16 +67,16 @@ def _advice(one: Advice) -> dict[str, Any]:
         "worth": one.worth,
         "threshold_factor": one.factor,
         "separates": [list(pair) for pair in one.separates],
-        "then": _test_forecast(one.after),
+        "then": _design_forecast(one.after),
     }
 
 
-def statement(evaluation: TestForecast, name: str, q: float) -> str | None:
+def statement(evaluation: DesignForecast, name: str, q: float) -> str | None:
     """Return a severity in words; None where there is none that is told."""
     return family_of(evaluation, name).say(q) if math.isfinite(q) else None
 
 
-def family_of(evaluation: TestForecast, name: str) -> Family:
+def family_of(evaluation: DesignForecast, name: str) -> Family:
     """Return the family of an effect."""
     return evaluation.found[evaluation.names.index(name)].curve.family
 

@@ -47,7 +47,7 @@ class Limit:
 
 
 @dataclass(frozen=True, eq=False)
-class TestForecast:
+class DesignForecast:
     """What one test tells.
 
     Parameters
@@ -158,7 +158,7 @@ class Advice:
     """
 
     change: Change
-    after: TestForecast
+    after: DesignForecast
     separates: tuple[tuple[str, str], ...]
     factor: float
     worth: float
@@ -182,7 +182,7 @@ class Forecast:
 
     known_test: KnownTest
     curves: tuple[Curve, ...]
-    now: TestForecast
+    now: DesignForecast
     advice: tuple[Advice, ...]
 
 
@@ -208,8 +208,8 @@ def forecast(known_test: KnownTest, *, progress: Callable[[str], None] | None = 
         curves.append(solve_curve(family, stations))
     kept = tuple(curves)
 
-    def forecast_of(design: Design, *, fine: bool = True) -> TestForecast:
-        return TestForecast(design, distances(kept, design, known_test, stations, fine=fine))
+    def forecast_of(design: Design, *, fine: bool = True) -> DesignForecast:
+        return DesignForecast(design, distances(kept, design, known_test, stations, fine=fine))
 
     design = present(known_test)
     now = forecast_of(design)
@@ -220,7 +220,7 @@ def forecast(known_test: KnownTest, *, progress: Callable[[str], None] | None = 
     return Forecast(known_test, kept, now, tuple(found))
 
 
-def _advice(change: Change, now: TestForecast, forecast_of: Callable[[Design], TestForecast]) -> Advice:
+def _advice(change: Change, now: DesignForecast, forecast_of: Callable[[Design], DesignForecast]) -> Advice:
     after = _with_what_was_there(forecast_of(change.design), now)
     before, then = now.pairs, after.pairs
     newly = [pair for pair in before if before[pair] < SEEN <= then[pair] and not _equal(pair)]
@@ -235,7 +235,7 @@ def _advice(change: Change, now: TestForecast, forecast_of: Callable[[Design], T
     return Advice(change, after, tuple(newly), factor, after.worth - now.worth)
 
 
-def shown(forecast_of: TestForecast, name: str) -> float:
+def shown(forecast_of: DesignForecast, name: str) -> float:
     """Return by how many sigma an effect, clear, stands off none [-]."""
     return float(forecast_of.found[forecast_of.names.index(name)].clear_of(NONE))
 
@@ -244,9 +244,9 @@ def _equal(pair: tuple[str, str]) -> bool:
     return pair in EQUAL or pair[::-1] in EQUAL
 
 
-def _with_what_was_there(after: TestForecast, now: TestForecast) -> TestForecast:
+def _with_what_was_there(after: DesignForecast, now: DesignForecast) -> DesignForecast:
     """Leave the effects that were always there as they are: a baseline has them too, so that they cancel."""
     if not after.design.baseline or now.design.baseline:
         return after
     pairs = zip(after.found, now.found, strict=True)
-    return TestForecast(after.design, tuple(b if b.curve.family.always else a for a, b in pairs))
+    return DesignForecast(after.design, tuple(b if b.curve.family.always else a for a, b in pairs))

@@ -271,7 +271,7 @@ def not_examined(diagnosis: Diagnosis) -> Raw:
         return element("p", "Every effect of the library was weighed.")
     by_reason: dict[str, list[str]] = {}
     for name, why in diagnosis.not_examined.items():
-        by_reason.setdefault(why, []).append(name)
+        by_reason.setdefault(str(why), []).append(name)
     rows: list[list[Cell | Raw]] = [[", ".join(names), why] for why, names in by_reason.items()]
     words = "None of these is ruled out by the answer above."
     return joined(

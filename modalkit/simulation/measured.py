@@ -20,8 +20,8 @@ from modalkit.simulation.setup import (
     RESPONSE_NOISE,
     SAMPLING,
     TRIGGER,
+    MeasurementSetup,
     Options,
-    TestSetup,
 )
 from modalkit.workflow.case import Session
 
@@ -32,7 +32,7 @@ QUIET = 0.1
 """The share of the lines whose noise counts: hits beside the point add to the others in proportion to the FRF [-]."""
 
 
-def rig_of_data(session: Session, options: Options) -> TestSetup:
+def rig_of_data(session: Session, options: Options) -> MeasurementSetup:
     """Return the rig that a study's FRFs or hits were measured on."""
     assert session.processed is not None
     assert session.identified is not None
@@ -44,7 +44,7 @@ def rig_of_data(session: Session, options: Options) -> TestSetup:
     plan = _plan_of(session, options, notes)
     if session.identified.points_rejected:
         notes.append(f"not hit again: {'; '.join(session.identified.points_rejected)}")
-    return TestSetup(
+    return MeasurementSetup(
         test,
         tuple(frfs.responses[i] for i in rows),
         tuple(frfs.references[i] for i in rows),

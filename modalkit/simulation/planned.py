@@ -18,8 +18,8 @@ from modalkit.simulation.setup import (
     RESPONSE_NOISE,
     SAMPLING,
     TRIGGER,
+    MeasurementSetup,
     Options,
-    TestSetup,
 )
 from modalkit.study.read import Study
 from updating import Measured, Predictor, Spec
@@ -33,7 +33,7 @@ DECAYED, LONGEST = 6.0, 65536
 """Records last until the slowest mode has decayed by this exponent, in no more samples [-]."""
 
 
-def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: Options) -> TestSetup:
+def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: Options) -> MeasurementSetup:
     """Return a rig for a study without hits: at the points of its shapes if any, else at evenly spaced ones.
 
     The sensor sits where the modeller knows of a mass, else at the point where the faintest mode of the band is
@@ -69,7 +69,7 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
     slowest = float(np.min((modes.damping * 2 * np.pi * modes.frequency)[inside], initial=np.inf))
     plan = _usual_plan(band, slowest + study.test.exponential_window, options)
     plan = replace(plan, position_sigma=study.test.position_sigma, decay=study.test.exponential_window)
-    return TestSetup(
+    return MeasurementSetup(
         _blank(points, nodes, directions, sensor),
         (names[sensor],) * len(points),
         names,
@@ -100,7 +100,7 @@ def spaced(spec: Spec, count: int | None) -> FloatArray:
     StudyError
         If the model has no shape of its own.
     """
-    if spec.kind == "matrices":
+    if not spec.outlined:
         raise StudyError(
             "imported matrices do not say where to hit: give [test] files with points, or shapes"
         )

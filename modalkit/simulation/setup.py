@@ -53,7 +53,7 @@ class Options:
 
 
 @dataclass(frozen=True, eq=False)
-class TestSetup(Displayed):
+class MeasurementSetup(Displayed):
     """A test without its data.
 
     Parameters

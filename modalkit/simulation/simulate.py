@@ -16,7 +16,7 @@ from acquisition.errors import InputError
 from modalkit.simulation.damping import damped_spec
 from modalkit.simulation.measured import rig_of_data
 from modalkit.simulation.planned import rig_of_model
-from modalkit.simulation.setup import SAMPLING, Options, TestSetup
+from modalkit.simulation.setup import SAMPLING, MeasurementSetup, Options
 from modalkit.simulation.systems import known_sensors, remounted, systems
 from modalkit.study.named_effects import EffectValues, check_effect, departure, statement
 from modalkit.study.read import Study, read_study
@@ -51,7 +51,7 @@ class SimulatedTest(Displayed):
     title: str
     tests: tuple[HammerTest, ...]
     effects: tuple[EffectValues, ...]
-    test_setup: TestSetup
+    test_setup: MeasurementSetup
     poles: ComplexArray
     notes: tuple[str, ...]
 
@@ -109,7 +109,7 @@ class Prepared(Displayed):
 
     study: Study
     nominal: Predictor
-    test_setup: TestSetup
+    test_setup: MeasurementSetup
     options: Options
     notes: tuple[str, ...]
 
@@ -201,7 +201,7 @@ def simulate_test(
     return SimulatedTest(title, stated, tuple(effects), replace(test_setup, plan=plan), poles[inside], notes)
 
 
-def _places(test_setup: TestSetup, state: State) -> FloatArray | None:
+def _places(test_setup: MeasurementSetup, state: State) -> FloatArray | None:
     """Return all places from which the model is seen where some are not those stated [m]."""
     return measurement_chain(test_setup.measured, state).points if state.moved else None
 
@@ -212,7 +212,7 @@ def _mounting(study: Study, count: int, rng: np.random.Generator) -> tuple[Float
     return scatter, float(np.exp(study.test.calibration * rng.standard_normal()))
 
 
-def _rig(study: Study, spec: Spec, session: Session | None, options: Options) -> TestSetup:
+def _rig(study: Study, spec: Spec, session: Session | None, options: Options) -> MeasurementSetup:
     if session is not None and session.processed is not None:
         if options.points is not None:
             raise InputError(

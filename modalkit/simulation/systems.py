@@ -10,7 +10,7 @@ import numpy as np
 from acquisition import Dof, ModalSystem
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from modalkit.simulation.setup import TestSetup
+from modalkit.simulation.setup import MeasurementSetup
 from modalkit.study.read import Study
 from updating import Predictor
 from updating.models.state import NOMINAL, State
@@ -18,7 +18,7 @@ from updating.simulation import Simulated, modal_system
 from updating.test_data.chain import measurement_chain
 
 
-def systems(model: Simulated, test_setup: TestSetup, state: State = NOMINAL) -> list[ModalSystem]:
+def systems(model: Simulated, test_setup: MeasurementSetup, state: State = NOMINAL) -> list[ModalSystem]:
     """Return the poles and residues between the points, one system for all points that share their responses.
 
     Parameters
@@ -72,7 +72,7 @@ def remounted(system: ModalSystem, factors: FloatArray) -> ModalSystem:
     )
 
 
-def known_sensors(study: Study, test_setup: TestSetup) -> list[Callable[[Predictor], State]]:
+def known_sensors(study: Study, test_setup: MeasurementSetup) -> list[Callable[[Predictor], State]]:
     """Return the masses that the study takes out of its FRFs again, to be put on the model before.
 
     Raises
@@ -83,7 +83,7 @@ def known_sensors(study: Study, test_setup: TestSetup) -> list[Callable[[Predict
     return [_carrying(test_setup, name, mass) for name, mass in study.test.sensor_masses.items()]
 
 
-def _carrying(test_setup: TestSetup, name: str, mass: float) -> Callable[[Predictor], State]:
+def _carrying(test_setup: MeasurementSetup, name: str, mass: float) -> Callable[[Predictor], State]:
     node = Dof.of(name).node
     if node not in test_setup.measured.nodes:
         raise StudyError(f"[test] sensor_masses: {name} is no point of the test")

@@ -11,9 +11,11 @@ import numpy as np
 
 from acquisition.errors import InputError, StudyError
 from acquisition.si_units import si_value
-from modalkit.study.stated_effects import SOME, nodes, sensor, unit_of
+from modalkit.study.stated_effects import SOME, nodes, sensor
 from updating import LIBRARY, Predictor
 from updating.effects import check_values, labels_of
+from updating.effects.specimens import unit_of
+from updating.models.spec import Kind
 from updating.models.state import State
 
 EffectValues = tuple[str, Mapping[str, Any]]
@@ -24,7 +26,7 @@ def departure(name: str, values: Mapping[str, Any]) -> Callable[[Predictor], Sta
     return lambda predictor: LIBRARY[name].state(predictor, values)
 
 
-def parse_effect(text: str, kind: str = "beam") -> tuple[str, dict[str, Any]]:
+def parse_effect(text: str, kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
     """Read an effect written NAME or NAME:PARAM=VALUE,PARAM=VALUE; points are node numbers, as points=3/4.
 
     Parameters
@@ -66,12 +68,12 @@ def parse_effect(text: str, kind: str = "beam") -> tuple[str, dict[str, Any]]:
     return name, values
 
 
-def _value(stated: str, name: str, parameter: str, kind: str) -> float:
+def _value(stated: str, name: str, parameter: str, kind: Kind) -> float:
     """Return a number in SI units."""
     try:
         return float(stated)
     except ValueError:
-        return float(si_value(stated, unit_of(name, parameter, kind)))
+        return float(si_value(stated, unit_of(LIBRARY[name], parameter, kind)))
 
 
 def _points(text: str, label: str, stated: str) -> Any:

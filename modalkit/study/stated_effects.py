@@ -11,45 +11,14 @@ from acquisition.errors import StudyError
 from acquisition.si_units import si_value
 from modalkit.study.errors import nearest
 from updating import LIBRARY
+from updating.effects.specimens import unit_of
+from updating.models.spec import Kind
 
 SOME = "points"
 """The label that takes several node numbers; any other takes one."""
 
-UNITS = {
-    "extension": "m",
-    "x": "m",
-    "y": "m",
-    "z": "m",
-    "dx": "m",
-    "dy": "m",
-    "extent": "m",
-    "mass": "kg",
-    "force": "N",
-    "fluid_density": "kg/m^3",
-    "viscosity": "Pa s",
-    "alpha": "1/s",
-    "beta": "s",
-    "decay": "1/s",
-    "delay": "s",
-    "slope": "1/N",
-}
-"""Units of the parameters of effects; those that are not here are ratios."""
 
-OWN_UNITS = {
-    ("damping_patch", "mass"): ("", ""),
-    ("clamp_rotation", "stiffness"): ("N m/rad", "N m/rad per m"),
-    ("clamp_translation", "stiffness"): ("N/m", "N/m per m"),
-}
-"""Units that a parameter has in one effect alone: on a plate the second, else the first."""
-
-
-def unit_of(effect: str, parameter: str, kind: str) -> str:
-    """Return the unit of a parameter of an effect on a kind of model, "" for a ratio."""
-    own = OWN_UNITS.get((effect, parameter))
-    return UNITS.get(parameter, "") if own is None else own[kind == "plate"]
-
-
-def accepted_values(entry: Mapping[str, Any], kind: str = "beam") -> tuple[str, dict[str, Any]]:
+def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
     """Return name and values of one ``[[model.effect]]``.
 
     Parameters
@@ -76,13 +45,13 @@ def accepted_values(entry: Mapping[str, Any], kind: str = "beam") -> tuple[str, 
         raise StudyError(f"[[model.effect]] {name}: {error}") from error
 
 
-def _value(effect: str, name: str, value: Any, kind: str) -> Any:
+def _value(effect: str, name: str, value: Any, kind: Kind) -> Any:
     """Return the value of a label or a parameter of an effect."""
     if name in LIBRARY[effect].labels:
         return nodes(name, value)
     if name == "channel" and LIBRARY[effect].of_sensor:
         return sensor(value)
-    return _number(name, value, unit_of(effect, name, kind))
+    return _number(name, value, unit_of(LIBRARY[effect], name, kind) if isinstance(value, str) else "")
 
 
 def sensor(value: Any) -> str:

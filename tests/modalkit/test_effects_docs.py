@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from dataclasses import replace
@@ -12,8 +13,25 @@ import pytest
 from typer.testing import CliRunner
 
 from modalkit.cli import app
+from modalkit.figures.words import answer, phrase
 from modalkit.output.library import effects_record, effects_table
-from updating import LIBRARY, Case, Damping, Effect, Material, Measured, Predictor, Spec, Tolerances, diagnose
+from modalkit.output.summary import summary_text
+from modalkit.study.named_effects import parse_effect
+from modalkit.study.stated_effects import accepted_values
+from updating import (
+    LIBRARY,
+    Case,
+    Damping,
+    Diagnosis,
+    Effect,
+    Material,
+    Measured,
+    Predictor,
+    Spec,
+    Tolerances,
+    diagnose,
+)
+from updating.update import update
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "effects.md"
 BEAM = Spec(
@@ -22,12 +40,49 @@ BEAM = Spec(
 )
 
 
-@pytest.fixture
+TRUE_STIFFNESS = 3000.0
+
+
+@pytest.fixture(scope="module")
 def library() -> Iterator[dict[str, Effect]]:
+    """Return the library with the effect of the page in it."""
     before = dict(LIBRARY)
+    exec(compile(code(), str(PAGE), "exec"), {})
     yield LIBRARY
     LIBRARY.clear()
     LIBRARY.update(before)
+
+
+@pytest.fixture(scope="module")
+def case(library: dict[str, Effect]) -> Case:
+    """Return a test of a beam that a spring holds in the middle."""
+    effect = library["ground_spring"]
+    rng = np.random.default_rng(3)
+    x = np.linspace(0.0752, 0.376, 5)
+    ones = np.ones(5)
+    evaluation = Measured(
+        *(np.array([28.0, 176.0, 493.0, 964.0, 1590.0]), ones, 0.01 * ones, 0.001 * ones),
+        *(x[:, None], (1, 2, 3, 4, 5), np.full(5, 4), np.arange(5), np.ones((5, 5)), np.ones((5, 5))),
+        absolute=True,
+    )
+    finer = Predictor(BEAM.with_elements(60), evaluation)
+    truth = finer.predict(effect.state(finer, {"stiffness": TRUE_STIFFNESS}), count=5)
+    level = 0.003 * np.sqrt(np.mean(truth.constants**2, axis=0)) * np.ones((5, 5))
+    test = replace(
+        evaluation,
+        frequency=truth.frequency * (1 + 5e-4 * rng.standard_normal(5)),
+        frequency_sigma=1e-4 * truth.frequency,
+        damping=truth.damping * np.exp(0.03 * rng.standard_normal(5)),
+        damping_sigma=0.03 * truth.damping,
+        constants=truth.constants + level * rng.standard_normal((5, 5)),
+        constants_sigma=level,
+    )
+    return Case("held", BEAM, test, tolerances=Tolerances({"E": 0.01, "density": 0.003, "thickness": 0.005}))
+
+
+@pytest.fixture(scope="module")
+def diagnosis(case: Case) -> Diagnosis:
+    return diagnose(case)
 
 
 def code() -> str:
@@ -51,35 +106,51 @@ def test_an_effect_takes_some_thirty_lines() -> None:
     assert len([line for line in code().splitlines() if line.strip()]) <= 32
 
 
-def test_the_effect_on_the_page_is_named(library: dict[str, Effect]) -> None:
-    exec(compile(code(), str(PAGE), "exec"), {})
-    effect = library["ground_spring"]
-    rng = np.random.default_rng(3)
-    x = np.linspace(0.0752, 0.376, 5)
-    ones = np.ones(5)
-    evaluation = Measured(
-        *(np.array([28.0, 176.0, 493.0, 964.0, 1590.0]), ones, 0.01 * ones, 0.001 * ones),
-        *(x[:, None], (1, 2, 3, 4, 5), np.full(5, 4), np.arange(5), np.ones((5, 5)), np.ones((5, 5))),
-        absolute=True,
+def test_the_effect_on_the_page_is_named(diagnosis: Diagnosis) -> None:
+    assert (diagnosis.verdict, diagnosis.sets) == ("named", (("ground_spring",),)), diagnosis.table()
+    estimate = diagnosis.ranking[0].parameters["ground_spring.stiffness"]
+    assert estimate.low95 is not None and estimate.high95 is not None
+    assert estimate.low95 < TRUE_STIFFNESS < estimate.high95
+
+
+def test_it_is_updated_on_the_full_model(case: Case) -> None:
+    """Its own lines, written for the reduced basis, are asked for the full matrices: nothing more is to be written."""
+    found = update(case, parameters=["ground_spring"])
+    assert found.exact and found.converged
+    (spring,) = found.parameters
+    assert spring.unit == "N/m"
+    assert abs(spring.value - TRUE_STIFFNESS) < 4 * spring.sigma < 0.2 * TRUE_STIFFNESS
+
+
+def test_it_is_worded(diagnosis: Diagnosis) -> None:
+    cause = summary_text(diagnosis)[0]
+    assert (
+        "ground_spring" in cause and "A spring holds the middle of the structure." in cause and "N/m" in cause
     )
-    finer = Predictor(BEAM.with_elements(60), evaluation)
-    truth = finer.predict(effect.state(finer, {"stiffness": 3000.0}), count=5)
-    level = 0.003 * np.sqrt(np.mean(truth.constants**2, axis=0)) * np.ones((5, 5))
-    test = replace(
-        evaluation,
-        frequency=truth.frequency * (1 + 5e-4 * rng.standard_normal(5)),
-        frequency_sigma=1e-4 * truth.frequency,
-        damping=truth.damping * np.exp(0.03 * rng.standard_normal(5)),
-        damping_sigma=0.03 * truth.damping,
-        constants=truth.constants + level * rng.standard_normal((5, 5)),
-        constants_sigma=level,
+    assert "ground spring" in phrase(("ground_spring",)) == LIBRARY["ground_spring"].words()
+    assert "ground spring" in answer(diagnosis).lower()
+
+
+def test_the_next_test_confirms_it(diagnosis: Diagnosis) -> None:
+    assert diagnosis.next_test
+    assert all("ground_spring" in test.separates for test in diagnosis.next_test)
+    assert all(test.expected_sigma > 1 for test in diagnosis.next_test)
+
+
+def test_it_is_listed(library: dict[str, Effect], tmp_path: Path) -> None:
+    out = tmp_path / "effects.json"
+    assert CliRunner().invoke(app, ["effects", "--json", str(out)]).exit_code == 0
+    (own,) = (
+        e for e in json.loads(out.read_text(encoding="utf-8"))["effects"] if e["name"] == "ground_spring"
     )
-    found = diagnose(
-        Case("held", BEAM, test, tolerances=Tolerances({"E": 0.01, "density": 0.003, "thickness": 0.005}))
-    )
-    assert (found.verdict, found.sets) == ("named", (("ground_spring",),)), found.table()
-    estimate = found.ranking[0].parameters["ground_spring.stiffness"]
-    assert estimate.low95 < 3000 < estimate.high95
+    assert own["not_for"] == ["matrices"]
+    assert [(p["name"], p["unit"]) for p in own["parameters"]] == [("stiffness", "N/m")]
+
+
+def test_a_study_and_the_command_line_take_it_with_its_unit(library: dict[str, Effect]) -> None:
+    values = {"stiffness": pytest.approx(TRUE_STIFFNESS)}
+    assert accepted_values({"name": "ground_spring", "stiffness": "3 N/mm"}) == ("ground_spring", values)
+    assert parse_effect("ground_spring:stiffness=3kN/m") == ("ground_spring", values)
 
 
 def test_bulk_is_explained_where_an_effect_has_it() -> None:

@@ -20,7 +20,7 @@ from modalkit.planning.design import Design, columns, present, whitener
 from modalkit.planning.document import to_json
 from modalkit.planning.effects import families
 from modalkit.planning.family import Family
-from modalkit.planning.forecast import Forecast, TestForecast
+from modalkit.planning.forecast import DesignForecast, Forecast
 from modalkit.planning.from_study import known_test_of
 from modalkit.planning.responses import Stations
 from modalkit.planning.separability import EQUAL, SEEN, distances, nearest_in
@@ -87,8 +87,10 @@ def sample() -> Forecast:
     return forecast(known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml")))
 
 
-def outlook(curves: tuple[Curve, ...], stations: Stations, design: Design, known: KnownTest) -> TestForecast:
-    return TestForecast(design, distances(curves, design, known, stations))
+def outlook(
+    curves: tuple[Curve, ...], stations: Stations, design: Design, known: KnownTest
+) -> DesignForecast:
+    return DesignForecast(design, distances(curves, design, known, stations))
 
 
 def test_the_distance_to_a_circle_is_that_to_its_rim() -> None:

@@ -30,6 +30,7 @@ from modalkit.study.read import Study, read_study
 from modalkit.workflow.case import Session, open_study
 from updating import Diagnosis
 from updating.diagnosis.answer.result import Gap, HeldPoints, ParameterEstimate, Ranked, Shrink
+from updating.effects import Lack, Obstacle
 
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
 ROOT = Path(__file__).resolve().parents[2]
@@ -88,7 +89,10 @@ def complete(diagnosis: Diagnosis, title: str = "A case") -> Diagnosis:
     )
     modes.index = pd.RangeIndex(1, len(modes) + 1, name="mode")
     gap = Gap(modes, 3.2, 0.1, np.ones(3))
-    out = {"shear": "plates are modelled as thin", "polarity": "too few points"}
+    out = {
+        "shear": Obstacle(Lack.MODEL, "plates are modelled as thin"),
+        "damping_patch": Obstacle(Lack.EXPECTATION, "nothing says what damping to expect"),
+    }
     return replace(diagnosis, title=title, gap=gap, not_examined=out, warnings=("mind the <gap>",))
 
 

@@ -10,10 +10,9 @@ import pytest
 
 from acquisition.errors import StudyError
 from acquisition.si_units import si_value
-from modalkit.output.library import example
 from modalkit.study.read import Study, read_study
-from modalkit.study.stated_effects import unit_of
 from updating import LIBRARY
+from updating.effects.specimens import example, unit_of
 from updating.models.spec import PointMass
 
 WITH_UNITS = """
@@ -196,7 +195,7 @@ def test_effects_take_values_in_the_units_they_state(kind: str) -> None:
     assert len(examined) > 15
     for effect in examined:
         for parameter in effect.parameters(predictor):
-            unit = unit_of(effect.name, parameter.name, kind)
+            unit = unit_of(effect, parameter.name, kind)
             assert (unit or "-") == parameter.unit, (effect.name, parameter.name)
             assert si_value(f"1 {unit}", unit) == 1.0
 

@@ -15,10 +15,11 @@ from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.fit import Point, evaluate, maximise
 from updating.diagnosis.search.goodness import p_value
-from updating.likelihood.comparison import KNOWN_SCATTER, SCALES, Comparison
+from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import gaussian, marginal, normal_equations
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
+from updating.thresholds import REPEATED_SCATTER_PRIOR, SHAPE_NOISE_SCALES
 
 COARSE = replace(BEAM, elements=(8,), theory="euler-bernoulli")
 HIT = np.array([0.1, 0.25, 0.376])
@@ -135,11 +136,11 @@ def comparison(seed: int, n: int = 24, p: int = 5, *, residual: bool = False) ->
     channel = np.repeat([0, 1, 2], n // 3)
     size = 0.03 * rng.standard_normal(n)
     if residual:
-        scale = rng.choice(SCALES, p=KNOWN_SCATTER)
+        scale = rng.choice(SHAPE_NOISE_SCALES, p=REPEATED_SCATTER_PRIOR)
         noise = np.sqrt(variance) * np.where(channel == 2, scale, 1.0) * rng.standard_normal(n)
         size = nuisance @ rng.standard_normal(p) + noise
     mode = np.tile(np.arange(n // 3), 3)
-    return Comparison(size, nuisance, variance, channel, mode, (), KNOWN_SCATTER, np.arange(2))
+    return Comparison(size, nuisance, variance, channel, mode, (), REPEATED_SCATTER_PRIOR, np.arange(2))
 
 
 def full(data: Comparison, scale: float, keep: np.ndarray) -> np.ndarray:
@@ -158,7 +159,9 @@ def test_the_marginal_is_that_of_the_full_covariance(seed: int, part: str) -> No
         "no shapes": data.channel != 2,
     }[part]
     keep[0] = True
-    scales, prior = (SCALES, KNOWN_SCATTER) if (data.channel[keep] == 2).any() else ((1.0,), (1.0,))
+    scales, prior = (
+        (SHAPE_NOISE_SCALES, REPEATED_SCATTER_PRIOR) if (data.channel[keep] == 2).any() else ((1.0,), (1.0,))
+    )
     parts = [multivariate_normal.logpdf(data.residual[keep], cov=full(data, scale, keep)) for scale in scales]
     found = marginal(data, keep)
     assert found.log_likelihood == pytest.approx(logsumexp(parts, b=prior), rel=1e-9)
@@ -170,7 +173,7 @@ def test_the_marginal_is_that_of_the_full_covariance(seed: int, part: str) -> No
 
 
 @settings(max_examples=20, deadline=None)
-@given(seed=st.integers(0, 10**6), scale=st.sampled_from(SCALES))
+@given(seed=st.integers(0, 10**6), scale=st.sampled_from(SHAPE_NOISE_SCALES))
 def test_whitened_least_squares_is_that_of_the_full_covariance(seed: int, scale: float) -> None:
     data = comparison(seed)
     columns = np.random.default_rng(seed + 1).standard_normal((24, 3))

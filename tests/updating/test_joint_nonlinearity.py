@@ -33,7 +33,7 @@ def evaluate() -> Predictor:
 
 
 def test_it_needs_hits_of_different_levels() -> None:
-    assert "2 : 1" in (EFFECT.obstacle(Predictor(BEAM, blank(POINTS))) or "")
+    assert "2 : 1" in str(EFFECT.obstacle(Predictor(BEAM, blank(POINTS))))
     assert EFFECT.obstacle(evaluate()) is None
     nothing = replace(evaluate().measured, slope=np.full(2, np.nan))
     assert EFFECT.obstacle(Predictor(BEAM, nothing)) is not None

@@ -13,7 +13,7 @@ from updating.diagnosis.next_test import propose
 from updating.diagnosis.next_test.base import Rival, Site, separation
 from updating.diagnosis.next_test.changed import AddedMass
 from updating.diagnosis.next_test.free_free import FreeFree
-from updating.diagnosis.next_test.instruments import BALANCE, Caliper, Weigh, WeighSensor
+from updating.diagnosis.next_test.instruments import Caliper, Weigh, WeighSensor
 from updating.diagnosis.next_test.other_points import Shapes
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.search import search
@@ -25,6 +25,7 @@ from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.axes import Axes
 from updating.test_data.measured import measured_from_modes
+from updating.thresholds import BALANCE_SIGMA
 from updating.tolerances import Tolerances
 
 BEAM = Spec("beam", 0.4, 0.03, 0.005, (20,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))
@@ -66,7 +67,7 @@ def test_weighing_sees_density_as_far_as_tolerances_and_balance_allow(
     a, b = rivals["density"], rivals["E"]
     found = apart(Weigh(clamped=True), problem, a, b)
     heavier = np.log(1 / 0.85)
-    doubt = np.sqrt(0.003**2 + 0.005**2 + 0.002**2 + BALANCE**2)
+    doubt = np.sqrt(0.003**2 + 0.005**2 + 0.002**2 + BALANCE_SIGMA**2)
     assert found == pytest.approx(heavier / doubt, rel=0.15)
     assert apart(Weigh(clamped=True), problem, rivals["length"], b) < 0.3 * found
 

@@ -201,3 +201,26 @@ def test_modes_reach_above_the_measured_ones() -> None:
     assert found[0] > 100  # no rigid-body mode
     assert len(found) == len(predictor.measured.frequency) + 3 or found[-1] < 1.6 * 1600
     assert len(predictor.predict(at_least=9).frequency) == 9
+
+
+def test_a_basis_is_handed_on_and_never_written_into_a_predictor() -> None:
+    """Another test looks from the same basis, another model from its own, and none of them is changed by it."""
+    first = LOOK["beam"]
+    fields = dict(vars(first))
+    other = first.for_test(replace(first.measured, title="again"))
+    assert other.basis is other.reduced is first.reduced
+    assert first.on(first.reduced).reduced is first.reduced
+    assert first.of(first.spec.with_elements(12)).reduced is not first.reduced
+    assert {name: vars(first)[name] for name in fields} == fields
+
+
+def test_each_addition_sees_those_before_it() -> None:
+    seen: list[float] = []
+
+    def stiffer(predictor: Predictor) -> State:
+        seen.append(predictor.base.factors.get("E", 1.0))
+        return State(factors={"E": 2.0})
+
+    predictor = replace(LOOK["beam"], additions=(stiffer, stiffer, stiffer))
+    assert predictor.base.factors["E"] == pytest.approx(8.0)
+    assert seen == [1.0, 2.0, 4.0]

@@ -10,7 +10,7 @@ from updating_cases import case_of, specimen, struck
 
 from updating import LIBRARY, Measured, diagnose
 from updating.diagnosis.diagnose import pose
-from updating.problem.same_places import same_points, same_rows, unmatched
+from updating.test_data.same_places import same_points, same_rows, unmatched
 
 
 def renumbered(test: Measured, order: np.ndarray, *, first: int = 101) -> Measured:

@@ -11,11 +11,12 @@ from updating.diagnosis.answer.shrink import closed, shrinkage
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.fit import maximise
-from updating.diagnosis.search.held_out import BELIEVED, believed, modes_held_out
+from updating.diagnosis.search.held_out import believed, modes_held_out
 from updating.effects import LIBRARY
 from updating.likelihood.comparison import Comparison
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
+from updating.thresholds import BELIEVED_DOUBT
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +40,7 @@ def test_tolerances_alone_close_no_more_than_is_believed_of_them(problem: Specim
     """The modulus is 15 % off and good to 1 %: all tolerances at three sigma make up for a part of it."""
     nothing, best = explain(problem, Candidate()), explain(problem, Candidate((LIBRARY["E"],)))
     found = shrinkage(problem, nothing, best, None, np.random.default_rng(1))
-    assert found.stretch > BELIEVED
+    assert found.stretch > BELIEVED_DOUBT
     most = 3 * (0.5 * 0.01 + 0.5 * 0.003 + 0.005 + 2 * 0.002)
     gap = 0.5 * np.log(1 / 0.85)
     assert found.held_nuisance == pytest.approx(100 * np.expm1(gap - most), rel=0.05)

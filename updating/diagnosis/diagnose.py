@@ -30,8 +30,8 @@ from updating.prediction.baseline import correct, doubt_in_mass
 from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
 from updating.problem.gates import notes_on, on_levels, on_modes, theory_error
-from updating.problem.same_places import unmatched
 from updating.problem.specimen import SpecimenProblem
+from updating.test_data.same_places import unmatched
 
 
 def diagnose(
@@ -255,6 +255,7 @@ def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:
             notes += notes_on(one.theory_error, one.measured, one.predictor.spec)
         notes += on_modes(one.measured, one.predictor.predict(at_least=one.reach).frequency, one.order)
         wet = one.predictor.environment.fluid_density is not None
-        wet |= any("fluid" in name for row in found.compared[:1] for name in row.names)
+        acting = [effect for row in found.compared[:1] for effect in row.explanation.candidate.effects]
+        wet |= any("in air" in effect.undone_by for effect in acting)
         notes += on_levels(one.measured, fluid=wet)
     return notes

@@ -5,11 +5,11 @@ To add one, subclass :class:`Effect` in some thirty lines and :func:`register` a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from acquisition.errors import StudyError
-from updating.effects.base import Channel, Effect, Parameter, Variant
+from updating.effects.base import Channel, Effect, Parameter, Twin, Variant
 from updating.effects.limits import check_values
 from updating.effects.measurement.delay import TimeDelay
 from updating.effects.measurement.gain import CalibrationGain
@@ -17,6 +17,7 @@ from updating.effects.measurement.polarity import Polarity
 from updating.effects.measurement.position_error import PositionError
 from updating.effects.measurement.swapped_points import SwappedPoints
 from updating.effects.measurement.window import ExponentialWindow
+from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.structure.axial_load import AxialLoad
 from updating.effects.structure.clamp import ClampRotation, ClampTranslation
 from updating.effects.structure.damping import UniformDamping
@@ -69,6 +70,12 @@ def register(effect: Effect) -> None:
     LIBRARY[effect.name] = effect
 
 
+def twin_of(names: Collection[str]) -> Twin | None:
+    """Return what one of two effects says of the other where both make one and the same change."""
+    twins = (LIBRARY[name].twin for name in names if name in LIBRARY)
+    return next((twin for twin in twins if twin and len(names) == 2 and twin.name in names), None)
+
+
 def labels_of(effect: Effect, values: Mapping[str, Any]) -> set[str]:
     """Return the labels that an effect takes beside its parameters: its own, or ``channel`` where that is stated."""
     return {"channel"} if effect.of_sensor and "channel" in values else set(effect.labels)
@@ -85,9 +92,7 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
     if name not in LIBRARY:
         raise StudyError(f"[[model.effect]] knows no effect {name!r}; `modalkit effects` lists them")
     effect = LIBRARY[name]
-    there_already = (
-        name == "shear" and predictor.spec.theory == "timoshenko"
-    )  # the second look, on the better theory
+    there_already = effect.theory is not None and predictor.spec.theory == effect.theory
     if not there_already and (obstacle := effect.why_not(predictor)) is not None:
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
     parameters = effect.parameters(predictor)
@@ -108,10 +113,14 @@ __all__ = [
     "LIBRARY",
     "Channel",
     "Effect",
+    "Lack",
+    "Obstacle",
     "Parameter",
+    "Twin",
     "Variant",
     "accepted_state",
     "check_values",
     "labels_of",
     "register",
+    "twin_of",
 ]

@@ -10,11 +10,15 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from updating.models.spec import Spec
+from updating.effects.obstacles import Lack, Obstacle
+from updating.models.spec import Kind, Spec, Theory
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
 Channel = Literal["stiffness", "mass", "damping", "measurement"]
+
+Undoing = Literal["unclamped", "in air"]
+"""Tests of the same specimen in which an effect may be gone: hung up free, and out of the fluid."""
 
 
 AT_END = 0.01
@@ -95,6 +99,25 @@ class Variant:
     weight: float = 1.0
 
 
+@dataclass(frozen=True)
+class Twin:
+    """An effect that makes one and the same change as another, so that no hammer test tells them apart.
+
+    Parameters
+    ----------
+    name : str
+        The other effect.
+    why : str
+        What both do, said once for the two.
+    instead : str
+        What to do in place of another test.
+    """
+
+    name: str
+    why: str
+    instead: str
+
+
 class Effect(ABC):
     """A physical cause of a gap that the nominal model does not hold.
 
@@ -125,6 +148,20 @@ class Effect(ABC):
     """How far, relative to the shift the effect makes, its own idealisation may be off (1 sigma) [-]."""
     damping_doubt: ClassVar[float] = 0.0
     """How far the effect leaves the damping in doubt beside what it predicts: 1 sigma of ln zeta [-]."""
+    phrase: ClassVar[str] = ""
+    """How a sentence names it; left out, by its own name."""
+    elsewhere: ClassVar[Mapping[Kind, str]] = MappingProxyType({})
+    """Why it does not apply to a kind of model that is not among ``models``, where there is more to say."""
+    theory: ClassVar[Theory | None] = None
+    """Theory that the model is put on, where that is what the effect is."""
+    undone_by: ClassVar[frozenset[Undoing]] = frozenset()
+    """Tests in which it is gone."""
+    twin: ClassVar[Twin | None] = None
+    """An effect that makes one and the same change; one of the two says so."""
+    competes_with: ClassVar[str] = ""
+    """The modeller's doubt of which it is more than that: a factor with a tolerance, or ``calibration``."""
+    only_damps: ClassVar[bool] = False
+    """Whether an update need not look at frequencies to find it."""
 
     @abstractmethod
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -155,16 +192,32 @@ class Effect(ABC):
         """Return how far the idealisation may be off on this specimen and test, ``fidelity`` as a rule [-]."""
         return self.fidelity
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def words(self) -> str:
+        """Return how a sentence names the effect."""
+        return self.phrase or self.name.replace("_", " ")
+
+    def scales(self, predictor: Predictor) -> tuple[str, float] | None:
+        """Return the factor of the model that the only parameter moves, and by how much per unit; None for others."""
+        return None
+
+    def weight(self, values: Values) -> float:
+        """Return by how much a balance shows the specimen heavier, beside what factors of the model do [kg]."""
+        return 0.0
+
+    def sensor_weight(self, values: Values) -> float:
+        """Return by how much a balance shows a sensor with its mount heavier than modelled [kg]."""
+        return 0.0
+
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Return why the effect cannot be examined on this specimen and test, or None."""
         return None
 
-    def why_not(self, predictor: Predictor) -> str | None:
+    def why_not(self, predictor: Predictor) -> Obstacle | None:
         """Return why the effect is left out: it does not apply to this kind of model, or an obstacle; or None."""
-        kind = predictor.spec.kind
-        if kind == "matrices" and kind not in self.models:
-            return "not for imported matrices"
-        return self.obstacle(predictor)
+        spec = predictor.spec
+        if spec.kind in self.models:
+            return self.obstacle(predictor)
+        return Obstacle(Lack.MODEL, self.elsewhere.get(spec.kind, f"not for {spec.called}"))
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Return prior quantiles from which the search for the best values starts."""

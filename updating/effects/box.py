@@ -122,7 +122,7 @@ def mirror_images(spec: Spec, at: Place) -> tuple[Place, ...]:
 
 def _symmetric(spec: Spec, axis: int) -> bool:
     """Tell whether supports, masses and regions are their own mirror image along an axis."""
-    if spec.kind == "matrices":
+    if not spec.outlined:
         return False
     names = ("x0", "x1") if axis == 0 else ("y0", "y1")
     if len({name in spec.clamped for name in names}) > 1:

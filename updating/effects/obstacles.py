@@ -1,6 +1,9 @@
-"""Why an effect cannot be examined on some data."""
+"""Why an effect cannot be examined on a model or on some data."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 
@@ -9,15 +12,56 @@ from updating.test_data.chain import roving
 from updating.test_data.measured import Measured
 
 
-def damping_obstacle(predictor: Predictor) -> str | None:
+class Lack(Enum):
+    """What is missing where an effect cannot be examined."""
+
+    MODEL = "model"
+    """The model has no place for it, or holds it already."""
+    DATA = "data"
+    """The test did not measure what would show it."""
+    EXPECTATION = "expectation"
+    """Neither model nor baseline says what would be there without it."""
+    ONE_TEST = "one test"
+    """It differs from test to test, and several are diagnosed together."""
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """Why an effect cannot be examined.
+
+    Parameters
+    ----------
+    lack : Lack
+        What is missing.
+    sentence : str
+        The reason in words, a name in braces where one of the numbers stands.
+    numbers : tuple of (str, float)
+        What would be needed and what was found, by name.
+    """
+
+    lack: Lack
+    sentence: str
+    numbers: tuple[tuple[str, float], ...] = ()
+
+    def __str__(self) -> str:
+        """Return the reason in words."""
+        return self.sentence.format(**dict(self.numbers))
+
+
+def damping_obstacle(predictor: Predictor) -> Obstacle | None:
     """Return why nothing can be said of what changes the damping, or None."""
     if not np.isfinite(predictor.measured.damping).any():
-        return "no damping was measured"
-    return None if predictor.expects_damping else "neither model nor baseline says what damping to expect"
+        return Obstacle(Lack.DATA, "no damping was measured")
+    if predictor.expects_damping:
+        return None
+    return Obstacle(Lack.EXPECTATION, "neither model nor baseline says what damping to expect")
 
 
-def shape_obstacle(measured: Measured, least: int) -> str | None:
+def shape_obstacle(measured: Measured, least: int) -> Obstacle | None:
     """Return why so few points do not tell one of them apart, or None."""
     moved = measured.hit if roving(measured) == "hit" else measured.seen
     count = len(np.unique(moved[moved >= 0]))
-    return None if count >= least else f"it takes shapes at {least} points or more to tell, found {count}"
+    if count >= least:
+        return None
+    what = "it takes shapes at {needed} points or more to tell, found {found}"
+    return Obstacle(Lack.DATA, what, (("needed", least), ("found", count)))

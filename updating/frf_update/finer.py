@@ -38,9 +38,8 @@ def finer(specimen: Specimen, steps: Sequence[Step]) -> tuple[Specimen, list[Ste
     state = predictor.base.plus(step.state)
     if predictor.reduced.structure.unknowns <= SMALL or state.released or state.theory is not None:
         return None
-    new = predictor.for_test(specimen.measured)
-    new.__dict__["reduced"] = basis_at(predictor.reduced, state, _loads(specimen))
-    new.__dict__.pop("base", None)
+    basis = basis_at(predictor.reduced, state, _loads(specimen))
+    new = predictor.for_test(specimen.measured).on(basis)
     moved = [_moved(s, new) for s in steps]
     there = replace(combine([s.own for s in last_steps(moved)]), ratios=step.state.ratios)
     laplace = step.stage.frfs.laplace

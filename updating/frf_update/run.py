@@ -27,7 +27,7 @@ from updating.prediction.matching import match
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.update.building import build_specimen
 from updating.update.data.specimen import Specimen
-from updating.update.parameters.parameters import DAMPERS, DAMPING, ParameterSet, build_parameter_set
+from updating.update.parameters.parameters import ParameterSet, build_parameter_set, only_damps
 
 PASSES = 2
 """How often a stage chooses its lines: on the nominal model, and again where that has brought it."""
@@ -243,7 +243,7 @@ def _staged(parameters: Sequence[str], stages: Sequence[Sequence[str]] | None) -
     if stages is not None:
         named = [list(stage) for stage in stages]
     else:
-        damping = [n for n in parameters if n.rpartition(".")[2] in DAMPERS or n.partition(".")[0] in DAMPING]
+        damping = [n for n in parameters if only_damps(n)]
         named = [[n for n in parameters if n not in damping], damping]
     named = [stage for stage in named if stage]
     if not named:

@@ -8,30 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.predict import Prediction
 
 CHANNELS = ("frequency", "damping", "frf", "phase", "level")
 """What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force."""
 
-SHAPES = 2
+SCALED = "frf"
 """The channel whose noise has an unknown scale."""
-
-SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
-"""How many times worse than thought the shapes may be."""
-
-KNOWN_SCATTER = (0.85, 0.12, 0.025, 0.004, 0.001)
-UNKNOWN_SCATTER = (0.3, 0.25, 0.2, 0.15, 0.1)
-"""Prior of each scale, where repeated hits show the scatter and where nothing does."""
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """The data of one channel.
+    """The data of one kind.
 
     Parameters
     ----------
-    channel : int
+    channel : str
         Which of ``CHANNELS``.
     residual, variance : (n,) arrays
         Measured minus predicted, and the variance of the independent noise [-].
@@ -44,7 +37,7 @@ class Block:
         Measured mode each datum belongs to.
     """
 
-    channel: int
+    channel: str
     residual: FloatArray
     variance: FloatArray
     factors: FloatArray
@@ -92,9 +85,19 @@ class Comparison:
         """The predicted modes of the first specimen."""
         return self.predictions[0]
 
+    def of(self, channel: str) -> BoolArray:
+        """Return which data are of one of ``CHANNELS``, (n,); none where it is no channel."""
+        code = CHANNELS.index(channel) if channel in CHANNELS else -1
+        return np.asarray(self.channel == code)
+
+    @property
+    def scaled(self) -> BoolArray:
+        """Which data have noise of an unknown scale, (n,): the shapes."""
+        return self.of(SCALED)
+
     def noise(self, scale: float) -> FloatArray:
         """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
-        return np.where(self.channel == SHAPES, scale**2, 1.0) * self.variance
+        return np.where(self.scaled, scale**2, 1.0) * self.variance
 
 
 def assemble(
@@ -104,12 +107,12 @@ def assemble(
     prediction: Prediction,
     scale_prior: tuple[float, ...],
 ) -> Comparison:
-    """Put the blocks of one test together.
+    """Put the blocks of one test together: the tolerances common to all, what else is doubted each for itself.
 
     Parameters
     ----------
     blocks : sequence of Block
-        One per channel.
+        One per channel, in the order of ``CHANNELS``.
     sigmas : (n_names,) array
         Standard deviations of the factors [-].
     shift : (n_names,) array
@@ -131,7 +134,7 @@ def assemble(
         np.concatenate([block.residual for block in blocks]) + nuisance[:, :count] @ shift,
         nuisance,
         np.concatenate([block.variance for block in blocks]),
-        np.concatenate([np.full(len(block.residual), block.channel) for block in blocks]),
+        np.concatenate([np.full(len(block.residual), CHANNELS.index(block.channel)) for block in blocks]),
         np.concatenate([block.mode for block in blocks]),
         (prediction,),
         scale_prior,

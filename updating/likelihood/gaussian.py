@@ -14,7 +14,8 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.likelihood.comparison import SCALES, SHAPES, Comparison
+from updating.likelihood.comparison import Comparison
+from updating.thresholds import LARGEST_SENSITIVITY, SHAPE_NOISE_SCALES
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +61,8 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     if not _sound(comparison):
         nothing = np.zeros(comparison.nuisance.shape[1])
         return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
-    shapes = comparison.channel == SHAPES if keep is None else (comparison.channel == SHAPES) & keep
-    scales = SCALES if shapes.any() else SCALES[:1]
+    shapes = comparison.scaled if keep is None else comparison.scaled & keep
+    scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
     parts = gaussian(comparison, scales, keep)
     prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
     score = np.array([part.log_likelihood for part in parts]) + prior
@@ -77,7 +78,7 @@ def _sound(comparison: Comparison) -> bool:
     return bool(
         whole
         and np.isfinite(comparison.variance).all()
-        and np.abs(comparison.nuisance).max(initial=0.0) < 1e6
+        and np.abs(comparison.nuisance).max(initial=0.0) < LARGEST_SENSITIVITY
     )
 
 
@@ -87,7 +88,7 @@ def gaussian(
     """Integrate the nuisances out at each of some scales of the noise of the shapes; see :func:`marginal`."""
     rows = slice(None) if keep is None else keep
     r, j, d = comparison.residual[rows], comparison.nuisance[rows], comparison.variance[rows]
-    shapes = comparison.channel[rows] == SHAPES
+    shapes = comparison.scaled[rows]
     data = np.column_stack([j, r])
     # every scale weighs the same two Gram matrices, those of the shapes and of the rest
     gram_matrices = [(data[part].T / d[part]) @ data[part] for part in (~shapes, shapes)]

@@ -15,13 +15,13 @@ import numpy as np
 from scipy.special import logsumexp
 
 from acquisition.arrays import FloatArray
+from updating.likelihood.base import Doubt
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
 from updating.localisation.base import KINDS, Kind, Localiser, areas
 from updating.localisation.changes import NODES, changes
 from updating.localisation.severity import DEPTH, Between, integrate, refine
 from updating.models.state import NOMINAL, State
-from updating.problem.candidate import Doubt
 from updating.problem.specimen import SpecimenProblem
 
 DOUBT = Doubt(fidelity=0.1)

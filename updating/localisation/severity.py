@@ -15,9 +15,8 @@ from scipy.interpolate import CubicSpline
 from scipy.special import logsumexp
 
 from acquisition.arrays import BoolArray, FloatArray
-from updating.likelihood.comparison import CHANNELS, SCALES, SHAPES, Comparison
-
-FREQUENCY = CHANNELS.index("frequency")
+from updating.likelihood.comparison import Comparison
+from updating.thresholds import SHAPE_NOISE_SCALES
 
 LOOKS = 12
 """How often the severities are refined at most."""
@@ -84,7 +83,7 @@ class Between:
 
     @cached_property
     def _shifting(self) -> BoolArray:
-        return np.asarray(self._ordered[0].channel == FREQUENCY)
+        return np.asarray(self._ordered[0].of("frequency"))
 
     def variance(self, severity: FloatArray) -> FloatArray:
         """Return the variance of the independent noise at severities, (m, n) [-]."""
@@ -94,8 +93,8 @@ class Between:
     def log_likelihoods(self, severity: FloatArray) -> FloatArray:
         """Return the log-likelihood at severities, nuisances and the shapes' noise integrated out, (m,) [-]."""
         first = self._ordered[0]
-        shapes = first.channel == SHAPES
-        scales = SCALES if shapes.any() else SCALES[:1]
+        shapes = first.scaled
+        scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
         prior = np.log(first.scale_prior if len(scales) > 1 else (1.0,))
         data, variance = self._data(severity), self.variance(severity)
         gram_matrices = [_gram_matrices(data[:, rows], variance[:, rows]) for rows in (~shapes, shapes)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from scipy.sparse.linalg import splu
@@ -61,6 +61,8 @@ class Structure(ABC):
     spec: Spec
     terms: Sequence[Term]
     fixed: Mapping[str, IntArray]
+    refinable: ClassVar[bool] = True
+    """Whether it can be built again on another mesh, to see what its own leaves off."""
 
     @property
     @abstractmethod

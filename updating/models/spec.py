@@ -29,6 +29,9 @@ THEORIES = {
 MOST_ELEMENTS = 20_000
 """More elements than this of a uniform beam or plate say nothing new and cost memory: some 2 GB on a plate [-]."""
 
+CALLED = {"beam": "a beam", "plate": "a plate", "matrices": "imported matrices"}
+"""Kinds of model in a sentence."""
+
 DIMENSIONS = {"beam": 1, "plate": 2, "matrices": 3}
 """How many coordinates a place on the model has."""
 
@@ -200,6 +203,20 @@ class Spec(Displayed):
     def dim(self) -> int:
         """How many coordinates a place on the model has: 1 for a beam, 2 for a plate, 3 for matrices."""
         return DIMENSIONS[self.kind]
+
+    @property
+    def called(self) -> str:
+        """How a sentence names this kind of model."""
+        return CALLED[self.kind]
+
+    @property
+    def outlined(self) -> bool:
+        """Whether length, width and thickness are its own, so that any place on it and any caliper mean something."""
+        return self.imported is None
+
+    def knows(self, theory: Theory) -> bool:
+        """Tell whether this kind of model can be put on a theory."""
+        return theory in THEORIES[self.kind]
 
     def with_theory(self, theory: Theory) -> Spec:
         """Return the same specimen under another theory."""

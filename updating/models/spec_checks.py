@@ -85,9 +85,10 @@ def _check_sizes(spec: Spec) -> None:
 def _check_mass(spec: Spec, mass: PointMass) -> None:
     at = list(mass.at)
     if len(at) != spec.dim:
-        what = "imported matrices" if spec.kind == "matrices" else f"a {spec.kind}"
         many = "s" if spec.dim > 1 else ""
-        raise StudyError(f"model: mass at {at} needs {spec.dim} coordinate{many} on {what}, found {len(at)}")
+        raise StudyError(
+            f"model: mass at {at} needs {spec.dim} coordinate{many} on {spec.called}, found {len(at)}"
+        )
     if not (0 <= mass.mass < math.inf and 0 <= mass.inertia < math.inf):
         raise StudyError(
             f"model: mass at {at} of {mass.mass:g} kg, {mass.inertia:g} kg m2; neither is negative"

@@ -88,22 +88,23 @@ class Predictor(Displayed):
     additions : tuple of callables
         What is put into the model beforehand, each a function of the predictor that returns a State:
         accepted effects, the correction by a baseline test.
+    basis : Reduced, optional
+        A reduced basis that is there already; left out, one is made when it is asked for.
     """
 
     spec: Spec
     measured: Measured
     environment: Environment = field(default_factory=Environment)
     additions: tuple[Callable[[Predictor], State], ...] = ()
+    basis: Reduced | None = None
 
     @cached_property
     def base(self) -> State:
         """What the additions put into the model, on this predictor's basis; each sees those before it."""
-        total, seen = NOMINAL, self.bare
-        for count, addition in enumerate(self.additions, start=1):
-            total = total.plus(addition(seen))
-            seen = self.for_test(self.measured, self.additions[:count])
-            seen.__dict__["base"] = total
-        return total
+        if not self.additions:
+            return NOMINAL
+        before = self.for_test(self.measured, self.additions[:-1]) if len(self.additions) > 1 else self.bare
+        return before.base.plus(self.additions[-1](before))
 
     @cached_property
     def bare(self) -> Predictor:
@@ -114,15 +115,24 @@ class Predictor(Displayed):
         self, measured: Measured, additions: tuple[Callable[[Predictor], State], ...] | None = None
     ) -> Predictor:
         """Return a predictor for another test or with other additions, on the same reduced basis."""
-        other = replace(self, measured=measured, additions=self.additions if additions is None else additions)
-        other.__dict__["reduced"] = self.reduced
-        return other
+        kept = self.additions if additions is None else additions
+        return replace(self, measured=measured, additions=kept, basis=self.reduced)
+
+    def on(self, basis: Reduced) -> Predictor:
+        """Return the predictor of the same test on another basis."""
+        return replace(self, basis=basis)
+
+    def of(self, spec: Spec) -> Predictor:
+        """Return the predictor of another model for the same test, on a basis of its own."""
+        return replace(self, spec=spec, basis=None)
 
     @cached_property
     def reduced(self) -> Reduced:
         """The nominal model on its reduced basis."""
+        if self.basis is not None:
+            return self.basis
         points, directions = self.measured.points, self.measured.directions
-        if not len(points) and self.spec.imported is None:
+        if not len(points) and self.spec.outlined:
             points = np.zeros((1, self.spec.dim))
         modes = 30 if self.spec.kind == "beam" else 40
         return reduce_structure(build_structure(self.spec), points, directions, modes=modes)
@@ -130,9 +140,7 @@ class Predictor(Displayed):
     @cached_property
     def whole(self) -> Predictor:
         """The same specimen on all degrees of freedom, for states of its full matrices."""
-        other = replace(self)
-        other.__dict__["reduced"] = Whole(self.reduced)
-        return other
+        return self.on(Whole(self.reduced))
 
     def once(self, name: str, build: Callable[[], FloatArray]) -> FloatArray:
         """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""
@@ -154,7 +162,7 @@ class Predictor(Displayed):
         if theory == self.spec.theory:
             return self
         if theory not in self._others:
-            self._others[theory] = replace(self, spec=self.spec.with_theory(theory))
+            self._others[theory] = self.of(self.spec.with_theory(theory))
         return self._others[theory]
 
     @cached_property

@@ -11,28 +11,13 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.effects import Effect, Parameter, Variant
 from updating.effects.base import Values
+from updating.likelihood.base import Doubt
 from updating.models.spec import Theory
 from updating.models.state import State, combine
 from updating.prediction.predict import Predictor
 
 MIDDLE = 0.5
 """Quantile that stands in for a parameter that a variant fixes."""
-
-
-@dataclass(frozen=True)
-class Doubt:
-    """What a candidate leaves in doubt beside its parameters.
-
-    Parameters
-    ----------
-    fidelity : float
-        How far its idealisation may be off, relative to the shift it makes [-].
-    damping : float
-        How far it leaves damping in doubt: 1 sigma of ln zeta [-].
-    """
-
-    fidelity: float = 0.0
-    damping: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,10 +60,11 @@ class Candidate:
 
     def stage(self, predictor: Predictor) -> Predictor:
         """Return the predictor the effects act on."""
-        theory = self.theory
-        if theory is None and "shear" in self.names:
-            theory = "timoshenko"
-        if theory is None or predictor.spec.kind != "beam":  # of several specimens, beams alone have another
+        wanted = (self.theory, *(effect.theory for effect in self.effects))
+        theory = next((theory for theory in wanted if theory is not None), None)
+        if theory is None or not predictor.spec.knows(
+            theory
+        ):  # of several specimens, beams alone have another
             return predictor
         return predictor.under(theory)
 
@@ -115,7 +101,8 @@ class Candidate:
 
     def assemble(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
         """Return the state of the model at values of the effects' parameters."""
-        theory = State(theory=self.theory if stage.spec.kind == "beam" else None)
+        known = self.theory is not None and stage.spec.knows(self.theory)
+        theory = State(theory=self.theory if known else None)
         return combine([*(effect.state(stage, values) for effect, values in parts), theory])
 
     def locations(

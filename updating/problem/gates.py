@@ -13,15 +13,7 @@ from acquisition.quantities import hertz, percent, quantity
 from updating.models.spec import Spec
 from updating.problem.theory_error import TheoryError, discrepancy, theory_error
 from updating.test_data.measured import Measured
-
-FEW_MODES = 3
-"""With fewer modes little can be told apart."""
-
-SKIPPED = 4.0
-"""By how much a missing mode must lower the scatter of the frequency ratios before it is suspected [-]."""
-
-UNLIKE = 0.02
-"""Scatter of the frequency ratios, relative, below which nothing is suspected [-]."""
+from updating.thresholds import FEWEST_MODES, SKIPPED_MODE_GAIN, UNLIKE_RATIOS
 
 __all__ = [
     "TheoryError",
@@ -90,7 +82,7 @@ def on_modes(measured: Measured, predicted: FloatArray, order: IntArray | None =
     """
     count = len(measured.frequency)
     notes = []
-    if count < FEW_MODES:
+    if count < FEWEST_MODES:
         notes.append(f"only {count} mode{'s' * (count > 1)} paired: little can be told apart")
     if measured.has_shapes or (order is not None and np.any(order != np.arange(count))):
         return notes
@@ -120,13 +112,13 @@ def missing_mode(test: FloatArray, model: FloatArray) -> int | None:
         about their mean to a quarter. A factor common to all modes does not count: it is what is looked for.
     """
     count = len(test)
-    if count < FEW_MODES or len(model) <= count:
+    if count < FEWEST_MODES or len(model) <= count:
         return None
     plain = float(np.std(np.log(test / model[:count])))
     ranks = np.arange(count)[None, :] + (np.arange(count)[None, :] >= np.arange(1, count)[:, None])
     scatter = np.std(np.log(test[None, :] / model[ranks]), axis=1)
     best = int(np.argmin(scatter))
-    suspect = plain > UNLIKE and plain > SKIPPED * scatter[best]
+    suspect = plain > UNLIKE_RATIOS and plain > SKIPPED_MODE_GAIN * scatter[best]
     return best + 1 if suspect else None
 
 

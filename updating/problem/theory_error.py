@@ -67,9 +67,9 @@ def discrepancy(predictor: Predictor, order: IntArray, *, count: int | None = No
 def theory_error(predictor: Predictor, order: IntArray, *, count: int | None = None) -> TheoryError:
     """Return the parts of `discrepancy`; parameters as there."""
     needed = max(count or 0, int(order.max()) + 1)
-    if predictor.spec.kind == "matrices":
-        return TheoryError(np.zeros(len(order)), np.zeros(len(order)), known=False)
     reduced = predictor.reduced
+    if not reduced.structure.refinable:
+        return TheoryError(np.zeros(len(order)), np.zeros(len(order)), known=False)
     base, vectors = _elastic(reduced, needed)
     theory = (
         _beam_theory(predictor, base)

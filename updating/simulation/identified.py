@@ -49,10 +49,10 @@ def with_ratios(predictor: Predictor, ratios: FloatArray) -> Predictor:
     own = [r for r in predictor.spec.regions if any(v is not None for v in (r.alpha, r.beta, r.loss_factor))]
     regions = tuple(replace(r, alpha=None, beta=None, loss_factor=None) for r in predictor.spec.regions)
     damping = Damping(ratios=tuple(float(r) for r in ratios))
-    other = replace(predictor, spec=replace(predictor.spec, damping=damping, regions=regions))
-    if not own:  # the basis knows the regions' damping, and nothing else of it
-        other.__dict__["reduced"] = predictor.reduced
-    return other
+    other = predictor.of(replace(predictor.spec, damping=damping, regions=regions))
+    return (
+        other if own else other.on(predictor.reduced)
+    )  # the basis knows the regions' damping, nothing else of it
 
 
 def with_identified_damping(predictor: Predictor, measured: Measured | None = None) -> Predictor:

@@ -150,7 +150,7 @@ def _from_points(predictor: Predictor, points: FloatArray, directions: FloatArra
     more = replace(
         test, points=np.vstack([test.points, points]), nodes=(*test.nodes, *nodes), directions=ways
     )
-    return replace(predictor, measured=more)
+    return replace(predictor, measured=more, basis=None)
 
 
 def _ways(directions: FloatArray | None, count: int) -> FloatArray:

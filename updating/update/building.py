@@ -96,12 +96,9 @@ def _on_own_basis(predictor: Predictor, parameter_set: ParameterSet) -> Predicto
     structure = build_structure(predictor.spec)
     if not isinstance(structure, FieldStructure):
         return predictor
-    test, own = predictor.measured, replace(predictor)
+    test = predictor.measured
     highest, count = float(test.frequency.max()), len(test.frequency)
-    own.__dict__["reduced"] = update_basis(
-        structure, parameter_set.model_parameters, highest=highest, count=count
-    )
-    return own
+    return predictor.on(update_basis(structure, parameter_set.model_parameters, highest=highest, count=count))
 
 
 def build_system(

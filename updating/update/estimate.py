@@ -35,6 +35,8 @@ class Estimate:
     interval : tuple of float, optional
         Ends of the 95 % interval: 2.5 and 97.5 percentiles of a bootstrap, or, where several solutions explain the
         data about as well, of the mixture of all [``unit``].
+    relative : bool
+        Whether its course over the iterations is that of the factor, not of the value.
     """
 
     name: str
@@ -48,3 +50,4 @@ class Estimate:
     high: float
     initial: float = np.nan
     interval: tuple[float, float] | None = None
+    relative: bool = False

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, IntArray
 from modalkit.figures.diagnosis.fitted import Fitted, fitted
 from updating import Case, Diagnosis
 from updating.diagnosis.answer.metric import noise_squares, squares
-from updating.likelihood.comparison import CHANNELS, Comparison
+from updating.likelihood.comparison import Comparison
 from updating.models.state import State
 
 LABELS = {
@@ -78,7 +78,7 @@ def mode_errors(diagnosis: Diagnosis, case: Case | None = None, *, best: Fitted 
     if metric == "combined":
         both = [_sigmas(plain, residual) for residual in (plain.residual, left_over) if residual is not None]
         return ModeErrors(problem.measured.frequency, both[0], (*both, None)[1], None, None, metric)
-    rows = plain.channel == CHANNELS.index(metric)
+    rows = plain.of(metric)
     if not rows.any():
         return mode_errors(diagnosis)
     count, modes_of = len(problem.measured.frequency), plain.mode[rows]
@@ -97,14 +97,14 @@ def _sigmas(plain: Comparison, residual: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(stated.total / np.maximum(stated.count, 1.0)))
 
 
-def _errors(residual: FloatArray, mode: FloatArray, count: int, metric: str) -> FloatArray:
+def _errors(residual: FloatArray, mode: IntArray, count: int, metric: str) -> FloatArray:
     """Return the signed error of each mode, or its r.m.s. where a mode has several data [%]."""
     if metric == "frf":
         return 100 * np.sqrt(_mean(residual**2, mode, count))
     return 100 * np.expm1(-_mean(residual, mode, count))
 
 
-def _mean(values: FloatArray, mode: FloatArray, count: int) -> FloatArray:
+def _mean(values: FloatArray, mode: IntArray, count: int) -> FloatArray:
     """Average over the data of each mode; nan where it has none."""
     size = np.bincount(mode, minlength=count)
     return np.asarray(np.where(size > 0, np.bincount(mode, values, count) / np.maximum(size, 1), np.nan))

@@ -79,7 +79,7 @@ def _courses(result: Update) -> list[Courses]:
     panels: dict[str, list[Course]] = {}
     repeats = tuple(np.cumsum(result.stages).tolist()) if isinstance(result, FrfUpdate) else ()
     for name, p in zip(result.names, result.parameters, strict=True):
-        unit = "-" if p.factor is not None and not p.name.startswith("length") else p.unit
+        unit = "-" if p.relative else p.unit
         panels.setdefault(unit, []).append(Course(name, result.history[name].to_numpy(), repeats=repeats))
     titles = {"-": "factors"}
     return [

@@ -14,24 +14,10 @@ from updating.diagnosis.answer.result import Place
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import highest
 from updating.problem.specimen import SpecimenProblem
-
-LEAST = 0.05
-"""A place with less of the weight is not told."""
-
-HEAVY = 300
-"""So many of the heaviest samples are looked at."""
-
-APART = 0.05
-"""Samples further from each other than this share of the span belong to different places [-]."""
-
-NOTHING = 1e-4
-"""Samples with less than this share of the heaviest one's weight are not looked at [-]."""
+from updating.thresholds import BRIDGE_SAMPLE, HEAVIEST_SAMPLES, LEAST_PLACE, LIGHTEST_SAMPLE, SEPARATE_PLACES
 
 SEARCHED = frozenset({"x", "y", "z", "region"})
 """Parameters that say where an effect sits."""
-
-FAINT = 1e-3
-"""Samples with less than this share of the heaviest one's weight build no bridges between places [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +77,7 @@ def _stated(found: list[Cluster]) -> Iterator[Cluster]:
     for likely_place in {cluster.likely_place for cluster in found}:
         here = [cluster for cluster in found if cluster.likely_place == likely_place]
         total = sum(cluster.weight for cluster in here)
-        yield from (replace(c, weight=c.weight / total) for c in here if c.weight >= LEAST * total)
+        yield from (replace(c, weight=c.weight / total) for c in here if c.weight >= LEAST_PLACE * total)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,8 +117,8 @@ def sampled_places(problem: SpecimenProblem, explanation: Explanation, channel: 
         Channel whose effects are asked for; left out, all but the measurement. Where none of these has a place, all
         effects are.
     """
-    heavy = np.argsort(explanation.weights)[::-1][:HEAVY]
-    heavy = heavy[explanation.weights[heavy] > NOTHING * explanation.weights[heavy[0]]]
+    heavy = np.argsort(explanation.weights)[::-1][:HEAVIEST_SAMPLES]
+    heavy = heavy[explanation.weights[heavy] > LIGHTEST_SAMPLE * explanation.weights[heavy[0]]]
     rows = [
         (place, float(explanation.weights[i]) / len(alternatives), likely_place)
         for i in heavy.tolist()
@@ -171,11 +157,11 @@ def _span(problem: SpecimenProblem) -> float:
 
 def _gather(sampled: Sampled, span: float, likely_place: int) -> list[Cluster]:
     """Gather the samples of one seat: what hangs together is one place."""
-    bold = sampled.weights >= FAINT * sampled.weights.max()
+    bold = sampled.weights >= BRIDGE_SAMPLE * sampled.weights.max()
     places, weights = sampled.places[bold], sampled.weights[bold]
     labels = np.ones(len(places), dtype=int)
     if len(places) > 1:
-        labels = fcluster(linkage(places, "single"), APART * span, criterion="distance")
+        labels = fcluster(linkage(places, "single"), SEPARATE_PLACES * span, criterion="distance")
     found = []
     for label in np.unique(labels):
         here, share = places[labels == label], weights[labels == label]
@@ -195,7 +181,7 @@ def _mirrored(
     for flipped in _flips(problem, explanation):
         peak = highest(problem, explanation.candidate, flipped, rounds=4)
         likely = np.exp(min(peak.marginal.log_likelihood - best.marginal.log_likelihood, 0.0))
-        if likely < LEAST:
+        if likely < LEAST_PLACE:
             continue
         for likely_place, places in enumerate(
             _places_of_sample(problem, explanation, peak.coordinates, channel)
@@ -204,7 +190,7 @@ def _mirrored(
             if likely_place not in leaders:
                 continue
             for place in np.asarray(places, dtype=float):
-                if min(np.linalg.norm(place - k) for k in known) > APART * span:
+                if min(np.linalg.norm(place - k) for k in known) > SEPARATE_PLACES * span:
                     share = float(likely) * leaders[likely_place].weight
                     more.append(Cluster(place, leaders[likely_place].spread, share, likely_place))
     return more

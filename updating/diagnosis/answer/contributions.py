@@ -14,6 +14,7 @@ from acquisition.quantities import bare_hertz, hertz, number
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.models.state import NOMINAL
+from updating.thresholds import NOTABLE_MODE
 
 NAMES = {
     "frequency": "frequency",
@@ -23,9 +24,6 @@ NAMES = {
     "level": "change with force",
 }
 """How the kinds of data are called."""
-
-NOTABLE = 3.0
-"""From so many standard deviations on a mode carries some of the gap."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,16 +58,16 @@ def contributions(problem: DiagnosisProblem, comparison: Comparison | None = Non
     covariance = np.diag(plain.variance) + plain.nuisance @ plain.nuisance.T
     frequency = np.concatenate([one.measured.frequency for one in problem.specimens])
     count = len(frequency)
-    kinds = [int(c) for c in np.unique(plain.channel)]
-    misfit = {_name(c): np.full(count, np.nan) for c in kinds}
+    kinds = [name for name in CHANNELS if plain.of(name).any()]
+    misfit = {NAMES[name]: np.full(count, np.nan) for name in kinds}
     excess, squared = np.zeros((count, len(kinds))), np.zeros(count)
     for k, kind in enumerate(kinds):
         for mode in range(count):
-            rows = np.flatnonzero((plain.channel == kind) & (plain.mode == mode))
+            rows = np.flatnonzero(plain.of(kind) & (plain.mode == mode))
             if len(rows):
                 distance = _distance(plain.residual[rows], covariance[np.ix_(rows, rows)])
                 sign = np.sign(plain.residual[rows[0]]) if len(rows) == 1 else 1.0
-                misfit[_name(kind)][mode] = sign * np.sqrt(distance / len(rows))
+                misfit[NAMES[kind]][mode] = sign * np.sqrt(distance / len(rows))
                 excess[mode, k] = _sigmas(distance, len(rows))
                 squared[mode] += distance
     table = pd.DataFrame(
@@ -80,17 +78,13 @@ def contributions(problem: DiagnosisProblem, comparison: Comparison | None = Non
         },
         index=pd.RangeIndex(1, count + 1, name="mode"),
     )
-    return Contributions(table, _sentence(frequency, excess, [_name(k) for k in kinds]))
+    return Contributions(table, _sentence(frequency, excess, [NAMES[name] for name in kinds]))
 
 
 def columns_of(modes: pd.DataFrame) -> dict[str, str]:
     """Return the kinds of data that a table of contributions holds, each with its column."""
     columns = {name: f"{name} [sigma]" for name in NAMES.values()}
     return {name: column for name, column in columns.items() if column in modes.columns}
-
-
-def _name(channel: int) -> str:
-    return NAMES[CHANNELS[channel]]
 
 
 def _distance(residual: FloatArray, covariance: FloatArray) -> float:
@@ -107,12 +101,12 @@ def _sigmas(distance: float, count: int) -> float:
 
 def _sentence(frequency: FloatArray, excess: FloatArray, names: list[str]) -> str:
     """Say which kind of data of which modes is the furthest off."""
-    if not excess.size or excess.max() < NOTABLE:
+    if not excess.size or excess.max() < NOTABLE_MODE:
         return "No mode stands out: none is further off than noise and tolerances allow."
     worst = int(np.argmax(excess.max(axis=0)))
     column = excess[:, worst]
     order = np.argsort(frequency)
-    band = _band(column[order], max(NOTABLE, 0.5 * float(column.max())))
+    band = _band(column[order], max(NOTABLE_MODE, 0.5 * float(column.max())))
     modes = order[band]
     at = frequency[modes]
     what = names[worst]

@@ -12,10 +12,8 @@ from updating.diagnosis.answer.result import Metric
 from updating.diagnosis.search.fit import Point
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.likelihood.gaussian import marginal
-from updating.problem.specimen import REPEATED_DAMPING, SpecimenProblem
-
-AS_MUCH = 0.5
-"""A second channel carries the gap, too, if the logarithm of its probability is this share of the first's [-]."""
+from updating.problem.specimen import SpecimenProblem
+from updating.thresholds import DAMPING_REPEATABILITY, SECOND_METRIC, UNSTATED_DAMPING_NOISE
 
 TOLD_AS: dict[str, Metric] = {
     "frequency": "frequency",
@@ -36,15 +34,15 @@ def metric_of(point: Point) -> Metric:
         The nominal model with its tolerances.
     """
     surprise = {}
-    for i, name in enumerate(CHANNELS):
-        keep = point.comparison.channel == i
+    for name in CHANNELS:
+        keep = point.comparison.of(name)
         if keep.any():
             part = marginal(point.comparison, keep)
             surprise[name] = float(chi2.logsf(part.chi2, part.count))
     order = sorted(surprise, key=lambda name: surprise[name])
     if not order:
         return "frequency"
-    stated = [TOLD_AS[name] for name in order if surprise[name] <= AS_MUCH * surprise[order[0]]]
+    stated = [TOLD_AS[name] for name in order if surprise[name] <= SECOND_METRIC * surprise[order[0]]]
     return stated[0] if len(set(stated)) == 1 else "combined"
 
 
@@ -87,16 +85,16 @@ def squares(residual: FloatArray, nominal: Comparison, metric: Metric) -> Square
         ``frequency`` and ``damping``: relative error of the model; ``frf``: error of the complex modal constants
         over their r.m.s. in the mode; ``combined``: every datum over its standard deviation.
     """
-    channel, count = nominal.channel, int(nominal.mode.max()) + 1
+    count = int(nominal.mode.max()) + 1
     if metric == "combined":
         error, counted = residual / np.sqrt(nominal.variance), np.ones(len(residual), dtype=bool)
     elif metric == "frf":
         # a mode turned by a small angle is off by that angle in all its constants
-        counted, turned = channel == CHANNELS.index("frf"), channel == CHANNELS.index("phase")
+        counted, turned = nominal.of("frf"), nominal.of("phase")
         share = np.sqrt(counted.sum() / max(turned.sum(), 1))
         error = np.where(counted, residual, np.where(turned, share * residual, 0.0))
     else:
-        counted = channel == CHANNELS.index(metric)
+        counted = nominal.of(metric)
         error = np.where(counted, np.expm1(-np.where(counted, residual, 0.0)), 0.0)
     return Squares(
         np.asarray(np.bincount(nominal.mode, error**2, minlength=count), dtype=float),
@@ -119,9 +117,9 @@ def noise_squares(specimens: tuple[SpecimenProblem, ...], nominal: Comparison, m
     if metric == "combined":
         return squares(np.sqrt(nominal.variance), nominal, metric)
     variance = np.array(nominal.variance)
-    rows = nominal.channel == CHANNELS.index("frequency")
+    rows = nominal.of("frequency")
     variance[rows] = np.concatenate([_repeated(one) for one in specimens])
-    rows = nominal.channel == CHANNELS.index("damping")
+    rows = nominal.of("damping")
     variance[rows] = np.concatenate([_damped(one) for one in specimens])
     return _small(np.sqrt(np.maximum(variance, 0.0)), nominal, metric)
 
@@ -129,8 +127,8 @@ def noise_squares(specimens: tuple[SpecimenProblem, ...], nominal: Comparison, m
 def _damped(problem: SpecimenProblem) -> FloatArray:
     """Return the variance of ln zeta from one mounting to the next, per mode whose damping is known [-]."""
     test, rows = problem.measured, problem.damping_known
-    relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=0.05)
-    return np.asarray(relative**2 + REPEATED_DAMPING**2)
+    relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=UNSTATED_DAMPING_NOISE)
+    return np.asarray(relative**2 + DAMPING_REPEATABILITY**2)
 
 
 def _small(sigma: FloatArray, nominal: Comparison, metric: Metric) -> Squares:

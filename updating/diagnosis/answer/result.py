@@ -20,6 +20,7 @@ from acquisition.quantities import (
     quantity,
     sigmas,
 )
+from updating.effects.obstacles import Obstacle
 
 Verdict = Literal["named", "class", "unknown", "none"]
 Metric = Literal["frequency", "damping", "frf", "combined"]
@@ -302,7 +303,7 @@ class Diagnosis(Displayed):
         What to measure next.
     warnings : tuple of str
         What the reader ought to know.
-    not_examined : dict of str to str
+    not_examined : dict of str to Obstacle
         Effects that could not be examined, and why.
     comparable : bool
         Whether most measured modes have a partner in the model; if not, no cause is named.
@@ -319,7 +320,7 @@ class Diagnosis(Displayed):
     ranking: tuple[Ranked, ...]
     next_test: tuple[NextTest, ...]
     warnings: tuple[str, ...]
-    not_examined: dict[str, str]
+    not_examined: dict[str, Obstacle]
     comparable: bool = True
 
     @property

@@ -11,12 +11,7 @@ from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.held_out import believed, modes_held_out, points_held_out
 from updating.likelihood.comparison import Comparison
 from updating.problem.candidate import Candidate
-
-DRAWS = 400
-"""Of the bootstrap."""
-
-CLOSABLE = 1.5
-"""A gap within this many times the floor has nothing to close [-]."""
+from updating.thresholds import BOOTSTRAP_DRAWS, CLOSABLE_GAP
 
 
 def shrinkage(
@@ -98,10 +93,10 @@ def closed(before: Squares, after: Squares, floor: Squares, rng: np.random.Gener
     rng : Generator
         Draws the modes anew, and of each the errors that hitting again would add.
     """
-    if before.rms < CLOSABLE * floor.rms or not np.isfinite(after.rms):
+    if before.rms < CLOSABLE_GAP * floor.rms or not np.isfinite(after.rms):
         return None
     value = _share(before, after, floor, np.arange(len(before.count)))
-    draws = [_drawn(before, after, floor, rng) for _ in range(DRAWS)]
+    draws = [_drawn(before, after, floor, rng) for _ in range(BOOTSTRAP_DRAWS)]
     low, high = np.nanpercentile(draws, [2.5, 97.5])
     value = min(value, 100.0)
     return Closed(value, float(min(low, value)), float(max(min(high, 100.0), value)))

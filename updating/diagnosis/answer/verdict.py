@@ -12,30 +12,18 @@ from updating.diagnosis.answer.result import ParameterEstimate, Ranked, Verdict
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.search import Compared, Search
-
-CERTAIN = 0.95
-"""Probability that the sets of an answer hold together."""
-
-SIGNIFICANT = 0.005
-"""A gap is one when chance alone makes it less often than this."""
-
-FAR_BETTER = 6.0
-"""Logarithm of the Bayes factor at which an effect shows a gap that no single test does."""
-
-RIVAL = 0.02
-"""A rival that fits as well as the first is kept from this share of its probability on [-]."""
-
-CHANCE = 1e-3
-"""Chance, over all that was tried, that an effect fits noise that much better, below which there is a gap."""
-
-FORMS = 2
-"""Places tried for each form of an effect, roughly: what a chance is multiplied by, beside the form's share [-]."""
-
-FAINT, HEAVY, FEW = 1e-4, 300, 40
-"""Parameters of explanations less probable than this are taken from few of their heaviest samples."""
-
-CLOSE = 4.0
-"""Twice the difference of log-likelihood at 2 sigma: below it two explanations are equivalent."""
+from updating.thresholds import (
+    CHANCE_OF_A_FIT,
+    CLOSE_FITS,
+    CREDIBLE_SHARE,
+    FAR_BETTER,
+    FEWER_SAMPLES,
+    HEAVIEST_SAMPLES,
+    NEGLIGIBLE_PROBABILITY,
+    PLACES_PER_FORM,
+    RIVAL_SHARE,
+    SIGNIFICANT_GAP,
+)
 
 
 def is_significant(found: Search, p_value: float) -> bool:
@@ -46,7 +34,7 @@ def is_significant(found: Search, p_value: float) -> bool:
     fitting = [row for row in found.compared if row.names and not row.rejected]
     gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
     gain -= found.nothing.log_evidence
-    return bool(p_value < SIGNIFICANT or gain > FAR_BETTER or _by_chance(found) < CHANCE)
+    return bool(p_value < SIGNIFICANT_GAP or gain > FAR_BETTER or _by_chance(found) < CHANCE_OF_A_FIT)
 
 
 def _by_chance(found: Search) -> float:
@@ -59,7 +47,7 @@ def _by_chance(found: Search) -> float:
         for one in singles
         if one.samples.shape[1] and one.best.possible
     ]
-    return float(min(1.0, FORMS * len(singles) * min(chances, default=1.0)))
+    return float(min(1.0, PLACES_PER_FORM * len(singles) * min(chances, default=1.0)))
 
 
 def decide(
@@ -101,8 +89,8 @@ def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
     sets: list[tuple[str, ...]] = []
     held = 0.0
     for row in rows:
-        alike = _close(rows[0], row) and row.probability > RIVAL * rows[0].probability
-        if held < CERTAIN or alike:
+        alike = _close(rows[0], row) and row.probability > RIVAL_SHARE * rows[0].probability
+        if held < CREDIBLE_SHARE or alike:
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
     return tuple(sets)
@@ -117,7 +105,12 @@ def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
             row.names,
             row.probability / total,
             tuple(o.names for o in rows if o is not row and _close(row, o)),
-            estimates(problem, row.explanation, row.extreme, most=HEAVY if row.probability > FAINT else FEW),
+            estimates(
+                problem,
+                row.explanation,
+                row.extreme,
+                most=_looked_at(row),
+            ),
             not row.extreme,
             row.p_value,
             tuple(form.values for form in row.explanation.candidate.forms),
@@ -126,13 +119,21 @@ def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
     )
 
 
+def _looked_at(row: Compared) -> int:
+    return HEAVIEST_SAMPLES if row.probability > NEGLIGIBLE_PROBABILITY else FEWER_SAMPLES
+
+
 def _close(a: Compared, b: Compared) -> bool:
     best = [row.explanation.best.marginal.log_likelihood for row in (a, b)]
-    return bool(2 * abs(best[0] - best[1]) < CLOSE)
+    return bool(2 * abs(best[0] - best[1]) < CLOSE_FITS)
 
 
 def estimates(
-    problem: DiagnosisProblem, explanation: Explanation, extreme: Sequence[str] = (), *, most: int = 300
+    problem: DiagnosisProblem,
+    explanation: Explanation,
+    extreme: Sequence[str] = (),
+    *,
+    most: int = HEAVIEST_SAMPLES,
 ) -> dict[str, ParameterEstimate]:
     """Return posterior median and 95 % interval of every parameter and derived quantity, and the points it means."""
     candidate = explanation.candidate

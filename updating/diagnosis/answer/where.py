@@ -14,17 +14,9 @@ from updating.effects.base import Values
 from updating.effects.measurement.points import channel_point
 from updating.localisation import areas, centres, compare_regions, regions_at
 from updating.problem.specimen import SpecimenProblem
+from updating.thresholds import CONCERNED_REACH, NEGLIGIBLE_PROBABILITY, TOGETHER_SHARE
 
 CHANNELS = ("stiffness", "mass", "damping", "measurement")
-
-REACH = 0.05
-"""A test point within this share of the span of a place is concerned [-]."""
-
-ALIKE = 0.02
-"""Channels whose probabilities differ by less act together: halves of one pair [-]."""
-
-NEGLIGIBLE = 1e-4
-"""An explanation less probable than this has no say in the regions [-]."""
 
 LABELS = (".point", ".points", ".channel")
 """How parameters that speak of points of the test end."""
@@ -79,7 +71,7 @@ def _leading(shares: dict[str, float]) -> str:
     if top != "measurement":
         return top
     structural = max((n for n in shares if n != top), key=lambda n: shares[n])
-    return structural if shares[structural] > shares[top] - ALIKE else top
+    return structural if shares[structural] > shares[top] - TOGETHER_SHARE else top
 
 
 def _channels(found: Search) -> tuple[dict[str, float], float]:
@@ -119,7 +111,7 @@ def _nearest(problem: SpecimenProblem, likely_places: tuple[Cluster, ...]) -> tu
     away = np.linalg.norm(
         np.stack([c.place[:dim] for c in likely_places])[:, None] - test.points[None], axis=2
     )
-    near = away.min(axis=1) <= REACH * max(spec.length, spec.width if dim > 1 else 0.0)
+    near = away.min(axis=1) <= CONCERNED_REACH * max(spec.length, spec.width if dim > 1 else 0.0)
     return tuple(dict.fromkeys(test.nodes[int(i)] for i in away.argmin(axis=1)[near]))
 
 
@@ -136,7 +128,7 @@ def _by_explanations(problem: SpecimenProblem, found: Search) -> FloatArray:
     even = areas(problem)
     total = np.zeros(len(even))
     for row in found.compared:
-        if row.names and row.probability > NEGLIGIBLE:
+        if row.names and row.probability > NEGLIGIBLE_PROBABILITY:
             total += row.probability * _spread(problem, row, even)
     return np.asarray(total / total.sum() if total.sum() > 0 else even)
 

@@ -21,21 +21,10 @@ from updating.diagnosis.next_test.unknown import advise
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.search import Search
+from updating.thresholds import RIVALS_COMPARED, SEPARATED_SIGMA, TESTS_PROPOSED, WORTHWHILE_SIGMA
 
 MAKERS: tuple[Maker, ...] = (Instruments(), SameTest(), OtherPoints(), Unclamped())
 """All kinds of test that are thought of."""
-
-ENOUGH = 3.0
-"""Explanations so many sigma apart are separated."""
-
-WORTH = 1.0
-"""A test that separates nothing by so many sigma is not worth a line."""
-
-RIVALS = 4
-"""So many explanations are told apart."""
-
-LINES = 6
-"""So many tests are proposed."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +35,7 @@ class _Found:
 
     @property
     def separated(self) -> tuple[tuple[int, int], ...]:
-        return tuple(pair for pair, sigma in self.sigmas.items() if sigma >= ENOUGH)
+        return tuple(pair for pair, sigma in self.sigmas.items() if sigma >= SEPARATED_SIGMA)
 
     @property
     def stated(self) -> tuple[tuple[int, int], ...]:
@@ -78,7 +67,9 @@ def propose(
         What was decided. A cause that is named is told from its runners-up, to confirm it.
     """
     if verdict == "unknown":
-        return tuple(advice for site in _sites(diagnosis_problem) for advice in advise(site, found))[:LINES]
+        return tuple(advice for site in _sites(diagnosis_problem) for advice in advise(site, found))[
+            :TESTS_PROPOSED
+        ]
     rivals = _rivals(diagnosis_problem, found, sets, verdict)
     if len(rivals) < 2:
         return ()
@@ -95,9 +86,9 @@ def propose(
         key = (evaluation.trial.family, evaluation.site.index)
         if key not in best or _worth(evaluation) > _worth(best[key]):
             best[key] = evaluation
-    kept = [evaluation for evaluation in best.values() if evaluation.sigma >= WORTH]
+    kept = [evaluation for evaluation in best.values() if evaluation.sigma >= WORTHWHILE_SIGMA]
     kept.sort(key=lambda evaluation: (-len(evaluation.separated), evaluation.trial.cost, -evaluation.sigma))
-    return tuple(_proposal(evaluation, rivals) for evaluation in kept[:LINES])
+    return tuple(_proposal(evaluation, rivals) for evaluation in kept[:TESTS_PROPOSED])
 
 
 def _worth(evaluation: _Found) -> tuple[int, float]:
@@ -110,11 +101,11 @@ def _rivals(
     rows = {
         row.names: row.explanation for row in found.compared if row.names and row.explanation.best.possible
     }
-    chosen = list(sets[:RIVALS])
+    chosen = list(sets[:RIVALS_COMPARED])
     if verdict == "named" and sets:
         # what holds the named set and more can do all that it does
         others = [names for names in rows if not set(sets[0]) <= set(names)]
-        chosen += others[: RIVALS - 2]
+        chosen += others[: RIVALS_COMPARED - 2]
     return tuple(Rival(diagnosis_problem, rows[names]) for names in chosen if names in rows)
 
 

@@ -16,15 +16,7 @@ from updating.effects.base import Effect, total_mass
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.problem.specimen import SpecimenProblem
-
-KNOWN_MASS = 0.05
-"""Mass to add, relative to the structure's [-]."""
-
-THIN = 10.0
-"""A fluid of less density is a gas: there is no drier test [kg/m^3]."""
-
-HARDER = 4.0
-"""How many times better a dependence on the force is known once hits span a wider range of levels [-]."""
+from updating.thresholds import KNOWN_MASS, LEVEL_SPAN_GAIN, THIN_FLUID
 
 
 class AddedMass(Repeat):
@@ -80,7 +72,7 @@ class InAir(Repeat):
 
     def keeps(self, effect: Effect) -> bool:
         """Leave out what the fluid does."""
-        return not effect.name.startswith("fluid")
+        return "in air" not in effect.undone_by
 
 
 class Levels(Trial):
@@ -99,7 +91,7 @@ class Levels(Trial):
         test = site.problem.measured
         assert test.slope_sigma is not None
         known = test.slope_sigma[np.isfinite(test.slope_sigma)]
-        sigma = 1 / np.sqrt(np.sum(known**-2.0)) / HARDER
+        sigma = 1 / np.sqrt(np.sum(known**-2.0)) / LEVEL_SPAN_GAIN
 
         def slope(coordinates: FloatArray) -> float:
             return float(site.diagnosis_problem.place(candidate, coordinates)[site.index].slope / sigma)
@@ -124,9 +116,9 @@ class SameTest(Maker):
         effects = [effect for rival in rivals for effect in rival.explanation.candidate.effects]
         if any(effect.labels for effect in effects):
             yield Again()
-        wet = any(effect.name.startswith("fluid") for effect in effects)
+        wet = any("in air" in effect.undone_by for effect in effects)
         around = problem.predictor.environment.fluid_density
-        in_air = around is not None and around < THIN
+        in_air = around is not None and around < THIN_FLUID
         if wet and not in_air and problem.baseline is None and not problem.predictor.additions:
             yield InAir()
         if problem.measured.slope is not None:

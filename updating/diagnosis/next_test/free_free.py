@@ -10,9 +10,6 @@ from updating.diagnosis.next_test.repeat import Repeat
 from updating.effects.base import Effect
 from updating.problem.specimen import SpecimenProblem
 
-OF_THE_CLAMP = frozenset({"clamp_rotation", "clamp_translation", "length", "joint_nonlinearity"})
-"""Effects that go with the clamp; how deep it bends the structure inside is a ``length``."""
-
 
 class FreeFree(Repeat):
     """The specimen hung up free, as many modes as before, with the same sensor."""
@@ -24,12 +21,12 @@ class FreeFree(Repeat):
     def problem(self, site: Site) -> SpecimenProblem:
         """Return the problem without clamps."""
         problem = site.problem
-        free = replace(problem.predictor, spec=replace(problem.predictor.spec, clamped=()))
+        free = problem.predictor.of(replace(problem.predictor.spec, clamped=()))
         return replace(problem, predictor=free, theory_error=None)
 
     def keeps(self, effect: Effect) -> bool:
         """Leave out what the clamp does."""
-        return effect.name not in OF_THE_CLAMP
+        return "unclamped" not in effect.undone_by
 
 
 class Unclamped(Maker):

@@ -9,9 +9,9 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Outcome, Rival, Site, Trial
-from updating.diagnosis.search.fit import STEP
 from updating.effects.base import Effect, Values
 from updating.models.state import State
+from updating.thresholds import DIFFERENCE_STEP
 
 Parts = Sequence[tuple[Effect, Values]]
 
@@ -63,7 +63,7 @@ class InstrumentReading(Trial):
 
 
 def _moved(coordinates: FloatArray, i: int) -> tuple[FloatArray, float]:
-    change = STEP if coordinates[i] < 0.5 else -STEP
+    change = DIFFERENCE_STEP if coordinates[i] < 0.5 else -DIFFERENCE_STEP
     there = coordinates.copy()
     there[i] += change
     return there, change

@@ -12,24 +12,14 @@ from updating.diagnosis.next_test.instrument_reading import InstrumentReading, P
 from updating.effects.base import total_mass
 from updating.effects.structure.mass import sensor_places
 from updating.models.state import State
-
-BALANCE = 0.001
-"""What weighing reaches: relative 1 sigma, the specimen's other dimensions known as well [-]."""
-
-CALIPER = 0.002
-"""What a micrometer reaches on thickness and width: relative 1 sigma of the mean of some places [-]."""
-
-SENSOR = 1e-4
-"""What weighing a sensor with its mount reaches: 1 sigma [kg]."""
-
-CALIBRATED = 0.005
-"""What a calibration of the chain with a known free mass reaches: relative 1 sigma [-]."""
-
-IN_TIME = 5e-6
-"""What the same test says of a delay between the channels: 1 sigma [s]."""
-
-SETTINGS = 0.05
-"""What the analyser's settings leave in doubt of a window's decay rate: 1 sigma [1/s]."""
+from updating.thresholds import (
+    BALANCE_SIGMA,
+    CALIBRATION_SIGMA,
+    CALIPER_SIGMA,
+    DELAY_SIGMA,
+    SENSOR_BALANCE_SIGMA,
+    WINDOW_SIGMA,
+)
 
 PER_LENGTH = {"density": 1.0, "thickness": 1.0, "width": 1.0, "section": 1.0, "area": 1.0}
 """Powers of a beam's or plate's mass per length, whatever the section's name in the model."""
@@ -44,14 +34,16 @@ class Weigh(InstrumentReading):
         """Take note of whether the specimen must come out of a clamp."""
         self.cost = 3 if clamped else 2
         out = "take the specimen out of its clamp and weigh it" if clamped else "weigh the specimen"
-        self.measure = f"{out}, without the sensor, to {100 * BALANCE:g} %"
+        self.measure = f"{out}, without the sensor, to {100 * BALANCE_SIGMA:g} %"
         self.clamped = clamped
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return the logarithm of the mass."""
         log_mass = sum(p * np.log(state.factors.get(n, 1.0)) for n, p in self._powers.items())
-        bodies = sum(values["mass"] for effect, values in parts if effect.name == "lumped_mass")
-        return np.array([log_mass + np.log1p(bodies / total_mass(site.problem.predictor.spec))]) / BALANCE
+        bodies = sum(effect.weight(values) for effect, values in parts)
+        return (
+            np.array([log_mass + np.log1p(bodies / total_mass(site.problem.predictor.spec))]) / BALANCE_SIGMA
+        )
 
     @property
     def _powers(self) -> dict[str, float]:
@@ -59,7 +51,7 @@ class Weigh(InstrumentReading):
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that mass goes with each of its factors."""
-        return ({n: p / BALANCE for n, p in self._powers.items()},)
+        return ({n: p / BALANCE_SIGMA for n, p in self._powers.items()},)
 
 
 class Caliper(InstrumentReading):
@@ -67,17 +59,17 @@ class Caliper(InstrumentReading):
 
     family = "caliper"
     cost = 1
-    measure = f"measure thickness and width at several places, to {100 * CALIPER:g} %"
+    measure = f"measure thickness and width at several places, to {100 * CALIPER_SIGMA:g} %"
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return the logarithms of thickness and width."""
         factors = state.factors
         width = factors.get("width", 1.0) * factors.get("section", 1.0)
-        return np.log([factors.get("thickness", 1.0), width]) / CALIPER
+        return np.log([factors.get("thickness", 1.0), width]) / CALIPER_SIGMA
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that each reads its own factor."""
-        return ({"thickness": 1 / CALIPER}, {"width": 1 / CALIPER, "section": 1 / CALIPER})
+        return ({"thickness": 1 / CALIPER_SIGMA}, {"width": 1 / CALIPER_SIGMA, "section": 1 / CALIPER_SIGMA})
 
 
 class WeighSensor(InstrumentReading):
@@ -85,11 +77,13 @@ class WeighSensor(InstrumentReading):
 
     family = "sensor"
     cost = 2
-    measure = f"weigh the sensor with its mount, to {1000 * SENSOR:g} g"
+    measure = f"weigh the sensor with its mount, to {1000 * SENSOR_BALANCE_SIGMA:g} g"
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return the mass that the model does not hold."""
-        return np.array([sum(v["mass"] for effect, v in parts if effect.name == "sensor_mass") / SENSOR])
+        return np.array(
+            [sum(effect.sensor_weight(values) for effect, values in parts) / SENSOR_BALANCE_SIGMA]
+        )
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that no tolerance enters."""
@@ -101,11 +95,14 @@ class Chain(InstrumentReading):
 
     family = "chain"
     cost = 3
-    measure = f"hit a known free mass with the same hammer and sensor: calibrates the chain to {100 * CALIBRATED:g} %"
+    measure = (
+        "hit a known free mass with the same hammer and sensor: "
+        f"calibrates the chain to {100 * CALIBRATION_SIGMA:g} %"
+    )
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return gain and delay."""
-        return np.array([np.log(state.gain) / CALIBRATED, state.delay / IN_TIME])
+        return np.array([np.log(state.gain) / CALIBRATION_SIGMA, state.delay / DELAY_SIGMA])
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that no tolerance enters."""
@@ -114,7 +111,7 @@ class Chain(InstrumentReading):
     def others(self, site: Site, rival: Rival) -> FloatArray:
         """Return that the gain holds what was in doubt about the calibration, the last of the doubts."""
         columns = super().others(site, rival)
-        columns[0, -1] = site.problem.measured.calibration / CALIBRATED
+        columns[0, -1] = site.problem.measured.calibration / CALIBRATION_SIGMA
         return columns
 
 
@@ -127,7 +124,7 @@ class Settings(InstrumentReading):
 
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return the decay that the records got."""
-        return np.array([state.decay / SETTINGS])
+        return np.array([state.decay / WINDOW_SIGMA])
 
     def tolerances(self, site: Site) -> tuple[Mapping[str, float], ...]:
         """Return that no tolerance enters."""
@@ -142,7 +139,7 @@ class Instruments(Maker):
         problem = site.problem
         spec, test = problem.predictor.spec, problem.measured
         yield Settings()
-        if spec.imported is None:
+        if spec.outlined:
             yield Caliper()
             yield Weigh(clamped=bool(spec.clamped))
         if len(sensor_places(problem.predictor)):

@@ -10,13 +10,11 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.next_test.base import Maker, Rival, Site, Trial
 from updating.diagnosis.next_test.places import grid, statement
-from updating.diagnosis.next_test.repeat import SHAPES_KNOWN, Repeat
+from updating.diagnosis.next_test.repeat import Repeat
 from updating.effects.structure.mass import sensor_places
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
-
-APART = 0.04
-"""Further points are at least this share of the span away from those there are [-]."""
+from updating.thresholds import FURTHER_POINT, UNKNOWN_SHAPE_NOISE
 
 NOT_YET = -1
 """Node number of a point that the test does not have yet."""
@@ -94,7 +92,7 @@ class Shapes(Repeat):
             seen=np.full(count, count),
             hit=np.arange(count),
             constants=np.ones((count, modes)),
-            constants_sigma=np.full((count, modes), SHAPES_KNOWN),
+            constants_sigma=np.full((count, modes), UNKNOWN_SHAPE_NOISE),
             absolute=True,
             repeated=True,
             trusted=None,
@@ -113,11 +111,11 @@ class OtherPoints(Maker):
         """Give them."""
         problem = site.problem
         spec, test = problem.predictor.spec, problem.measured
-        if spec.imported is not None:
+        if not spec.outlined:
             return
         if not test.has_shapes:
             yield Shapes(site)
             return
         for place in grid(spec):
-            if np.linalg.norm(test.points - place, axis=1).min() > APART * spec.length:
+            if np.linalg.norm(test.points - place, axis=1).min() > FURTHER_POINT * spec.length:
                 yield FurtherPoint(site, place)

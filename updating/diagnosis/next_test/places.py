@@ -9,23 +9,17 @@ from acquisition.quantities import place as written
 from updating.diagnosis.next_test.base import Site
 from updating.models.spec import Spec
 from updating.problem.specimen import SpecimenProblem
-
-MOST = 4
-"""So many places are tried for a mass."""
-
-ALONG = (0.2, 0.4, 0.6, 0.8, 1.0)
-ACROSS = (0.05, 0.5, 0.95)
-"""The grid of places, as shares of the sides [-]."""
+from updating.thresholds import GRID_ACROSS, GRID_ALONG, PLACES_FOR_A_MASS
 
 
 def grid(spec: Spec) -> FloatArray:
     """Return places spread over a structure, (n, dim) [m]."""
-    along = np.array(ALONG)
+    along = np.array(GRID_ALONG)
     if spec.clamped == ("x1",):
         along = 1 - along
     if spec.kind == "beam":
         return (spec.length * along)[:, None]
-    x, y = np.meshgrid(spec.length * along, spec.width * np.array(ACROSS), indexing="ij")
+    x, y = np.meshgrid(spec.length * along, spec.width * np.array(GRID_ACROSS), indexing="ij")
     return np.stack([x.ravel(), y.ravel()], axis=1)
 
 
@@ -33,7 +27,7 @@ def telling_places(problem: SpecimenProblem) -> FloatArray:
     """Return where a mass would act on the modes the most, and the least alike, (n, dim) [m]."""
     spec, points = problem.predictor.spec, problem.measured.points
     if not len(points):
-        if spec.imported is not None:
+        if not spec.outlined:
             return np.zeros((0, 3))
         points = grid(spec)
     points = np.unique(points, axis=0)
@@ -42,7 +36,7 @@ def telling_places(problem: SpecimenProblem) -> FloatArray:
     moved = np.abs(rows) / np.maximum(np.abs(rows).max(axis=0), 1e-300)
     first = int(np.argmax(moved.sum(axis=1)))
     chosen = [first]
-    while len(chosen) < min(MOST, len(points)):
+    while len(chosen) < min(PLACES_FOR_A_MASS, len(points)):
         direction = moved[chosen].T
         left = moved - (moved @ np.linalg.pinv(direction).T) @ direction.T
         left[chosen] = 0.0

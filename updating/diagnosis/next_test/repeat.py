@@ -9,16 +9,13 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.next_test.base import Outcome, Rival, Site, Trial
-from updating.diagnosis.search.fit import STEP
 from updating.effects.base import Effect
 from updating.likelihood.comparison import Comparison
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
-
-SHAPES_KNOWN = 0.01
-"""Noise of a modal constant where nothing is known of it, relative to its mode's r.m.s. [-]."""
+from updating.thresholds import DIFFERENCE_STEP, UNKNOWN_SHAPE_NOISE
 
 
 class Repeat(Trial):
@@ -68,7 +65,7 @@ class Repeat(Trial):
         by = []
         for i in range(len(best.coordinates)):
             there = best.coordinates.copy()
-            change = STEP if there[i] < 0.5 else -STEP
+            change = DIFFERENCE_STEP if there[i] < 0.5 else -DIFFERENCE_STEP
             there[i] += change
             moved = self._compare(then, site, rival, there)
             by.append((here.residual - moved.residual) / change)
@@ -136,6 +133,6 @@ def _relative(sigma: FloatArray, value: FloatArray) -> float:
 
 def _shape_noise(measured: Measured) -> float:
     if not measured.constants.size:
-        return SHAPES_KNOWN
+        return UNKNOWN_SHAPE_NOISE
     size = np.sqrt(np.mean(measured.constants**2, axis=0))
     return float(np.median(measured.constants_sigma / np.maximum(size, 1e-300)))

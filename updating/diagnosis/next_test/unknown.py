@@ -7,20 +7,10 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.result import NextTest
 from updating.diagnosis.next_test.base import Site
-from updating.diagnosis.next_test.changed import THIN
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.search import Search
-from updating.likelihood.comparison import SHAPES
 from updating.problem.specimen import SpecimenProblem
-
-STANDS_OUT = 1.7
-"""Points whose misfit is so many times the r.m.s. over all are named [-]..."""
-
-NAMED = 3
-"""...and no more than so many of them."""
-
-FEW = 4
-"""With fewer points, more of them are asked for."""
+from updating.thresholds import FEWEST_POINTS, POINT_THAT_MISSES, POINTS_NAMED, THIN_FLUID
 
 
 def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
@@ -49,9 +39,9 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
         stated.append(
             "take the specimen down, mount it anew and repeat the test: does the gap come back the same?"
         )
-    if len(test.points) < FEW and spec.imported is None:
+    if len(test.points) < FEWEST_POINTS and spec.outlined:
         stated.append("measure at five points or more: where shapes miss says where to look")
-    if spec.clamped and spec.imported is None:
+    if spec.clamped and spec.outlined:
         stated.append("hang the specimen up free and test it: is the gap the clamp's?")
     where = f"{site.title}: " if site.title else ""
     return tuple(NextTest(where + text, (), float("nan"), whole=False) for text in stated)
@@ -60,7 +50,7 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
 def _another_state(problem: SpecimenProblem) -> str:
     """Return which state of the structure to test as a baseline; not every one can be stripped or dried."""
     around = problem.predictor.environment.fluid_density
-    if around is not None and around >= THIN:
+    if around is not None and around >= THIN_FLUID:
         return "test the same specimen in air, as a baseline"
     return (
         "test the same structure in another state, as a baseline: before the change in question, or without a part "
@@ -76,15 +66,15 @@ def _points_that_miss(site: Site, problem: SpecimenProblem, explanation: Explana
     if len(site.diagnosis_problem.specimens) > 1:
         return []
     comparison = explanation.best.comparison
-    rows = comparison.channel == SHAPES
+    rows = comparison.scaled
     left = (explanation.best.left_over / np.sqrt(comparison.variance))[rows].reshape(test.constants.shape)
     if not np.isfinite(left).all():
         return []
     roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
     places, group = np.unique(roving, return_inverse=True)
     each = _rms_by(left, group, len(places))
-    bar = STANDS_OUT * float(np.sqrt(np.mean(left**2)))
-    worst = [i for i in np.argsort(-each)[:NAMED].tolist() if each[i] > bar]
+    bar = POINT_THAT_MISSES * float(np.sqrt(np.mean(left**2)))
+    worst = [i for i in np.argsort(-each)[:POINTS_NAMED].tolist() if each[i] > bar]
     return [str(test.nodes[places[i]]) for i in worst]
 
 

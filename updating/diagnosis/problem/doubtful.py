@@ -6,18 +6,7 @@ import numpy as np
 
 from acquisition.quantities import hertz, percent
 from updating.problem.specimen import SpecimenProblem
-
-ALONE = 0.08
-"""A frequency so far from what the others' median error says, and..."""
-
-OUTLYING = 6.0
-"""...so many times the median deviation of the others, stands alone [-]."""
-
-FEWEST = 4
-"""With fewer modes, none can be said to stand alone."""
-
-ANOTHER = 0.5
-"""R.m.s. error from which test and model are hardly the same structure [-]."""
+from updating.thresholds import ANOTHER_STRUCTURE, FEWEST_FOR_A_LONE, LONE_DEVIATIONS, LONE_ERROR
 
 
 def notes_on_doubtful(problem: SpecimenProblem) -> list[str]:
@@ -33,16 +22,16 @@ def notes_on_doubtful(problem: SpecimenProblem) -> list[str]:
     if not np.isfinite(error).all():
         return []
     notes = []
-    if np.sqrt(np.mean(np.expm1(error) ** 2)) > ANOTHER:
+    if np.sqrt(np.mean(np.expm1(error) ** 2)) > ANOTHER_STRUCTURE:
         size = 100 * np.sqrt(np.mean(np.expm1(error) ** 2))
         notes.append(
             f"frequencies are {percent(size)} off (r.m.s.): test and model are hardly the same structure, or the modes "
             "are wrongly paired; check size, material, clamps and band before anything else"
         )
         return notes
-    if len(error) >= FEWEST:
+    if len(error) >= FEWEST_FOR_A_LONE:
         away = np.abs(error - np.median(error))
-        bar = max(ALONE, OUTLYING * float(np.median(away)))
+        bar = max(LONE_ERROR, LONE_DEVIATIONS * float(np.median(away)))
         notes += [
             f"the mode at {hertz(test.frequency[i])} stands alone: the model is {100 * np.expm1(error[i]):+.0f} % off "
             f"there and {100 * np.expm1(np.median(error)):+.0f} % in most others; a slip, or a mode mistaken for "

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.obstacles import Obstacle
 from updating.likelihood.comparison import Comparison
 from updating.models.state import State
 from updating.prediction.predict import Prediction, Predictor
@@ -42,7 +43,7 @@ class DiagnosisProblem(Protocol):
     def strain(self, shift: FloatArray) -> float:
         """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
 
-    def applies(self, effect: Effect) -> str | None:
+    def applies(self, effect: Effect) -> Obstacle | None:
         """Return why an effect cannot be examined, or None."""
 
     def forms(self, effect: Effect) -> tuple[Variant, ...]:

@@ -12,6 +12,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.problem.recent import Recent
 from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.obstacles import Lack, Obstacle
 from updating.likelihood.comparison import Comparison, join
 from updating.models.state import State
 from updating.prediction.predict import Prediction, Predictor
@@ -81,10 +82,11 @@ class Several:
         """How many nuisances each specimen has."""
         return [problem.at(Candidate(), np.zeros(0)).nuisance.shape[1] for problem in self.specimens]
 
-    def applies(self, effect: Effect) -> str | None:
+    def applies(self, effect: Effect) -> Obstacle | None:
         """Return why an effect can be examined on none of the specimens, or None."""
         if effect.labels:
-            return "which point it is differs from test to test; diagnose each specimen by itself"
+            what = "which point it is differs from test to test; diagnose each specimen by itself"
+            return Obstacle(Lack.ONE_TEST, what)
         found = [problem.applies(effect) for problem in self.specimens]
         return None if None in found else found[0]
 

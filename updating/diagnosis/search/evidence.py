@@ -21,36 +21,19 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.fit import Peak, Point, evaluate, highest, maximise
 from updating.diagnosis.search.goodness import p_value
 from updating.problem.candidate import Candidate
-
-PRIOR_SHARE = 0.25
-"""Share of the samples drawn from the prior itself."""
-
-FREEDOM = 5
-"""Degrees of freedom of the t-distributions."""
-
-ROUNDS = 2
-"""How often the samples are drawn anew when too few of them carry the weight."""
-
-MOST = 256
-"""Most samples drawn at a time..."""
-
-DRAFT = 512
-"""...and for a draft, which costs no predictions."""
-
-ENOUGH = 10.0
-"""Effective number of samples that is enough."""
-
-TRIED, FEW = 12, 4
-"""From how many of the starting places at most, and for how many rounds, a climb is tried..."""
-
-CLIMBS = 3
-"""...and how many of these climbs go on to the top."""
-
-SAME_PLACE = 0.02
-"""Peaks nearer to each other than this in every prior quantile are one [-]."""
-
-BEHIND = 12.0
-"""Peaks whose log-likelihood lies further behind the highest are left out [-]."""
+from updating.thresholds import (
+    CLIMBS,
+    DRAFT_SAMPLES,
+    ENOUGH_SAMPLES,
+    MOST_SAMPLES,
+    PEAK_BEHIND,
+    PRIOR_SHARE,
+    SAME_PEAK,
+    SAMPLE_FREEDOM,
+    SAMPLING_ROUNDS,
+    STARTS_TRIED,
+    STEPS_TRIED,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +128,7 @@ def explain(
     if not peaks[0].point.possible:
         return Explanation(candidate, -np.inf, peaks[0].point, places[0][None, :], np.ones(1))
     if laplace_only:
-        samples, proposal = _draw(peaks, DRAFT)
+        samples, proposal = _draw(peaks, DRAFT_SAMPLES)
         log_weight = _parabolas(peaks, samples) - proposal
         return _compared(candidate, peaks[0].point, samples, log_weight, peaks, laplace_only=True)
     return _sampled(problem, candidate, peaks, density)
@@ -168,16 +151,16 @@ def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int 
 
 
 def _sampled(problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak], density: int) -> Explanation:
-    count = min(density * 2 ** len(peaks[0].gradient), MOST)
-    for _ in range(ROUNDS):
+    count = min(density * 2 ** len(peaks[0].gradient), MOST_SAMPLES)
+    for _ in range(SAMPLING_ROUNDS):
         samples, proposal = _draw(peaks, count)
         points = [evaluate(problem, candidate, u) for u in samples]
         log_weight = np.array([p.marginal.log_likelihood for p in points]) - proposal
         weights = np.exp(log_weight - logsumexp(log_weight))
-        if 1 / np.sum(weights**2) >= ENOUGH:
+        if 1 / np.sum(weights**2) >= ENOUGH_SAMPLES:
             break
         peaks = [*peaks, _moments(problem, candidate, samples, weights)]
-        count = min(2 * count, MOST)
+        count = min(2 * count, MOST_SAMPLES)
     best = max([*points, *(p.point for p in peaks)], key=lambda p: p.marginal.log_likelihood)
     return _compared(candidate, best, samples, log_weight, peaks)
 
@@ -224,15 +207,19 @@ def _peaks(
 ) -> list[Peak]:
     if len(places) > maximisations:
         evaluations = [evaluate(problem, candidate, place) for place in places]
-        nearest = np.argsort([evaluation.marginal.log_likelihood for evaluation in evaluations])[::-1][:TRIED]
-        tried = [highest(problem, candidate, evaluations[i], rounds=FEW, bar=bar) for i in nearest]
+        nearest = np.argsort([evaluation.marginal.log_likelihood for evaluation in evaluations])[::-1][
+            :STARTS_TRIED
+        ]
+        tried = [highest(problem, candidate, evaluations[i], rounds=STEPS_TRIED, bar=bar) for i in nearest]
         tried.sort(key=lambda p: -p.marginal.log_likelihood)
         peaks = [maximise(problem, candidate, tried[i], bar=bar) for i in _distinct(tried)[:maximisations]]
     else:
         peaks = [maximise(problem, candidate, place, bar=bar) for place in places]
     found = [peaks[i] for i in _distinct([peak.point for peak in peaks])]
     top = found[0].point.marginal.log_likelihood
-    return [peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < BEHIND]
+    return [
+        peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < PEAK_BEHIND
+    ]
 
 
 def _distinct(points: Sequence[Point]) -> list[int]:
@@ -240,7 +227,7 @@ def _distinct(points: Sequence[Point]) -> list[int]:
     kept: list[int] = []
     for i in sorted(range(len(points)), key=lambda i: -points[i].marginal.log_likelihood):
         here = points[i].coordinates
-        if all(np.abs(here - points[j].coordinates).max() >= SAME_PLACE for j in kept):
+        if all(np.abs(here - points[j].coordinates).max() >= SAME_PEAK for j in kept):
             kept.append(i)
     return kept
 
@@ -259,7 +246,7 @@ def _draw(peaks: list[Peak], count: int) -> tuple[FloatArray, FloatArray]:
     for i, (peak, scale) in enumerate(zip(peaks, scales, strict=True)):
         part = cube[uniform + i * each : uniform + (i + 1) * each]
         lower = np.linalg.cholesky(scale)
-        normal = student.ppf(np.clip(part, 1e-6, 1 - 1e-6), FREEDOM)
+        normal = student.ppf(np.clip(part, 1e-6, 1 - 1e-6), SAMPLE_FREEDOM)
         drawn.append(peak.point.coordinates + normal @ lower.T)
     samples = np.concatenate(drawn)
     shares = [uniform / len(samples)] + [each / len(samples)] * len(peaks)
@@ -275,7 +262,7 @@ def _log_density(samples: FloatArray, peak: Peak, scale: FloatArray) -> FloatArr
     """Return the density of independent t-variates taken through the Cholesky factor of ``scale``."""
     lower = np.linalg.cholesky(scale)
     standard = np.linalg.solve(lower, (samples - peak.point.coordinates).T)
-    return np.asarray(student.logpdf(standard, FREEDOM).sum(axis=0) - np.log(np.diag(lower)).sum())
+    return np.asarray(student.logpdf(standard, SAMPLE_FREEDOM).sum(axis=0) - np.log(np.diag(lower)).sum())
 
 
 def _scale(peak: Peak) -> FloatArray:

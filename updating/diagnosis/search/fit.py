@@ -11,34 +11,18 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import Marginal, marginal, normal_equations
 from updating.problem.candidate import Candidate
-
-STEP = 1e-3
-"""Finite-difference step in prior quantiles."""
-
-UNDERSTEPPED = 1.3
-"""A step that gains so many times what the parabola promised was too short: far from the data the likelihood's tails
-are heavier than its curvature says [-]."""
-
-CHEAP = 2
-"""With so few parameters sensitivities are taken anew after every step."""
-
-PATIENCE, LITTLE = 6, 0.002
-"""After so many steps a gain below this share of what is missing to the best found elsewhere ends a climb [-]."""
-
-HOPELESS = 40.0
-"""How far below the best found elsewhere a maximum need not be known any better [-]."""
-
-AT_REST = 0.01
-"""A climb is at rest when a step gains less than this [-]."""
-
-RELINEARISED = 3
-"""How often at most wide tolerances are linearised anew; what comes nearest to its own linearisation stands."""
-
-STRAINED = 0.01
-"""Relative change of a tolerance's property that a linearisation bears [-]."""
-
-FARTHEST = 6.0
-"""Tolerances are followed so far from nominal, in standard deviations."""
+from updating.thresholds import (
+    AT_REST,
+    DIFFERENCE_STEP,
+    FARTHEST_TOLERANCE,
+    FRESH_PARAMETERS,
+    HOPELESS_BEHIND,
+    LITTLE_GAIN,
+    PATIENT_STEPS,
+    RELINEARISATIONS,
+    STRAINED_LINEARISATION,
+    UNDERSTEPPED,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,8 +87,8 @@ def evaluate(
     if not problem.wide:
         return point
     best, left = point, problem.strain(_wanted(point))
-    for _ in range(RELINEARISED):
-        if left < STRAINED or not np.isfinite(left):
+    for _ in range(RELINEARISATIONS):
+        if left < STRAINED_LINEARISATION or not np.isfinite(left):
             break
         about = _wanted(point) if point.about is None else 0.5 * (point.about + _wanted(point))
         point = _linearised(problem, candidate, coordinates, about, keep)
@@ -115,7 +99,7 @@ def evaluate(
 
 
 def _wanted(point: Point) -> FloatArray:
-    return np.clip(point.marginal.shift, -FARTHEST, FARTHEST)
+    return np.clip(point.marginal.shift, -FARTHEST_TOLERANCE, FARTHEST_TOLERANCE)
 
 
 def _linearised(
@@ -140,7 +124,7 @@ def _differences(
     """Return the change of the prediction (n, k) and of the log-likelihood (k,) per prior quantile, and the steps."""
     columns, rises, steps = [], [], []
     for i, u in enumerate(point.coordinates):
-        step = STEP if u < 0.5 else -STEP
+        step = DIFFERENCE_STEP if u < 0.5 else -DIFFERENCE_STEP
         moved = point.coordinates.copy()
         moved[i] += step
         there = problem.at(candidate, moved, point.about)
@@ -214,7 +198,7 @@ def maximise(
     point, slope = _ascend(problem, candidate, start, keep, rounds, bar)
     if not point.possible:
         return Peak(point, np.eye(len(point.coordinates)), np.zeros(len(point.coordinates)))
-    if slope is None or (not slope.fresh and bar - point.marginal.log_likelihood < HOPELESS):
+    if slope is None or (not slope.fresh and bar - point.marginal.log_likelihood < HOPELESS_BEHIND):
         slope = _slope(problem, candidate, point, keep)
     return Peak(point, slope.normal, slope.load + slope.noise_gradient)
 
@@ -267,10 +251,10 @@ def _ascend(
             point, damping = trial, damping / 5
         elif slope.fresh:
             damping *= 10
-        missing = LITTLE * (bar - point.marginal.log_likelihood) if step_number >= PATIENCE else 0.0
+        missing = LITTLE_GAIN * (bar - point.marginal.log_likelihood) if step_number >= PATIENT_STEPS else 0.0
         if abs(gain) < max(AT_REST, missing) or damping > 1e6:
             break
-        if not slope.fresh and (gain <= 0 or len(point.coordinates) <= CHEAP):
+        if not slope.fresh and (gain <= 0 or len(point.coordinates) <= FRESH_PARAMETERS):
             slope = None
         elif gain > 0:
             normal, load = _curvature(point, slope.columns, keep)

@@ -8,8 +8,9 @@ import numpy as np
 from scipy.stats import chi2, norm
 
 from updating.diagnosis.search.fit import Point
-from updating.likelihood.comparison import CHANNELS, SCALES, SHAPES, Comparison
+from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.likelihood.gaussian import gaussian, normal_equations
+from updating.thresholds import SHAPE_NOISE_SCALES
 
 SCATTER = "scatter of shapes"
 
@@ -58,11 +59,11 @@ def _corrected(values: Mapping[str, float]) -> float:
 
 def _of_scales(comparison: Comparison, fitted: int) -> list[dict[str, float]]:
     """Return the p-values of chi-squared at each scale of the noise of the shapes, one where there are none."""
-    scales = SCALES if (comparison.channel == SHAPES).any() else SCALES[:1]
+    scales = SHAPE_NOISE_SCALES if comparison.scaled.any() else SHAPE_NOISE_SCALES[:1]
     tried: list[dict[str, float]] = [{} for _ in scales]
     for name in ("all", *CHANNELS):
         every = name == "all"
-        keep = np.full(len(comparison.channel), every) | (comparison.channel == _number(name))
+        keep = np.full(len(comparison.channel), every) | comparison.of(name)
         if not keep.any():
             continue
         freedom = max(int(keep.sum()) - (fitted if every else 0), 1)
@@ -71,15 +72,11 @@ def _of_scales(comparison: Comparison, fitted: int) -> list[dict[str, float]]:
     return tried
 
 
-def _number(name: str) -> int:
-    return CHANNELS.index(name) if name in CHANNELS else -1
-
-
 def _of_point(point: Point) -> dict[str, float]:
     """Return the p-values that are asked at the point's own scale."""
     comparison, values = point.comparison, {}
     for name in ("frequency", "damping"):
-        together = (comparison.channel == CHANNELS.index(name)).astype(float)[:, None]
+        together = comparison.of(name).astype(float)[:, None]
         if together.any():
             normal, load = normal_equations(comparison, together, point.marginal.scale)
             values[f"{name} together"] = float(2 * norm.sf(abs(load[0]) / np.sqrt(normal[0, 0])))

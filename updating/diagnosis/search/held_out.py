@@ -11,25 +11,18 @@ from scipy.optimize import lsq_linear
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import CHEAP, highest, sensitivities
-from updating.likelihood.comparison import SHAPES, Comparison
+from updating.diagnosis.search.fit import highest, sensitivities
+from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal, normal_equations
 from updating.problem.candidate import Candidate
-
-BELIEVED = 3.0
-"""No tolerance, and no calibration, is taken to be further off than this [standard deviations]."""
-
-ROUNDS = 6
-"""Most steps of a refit from the best parameters on all data."""
-
-SHORT = 0.02
-"""Longest step, in prior quantiles, that a refit takes on the sensitivities at the best parameters [-]."""
-
-PRIOR = 4.0
-"""Curvature that keeps parameters the data do not see where they are, per squared prior quantile [-]."""
-
-FOLDS = 5
-"""In so many parts the points are left out."""
+from updating.thresholds import (
+    BELIEVED_DOUBT,
+    FRESH_PARAMETERS,
+    HELD_OUT_FOLDS,
+    REFIT_STEPS,
+    SHORT_STEP,
+    UNSEEN_CURVATURE,
+)
 
 
 def modes_held_out(diagnosis_problem: DiagnosisProblem, explanation: Explanation) -> FloatArray:
@@ -63,7 +56,7 @@ def points_held_out(
     groups = _groups(diagnosis_problem)
     if groups is None:
         return None
-    parts = [groups != fold for fold in range(FOLDS)]
+    parts = [groups != fold for fold in range(HELD_OUT_FOLDS)]
     return held_out(diagnosis_problem, explanation, parts), groups >= 0
 
 
@@ -72,15 +65,15 @@ def _groups(diagnosis_problem: DiagnosisProblem) -> np.ndarray | None:
     found = []
     for problem in diagnosis_problem.specimens:
         test = problem.measured
-        channel = problem.at(Candidate(), np.zeros(0)).channel
-        group = np.full(len(channel), -1)
+        shapes = problem.at(Candidate(), np.zeros(0)).scaled
+        group = np.full(len(shapes), -1)
         if test.has_shapes:
             roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
-            rank = np.unique(roving, return_inverse=True)[1] % FOLDS
-            group[channel == SHAPES] = np.repeat(rank, test.constants.shape[1])
+            rank = np.unique(roving, return_inverse=True)[1] % HELD_OUT_FOLDS
+            group[shapes] = np.repeat(rank, test.constants.shape[1])
         found.append(group)
     groups = np.concatenate(found)
-    return groups if len(np.unique(groups[groups >= 0])) == FOLDS else None
+    return groups if len(np.unique(groups[groups >= 0])) == HELD_OUT_FOLDS else None
 
 
 def held_out(
@@ -109,16 +102,16 @@ def _refitted(
 ) -> FloatArray:
     """Return what is left of all data when some of them were fitted: of many parameters by a short linear step."""
     best = explanation.best
-    if columns.shape[1] <= CHEAP:
+    if columns.shape[1] <= FRESH_PARAMETERS:
         return highest(
-            diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS
+            diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=REFIT_STEPS
         ).left_over
     normal, load = normal_equations(best.comparison, columns, best.marginal.scale, keep)
-    step = np.linalg.solve(normal + PRIOR * np.eye(len(load)), load)
+    step = np.linalg.solve(normal + UNSEEN_CURVATURE * np.eye(len(load)), load)
     step = np.clip(best.coordinates + step, 0.0, 1.0) - best.coordinates
-    if np.abs(step).max(initial=0.0) > SHORT:
+    if np.abs(step).max(initial=0.0) > SHORT_STEP:
         return highest(
-            diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=ROUNDS
+            diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=REFIT_STEPS
         ).left_over
     moved = replace(best.comparison, residual=best.comparison.residual - columns @ step)
     return np.asarray(moved.residual - moved.nuisance @ marginal(moved, keep).shift)
@@ -144,7 +137,7 @@ def believed(comparison: Comparison, scale: float, keep: BoolArray | None = None
     data = np.concatenate([comparison.residual[rows] * weight, np.zeros(count)])
     shift = np.linalg.lstsq(whole, data, rcond=None)[0]
     limit = np.full(count, np.inf)
-    limit[comparison.doubts] = BELIEVED
+    limit[comparison.doubts] = BELIEVED_DOUBT
     if (np.abs(shift) > limit).any():
         shift = lsq_linear(whole, data, bounds=(-limit, limit)).x
     return np.asarray(comparison.residual - comparison.nuisance @ shift)

@@ -15,44 +15,28 @@ from scipy.special import logsumexp
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.diagnosis.search.evidence import CLIMBS, Explanation, explain, finish
+from updating.diagnosis.search.evidence import Explanation, explain, finish
 from updating.diagnosis.search.fit import sensitivities
-from updating.effects import Effect, Variant
+from updating.effects import Effect, Obstacle, Variant
 from updating.likelihood.gaussian import normal_equations
+from updating.models.spec import Theory
 from updating.problem.candidate import Candidate
-
-REJECTED = 0.003
-"""A single effect that fits worse than this is rejected..."""
-
-DOUBTED = 0.02
-"""...and where none fits better than this, pairs are weighed beside them, which must fit as well themselves."""
-
-PROBABLE = 6.0
-"""Explanations whose logarithm of the probability lies further behind the best do not count as explanations [-]."""
-
-WITHIN_REACH = 7.0
-"""Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]."""
-
-LOOKS = 3
-"""How often what is within reach is sought."""
-
-PAIRS = 8
-"""How many pairs are weighed, those a linear look finds the most promising..."""
-
-ANEW = 3
-"""...and how many of these, the best, from all starts of either effect; doubled, pairs take half as long again."""
-
-FORM_SHARE = 0.02
-"""Forms of an effect with less than this share of the most probable one do not speak for its fit [-]."""
-
-POSSIBLE = 1e-4
-"""Below this probability nobody asks where the parameters lie [-]."""
-
-FAR_FROM_END, HELD_THERE = 0.25, 0.95
-"""A parameter is held at the end of its range where so much of its posterior lies within that share of it [-]."""
-
-PAIR_PRIOR = 0.05
-"""Prior weight of a pair against a single effect."""
+from updating.thresholds import (
+    CLIMBS,
+    DOUBTED_FIT,
+    FINISHING_ROUNDS,
+    FORM_SHARE,
+    HELD_NEAR_END,
+    HELD_SHARE,
+    NEGLIGIBLE_PROBABILITY,
+    PAIR_PRIOR,
+    PAIRS_ANEW,
+    PAIRS_WEIGHED,
+    PROBABLE_BEHIND,
+    REJECTED_FIT,
+    THEORY_BEYOND_NOISE,
+    WITHIN_REACH,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +70,7 @@ class Compared:
         """Whether it is no answer: it fits too badly (pairs, which have more freedom, must fit better), or only at a
         size beyond what is plausible.
         """
-        return bool(self.extreme) or self.p_value < (DOUBTED if len(self.names) > 1 else REJECTED)
+        return bool(self.extreme) or self.p_value < (DOUBTED_FIT if len(self.names) > 1 else REJECTED_FIT)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,10 +89,10 @@ class Search:
 
     nothing: Explanation
     compared: tuple[Compared, ...]
-    not_examined: dict[str, str]
+    not_examined: dict[str, Obstacle]
 
 
-def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, str]]:
+def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, Obstacle]]:
     """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
     obstacles = {effect.name: problem.applies(effect) for effect in library}
     possible = [effect for effect in library if obstacles[effect.name] is None]
@@ -127,8 +111,8 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     """
     effects, obstacles = examine(problem, library)
     nothing = explain(problem, Candidate())
-    twin = _falls_short(problem, effects)
-    drafts = _singles(problem, effects, nothing, twin=twin)
+    theory = _better_theory(problem, effects)
+    drafts = _singles(problem, effects, nothing, theory)
     found = _finished(problem, [nothing, *drafts])
     if not _explained(problem, found):
         found = _finished(problem, found + _pairs(problem, found[1:]))
@@ -139,14 +123,14 @@ def _explained(problem: DiagnosisProblem, found: list[Explanation]) -> bool:
     """Tell whether any of the probable explanations fits beyond doubt, and at a plausible size."""
     rows = _compare(found)
     top = max(row.probability for row in rows)
-    near = [row for row in rows if row.probability > top * np.exp(-PROBABLE)]
-    return any(row.p_value >= DOUBTED and not _extreme(problem, row.explanation) for row in near)
+    near = [row for row in rows if row.probability > top * np.exp(-PROBABLE_BEHIND)]
+    return any(row.p_value >= DOUBTED_FIT and not _extreme(problem, row.explanation) for row in near)
 
 
 def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
     """Weigh by predictions what drafts left within reach of the best; the rest stays as drafted."""
     finished = list(found)
-    for evaluation in range(LOOKS):
+    for evaluation in range(FINISHING_ROUNDS):
         rows = _compare(finished)
         bar = max(row.probability for row in rows) * np.exp(-WITHIN_REACH)
         left = [i for i, row in enumerate(rows) if row.explanation.laplace_only and row.probability > bar]
@@ -169,7 +153,7 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
         total = float(logsumexp([row.explanation.log_evidence for row in own]))
         fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
         probability = sum(row.probability for row in own)
-        extreme = _extreme(problem, top.explanation) if probability > POSSIBLE else ()
+        extreme = _extreme(problem, top.explanation) if probability > NEGLIGIBLE_PROBABILITY else ()
         merged.append(Compared(replace(top.explanation, log_evidence=total), probability, fits, extreme))
     return tuple(sorted(merged, key=lambda row: -row.probability))
 
@@ -180,7 +164,7 @@ def _extreme(problem: DiagnosisProblem, explanation: Explanation) -> tuple[str, 
     for i, (name, parameter) in enumerate(problem.parameters(explanation.candidate)):
         best = float(explanation.best.coordinates[i])
         away = np.abs(explanation.samples[:, i] - round(best))
-        if parameter.extreme(best) and explanation.weights[away > FAR_FROM_END].sum() < 1 - HELD_THERE:
+        if parameter.extreme(best) and explanation.weights[away > HELD_NEAR_END].sum() < 1 - HELD_SHARE:
             found.append(name)
     return tuple(found)
 
@@ -192,48 +176,48 @@ def _compare(found: list[Explanation]) -> list[Compared]:
     return [Compared(e, float(p), e.p_value) for e, p in zip(found, probability, strict=True)]
 
 
-def _falls_short(problem: DiagnosisProblem, effects: list[Effect]) -> bool:
-    """Tell whether every effect must also be weighed on the better beam theory.
+def _better_theory(problem: DiagnosisProblem, effects: list[Effect]) -> Theory | None:
+    """Return the better beam theory on which every effect must also be weighed, or None.
 
     It must where the theory shifts frequencies by more than a part of the noise, unless the better theory alone
     explains the data: then nothing else is needed beside it.
     """
-    shear = next((effect for effect in effects if effect.name == "shear"), None)
-    if shear is None or explain(problem, Candidate((shear,))).p_value >= REJECTED:
-        return False
+    better = next((effect for effect in effects if effect.theory is not None), None)
+    if better is None or better.theory is None:
+        return None
+    if explain(problem, Candidate((better,))).p_value >= REJECTED_FIT:
+        return None
     count = len(problem.nominal.frequency) + 5
     here = problem.predictor.predict(count=count).frequency
-    there = problem.predictor.under("timoshenko").predict(count=count).frequency
+    there = problem.predictor.under(better.theory).predict(count=count).frequency
     within = here <= 1.001 * problem.nominal.frequency.max()
     noise = np.hypot(
         problem.measured.repeatability, np.min(problem.measured.frequency_sigma / problem.measured.frequency)
     )
-    return bool(np.abs(np.log(there / here))[within].max() > 0.3 * noise)
+    return better.theory if np.abs(np.log(there / here))[within].max() > THEORY_BEYOND_NOISE * noise else None
 
 
 def _singles(
-    problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, *, twin: bool
+    problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, theory: Theory | None
 ) -> list[Explanation]:
     """Weigh every form of every effect, the simple ones first: what they reach is the bar for the others."""
     forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
     forms.sort(key=lambda pair: len(problem.parameters(Candidate((pair[0],), chosen=(pair[1],)))))
     bar, found = nothing.best.marginal.log_likelihood, []
     for effect, form in forms:
-        found.append(_single(problem, effect, form, twin=twin, bar=bar))
+        found.append(_single(problem, effect, form, theory, bar))
         bar = max(bar, found[-1].best.marginal.log_likelihood)
     return found
 
 
 def _single(
-    problem: DiagnosisProblem, effect: Effect, form: Variant, *, twin: bool, bar: float
+    problem: DiagnosisProblem, effect: Effect, form: Variant, theory: Theory | None, bar: float
 ) -> Explanation:
     """Weigh one form of an effect; where the theory falls short, on either theory and half the evidence of each."""
     plain = explain(problem, Candidate((effect,), chosen=(form,)), laplace_only=True, bar=bar)
-    if not twin or effect.name == "shear":
+    if theory is None or effect.theory is not None:
         return plain
-    better = explain(
-        problem, Candidate((effect,), theory="timoshenko", chosen=(form,)), laplace_only=True, bar=bar
-    )
+    better = explain(problem, Candidate((effect,), theory=theory, chosen=(form,)), laplace_only=True, bar=bar)
     total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
     chosen = max(plain, better, key=lambda e: e.log_evidence)
     return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
@@ -262,12 +246,12 @@ def _pairs(problem: DiagnosisProblem, singles: list[Explanation]) -> list[Explan
         chosen.setdefault(frozenset(first.names + second.names), (first, second))
     found: list[Explanation] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
-    for first, second in list(chosen.values())[:PAIRS]:
+    for first, second in list(chosen.values())[:PAIRS_WEIGHED]:
         pair_parts = [(e.candidate, e.best.coordinates) for e in (first, second)]
         found.append(_pair(problem, pair_parts[0], pair_parts[1], bar))
         bar = max(bar, found[-1].best.marginal.log_likelihood)
     found.sort(key=lambda e: -e.log_evidence)
-    for i, pair in enumerate(found[:ANEW]):
+    for i, pair in enumerate(found[:PAIRS_ANEW]):
         again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True)
         found[i] = max(pair, again, key=lambda e: e.log_evidence)
         bar = max(bar, found[i].best.marginal.log_likelihood)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values
+from updating.effects.obstacles import Lack, Obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -24,6 +25,7 @@ ROUGHLY = 0.03
 class TimeDelay(Effect):
     """The responses lag the force: filters that differ, multiplexed channels, a network of recorders."""
 
+    phrase = "a time delay between the channels"
     name = "time_delay"
     channel = "measurement"
     summary = "The response channels lag the force channel: every FRF turns in proportion to frequency."
@@ -56,9 +58,11 @@ class TimeDelay(Effect):
         best = dips[np.argsort(misfit[1:-1][dips])[:STARTS]]
         return tuple((float(quantiles[i]),) for i in best)
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need complex constants."""
-        return None if predictor.measured.phase is not None else "the data carry no phase of the residues"
+        if predictor.measured.phase is not None:
+            return None
+        return Obstacle(Lack.DATA, "the data carry no phase of the residues")
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the delay."""

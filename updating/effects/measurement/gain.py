@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.base import Effect, Parameter, Twin, Values, Variant
 from updating.effects.measurement.points import channel_of, channel_point
+from updating.effects.obstacles import Lack, Obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.test_data.chain import fixed_sensors
@@ -19,7 +20,14 @@ class CalibrationGain(Effect):
     )
     footprint = "Modal constants by one factor; frequencies, damping and shapes unchanged."
     models = ("beam", "plate", "matrices")
+    phrase = "a wrong calibration"
+    competes_with = "calibration"
     equivalent_to = ("section_scale",)
+    twin = Twin(
+        "section_scale",
+        "both scale every FRF and nothing else",
+        "calibrate the chain, or weigh and measure the specimen",
+    )
     of_sensor = True
     separated_by = "a calibration with a known free mass"
 
@@ -28,9 +36,11 @@ class CalibrationGain(Effect):
         why = "wrong sensitivity or charge range (a decade), g taken for m/s^2 (9.81), lbf for N (4.45)"
         return (Parameter("gain", "-", 0.08, 12.5, why, log=True),)
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need absolute level."""
-        return None if predictor.measured.absolute else "the data carry no absolute level"
+        if predictor.measured.absolute:
+            return None
+        return Obstacle(Lack.DATA, "the data carry no absolute level")
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the whole chain, and each sensor where there are several."""

@@ -7,7 +7,7 @@ import numpy as np
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.measurement.points import channel_of, channel_point, indices, places, points_of
 from updating.effects.measurement.shape_screening import PROMISING, screen
-from updating.effects.obstacles import shape_obstacle
+from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import Role, State
 from updating.prediction.predict import Predictor
 from updating.test_data.chain import roving
@@ -36,13 +36,14 @@ class Polarity(Effect):
     equivalent_to = ("swapped_points",)
     separated_by = "look at the sign of the drive point FRF and of the points' hits again"
     labels = ("points",)
+    phrase = "a transducer of wrong polarity"
     of_sensor = True
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return nothing to search: which points it is, the variant says."""
         return ()
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need shapes at several points."""
         return shape_obstacle(predictor.measured, 3)
 

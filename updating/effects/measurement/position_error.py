@@ -7,7 +7,7 @@ import numpy as np
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.measurement.points import indices, places, points_of
 from updating.effects.measurement.shape_screening import PROMISING, screen
-from updating.effects.obstacles import shape_obstacle
+from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.test_data.chain import roving
@@ -27,6 +27,7 @@ class PositionError(Effect):
     equivalent_to = ("swapped_points",)
     separated_by = "measure the point's place and hit it again"
     labels = ("point",)
+    phrase = "a misplaced test point"
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return how far it lies from where it was stated."""
@@ -41,7 +42,7 @@ class PositionError(Effect):
             return ((0.4,), (0.6,))
         return ((0.4, 0.5), (0.6, 0.5), (0.5, 0.4), (0.5, 0.6))
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need shapes at several points."""
         return shape_obstacle(predictor.measured, 4)
 

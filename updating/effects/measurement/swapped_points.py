@@ -9,7 +9,7 @@ import numpy as np
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.measurement.points import indices, places, points_of
 from updating.effects.measurement.shape_screening import PROMISING, screen
-from updating.effects.obstacles import shape_obstacle
+from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.test_data.chain import roving
@@ -26,12 +26,13 @@ class SwappedPoints(Effect):
     equivalent_to = ("polarity", "position_error")
     separated_by = "hit the two points again"
     labels = ("points",)
+    phrase = "swapped test points"
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return nothing to search: which points it is, the variant says."""
         return ()
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need shapes at several points."""
         return shape_obstacle(predictor.measured, 3)
 

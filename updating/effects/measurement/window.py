@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from updating.effects.base import Effect, Parameter, Values
-from updating.effects.obstacles import damping_obstacle
+from updating.effects.base import Effect, Parameter, Twin, Values
+from updating.effects.obstacles import Obstacle, damping_obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -16,7 +16,12 @@ class ExponentialWindow(Effect):
     summary = "An exponential window is still in the damping: it adds one decay rate to every mode."
     footprint = "Damping ratios rise in inverse proportion to frequency; nothing else changes."
     models = ("beam", "plate", "matrices")
+    phrase = "an exponential window left in the data"
+    only_damps = True
     equivalent_to = ("uniform_damping",)
+    twin = Twin(
+        "uniform_damping", "both add one decay to every mode", "look the window up in the analyser's settings"
+    )
     separated_by = "the analyser's settings, or a repeat with another window or a longer record"
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -24,7 +29,7 @@ class ExponentialWindow(Effect):
         why = "windows end at 0.1 to 10 % of their start over records of 0.1 to 20 s"
         return (Parameter("decay", "1/s", 0.1, 70.0, why, log=True),)
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need an expectation of the damping."""
         return damping_obstacle(predictor)
 

@@ -7,6 +7,7 @@ from scipy import linalg, sparse
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values
+from updating.effects.obstacles import Lack, Obstacle
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.state import State
@@ -28,6 +29,7 @@ class AxialLoad(Effect):
         "Frequencies rise with tension, the lowest most: in proportion to N over the wavelength's stiffness."
     )
     separated_by = "loosen one end and retighten it, or repeat the test at another temperature"
+    phrase = "an axial load"
     fidelity = 0.02
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -36,11 +38,11 @@ class AxialLoad(Effect):
         why = f"from 0.8 of the load that buckles the model, {critical:.3g} N, to five times it in tension"
         return (Parameter("force", "N", -0.8 * critical, 5 * critical, why),)
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need a support to push against."""
-        if predictor.spec.kind == "matrices":
-            return "not for imported matrices: they have no field of slopes"
-        return None if predictor.spec.clamped else "nothing holds a free structure against an axial force"
+        if predictor.spec.clamped:
+            return None
+        return Obstacle(Lack.MODEL, "nothing holds a free structure against an axial force")
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a thrust, and from a small and a large tension."""

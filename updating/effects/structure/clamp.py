@@ -10,6 +10,7 @@ from scipy import sparse
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, bending_stiffness
+from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.structure.length import clamped_places
 from updating.models.base import Structure
 from updating.models.fields import Sparse
@@ -23,6 +24,7 @@ class Clamp(Effect):
 
     channel = "stiffness"
     fidelity = 0.02
+    undone_by = frozenset({"unclamped"})
     freed: ClassVar[Literal["rotation", "translation"]]
     """What the clamp no longer holds by itself."""
     power: ClassVar[int]
@@ -40,11 +42,9 @@ class Clamp(Effect):
         unit = self.units[spec.kind == "plate"]
         return (Parameter("stiffness", unit, self.span[0] * scale, self.span[1] * scale, self.why, log=True),)
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need a clamp."""
-        if predictor.spec.kind == "matrices":
-            return "not for imported matrices: their supports are part of them"
-        return None if predictor.spec.clamped else "the model has no clamped edge"
+        return None if predictor.spec.clamped else Obstacle(Lack.MODEL, "the model has no clamped edge")
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure on the spring."""
@@ -66,6 +66,7 @@ class ClampRotation(Clamp):
     separated_by = (
         "points near the clamp, a free-free test of the same specimen, or re-clamping at another torque"
     )
+    phrase = "a clamp that rotates"
     freed = "rotation"
     power = 1
     units = ("N m/rad", "N m/rad per m")
@@ -81,6 +82,7 @@ class ClampTranslation(Clamp):
     footprint = "Frequencies fall, the higher modes most; shapes move at the clamp, with no tilt there."
     equivalent_to = ("clamp_rotation",)
     separated_by = "a sensor on the clamp, or a test on a heavier foundation"
+    phrase = "a clamp that gives way"
     freed = "translation"
     power = 3
     units = ("N/m", "N/m per m")

@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, Variant
-from updating.effects.obstacles import damping_obstacle
+from updating.effects.obstacles import Obstacle, damping_obstacle
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
 
@@ -32,6 +32,7 @@ class UniformDamping(Effect):
     footprint = "Damping ratios rise: as one over frequency (alpha), with frequency (beta), or all alike (loss factor)."
     models = ("beam", "plate", "matrices")
     equivalent_to = ("exponential_window", "fluid_damping", "damping_patch")
+    phrase = "damping spread over the whole structure"
     separated_by = "a repeat without window, on softer suspension, or in vacuum"
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -51,7 +52,7 @@ class UniformDamping(Effect):
         alone = tuple(Variant({other: 0.0 for other in names if other != name}, 0.27) for name in names)
         return (*alone, Variant(weight=0.19))
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need an expectation of the damping."""
         return damping_obstacle(predictor)
 

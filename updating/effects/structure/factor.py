@@ -42,6 +42,7 @@ class Modulus(FactorEffect):
     equivalent_to = ("density", "thickness", "length", "clamp_rotation")
     separated_by = "absolute level (calibrated FRFs), a known added mass, or a measured density"
     factors = ("E",)
+    phrase = "the modulus of elasticity"
     low, high = 0.4, 2.5
     why = "wrong alloy or data sheet, not merely its scatter"
 
@@ -57,6 +58,7 @@ class Density(FactorEffect):
     equivalent_to = ("E", "thickness", "length", "fluid_added_mass")
     separated_by = "weigh the specimen; absolute level; a known added mass"
     factors = ("density",)
+    phrase = "the density"
     low, high = 0.4, 2.5
     why = "wrong alloy, coating or paint"
 
@@ -71,6 +73,7 @@ class Thickness(FactorEffect):
     equivalent_to = ("E", "density", "length")
     separated_by = "a caliper; absolute level; a known added mass"
     factors = ("thickness",)
+    phrase = "the thickness"
     low, high = 0.6, 1.6
     why = "next standard gauge"
 
@@ -86,6 +89,7 @@ class SectionScale(FactorEffect):
     equivalent_to = ("calibration_gain",)
     separated_by = "a caliper; a calibration of the measurement chain with a known mass"
     factors = ("section",)
+    phrase = "the scale of the section"
     low, high = 0.4, 2.5
     why = "wrong width or number of layers"
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values
-from updating.effects.obstacles import damping_obstacle
+from updating.effects.obstacles import Obstacle, damping_obstacle
 from updating.environment import Environment
 from updating.fluid import (
     AddedMassOperator,
@@ -45,6 +45,8 @@ class FluidAddedMass(Effect):
     equivalent_to = ("density",)
     separated_by = "the same test dry; or a second depth of immersion"
 
+    phrase = "the mass of the fluid around it"
+    undone_by = frozenset({"in air"})
     fidelity = 0.06
     damping_doubt = 0.5
     """A fluid damps, and how much nothing here says: in water Stokes' layer alone adds 0.03 to 0.3 % to the ratios
@@ -78,6 +80,8 @@ class FluidDamping(Effect):
     equivalent_to = ("uniform_damping",)
     separated_by = "the same test dry; or in a fluid of the same density and another viscosity"
 
+    phrase = "the viscosity of the fluid around it"
+    undone_by = frozenset({"in air"})
     fidelity = 0.15
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -86,7 +90,7 @@ class FluidDamping(Effect):
         why = f"from volatile solvents to heavy oil, at a density of {density:.4g} kg/m^3"
         return (Parameter("viscosity", "Pa s", 1e-4, 1.0, why, log=True),)
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need an expectation of the damping."""
         return damping_obstacle(predictor)
 

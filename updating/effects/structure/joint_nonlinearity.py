@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values
+from updating.effects.obstacles import Lack, Obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -56,6 +57,8 @@ class JointNonlinearity(Effect):
     models = ("beam", "plate", "matrices")
     equivalent_to = ()
     separated_by = "hits at each point over a wider range of levels, softest and hardest some 1 : 5"
+    phrase = "a joint that is not linear"
+    undone_by = frozenset({"unclamped"})
     fidelity = 0.15
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -71,12 +74,13 @@ class JointNonlinearity(Effect):
         """Start from both signs, faint and plain."""
         return tuple((u,) for u in (0.1, 0.3, 0.7, 0.9))
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need hits of different levels."""
         test = predictor.measured
         if test.slope is not None and test.level and np.isfinite(test.slope).any():
             return None
-        return "no points were hit several times with levels that span 2 : 1, or there are no raw hits"
+        what = "no points were hit several times with levels that span 2 : 1, or there are no raw hits"
+        return Obstacle(Lack.DATA, what)
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the dependence on the level."""

@@ -15,6 +15,9 @@ class Length(Effect):
     footprint = "All frequencies by nearly one factor; points move relative to the clamp, so shapes tell."
     equivalent_to = ("E", "density", "thickness", "clamp_rotation")
     separated_by = "shapes at points near the clamp, absolute level, or a free-free test of the same specimen"
+    phrase = "the length"
+    competes_with = "length"
+    undone_by = frozenset({"unclamped"})
     fidelity = 0.01
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -36,11 +39,9 @@ class Length(Effect):
             raise StudyError(f"length: extension = {values['extension']:g} m leaves nothing of the structure")
         return State(factors={"length": stretch})
 
-    def obstacle(self, predictor: Predictor) -> str | None:
-        """Need a model that has a length."""
-        return (
-            "not for imported matrices: their length is in their numbers" if predictor.spec.imported else None
-        )
+    def scales(self, predictor: Predictor) -> tuple[str, float] | None:
+        """Return that the extension stretches the model, at a clamp as elsewhere."""
+        return "length", 1 / predictor.spec.length
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return the clamped edges across x, where the length is in doubt."""

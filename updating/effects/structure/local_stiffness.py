@@ -9,6 +9,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.box import SOFT, Place, mirror_images, place, shares, starting_places
+from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import region_centre, region_parameter, stiff_regions
 from updating.models.softening import softening
 from updating.models.state import State
@@ -34,6 +35,7 @@ class LocalStiffness(Effect):
     models = ("beam", "plate", "matrices")
     equivalent_to = ("clamp_rotation",)
     separated_by = "more points around the place, or a visual and dye check there"
+    phrase = "a soft spot"
     fidelity = 0.05  # some 0.03 of a sharp-edged place seen as one with soft edges, 0.02 of the condensation
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -58,11 +60,12 @@ class LocalStiffness(Effect):
         why = "what is longer is a region, not a place; what is shorter makes no other change than this"
         return (*middle, Parameter("extent", "m", low, high, why, log=True, natural=("low",)), lost)
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need regions where there are matrices."""
         if predictor.spec.kind != "matrices" or len(stiff_regions(predictor)) > 1:
             return None
-        return "the matrices have no stiffness_parts: nothing can soften at a place; give one per region"
+        what = "the matrices have no stiffness_parts: nothing can soften at a place; give one per region"
+        return Obstacle(Lack.MODEL, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return one form for each region of imported matrices."""

@@ -9,6 +9,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import Place, mirror_images, starting_places
+from updating.effects.obstacles import Lack, Obstacle
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.imported.structure import ImportedStructure
@@ -64,6 +65,7 @@ class SensorMass(Effect):
         "Frequencies fall where the sensor moves, least in modes with a node there; shapes shrink there."
         " Its bulk is its rotary inertia over that of a steel cube of its mass."
     )
+    phrase = "the mass of the sensor"
     models = ("beam", "plate", "matrices")
     equivalent_to = ("lumped_mass",)
     separated_by = "weigh the sensor, or add a second known mass beside it"
@@ -81,11 +83,15 @@ class SensorMass(Effect):
         """Return the doubt in the mean over the places where the sensor roves [-]."""
         return ROVING if sensor_roves(predictor) else self.fidelity
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def sensor_weight(self, values: Values) -> float:
+        """Return the mass of one sensor [kg]."""
+        return float(values["mass"])
+
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need to know where the sensors sit."""
         if len(sensor_places(predictor)):
             return None
-        return "the data do not say where a sensor sits; a [[model.mass]] of 0 kg would"
+        return Obstacle(Lack.DATA, "the data do not say where a sensor sits; a [[model.mass]] of 0 kg would")
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the mass at every sensor, or spread over the places of one that roves."""
@@ -112,6 +118,7 @@ class LumpedMass(Effect):
         "Frequencies fall in the modes that move there, not in those with a node there; shapes shrink there."
         " Its bulk is its rotary inertia over that of a steel cube of its mass."
     )
+    phrase = "a mass left out of the model"
     models = ("beam", "plate", "matrices")
     equivalent_to = ("sensor_mass",)
     separated_by = "look for the body and take it off; or more points around the place"
@@ -124,11 +131,16 @@ class LumpedMass(Effect):
         places = _outline(predictor)
         return (Parameter("mass", "kg", 2e-3 * high, high, why, log=True), *places, _bulk(CUBE))
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def weight(self, values: Values) -> float:
+        """Return the mass of the body, which stays on when the specimen is weighed [kg]."""
+        return float(values["mass"])
+
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need places: on imported matrices, the points of the test."""
         if predictor.spec.kind != "matrices" or len(predictor.measured.points):
             return None
-        return "the test has no points on the imported matrices at which a body might sit"
+        what = "the test has no points on the imported matrices at which a body might sit"
+        return Obstacle(Lack.DATA, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return one form for each test point of imported matrices, which have no surface in between."""

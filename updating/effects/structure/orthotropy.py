@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
+
 from updating.effects.base import Effect, Parameter, Values
 from updating.models.state import State
 from updating.models.terms import FieldTerm
@@ -27,22 +29,13 @@ class Orthotropy(Effect):
     )
     models = ("plate",)
     separated_by = "strips cut along and across, or the data sheet of the sheet"
+    elsewhere = MappingProxyType({"beam": "a beam bends along one axis only"})
     fidelity = 0.03
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the ratio."""
         why = "from unidirectional laminates and ribbed sheet along x to the same along y; rolled sheet 0.9 to 1.1"
         return (Parameter("ratio", "-", 0.25, 4.0, why, log=True),)
-
-    def obstacle(self, predictor: Predictor) -> str | None:
-        """Need a plate."""
-        if predictor.spec.kind == "plate":
-            return None
-        return (
-            "a beam bends along one axis only"
-            if predictor.spec.kind == "beam"
-            else "not for imported matrices"
-        )
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the plate with its terms across scaled."""

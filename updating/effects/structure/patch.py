@@ -5,7 +5,7 @@ from __future__ import annotations
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.box import Place, covered, mirror_images, place, shares, starting_places
-from updating.effects.obstacles import damping_obstacle
+from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import region_centre, region_parameter, stiff_regions
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
@@ -27,6 +27,7 @@ class DampingPatch(Effect):
     models = ("beam", "plate", "matrices")
     equivalent_to = ("uniform_damping",)
     separated_by = "take the layer off, or more modes whose curvature differs along the structure"
+    phrase = "a damping patch"
     fidelity = 0.05
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -54,10 +55,11 @@ class DampingPatch(Effect):
             *layer,
         )
 
-    def obstacle(self, predictor: Predictor) -> str | None:
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need an expectation of the damping, and regions where there are matrices."""
         if predictor.spec.kind == "matrices" and len(stiff_regions(predictor)) < 2:
-            return "the matrices have no stiffness_parts: nothing can stick to a part; give one per region"
+            what = "the matrices have no stiffness_parts: nothing can stick to a part; give one per region"
+            return Obstacle(Lack.MODEL, what)
         return damping_obstacle(predictor)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:

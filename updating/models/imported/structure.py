@@ -63,6 +63,8 @@ class ImportedStructure(Structure):
     terms: tuple[MatrixTerm, ...] = TERMS
     fixed: Mapping[str, IntArray] = field(default_factory=lambda: MappingProxyType({}))
 
+    refinable = False
+
     @property
     def imported(self) -> Imported:
         """The matrices."""

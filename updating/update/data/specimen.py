@@ -231,7 +231,7 @@ class Specimen:
         """Covariance of the measured constants, calibration included where their level is data."""
         at = self.nominal.prediction if self.near is None else self.near
         turned = any(
-            model_parameter.effect == "calibration_gain"
+            model_parameter.competes_with == "calibration"
             for model_parameter in self.parameter_set.model_parameters
         )
         return constant_errors(
@@ -278,9 +278,7 @@ class Specimen:
 
     def _on(self, reduced: Reduced) -> Specimen:
         """Return the same specimen on another basis."""
-        own = replace(self.predictor)
-        own.__dict__["reduced"] = reduced
-        other = replace(self, predictor=own, correction=np.ones(len(self.number)))
+        other = replace(self, predictor=self.predictor.on(reduced), correction=np.ones(len(self.number)))
         other.__dict__.update(nominal=self.nominal, rigid=self.rigid, count=self.count)
         other.__dict__.update({"errors": self.errors} if self.measured.has_shapes else {})
         return other

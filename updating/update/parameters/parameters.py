@@ -25,9 +25,6 @@ REGIONAL = {"E": "Pa", "density": "kg/m^3", "thickness": "m", "area": "m^2", "in
 DAMPERS = {"alpha": "1/s", "beta": "s", "loss_factor": "-"}
 """Coefficients of damping, of the whole or of one region, and their units."""
 
-DAMPING = ("exponential_window",)
-"""Effects that are nothing but damping."""
-
 MIDDLING = 0.01
 """Damping ratio that sets the scale of the coefficients of damping [-]."""
 
@@ -39,6 +36,12 @@ FACTOR_RANGE = (0.05, 20.0)
 
 UNTOLD = np.log(2.0)
 """1-sigma scale of the logarithm of a factor of which the study says no tolerance [-]."""
+
+
+def only_damps(name: str) -> bool:
+    """Tell whether a parameter, as the user writes it, is a matter of damping alone."""
+    effect, coefficient = name.partition(".")[0], name.rpartition(".")[2]
+    return coefficient in DAMPERS or (effect in LIBRARY and LIBRARY[effect].only_damps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +103,12 @@ class ModelParameter:
     @property
     def damps(self) -> bool:
         """Whether it is a matter of damping alone."""
-        return self.damper is not None or self.effect in DAMPING
+        return self.damper is not None or (self.effect in LIBRARY and LIBRARY[self.effect].only_damps)
+
+    @property
+    def competes_with(self) -> str:
+        """The modeller's doubt that it takes the place of, empty for none."""
+        return LIBRARY[self.effect].competes_with if self.effect in LIBRARY else ""
 
     def coordinate(self, value: float) -> float:
         """Take a factor or value to its coordinate."""
@@ -346,19 +354,22 @@ def _effect(
             p.unit, 1.0, start, low, high, float(width / np.sqrt(12)), False, log,
             effect=effect.name, parameter=p.name,
         )  # fmt: skip
-        model_parameters.append(_stated(model_parameter, predictor.spec, tolerances))
+        model_parameters.append(_in_model(model_parameter, effect.scales(predictor), tolerances))
     return model_parameters
 
 
-def _stated(model_parameter: ModelParameter, spec: Spec, tolerances: Tolerances) -> ModelParameter:
-    """Give the extension of the length its tolerance, and its place among the model's factors."""
-    if model_parameter.effect != "length":
+def _in_model(
+    model_parameter: ModelParameter, scales: tuple[str, float] | None, tolerances: Tolerances
+) -> ModelParameter:
+    """Give a parameter that moves a factor of the model its place among these, and the tolerance it competes with."""
+    if scales is None:
         return model_parameter
-    tolerance = tolerances.factors.get("length", 0.0) * spec.length
+    factor, reach = scales
+    tolerance = tolerances.factors.get(model_parameter.competes_with, 0.0) / reach
     return replace(
         model_parameter,
-        factor="length",
-        reach=1 / spec.length,
+        factor=factor,
+        reach=reach,
         doubt=tolerance or model_parameter.doubt,
         tolerated=tolerance > 0,
     )

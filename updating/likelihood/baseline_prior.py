@@ -18,14 +18,9 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.models.state import NOMINAL
 from updating.prediction.matching import match
 from updating.prediction.predict import Prediction, Predictor
-from updating.problem.same_places import same_rows
 from updating.test_data.measured import Measured
-
-CARRIED = 0.3
-"""How far what the model missed in the baseline may miss differently now, relative to what it missed [-]."""
-
-EXTRAPOLATED = 0.01
-"""Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others [-]."""
+from updating.test_data.same_places import same_rows
+from updating.thresholds import CARRIED_DOUBT, UNREACHED_MODE_DOUBT
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +73,7 @@ class Before:
         """
         base = self.baseline
         noise = (base.frequency_sigma / base.frequency) ** 2 + base.repeatability**2
-        return np.asarray(noise + (CARRIED * self._uneven) ** 2)
+        return np.asarray(noise + (CARRIED_DOUBT * self._uneven) ** 2)
 
     def seen(self, now: Prediction) -> FloatArray:
         """Return how much of each present mode the baseline's modes make up together, (n_modes,) [-]."""
@@ -122,7 +117,7 @@ class Before:
         known : (n_modes, n_factors) array [-]
         """
         shares, seen = self.shares(now), self.seen(now)
-        beyond = (1 - seen) * (np.var(self._uneven) + EXTRAPOLATED**2)
+        beyond = (1 - seen) * (np.var(self._uneven) + UNREACHED_MODE_DOUBT**2)
         known = seen[:, None] * (shares @ self.prediction.log_frequency_by)
         return shares @ self.relative_variance + beyond, known
 
@@ -154,7 +149,7 @@ class Before:
         weights = self.shares(now) * level
         missed[here] = error @ weights.T
         variance[here] = (
-            self.baseline.constants_sigma[there] ** 2 @ (weights**2).T + (CARRIED * missed[here]) ** 2
+            self.baseline.constants_sigma[there] ** 2 @ (weights**2).T + (CARRIED_DOUBT * missed[here]) ** 2
         )
         known[here] = np.einsum("fkp,mk->fmp", self.prediction.constants_by[there], weights)
         return missed, variance, known

@@ -1,0 +1,102 @@
+"""What every kind of data tells beside a state of the model: residual, noise, and what may explain the residual."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+from updating.likelihood.baseline_prior import Before
+from updating.likelihood.comparison import Block
+from updating.models.state import State
+from updating.prediction.predict import Prediction, Predictor
+from updating.test_data.measured import Measured
+from updating.tolerances import Tolerances
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """What a candidate leaves in doubt beside its parameters.
+
+    Parameters
+    ----------
+    fidelity : float
+        How far its idealisation may be off, relative to the shift it makes [-].
+    damping : float
+        How far it leaves damping in doubt: 1 sigma of ln zeta [-].
+    """
+
+    fidelity: float = 0.0
+    damping: float = 0.0
+
+
+NO_DOUBT = Doubt()
+"""Of a state that is no candidate's."""
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """A test beside a model, as every kind of data needs the two.
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The model as seen from the test's points.
+    measured : Measured
+        The test, with the modes that have a partner.
+    tolerances : Tolerances
+        The modeller's doubts.
+    names : tuple of str
+        Factors with a tolerance that the model knows.
+    nominal : Prediction
+        The nominal prediction of the measured modes.
+    before : Before, optional
+        What a baseline has already said.
+    """
+
+    predictor: Predictor
+    measured: Measured
+    tolerances: Tolerances
+    names: tuple[str, ...]
+    nominal: Prediction
+    before: Before | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A state of the model as data are compared with it.
+
+    Parameters
+    ----------
+    now : Prediction
+        Its modes, in the order of the measured ones.
+    state : State
+        Its whole departure from the bare nominal model, what was put in beforehand included.
+    doubt : Doubt
+        What it leaves in doubt.
+    """
+
+    now: Prediction
+    state: State
+    doubt: Doubt
+
+
+@dataclass(frozen=True, eq=False)
+class Quantity(ABC):
+    """One kind of data: the rows that it adds to a comparison, and no others.
+
+    Parameters
+    ----------
+    setting : Setting
+        Test and model.
+    """
+
+    setting: Setting
+
+    @property
+    @abstractmethod
+    def present(self) -> bool:
+        """Whether the test has such data."""
+
+    @abstractmethod
+    def block(self, view: View) -> Block:
+        """Return residual, noise and nuisances of these data beside a state."""

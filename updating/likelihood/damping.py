@@ -1,0 +1,71 @@
+"""Damping ratios: ln zeta measured minus predicted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.likelihood.base import Quantity, View
+from updating.likelihood.comparison import Block
+from updating.prediction.predict import Prediction
+from updating.thresholds import (
+    DAMPING_PER_SHIFT,
+    DAMPING_REPEATABILITY,
+    LEAST_DAMPING,
+    UNSTATED_DAMPING_NOISE,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Dampings(Quantity):
+    """Damping ratios, of modes whose damping is measured and expected."""
+
+    @cached_property
+    def rows(self) -> IntArray:
+        """Modes whose damping is measured and expected."""
+        test = self.setting.measured
+        finite = np.isfinite(test.damping) & (test.damping > 0)
+        known = finite if self.setting.predictor.expects_damping else np.zeros_like(finite)
+        return np.asarray(np.flatnonzero(known), dtype=np.int64)
+
+    @property
+    def present(self) -> bool:
+        """Whether the test has such data; without any its block is empty."""
+        return True
+
+    @property
+    def doubt(self) -> float:
+        """Doubt in the expected damping: a baseline that measured it knows better than a modeller [-]."""
+        stated = self.setting.tolerances.damping
+        return stated if self.setting.before is None else min(stated, DAMPING_REPEATABILITY)
+
+    def block(self, view: View) -> Block:
+        """Return ln zeta beside a state, the level of the expected damping a named doubt."""
+        rows, test, now = self.rows, self.setting.measured, view.now
+        relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=UNSTATED_DAMPING_NOISE)
+        expected = np.maximum(now.damping[rows], LEAST_DAMPING)
+        tolerance = self._tolerance(now)[rows]
+        # ratios go up or down with frequency as the mechanism has it: viscous ones fall, those of stiffness rise
+        moved = DAMPING_PER_SHIFT * np.log(now.frequency[rows] / self.setting.nominal.frequency[rows])
+        doubt = view.doubt.damping
+        variance = relative**2 + tolerance**2 + doubt**2 + moved**2
+        level = np.stack([tolerance, np.full(len(rows), doubt)], axis=1)[:, : 1 + (doubt > 0)]
+        return Block(
+            "damping",
+            np.log(test.damping[rows] / expected),
+            variance,
+            np.zeros((len(rows), len(self.setting.names))),
+            level if len(rows) else np.zeros((0, 0)),
+            np.zeros((len(rows), 0)),
+            rows,
+        )
+
+    def _tolerance(self, now: Prediction) -> FloatArray:
+        """Return the doubt in the expected damping of each mode: small where a baseline measured it [-]."""
+        stated, before = self.setting.tolerances.damping, self.setting.before
+        if before is None:
+            return np.full(len(now.frequency), stated)
+        return np.where(before.seen(now) > 0.5, self.doubt, stated)

@@ -1,0 +1,45 @@
+"""Dependence of the frequencies on the level of the hits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from updating.likelihood.base import Quantity, View
+from updating.likelihood.comparison import Block
+from updating.thresholds import DRIFT_SHARE, LEAST_DRIFT
+
+
+@dataclass(frozen=True, eq=False)
+class Levels(Quantity):
+    """Relative change of each frequency over the mean force of the hits."""
+
+    @property
+    def present(self) -> bool:
+        """Whether the test has such data."""
+        return self.setting.measured.slope is not None
+
+    def block(self, view: View) -> Block:
+        """Return by how much more than predicted frequencies depend on the force, times its mean."""
+        test, slope = self.setting.measured, view.state.slope
+        assert test.slope is not None
+        assert test.slope_sigma is not None
+        level = test.level or 1.0
+        n = len(test.slope)
+        uneven = view.doubt.fidelity * slope * level
+        known = np.isfinite(test.slope)
+        return Block(
+            "level",
+            level * np.where(known, test.slope - slope, 0.0),
+            np.where(known, (level * test.slope_sigma) ** 2 + uneven**2 + self._steady**2, 1.0),
+            np.zeros((n, len(self.setting.names))),
+            np.zeros((n, 0)),
+            np.zeros((n, 0)),
+            np.arange(n),
+        )
+
+    @property
+    def _steady(self) -> float:
+        """Change of frequency over the levels of a test that needs no joint: it is not kept at one temperature [-]."""
+        return max(DRIFT_SHARE * self.setting.measured.repeatability, LEAST_DRIFT)

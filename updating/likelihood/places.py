@@ -1,0 +1,78 @@
+"""Where points really were: what a hit beside its point, or a sensor beside its place, does to modal constants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from updating.likelihood.base import Setting
+from updating.thresholds import END_REACH, REGISTRATION_SHARE
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Nuisances of the places of hits and sensors: columns of change of the constants per standard deviation.
+
+    Parameters
+    ----------
+    setting : Setting
+        Test and model.
+    """
+
+    setting: Setting
+
+    def hits(self, along: FloatArray) -> FloatArray:
+        """Return one column per point hit and direction: the effect of having hit beside it.
+
+        Parameters
+        ----------
+        along : (dim, n_frf, n_modes) array
+            Derivatives of the constants by the position of the hit, relative to their scale [1/m].
+        """
+        test = self.setting.measured
+        return self._by_place(np.where(test.hit < 0, test.seen, test.hit), along)
+
+    def sensors(self, along: FloatArray) -> FloatArray:
+        """Return one column per sensor and direction: the effect of having mounted it beside its point."""
+        if (self.setting.measured.hit < 0).all():
+            return np.zeros((along[0].size, 0))
+        return self._by_place(self.setting.measured.seen, along)
+
+    def together(self, hit: FloatArray, seen: FloatArray) -> FloatArray:
+        """Return a column for where the points as a whole lie along x."""
+        if not self.loose_length:
+            return np.zeros((hit[0].size, 0))
+        bare = (self.setting.measured.hit < 0)[:, None]
+        return np.asarray(self.loose_length * (np.where(bare, 0.0, hit[0]) + seen[0])).reshape(-1, 1)
+
+    @cached_property
+    def loose_length(self) -> float:
+        """Doubt in where points lie along x, 0 where one end is clamped and they keep their distance from the other.
+
+        Else nobody says from which end they were measured: half of the doubt in the length. A baseline has the same.
+        """
+        spec = self.setting.predictor.spec
+        one_end = len({edge for edge in spec.clamped if edge[0] == "x"}) == 1
+        if one_end or self.setting.before is not None or not spec.outlined:
+            return 0.0
+        return REGISTRATION_SHARE * self.setting.tolerances.factors.get("length", 0.0) * spec.length
+
+    def _by_place(self, place: IntArray, along: FloatArray) -> FloatArray:
+        """Return one column per point and direction of slopes (dim, n_frf, n_modes), each times the doubt there."""
+        points, rank = np.unique(place, return_inverse=True)
+        n_dim, n_frf, n_modes = along.shape
+        columns = np.zeros((n_frf, n_modes, len(points), n_dim))
+        for axis, slope in enumerate(along):
+            sigma = np.array([self._sigma(int(p), axis) for p in points])
+            columns[np.arange(n_frf), :, rank, axis] = sigma[rank, None] * slope
+        return columns.reshape(n_frf * n_modes, -1)
+
+    def _sigma(self, point: int, axis: int) -> float:
+        """Return the doubt in a point's place; one at the end of the model was at the end of the specimen [m]."""
+        test, length = self.setting.measured, self.setting.predictor.spec.length
+        x = float(test.points[point, 0])
+        at_end = axis == 0 and min(x, length - x) < END_REACH * length
+        return float(np.hypot(test.position_sigma, 2 * self.loose_length)) if at_end else test.position_sigma

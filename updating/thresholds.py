@@ -1,0 +1,420 @@
+"""All numbers that a diagnosis decides by: what each limits, where it comes from, what doubling it does.
+
+Where doubling is said, it follows from the formula that the number stands in. *Judged* means chosen by a modeller for
+structures of this kind, with no measurement behind it: these are the first to be replaced once one is there.
+"""
+
+# --------------------------------------------------------------------------------- the noise of frequencies
+
+LEAST_FREQUENCY_NOISE = 1e-6
+"""No frequency is known better than this, relative [-]. From the digits of files that hold frequencies alone; it
+keeps a variance of zero out. Doubled: nothing, where a repeatability is stated."""
+
+THEORY_EXPECTED = 0.5
+"""How much of what a plate's theory leaves out is expected, and in doubt, and how much of the mesh's own error in
+each mode [-]. Between 0 (a thin plate) and 1 (the estimate, which is Reissner's to first order), each as likely.
+Doubled: all of it is expected, with as much doubt."""
+
+THEORY_UNEVENNESS = 0.15
+"""How much of what a plate's theory leaves out is in doubt mode by mode [-]. Judged. Doubled: modes of short waves,
+where the theory leaves out most, count a quarter as much once this is their whole noise."""
+
+CARRIED_DOUBT = 0.3
+"""How far what the model missed in the baseline may miss differently now, relative to what it missed [-]. Judged.
+Doubled: a baseline of a model that was far off says half as much."""
+
+UNREACHED_MODE_DOUBT = 0.01
+"""Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others, relative [-].
+Judged: what tolerances of one per cent leave. Doubled: such a mode counts a quarter as much."""
+
+WIDE_TOLERANCE = 0.04
+"""From this relative tolerance on, effects of tolerances are linearised anew about the most probable ones [-]. Half
+its square is the error of a linearisation in ln f, as large as its usual noise. Doubled: that error is four times as
+large."""
+
+# ---------------------------------------------------------------------------------------- the noise of damping
+
+DAMPING_REPEATABILITY = 0.1
+"""Scatter of damping from one mounting of a specimen to the next, relative [-]. Judged, from tests that were taken
+down and put up again. Doubled: a gap in damping beside a baseline must be twice as large to be seen."""
+
+DAMPING_PER_SHIFT = 0.5
+"""How much of a change of frequency (1 sigma of its logarithm) damping may follow otherwise than expected [-]. Ratios
+of viscous dampers fall as 1/f, those of a stiffness-proportional one rise as f; half of that either way. Doubled: a
+change of frequency by 10 % leaves damping 10 % in doubt."""
+
+UNSTATED_DAMPING_NOISE = 0.05
+"""Relative standard deviation of a damping ratio of which none is stated [-]. Judged: a usual one of an
+identification. Doubled: only where the tolerance on damping is as small does it matter."""
+
+LEAST_DAMPING = 1e-7
+"""No damping ratio is predicted lower: its logarithm is taken [-]. A thousand times below what any metal has.
+Doubled: nothing."""
+
+# -------------------------------------------------------------------------------- the noise of modal constants
+
+LEAST_CONSTANT_NOISE = 0.005
+"""Error of a modal constant that no coherence shows (cross-talk, direction), relative to the mode's r.m.s. [-].
+Judged from transducers' data sheets: a cross sensitivity of some per cent, of motion across that is a tenth. Doubled:
+good shapes count a quarter as much."""
+
+DELAY_FIT_ERROR = 0.01
+"""Error of a modal constant, relative to the mode's r.m.s., per radian by which a delay turns it [1/rad]: no rational
+function is a delay. Doubled: a delay explains constants that it spoils twice as much."""
+
+FREE_LEVEL_DOUBT = 3.0
+"""Doubt in the level of a mode of which the shape alone is known (1 sigma, relative) [-]. So wide that no level is
+believed. Doubled: nothing."""
+
+SHAPE_NOISE_SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
+"""How many times worse than thought the shapes may be [-]: powers of two up to what hides any shape."""
+
+REPEATED_SCATTER_PRIOR = (0.85, 0.12, 0.025, 0.004, 0.001)
+"""Prior of each of these where repeated hits show the scatter [-]. Judged: some one in seven stated scatters is too
+small by two or more. The p-value of a fit is never above the tail of this prior at the scale that it needs."""
+
+SINGLE_SCATTER_PRIOR = (0.3, 0.25, 0.2, 0.15, 0.1)
+"""The same where nothing shows the scatter [-]: nearly any is as likely."""
+
+END_REACH = 0.01
+"""Points this near to an end, relative to the length, sit at it [-]: there is nothing to hit beyond. Doubled: nothing
+on usual grids, whose points are further apart."""
+
+REGISTRATION_SHARE = 0.5
+"""Share of the doubt in the length by which all points may be shifted together where no single clamp says from which
+end they were measured [-]. From one end it would be nought, from the other the whole; half is from the middle."""
+
+# ------------------------------------------------------------------------------------------ the noise of phases
+
+PHASE_DOUBT = 0.03
+"""How far damping that is not proportional, and filters, turn a mode's constants (1 sigma) [rad]. From paired
+filters, matched to a degree or two. Doubled: a delay must be twice as long to be seen."""
+
+PHASE_UNEVENNESS = 0.3
+"""How much of that differs from chain to chain [-]. Judged. Doubled: several chains say little more than one."""
+
+COMPLEXITY_PER_DAMPING = 2.5
+"""Imaginary part of a mode over its damping ratio times its size, where damping is not proportional [-]. Judged; it
+grows with how close modes are. Doubled: heavily damped modes say a quarter as much of a delay."""
+
+LARGEST_NODE_RATIO = 30.0
+"""No sensor is taken to sit nearer to a node than where a mode moves this much less than elsewhere [-]: rounding of
+its place decides beyond that. Doubled: the phase of such a mode counts for even less."""
+
+# ---------------------------------------------------------------------------- the dependence on the hits' level
+
+DRIFT_SHARE = 0.1
+"""Drift of frequencies within a test, as a share of the scatter of re-mounting [-]. Judged: what re-mounts is the
+clamp, what drifts the temperature. Doubled: a joint must be twice as nonlinear to be seen in a test that scatters
+much."""
+
+LEAST_DRIFT = 3e-5
+"""That drift is at least this, relative [-]: what steel does in a quarter of a kelvin. Doubled: as above, in a good
+test."""
+
+# ---------------------------------------------------------------------------------------- gates and warnings
+
+FEWEST_MODES = 3
+"""With fewer modes paired a warning says that little can be told apart: an effect and the tolerances are as many."""
+
+SKIPPED_MODE_GAIN = 4.0
+"""By how much leaving one out must lower the scatter of the frequency ratios before a mode is held to be missing [-].
+Judged. Doubled: fewer warnings, of test and model paired by rank."""
+
+UNLIKE_RATIOS = 0.02
+"""Scatter of the frequency ratios, relative, below which nothing is suspected [-]: what most effects make."""
+
+LONE_ERROR = 0.08
+"""A frequency so far from what the others' median error says [-]..."""
+
+LONE_DEVIATIONS = 6.0
+"""...and so many times the median deviation of the others stands alone [-]. Judged: few effects move one mode only,
+and none by that much. Doubled: only mistaken modes are still pointed out."""
+
+FEWEST_FOR_A_LONE = 4
+"""With fewer modes none can be said to stand alone: half of them would be."""
+
+ANOTHER_STRUCTURE = 0.5
+"""R.m.s. error of the frequencies from which test and model are hardly the same structure [-]: a stiffness off by a
+factor of two and more. Doubled: the warning comes for models in wrong units only."""
+
+THIN_FLUID = 10.0
+"""A fluid of less density is a gas: there is no drier test [kg/m^3]. Air has 1.2, light oils 700."""
+
+# --------------------------------------------------------------------------------------- is there a gap, and what
+
+SIGNIFICANT_GAP = 0.005
+"""Tolerances and noise explain data that chance alone makes more often than this [-]. One false alarm in 200 tests.
+Doubled: one in 100."""
+
+FAR_BETTER = 6.0
+"""Logarithm of the Bayes factor at which an effect shows a gap that no single test does [-]: odds of 400, which beats
+the prior of one effect among two dozen seventeen to one. Doubled: such gaps count only by their chance."""
+
+CHANCE_OF_A_FIT = 1e-3
+"""Chance, over all that was tried, that an effect fits noise that much better, below which there is a gap [-].
+Doubled: twice as many false alarms, one in 500."""
+
+PLACES_PER_FORM = 2
+"""Places tried for each form of an effect, roughly: what that chance is multiplied by, beside the form's share [-].
+Doubled: an effect must fit noise by ln 2 better."""
+
+REJECTED_FIT = 0.003
+"""A single effect that fits worse than this is no answer [-]. One true cause in 300 is rejected if the noise is as
+stated."""
+
+DOUBTED_FIT = 0.02
+"""Where no single effect fits better than this, pairs are weighed beside them, which must fit as well themselves [-].
+Doubled: pairs are tried in one test in 25 that needs none."""
+
+PROBABLE_BEHIND = 6.0
+"""Explanations whose logarithm of the probability lies further behind the best have no say in whether one fits [-]:
+they hold less than 0.3 % of its probability."""
+
+CREDIBLE_SHARE = 0.95
+"""Probability that the sets of an answer hold together [-]. The contract's."""
+
+RIVAL_SHARE = 0.02
+"""A rival that fits as well as the first is kept from this share of its probability on [-]. Below, its prior alone,
+by how wide its parameters range, is odds of 50. Doubled: odds of 25 name an effect among equals."""
+
+CLOSE_FITS = 4.0
+"""Twice the difference of log-likelihood below which two explanations are equivalent [-]: 2 sigma, as the contract
+has it."""
+
+PAIR_PRIOR = 0.05
+"""Prior weight of a pair of effects against a single one [-]. Judged: one gap in twenty has two causes. Doubled:
+pairs gain ln 2 in all odds."""
+
+FORM_SHARE = 0.02
+"""Forms of an effect with less than this share of the most probable one do not speak for its fit [-]: they are
+another point, or another sign, that nobody would name."""
+
+HELD_NEAR_END = 0.25
+"""A parameter is held at the end of its prior range where it is within this share of it [-]..."""
+
+HELD_SHARE = 0.95
+"""...with so much of its posterior [-]: then the data ask for a size beyond what is plausible."""
+
+NEGLIGIBLE_PROBABILITY = 1e-4
+"""Explanations less probable are not asked where their parameters lie, get rougher intervals, and have no say in the
+regions [-]. The contract lets their rows be left out. Doubled: nothing that is printed with two digits."""
+
+# --------------------------------------------------------------------------------- how the search is carried out
+
+THEORY_BEYOND_NOISE = 0.3
+"""A better beam theory is weighed beside every effect where it moves a mode by more than this part of the noise [-]:
+less adds a tenth to the variance. Doubled: a bias of half a sigma goes unseen."""
+
+WITHIN_REACH = 7.0
+"""Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]: a draft's
+evidence errs by one or two. Doubled: twice the predictions for the same answer."""
+
+FINISHING_ROUNDS = 3
+"""How often what is within reach is sought: finishing one moves the bar for the others."""
+
+PAIRS_WEIGHED = 8
+"""How many pairs are weighed, those that a linear look finds the most promising. Doubled: twice the time of pairs."""
+
+PAIRS_ANEW = 3
+"""How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take half as long
+again."""
+
+SAME_PEAK = 0.02
+"""Peaks nearer to each other than this in every prior quantile are one [-]: narrower than samples are drawn."""
+
+PEAK_BEHIND = 12.0
+"""Peaks whose log-likelihood lies further behind the highest are left out [-]: they hold less than 1e-5 of it."""
+
+STARTS_TRIED = 12
+"""From how many of the starting places at most a climb is tried..."""
+
+STEPS_TRIED = 4
+"""...for how many steps, before the best of them go on..."""
+
+CLIMBS = 3
+"""...and how many of these climbs go on to the top. Doubled: maxima are missed less often, at twice the time."""
+
+PRIOR_SHARE = 0.25
+"""Share of the samples drawn from the prior itself [-]: no weight is more than four times the likelihood. Doubled: a
+narrow peak gets two thirds as many samples."""
+
+SAMPLE_FREEDOM = 5
+"""Degrees of freedom of the t-distributions that samples are drawn from: heavy tails, a finite variance."""
+
+SAMPLING_ROUNDS = 2
+"""How often the samples are drawn anew when too few of them carry the weight."""
+
+MOST_SAMPLES = 256
+"""Most samples drawn at a time, each a prediction. Doubled: evidence errs by 0.7 of what it did, at twice the
+time."""
+
+DRAFT_SAMPLES = 512
+"""Samples drawn for a draft, which cost no predictions."""
+
+ENOUGH_SAMPLES = 10.0
+"""Effective number of samples that is enough: evidence is off by a third, as the odds of one among three."""
+
+DIFFERENCE_STEP = 1e-3
+"""Step of the differences by which sensitivities are taken, in prior quantiles [-]: between round-off and
+curvature."""
+
+UNDERSTEPPED = 1.3
+"""A step that gains so many times what the parabola promised was too short [-]: far from the data the likelihood's
+tails are heavier than its curvature says."""
+
+FRESH_PARAMETERS = 2
+"""With so few parameters sensitivities are taken anew after every step: they cost no more than the step."""
+
+PATIENT_STEPS = 6
+"""After so many steps a climb is asked whether it still gets anywhere:"""
+
+LITTLE_GAIN = 0.002
+"""...a gain below this share of what is missing to the best found elsewhere ends a climb [-]: hundreds more would be
+needed."""
+
+HOPELESS_BEHIND = 40.0
+"""How far below the best found elsewhere, in log-likelihood, a maximum need not be known any better [-]."""
+
+AT_REST = 0.01
+"""A climb is at rest when a step gains less than this, in log-likelihood [-]: a tenth of the error of the
+evidence."""
+
+RELINEARISATIONS = 3
+"""How often at most wide tolerances are linearised anew; what comes nearest to its own linearisation stands."""
+
+STRAINED_LINEARISATION = 0.01
+"""Relative change of a tolerance's property that a linearisation bears [-]: its square is below the noise."""
+
+FARTHEST_TOLERANCE = 6.0
+"""Tolerances are followed so far from nominal [standard deviations]: nobody believes in more."""
+
+LARGEST_SENSITIVITY = 1e6
+"""A state whose nuisances move the data by more, per standard deviation, is no prediction [-]: an eigenvalue near
+zero."""
+
+# ------------------------------------------------------------------------------- how far a gap closes, held out
+
+BELIEVED_DOUBT = 3.0
+"""No tolerance, and no calibration, is taken to be further off than this where nothing else is fitted [standard
+deviations]. Doubled: an absurd modulus closes gaps that are no tolerance."""
+
+REFIT_STEPS = 6
+"""Most steps of a refit, data left out, from the best parameters on all data."""
+
+SHORT_STEP = 0.02
+"""Longest step, in prior quantiles, that a refit takes on the sensitivities at the best parameters [-]."""
+
+UNSEEN_CURVATURE = 4.0
+"""Curvature that keeps parameters the data do not see where they are, per squared prior quantile [-]: a sigma of half
+the prior's range."""
+
+HELD_OUT_FOLDS = 5
+"""In so many parts the points are left out. Doubled: smaller parts, nearer neighbours, a gap that seems to close."""
+
+SECOND_METRIC = 0.5
+"""A second kind of data carries the gap, too, if the logarithm of its probability is this share of the first's [-].
+Judged. Doubled: it would have to be as improbable as the first."""
+
+CLOSABLE_GAP = 1.5
+"""A gap within this many times the floor has nothing to close [-]. The contract's."""
+
+BOOTSTRAP_DRAWS = 400
+"""Draws of the bootstrap of what is closed: ten beyond each end of the interval. Doubled: its ends scatter by 0.7 of
+what they did."""
+
+# ------------------------------------------------------------------------------------------- where the cause is
+
+NOTABLE_MODE = 3.0
+"""From so many standard deviations on a mode carries some of the gap [-]: of twenty modes one in eighteen tests has
+one by chance. Doubled: only plain ones are pointed out."""
+
+CONCERNED_REACH = 0.05
+"""A test point within this share of the span of a place is concerned [-]. Judged: the spacing of a fine grid."""
+
+TOGETHER_SHARE = 0.02
+"""Channels whose probabilities differ by less act together, halves of one pair, which differ by what other
+explanations add to either [-]. Doubled: two rival explanations pass for a pair more easily."""
+
+SEPARATE_PLACES = 0.05
+"""Samples further from each other than this share of the span belong to different places [-]. Doubled: two spots a
+tenth of the length apart are one."""
+
+LEAST_PLACE = 0.05
+"""A place with less of the weight is not named [-]: the answer's 95 % stand without it."""
+
+HEAVIEST_SAMPLES = 300
+"""So many of the heaviest samples are looked at for places and intervals: 7 beyond each end of 95 %..."""
+
+FEWER_SAMPLES = 40
+"""...and so many where the explanation is negligible: one beyond each end."""
+
+LIGHTEST_SAMPLE = 1e-4
+"""Samples with less than this share of the heaviest one's weight are not looked at [-]..."""
+
+BRIDGE_SAMPLE = 1e-3
+"""...and with less than this they build no bridges between places [-]. Doubled: places split a little more
+readily."""
+
+# ------------------------------------------------------------------------------------------ what to measure next
+
+SEPARATED_SIGMA = 3.0
+"""Explanations so many sigma apart are separated by a test [-]: the wrong one is rejected 998 times in 1000."""
+
+WORTHWHILE_SIGMA = 1.0
+"""A test that separates nothing by so many sigma is not worth a line [-]."""
+
+RIVALS_COMPARED = 4
+"""So many explanations are told apart: six pairs of them, each predicted under every test."""
+
+TESTS_PROPOSED = 6
+"""So many tests are proposed: what a reader takes in."""
+
+KNOWN_MASS = 0.05
+"""Mass to add, relative to the structure's [-]: moves modes by some per cent, as an effect does, and bends nothing
+else. Doubled: twice the shift, and a model of the mass that begins to matter."""
+
+LEVEL_SPAN_GAIN = 4.0
+"""How many times better a dependence on the force is known once hits span levels of 1 : 5 [-]."""
+
+BALANCE_SIGMA = 0.001
+"""What weighing reaches: relative 1 sigma, the specimen's other dimensions known as well [-]."""
+
+CALIPER_SIGMA = 0.002
+"""What a micrometer reaches on thickness and width: relative 1 sigma of the mean of some places [-]."""
+
+SENSOR_BALANCE_SIGMA = 1e-4
+"""What weighing a sensor with its mount reaches: 1 sigma [kg]."""
+
+CALIBRATION_SIGMA = 0.005
+"""What a calibration of the chain with a known free mass reaches: relative 1 sigma [-]."""
+
+DELAY_SIGMA = 5e-6
+"""What the same test says of a delay between the channels: 1 sigma [s]."""
+
+WINDOW_SIGMA = 0.05
+"""What the analyser's settings leave in doubt of a window's decay rate: 1 sigma [1/s]."""
+
+UNKNOWN_SHAPE_NOISE = 0.01
+"""Noise of a modal constant where nothing is known of it, relative to its mode's r.m.s. [-]: of a careful test."""
+
+FURTHER_POINT = 0.04
+"""Further points are at least this share of the span away from those there are [-]: nearer ones say the same."""
+
+PLACES_FOR_A_MASS = 4
+"""So many places are tried for a known mass."""
+
+GRID_ALONG = (0.2, 0.4, 0.6, 0.8, 1.0)
+"""Where further points are tried along the structure, as shares of the side [-]..."""
+
+GRID_ACROSS = (0.05, 0.5, 0.95)
+"""...and across it: both edges and the middle, where torsion shows and does not [-]."""
+
+POINT_THAT_MISSES = 1.7
+"""Points whose misfit is so many times the r.m.s. over all are named [-]: three times its square."""
+
+POINTS_NAMED = 3
+"""So many of them at most are named."""
+
+FEWEST_POINTS = 4
+"""With fewer points more of them are asked for: shapes of a few points are alike."""
