@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from test_figures import assert_legible, case_of, diagnosis_of, panels, words
+from figure_cases import case_of, diagnosis_of
+from figure_text import assert_legible, panels, words
 
 from modalkit.figures import localisation_figure
 from updating import Diagnosis

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from test_figures import assert_legible, case_of
+from figure_cases import case_of
+from figure_text import assert_legible
 from test_localisation_figure import diagnosis_with
 
 from acquisition import Dof, FrfSet, InputError
