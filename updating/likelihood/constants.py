@@ -94,7 +94,7 @@ class Constants(Quantity):
     def _level(self, constants: FloatArray, view: View) -> FloatArray:
         """Return what predicted constants are multiplied by: sign and scale, and where no level is known the best."""
         test, scale = self.setting.measured, self.scale
-        signs = self.phases.factor(view) if self.phases.present else np.ones_like(constants)
+        signs = self.phases.factor(view) if self.phases.present else np.broadcast_to(1.0, constants.shape)
         level = signs * test.same_signs(constants) / scale
         if not test.absolute:
             return np.asarray(level * _projection(test.constants / scale, constants * level, axis=0))
