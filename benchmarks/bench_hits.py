@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import binomtest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "acquisition"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "acquisition" / "hits"))
 import hit_cases as cases
 
 from acquisition.hits.quality import judge_hits

@@ -1,0 +1,121 @@
+"""A forecast checked by trials on the rig that it speaks of: the advice, when followed, separates what was not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from modalkit.blind.answer import Answer
+from modalkit.planning import forecast
+from modalkit.planning.cases import Case, choose
+from modalkit.planning.forecast import Forecast
+from modalkit.planning.from_study import known_test_of
+from modalkit.planning.separability import SEEN
+from modalkit.planning.trials import Tried, check
+from modalkit.planning.writing import noise_for, write_case
+from modalkit.study.read import read_study
+
+SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
+
+
+@pytest.fixture(scope="module")
+def sample() -> Forecast:
+    return forecast(known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml")))
+
+
+@pytest.fixture(scope="module")
+def cases(sample: Forecast) -> tuple[Case, ...]:
+    return choose(sample.now, sample.advice[0], 12, np.random.default_rng(3))
+
+
+def test_half_of_the_cases_are_what_the_advice_newly_tells_apart(
+    sample: Forecast, cases: tuple[Case, ...]
+) -> None:
+    newly = {name for pair in sample.advice[0].separates for name in pair} - {"none"}
+    first = cases[:6]
+    assert {case.family.name for case in first} <= newly
+    assert not {case.family.name for case in cases[6:]} & newly
+    for case in first:
+        assert case.now < SEEN <= case.then
+
+
+def test_cases_stay_inside_the_range_of_their_effect(sample: Forecast, cases: tuple[Case, ...]) -> None:
+    for case in cases:
+        assert case.family.low <= case.q <= case.family.high
+        assert case.q != 0
+        assert case.family.name in case.accepted(sample.known_test.setup)
+
+
+def test_the_files_of_a_case_say_what_the_user_says_and_not_what_is_hidden(
+    sample: Forecast, cases: tuple[Case, ...], tmp_path: Path
+) -> None:
+    study = read_study(write_case(cases[0], sample.known_test, tmp_path, seed=[1]))
+    own = read_study(SAMPLES / "beam_dry" / "study.toml")
+    assert study.tolerances == own.tolerances
+    assert study.test.calibration == own.test.calibration
+    assert study.test.exponential_window == own.test.exponential_window
+    assert study.model is not None
+    assert own.model is not None
+    assert study.model.material == own.model.material
+    assert not study.spec().damping.known
+    text = (tmp_path / "study.toml").read_text()
+    assert not any(name in text for name in ("factor", "extension", "effect"))
+
+
+def test_the_same_seed_writes_the_same_test(
+    sample: Forecast, cases: tuple[Case, ...], tmp_path: Path
+) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        write_case(cases[0], sample.known_test, tmp_path / name, seed=[4])
+    assert (tmp_path / "a" / "test.uff").read_bytes() == (tmp_path / "b" / "test.uff").read_bytes()
+
+
+def test_modes_alone_are_written_where_the_user_has_no_more(
+    sample: Forecast, cases: tuple[Case, ...], tmp_path: Path
+) -> None:
+    known_test = replace(sample.known_test, shapes=False)
+    study = read_study(write_case(cases[0], known_test, tmp_path, seed=[1]))
+    assert study.test.modes == "test.csv"
+    assert not study.test.files
+    assert len((tmp_path / "test.csv").read_text().splitlines()) == 1 + known_test.setup.modes
+
+
+def tried(case: Case, answer: Answer | None) -> Tried:
+    return Tried(case, True, answer, frozenset({"section_scale", "calibration_gain"}))
+
+
+def test_an_answer_is_right_if_it_names_the_effect_or_its_exact_equals_alone(
+    cases: tuple[Case, ...],
+) -> None:
+    gain, scale, other = (frozenset({n}) for n in ("calibration_gain", "section_scale", "E"))
+    both = tried(cases[0], Answer("class", (gain, scale)))
+    assert both.named
+    assert both.kept
+    wide = tried(cases[0], Answer("class", (gain, other)))
+    assert not wide.named
+    assert wide.kept
+    for answer in (Answer("none", ()), Answer("unknown", ()), Answer("named", (other,)), None):
+        assert not tried(cases[0], answer).named
+        assert not tried(cases[0], answer).kept
+
+
+def test_noise_is_matched_in_proportion(sample: Forecast) -> None:
+    setup = replace(sample.known_test.setup, noise=1e-3)
+    assert noise_for(0.004, 0.002, setup) == pytest.approx(2e-3)
+
+
+@pytest.mark.slow
+def test_the_advice_followed_in_simulation_separates_what_the_test_could_not(sample: Forecast) -> None:
+    """Modulus and thickness of the sample beam: a class as it is, each by its name once the chain is calibrated."""
+    checked = check(sample, 8, 5, workers=2)
+    newly = {name for pair in sample.advice[0].separates for name in pair}
+    mine = [one for one in checked.tried if one.case.family.name in newly]
+    before = [one for one in mine if not one.followed]
+    after = [one for one in mine if one.followed]
+    assert len(before) == len(after) >= 4
+    assert all(one.named for one in after)
+    assert sum(one.named for one in before) < len(before)

@@ -1,0 +1,319 @@
+"""The report of a diagnosis: whole, self-contained, escaped, and saying what the diagnosis says."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import sys
+from dataclasses import replace
+from datetime import UTC, datetime
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from figure_cases import case_of
+from figure_text import assert_legible
+from test_localisation_figure import diagnosis_with
+
+from acquisition import Dof, FrfSet, InputError
+from modalkit.cli import main
+from modalkit.figures.diagnosis import fitted
+from modalkit.figures.diagnosis.frfs import LINES, selected_lines
+from modalkit.output.summary import summary_text
+from modalkit.report import Drawing, diagnosis_report, drawings, write_report
+from modalkit.report.html import Column, element, table, text
+from modalkit.report.place import BEGIN
+from modalkit.report.provenance import fingerprint
+from modalkit.report.svg import inline_svg
+from modalkit.study.read import Study, read_study
+from modalkit.workflow.case import Session, open_study
+from updating import Diagnosis
+from updating.diagnosis.answer.result import Gap, HeldPoints, ParameterEstimate, Ranked, Shrink
+from updating.effects import Lack, Obstacle
+
+NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
+ROOT = Path(__file__).resolve().parents[3]
+VOID = {"meta", "br"}
+
+
+class Reader(HTMLParser):
+    """Reads a page, and fails where its elements do not nest."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.words: list[str] = []
+        self.feed(page)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open:
+            self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+    def values(self, name: str) -> list[str]:
+        return [v for _, attributes in self.tags for k, v in attributes.items() if k == name and v]
+
+
+def session_of(kind: str, folder: Path, *, title: str = "A case") -> Session:
+    path = folder / "study.toml"
+    path.write_text(f'title = """{title}"""\n[test]\nmodes = "modes.csv"\n', encoding="utf-8")
+    (folder / "modes.csv").write_text("frequency\n20\n", encoding="utf-8")
+    study: Study = read_study(path)
+    return Session(
+        study, replace(case_of(kind, factor=0.95), title=title), None, None, ("a warning <of> the session",)
+    )
+
+
+def complete(diagnosis: Diagnosis, title: str = "A case") -> Diagnosis:
+    """Give a diagnosis made by hand what a real one has."""
+    modes = diagnosis.gap.modes.assign(
+        study=title, MAC=0.99, **{"model [Hz]": 100.0, "test damping": 0.01, "model damping": np.nan}
+    )
+    modes.index = pd.RangeIndex(1, len(modes) + 1, name="mode")
+    gap = Gap(modes, 3.2, 0.1, np.ones(3))
+    out = {
+        "shear": Obstacle(Lack.MODEL, "plates are modelled as thin"),
+        "damping_patch": Obstacle(Lack.EXPECTATION, "nothing says what damping to expect"),
+    }
+    return replace(diagnosis, title=title, gap=gap, not_examined=out, warnings=("mind the <gap>",))
+
+
+@pytest.mark.parametrize("kind", ["beam", "plate"])
+@pytest.mark.parametrize("verdict", ["named", "class", "unknown", "none"])
+def test_every_verdict_has_a_report(kind: str, verdict: str, tmp_path: Path) -> None:
+    diagnosis = complete(diagnosis_with(kind, verdict))
+    page = diagnosis_report(diagnosis, [session_of(kind, tmp_path)], when=NOON)
+    read = Reader(page)
+    for line in summary_text(diagnosis):
+        assert " ".join(line.partition(":")[2].split()) in read.text
+    for message in (
+        "mind the <gap>",
+        "a warning <of> the session",
+        "plates are modelled as thin",
+        "2026-03-01 12:00:00",
+    ):
+        assert message in read.text
+    assert read.text.count("How far it closes") == 1
+    ids = read.values("id")
+    assert len(ids) == len(set(ids))
+    referred = [v[1:] for v in read.values("href")] + re.findall(r"url\(#([^)]+)\)", page)
+    assert set(referred) <= set(ids)
+
+
+def test_a_report_needs_no_network_and_is_small(tmp_path: Path) -> None:
+    page = diagnosis_report(
+        complete(diagnosis_with("beam", "named")), [session_of("beam", tmp_path)], when=NOON
+    )
+    assert "http" not in page
+    assert not {"script", "link", "iframe", "object"} & {tag for tag, _ in Reader(page).tags}
+    assert all(v.startswith(("#", "data:")) for v in Reader(page).values("href") + Reader(page).values("src"))
+    assert len(page) < 1_000_000
+
+
+def test_text_of_the_user_stays_text(tmp_path: Path) -> None:
+    title = "<script>alert('1')</script> & \u201cquoted\u201d $x^2$"
+    session = session_of("beam", tmp_path, title=title)
+    page = diagnosis_report(complete(diagnosis_with("beam", "named"), title), [session], when=NOON)
+    read = Reader(page)
+    assert "script" not in {tag for tag, _ in read.tags}
+    assert read.text.count(title) >= 2  # the heading, and the study file
+
+
+def test_tables_are_told_to_those_who_cannot_see(tmp_path: Path) -> None:
+    page = diagnosis_report(
+        complete(diagnosis_with("beam", "named")), [session_of("beam", tmp_path)], when=NOON
+    )
+    tags = [tag for tag, _ in Reader(page).tags]
+    assert tags.count("caption") == tags.count("table") >= 6
+    assert all(a.get("scope") in {"col", "row"} for tag, a in Reader(page).tags if tag == "th")
+    pictures = [a for tag, a in Reader(page).tags if tag == "svg"]
+    assert len(pictures) == 3
+    assert all(a["role"] == "img" and a["aria-labelledby"] in Reader(page).values("id") for a in pictures)
+
+
+def test_the_answer_is_marked_with_its_interval(tmp_path: Path) -> None:
+    estimate = ParameterEstimate(0.0121, "kg", 0.0115, 0.0126, False)
+    row = Ranked(("sensor_mass",), 0.97, (("lumped_mass",),), {"sensor_mass.mass": estimate}, True, 0.4)
+    made = complete(diagnosis_with("beam", "named"))
+    stated = replace(made, ranking=(row, *made.ranking[1:]), sets=(("sensor_mass",),))
+    page = diagnosis_report(stated, [session_of("beam", tmp_path)], when=NOON)
+    marked = re.findall(r'<tr class="answer-row">.*?</tr>', page, flags=re.DOTALL)
+    assert any("mass = 12.1 g (11.5 to 12.6)" in r and "97 %" in r and "lumped_mass" in r for r in marked)
+
+
+def test_errors_of_all_data_are_told_in_standard_deviations(tmp_path: Path) -> None:
+    made = complete(diagnosis_with("beam", "named"))
+    shrink = Shrink(
+        "combined", 2500.0, 120.0, 2500.0, 150.0, None, 900.0, 100.0, None, 9.0, HeldPoints(40.0, 3.0, 20.0)
+    )
+    text = Reader(
+        diagnosis_report(replace(made, shrink=shrink), [session_of("beam", tmp_path)], when=NOON)
+    ).text
+    assert "25 sigma" in text and "1.5 sigma" in text
+    assert "40 % before, 3 % after, 20 % with the tolerances alone" in text
+
+
+def test_provenance_tells_files_and_text(tmp_path: Path) -> None:
+    session = session_of("beam", tmp_path)
+    text = Reader(diagnosis_report(complete(diagnosis_with("beam", "none")), [session], when=NOON)).text
+    for name in ("study.toml", "modes.csv"):
+        assert hashlib.sha256((tmp_path / name).read_bytes()).hexdigest() in text
+    assert 'modes = "modes.csv"' in text
+    (tmp_path / "modes.csv").unlink()
+    text = Reader(diagnosis_report(complete(diagnosis_with("beam", "none")), [session], when=NOON)).text
+    assert "not there any more" in text
+
+
+def test_fingerprints_are_those_of_the_standard(tmp_path: Path) -> None:
+    (tmp_path / "abc").write_bytes(b"abc")  # FIPS 180-2, appendix B.1
+    assert fingerprint(tmp_path / "abc").startswith("ba7816bf8f01cfea414140de5dae2223")
+
+
+def test_two_figures_in_a_page_share_no_identifiers(tmp_path: Path) -> None:
+    figure = drawn("beam", "named", tmp_path)["gap"].figure
+    first, second = (set(re.findall(r'id="([^"]+)"', inline_svg(figure, n, "t"))) for n in ("a", "b"))
+    assert first and not first & second
+
+
+def drawn(kind: str, verdict: str, folder: Path, metric: str = "frequency") -> dict[str, Drawing]:
+    made = complete(diagnosis_with(kind, verdict, points=()))
+    return drawings(replace(made, shrink=replace(made.shrink, metric=metric)), [session_of(kind, folder)])  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("kind", ["beam", "plate"])
+@pytest.mark.parametrize("metric", ["frequency", "frf", "combined"])
+@pytest.mark.parametrize("verdict", ["named", "unknown", "none"])
+def test_figures_of_a_report_are_legible(kind: str, metric: str, verdict: str, tmp_path: Path) -> None:
+    found = drawn(kind, verdict, tmp_path, metric)
+    assert list(found) == ["diagnosis", "gap", "localisation", "shrink"]
+    for drawing in found.values():
+        assert_legible(drawing.figure)
+        assert drawing.caption.endswith(".")
+
+
+def test_several_specimens_have_a_gap_each(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    sessions = [
+        session_of("beam", tmp_path / "a", title="first"),
+        session_of("beam", tmp_path / "b", title="second"),
+    ]
+    own = {
+        f"E.factor ({t})": ParameterEstimate(f, "-", 0.8, 1.2, False)
+        for t, f in (("first", 0.9), ("second", 1.1))
+    }
+    row = Ranked(("E",), 0.99, (), own, True, 0.4)  # type: ignore[arg-type]
+    made = complete(replace(diagnosis_with("beam", "named"), ranking=(row,), sets=(row.effects,)), "first")
+    modes = pd.concat([made.gap.modes, made.gap.modes.assign(study="second")])
+    stated = replace(made, gap=replace(made.gap, modes=modes))
+    read = Reader(diagnosis_report(stated, sessions, when=NOON))
+    assert "first: modes of the test" in read.text and "second: modes of the test" in read.text
+    assert "those of the first study, first" in read.text
+    assert {"gap-title", "gap_2-title"} <= set(read.values("id"))
+    best = [fitted(stated, session.case, alone=False).model() for session in sessions]
+    factors = [state.factors["E"] for model in best if model is not None for state in model[1:]]
+    assert factors[0] < 1 < factors[1]
+
+
+def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
+    session = open_study(read_study(ROOT / "sample_data" / "beam_wet" / "study.toml"))
+    made = diagnosis_with("beam", "named")
+    water = ParameterEstimate(1000.0, "kg/m^3", 950.0, 1050.0, False)
+    row = Ranked(("fluid_added_mass",), 0.99, (), {"fluid_added_mass.fluid_density": water}, True, 0.4)
+    stated = complete(replace(made, ranking=(row,), sets=(row.effects,)), session.case.title)
+    page = diagnosis_report(stated, [session], when=NOON)
+    found = re.search(r"median FRAC ([0-9.]+) before, ([0-9.]+) after", page)
+    assert found is not None
+    assert float(found[1]) < 0.1 and float(found[2]) > 0.8  # at the medians of the severity
+    assert len(page) < 1_000_000
+    for drawing in drawings(stated, [session]).values():
+        assert_legible(drawing.figure)
+
+
+def test_a_report_stands_over_no_other_file(tmp_path: Path) -> None:
+    study, report = tmp_path / "study.toml", tmp_path / "out.html"
+    study.write_text("title = 'mine'\n")
+    with pytest.raises(InputError, match="not a report written by modalkit"):
+        write_report(study, BEGIN)
+    assert study.read_text() == "title = 'mine'\n"
+    with pytest.raises(InputError, match="no such folder"):
+        write_report(tmp_path / "nowhere" / "out.html", BEGIN)
+    write_report(report, f"{BEGIN}\nfirst")
+    write_report(report, f"{BEGIN}\nsecond")
+    assert report.read_text().endswith("second")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["out.html", "study.toml"]
+
+
+def test_cells_that_are_not_known_are_a_dash() -> None:
+    markup = table(
+        "t", [Column("a"), Column("b", lambda v: f"{v:.1f}")], [["x", float("nan")], ["<y>", 2.04]]
+    ).markup
+    assert "–" in markup and "2.0" in markup and "&lt;y&gt;" in markup and "nan" not in markup
+    assert element("p", "a\nb", class_="q").markup == '<p class="q">a<br>b</p>'
+
+
+def test_long_records_are_drawn_on_fewer_lines() -> None:
+    lines = 3 * LINES - 5
+    rng = np.random.default_rng(1)
+    values = rng.standard_normal((1, lines)) + 1j
+    dof = Dof(1, 3)
+    long = FrfSet(np.linspace(1, 500, lines), values, (dof,), (dof,), coherence=np.ones((1, lines)))
+    short = selected_lines(long)
+    assert short.values.shape == (1, LINES - 1)
+    assert short.values[0, 7] == values[0, 21]
+    assert short.frequency[7] == long.frequency[21]
+    assert selected_lines(short) is short
+
+
+def test_the_command_writes_report_and_figures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    study = ROOT / "sample_data" / "beam_dry" / "published.toml"
+
+    def call(*arguments: str | Path) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["modalkit", "diagnose", str(study), *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        message = capfd.readouterr()
+        return int(ended.value.code or 0), message.out, message.err
+
+    page, folder = tmp_path / "out.html", tmp_path / "figures"
+    code, out, _ = call("--report", page, "--figures", folder)
+    assert code == 0
+    assert f"report: {page}" in out
+    assert sorted(p.stem for p in folder.iterdir()) == ["diagnosis", "gap", "localisation", "shrink"]
+    read = Reader(page.read_text(encoding="utf-8"))
+    summary_lines = [line for line in out.splitlines() if line.startswith(("Cause:", "Next:"))]
+    assert all(" ".join(line.partition(":")[2].split()) in read.text for line in summary_lines)
+    code, _, error = call("--report", study)
+    assert code == 2
+    assert "this command reads it" in error and study.read_text(encoding="utf-8").startswith("#")
+    code, _, error = call("--report", tmp_path / "same", "--json", tmp_path / "same")
+    assert code == 2
+    assert "give each its own file" in error
+
+
+def test_no_line_ends_within_an_arrow_or_a_power_of_ten() -> None:
+    assert text("2 -> 1 with p < 1e-300") == (
+        '2 <span class="one">-&gt;</span> 1 with p &lt; <span class="one">1e-300</span>'
+    )
+    assert text("node-3 at e-9") == "node-3 at e-9"

@@ -1,0 +1,70 @@
+"""Accepted effects that speak of points, in a study and on the command line."""
+
+from pathlib import Path
+
+import pytest
+
+from acquisition.errors import InputError, StudyError
+from modalkit.study.named_effects import parse_effect, statement
+from modalkit.study.read import read_study
+from modalkit.study.stated_effects import accepted_values
+
+SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
+
+
+def test_points_are_node_numbers() -> None:
+    assert accepted_values({"name": "polarity", "points": [3]}) == ("polarity", {"points": (3,)})
+    stated = {"name": "position_error", "point": 3, "dx": 0.01}
+    assert accepted_values(stated) == ("position_error", {"point": 3, "dx": 0.01})
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        {"name": "polarity", "points": "3"},
+        {"name": "polarity", "points": [3, 3]},
+        {"name": "polarity", "points": []},
+        {"name": "polarity", "points": [True]},
+        {"name": "position_error", "point": [3], "dx": 0.01},
+        {"name": "position_error", "point": 3.5, "dx": 0.01},
+        {"name": "E", "factor": "large"},
+        {"name": "E", "factor": float("nan")},
+        {"name": "gremlin"},
+        {"factor": 1.0},
+    ],
+)
+def test_nonsense_is_refused(entry: dict[str, object]) -> None:
+    with pytest.raises(StudyError):
+        accepted_values(entry)
+
+
+def test_the_command_line_takes_them_too() -> None:
+    name, values = parse_effect("polarity:points=3/4")
+    assert (name, values) == ("polarity", {"points": (3, 4)})
+    assert statement([(name, values)]) == "polarity:points=3/4"
+    assert parse_effect("position_error:point=3,dx=0.01")[1] == {"point": 3, "dx": 0.01}
+
+
+def test_the_command_line_takes_units() -> None:
+    assert parse_effect("lumped_mass:mass=20g,x=100mm")[1] == {"mass": 0.02, "x": 0.1}
+    assert parse_effect("E:factor=88%")[1] == {"factor": 0.88}
+    assert parse_effect("clamp_rotation:stiffness=4 kN m/rad per m", "plate")[1] == {"stiffness": 4000.0}
+    with pytest.raises(InputError, match="mass: '20 mm' is no quantity in kg"):
+        parse_effect("lumped_mass:mass=20 mm,x=0.1")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["polarity:points=a/b", "polarity:points=", "position_error:point=3/4,dx=0", "E:factor=1,factor=2"],
+)
+def test_nonsense_on_the_command_line_is_refused(text: str) -> None:
+    with pytest.raises(InputError):
+        parse_effect(text)
+
+
+def test_a_study_says_where_the_nonsense_stands(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    text = (SAMPLES / "beam_dry" / "study.toml").read_text()
+    path.write_text(text + '\n[[model.effect]]\nname = "polarity"\npoints = "3"\n')
+    with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] polarity: points"):
+        read_study(path).accepted()
