@@ -145,7 +145,7 @@ def _edge_energy(reduced: Reduced, vectors: FloatArray) -> FloatArray:
     density = getattr(term, "coefficient")[:, None] / 2 * (twist @ vectors) ** 2  # noqa: B009
     total = np.zeros(vectors.shape[1])
     for axis, (size, count) in enumerate(zip((spec.length, spec.width), spec.elements, strict=True)):
-        for end in {"01"[i] for i in range(2)} - {edge[1] for edge in spec.clamped if edge[0] == "xy"[axis]}:
+        for end in (end for end in "01" if "xy"[axis] + end not in spec.clamped):
             row = np.abs(points[:, axis] - size * int(end)) < size / count
             total += density[row].sum(axis=0) / (size / count)
     return total
