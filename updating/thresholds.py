@@ -418,3 +418,7 @@ POINTS_NAMED = 3
 
 FEWEST_POINTS = 4
 """With fewer points more of them are asked for: shapes of a few points are alike."""
+
+COMPARISONS_KEPT = 32
+"""How many comparisons of several specimens are kept: those about one point of a candidate, whose parameters are moved
+one at a time; more are hardly asked for again, and each is up to a megabyte [-]."""

@@ -66,7 +66,7 @@ def test_hum_and_a_foreign_frf_are_named():
     values += 0.02 * share * np.abs(values).max() / (frfs.frequency - 100.02)  # a tone leaks over the lines
     model = identify(replace(frfs, values=values))
     assert len(model) == 2
-    assert any("tone at 100.02 Hz" in w and "mains" in w for w in model.warnings)
+    assert any("tone at 100.0 Hz" in w and "mains" in w for w in model.warnings)
     other = structure((95.0, 160.0), (0.01, 0.008), 6, seed=3)
     values = np.array(frfs.values)
     values[2] = other.frfs(frfs.frequency, [(3, 4)]).values[0]

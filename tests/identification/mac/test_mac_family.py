@@ -216,8 +216,8 @@ def test_tables_bear_the_names_of_what_both_sets_hold(rng):
     first = modes([10.0, 20.0, 30.0, 40.0], a, range(1, 8))
     second = modes([11.0, 22.0, 33.0, 44.0], a[[6, 5, 4, 3]], [7, 6, 5, 4])
     table = mac_table(first, second)
-    assert list(table.index) == ["1: 10 Hz", "2: 20 Hz", "3: 30 Hz", "4: 40 Hz"]
-    assert table.columns[3] == "4: 44 Hz"
+    assert list(table.index) == ["1: 10.00 Hz", "2: 20.00 Hz", "3: 30.00 Hz", "4: 40.00 Hz"]
+    assert table.columns[3] == "4: 44.00 Hz"
     np.testing.assert_allclose(np.diag(table), 1.0)
     np.testing.assert_allclose(mac_table(first).to_numpy(), mac(a, a))
     points = coordinate_table(first, second, [(0, 0), (2, 2)])

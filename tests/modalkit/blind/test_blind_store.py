@@ -244,8 +244,8 @@ import sys
 from pathlib import Path
 sys.path.insert(0, {folder!r})
 import blind_stub
-from modalkit.blind import Plan, diagnosers, run_blind
-plan = Plan(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
+from modalkit.blind import DrawRanges, diagnosers, run_blind
+plan = DrawRanges(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
 with diagnosers(2, command=blind_stub.command("slow", "0.2")) as diagnose:
     run_blind(5, 5, plan=plan, workers=2, diagnose=diagnose, store=Path(sys.argv[1]), resume=True)
 """

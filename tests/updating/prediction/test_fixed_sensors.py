@@ -15,7 +15,7 @@ from updating.effects import accepted_state
 PLACES = np.linspace(0.05, 0.376, 7)
 
 
-def test_predictor(*, roving: str = "hit") -> Predictor:
+def predictor_of_sensors(*, roving: str = "hit") -> Predictor:
     """Seven points and two ends that stayed, at the first point and the fifth."""
     base = blank(PLACES)
     zero = np.zeros((14, 2))
@@ -27,17 +27,17 @@ def test_predictor(*, roving: str = "hit") -> Predictor:
 
 @pytest.mark.parametrize("name", ["5+Z", "5+z", "5"])
 def test_a_sensor_and_the_hits_beside_it_are_two_things(name: str) -> None:
-    evaluation = test_predictor()
+    evaluation = predictor_of_sensors()
     polarity = LIBRARY["polarity"]
     assert polarity.state(evaluation, {"channel": name}).point_gains == {("seen", 4): -1.0}
     assert polarity.state(evaluation, {"points": (5,)}).point_gains == {("hit", 4): -1.0}
-    roved = test_predictor(roving="seen")
+    roved = predictor_of_sensors(roving="seen")
     assert polarity.state(roved, {"channel": name}).point_gains == {("hit", 4): -1.0}
     assert polarity.state(roved, {"points": (5,)}).point_gains == {("seen", 4): -1.0}
 
 
 def test_the_forms_of_an_effect_can_be_stated_as_they_are_reported() -> None:
-    evaluation = test_predictor()
+    evaluation = predictor_of_sensors()
     evaluation = evaluation.for_test(replace(evaluation.measured, constants=np.ones((14, 2))))
     for name, more in (("polarity", {}), ("calibration_gain", {"gain": 0.9})):
         forms = [form.values for form in LIBRARY[name].variants(evaluation)]
@@ -49,7 +49,7 @@ def test_the_forms_of_an_effect_can_be_stated_as_they_are_reported() -> None:
 
 
 def test_the_error_names_what_is_wrong() -> None:
-    evaluation = test_predictor()
+    evaluation = predictor_of_sensors()
     with pytest.raises(StudyError, match=r"no sensor that stayed; the test has 1\+Z, 5\+Z"):
         accepted_state(evaluation, "polarity", {"channel": "3+Z"})
     with pytest.raises(StudyError, match=r"takes points \(or channel"):

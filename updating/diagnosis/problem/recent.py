@@ -7,10 +7,7 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from updating.likelihood.comparison import Comparison
-
-KEPT = 32
-"""How many comparisons are kept: those about one point of a candidate, whose parameters are moved one at a time; more
-are hardly asked for again, and each is up to a megabyte [-]."""
+from updating.thresholds import COMPARISONS_KEPT
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +20,7 @@ class Recent:
         """Return the comparison of a key, made anew where it is not among the last ones."""
         if key not in self._kept:
             self._kept[key] = make()
-            if len(self._kept) > KEPT:
+            if len(self._kept) > COMPARISONS_KEPT:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)
         return self._kept[key]
