@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from updating import LIBRARY
+
 Run = Callable[..., tuple[int, str, str]]
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 PLATE = (16.76, 70.69, 104.91, 229.96, 296.64, 425.51, 446.90, 574.19, 591.14, 731.06)
@@ -87,10 +89,15 @@ def test_an_effect_left_out_of_the_library_must_be_in_it(run: Run) -> None:
     assert "--without gremlin" in err
 
 
+KEPT = {"E", "density", "thickness", "sensor_mass"}
+"""Enough to be wrongly named in the place of what is left out; the whole library takes half a minute."""
+
+
 def test_what_is_left_out_of_the_library_is_not_named(run: Run, tmp_path: Path) -> None:
     out = tmp_path / "d.json"
     study = SAMPLES / "plate_wet" / "published.toml"
-    code, _, _ = run("diagnose", study, "--without", "fluid_added_mass", "--json", out)
+    without = ["fluid_added_mass", *(name for name in LIBRARY if name not in KEPT)]
+    code, _, _ = run("diagnose", study, "--without", ",".join(without), "--json", out)
     cause = json.loads(out.read_text())["cause"]
     assert code == 0
     assert cause["verdict"] == "unknown"
