@@ -166,6 +166,7 @@ def test_rows_are_counted_from_one_or_from_a_zero_that_is_there(
 
 
 WRONG_TABLES = [
+    ("node,x,y,z,direction,row,3,\n1,0,0,0,3,1\n2,1,0,0,3,2\n", "line end lost"),
     ("node,x,y,z,row\n1,0,0,0,1\n", "no column direction"),
     ("node,x,y,z,direction,row\n1,0,0,0,3,3\n", r"row 3 \(counted from 1\) lies beyond the 2 rows"),
     ("node,x,y,z,direction,row\n1,0,0,0,7,1\n", "direction 7"),

@@ -121,6 +121,10 @@ def read_table(path: Path, order: int) -> NodeTable:
     if not table.index.equals(pd.RangeIndex(len(table))):
         raise StudyError(f"{path}: lines have more values than the header has names; name every column")
     table.columns = pd.Index([str(c).strip().lower() for c in table.columns])
+    if numbers := [c for c in table.columns if _is_number(c)]:
+        raise StudyError(
+            f"{path}, line 1: {numbers[0]!r} is no name of a column; is the header's line end lost?"
+        )
     if missing := [c for c in COLUMNS if c not in table.columns]:
         raise StudyError(
             f"{path}: no column {', '.join(missing)}; the table needs {', '.join(COLUMNS)}, separated by commas"
@@ -155,6 +159,15 @@ def read_table(path: Path, order: int) -> NodeTable:
     )
     found.check(order)
     return found
+
+
+def _is_number(name: str) -> bool:
+    """Tell whether a heading is a number, which stands there where a line has run into the header's."""
+    try:
+        float(name)
+    except ValueError:
+        return False
+    return name != "nan"
 
 
 def read_deck_table(path: Path, dofs: Path, order: int) -> NodeTable:
