@@ -111,6 +111,10 @@ def _block(path: Path, lines: Sequence[str], span: tuple[int, int], body: list[s
     begin, end = span
     header = _fields(lines[begin:end], style.separator or "\t")
     names = tuple(style.split(lines[end + 1])) if end + 1 < len(lines) else ()
+    if not (count := header.get("Channels", ["0"])[0]).isdecimal():
+        raise InputError(
+            f"{path}, line {begin + 1}: {count[:40]!r} is no number of channels; export it again"
+        )
     samples = [int(float(s)) for s in header.get("Samples", []) if s]
     if not body or (samples and len(body) != max(samples)):
         raise InputError(

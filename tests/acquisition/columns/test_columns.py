@@ -379,6 +379,7 @@ LVM_DAMAGE = [
     (LVM.replace("Decimal_Separator\t,\n", ""), "a header cannot be read"),
     (LVM[: LVM.index("***End")] + "***End_of_" + LVM[LVM.index("Delta_X") :], "before the first segment"),
     (JOINED, "stands in the header that begins at line"),
+    (LVM.replace("Channels\t2\nS", "Channels\t"), "is no number of channels"),
 ]
 
 
