@@ -64,7 +64,7 @@ def test_without_coherence_nothing_is_said_of_it() -> None:
 
 
 @pytest.mark.parametrize(("refused", "stated"), [(1, False), (3, True)])
-def test_many_refused_hits_are_said_with_the_usual_reason(refused: int, stated: bool) -> None:
+def test_many_refused_hits_are_counted_with_the_usual_reason(refused: int, stated: bool) -> None:
     hits = [verdict(i + 1, "second hit" if i < refused else "") for i in range(6)]
     message = frf_health(model(), hits)
     assert bool(message) is stated

@@ -31,7 +31,7 @@ def test_the_check_of_legibility_finds_what_it_is_for() -> None:
 
 
 @given(st.lists(st.floats(0, 100), min_size=1, max_size=30), st.floats(0.5, 20))
-def test_labels_stand_apart(places: list[float], spacing: float) -> None:
+def test_labels_do_not_overlap(places: list[float], spacing: float) -> None:
     places = sorted(places)
     groups = grouped(places, spacing)
     assert [i for group in groups for i in group] == list(range(len(places)))

@@ -110,7 +110,7 @@ def test_mac_refuses_labels_that_do_not_fit() -> None:
         mac_figure(np.eye(3), ["1"], ["1", "2", "3"])
 
 
-def test_auto_mac_names_the_modes_that_look_alike() -> None:
+def test_auto_mac_names_the_modes_of_like_shape() -> None:
     assert_legible(auto_mac_figure(model_of(1).modal))
     shapes = np.array([[1.0, 0.0, 1.0], [0.0, 1.0, 0.1], [0.0, 0.0, 0.0]])
     modal = ModalData(

@@ -87,7 +87,7 @@ def sample() -> Forecast:
     return forecast(known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml")))
 
 
-def outlook(
+def forecast_by_curves(
     curves: tuple[Curve, ...], stations: Stations, design: Design, known: KnownTest
 ) -> DesignForecast:
     return DesignForecast(design, distances(curves, design, known, stations))
@@ -129,7 +129,7 @@ def test_a_modulus_is_seen_where_the_common_doubt_of_the_frequencies_says(
     curves: tuple[Curve, ...], stations: Stations
 ) -> None:
     known = known_test(shapes=False, damping_known=False)
-    seen = outlook(curves, stations, present(known), known).limits["E"].seen
+    seen = forecast_by_curves(curves, stations, present(known), known).limits["E"].seen
     t = SETUP.tolerances
     common = (0.5 * t.E) ** 2 + (0.5 * t.density) ** 2 + t.thickness**2 + (2 * t.length) ** 2
     own = (known.frequency[0] ** 2 + SETUP.repeatability**2) / 3
@@ -140,7 +140,7 @@ def test_frequencies_alone_do_not_tell_a_modulus_from_a_density(
     curves: tuple[Curve, ...], stations: Stations
 ) -> None:
     known = known_test(shapes=False, damping_known=False)
-    now = outlook(curves, stations, present(known), known)
+    now = forecast_by_curves(curves, stations, present(known), known)
     assert now.pairs["E", "density"] < 0.05
     assert not np.isfinite(now.limits["E"].separated)
     assert any({"E", "density", "thickness"} <= set(group) for group in now.classes)
@@ -149,7 +149,7 @@ def test_frequencies_alone_do_not_tell_a_modulus_from_a_density(
 
 def test_what_is_the_same_to_any_hammer_stays_the_same(curves: tuple[Curve, ...], stations: Stations) -> None:
     """Width moves no frequency and all constants alike, as a gain does: on a beam without a sensor's mass, exactly."""
-    now = outlook(curves, stations, present(known_test()), known_test())
+    now = forecast_by_curves(curves, stations, present(known_test()), known_test())
     assert now.pairs["section_scale", "calibration_gain"] < 0.02
     assert ("section_scale", "calibration_gain") in EQUAL
     assert np.isfinite(now.limits["section_scale"].separated)
@@ -179,7 +179,8 @@ def test_a_better_test_tells_no_less(
         stations=(*plain.stations, SETUP.sensor) if drive else plain.stations,
     )
     before, after = (
-        outlook(curves, stations, design, known).matrix.to_numpy(float) for design in (plain, better)
+        forecast_by_curves(curves, stations, design, known).matrix.to_numpy(float)
+        for design in (plain, better)
     )
     off = ~np.isnan(before)
     # interpolation between the severities solved leaves a few thousandths

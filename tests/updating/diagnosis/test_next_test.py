@@ -55,7 +55,7 @@ def rivals(problem: SpecimenProblem) -> dict[str, Rival]:
     return {n: Rival(problem, explain(problem, Candidate((LIBRARY[n],)))) for n in SCALED}
 
 
-def apart(trial: object, problem: SpecimenProblem, a: Rival, b: Rival) -> float:
+def separation_of(trial: object, problem: SpecimenProblem, a: Rival, b: Rival) -> float:
     expected = trial.outcomes(Site(problem, 0), (a, b))
     return separation(expected[0], expected[1], b)
 
@@ -65,18 +65,18 @@ def test_weighing_sees_density_as_far_as_tolerances_and_balance_allow(
 ) -> None:
     """Either explanation expects another mass; the rival's mass is as uncertain as its tolerances and the balance."""
     a, b = rivals["density"], rivals["E"]
-    found = apart(Weigh(clamped=True), problem, a, b)
+    found = separation_of(Weigh(clamped=True), problem, a, b)
     heavier = np.log(1 / 0.85)
     doubt = np.sqrt(0.003**2 + 0.005**2 + 0.002**2 + BALANCE_SIGMA**2)
     assert found == pytest.approx(heavier / doubt, rel=0.15)
-    assert apart(Weigh(clamped=True), problem, rivals["length"], b) < 0.3 * found
+    assert separation_of(Weigh(clamped=True), problem, rivals["length"], b) < 0.3 * found
 
 
 def test_a_caliper_sees_the_thickness_and_nothing_of_density(
     problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
-    assert apart(Caliper(), problem, rivals["thickness"], rivals["E"]) > 10
-    assert apart(Caliper(), problem, rivals["density"], rivals["E"]) < 0.3
+    assert separation_of(Caliper(), problem, rivals["thickness"], rivals["E"]) > 10
+    assert separation_of(Caliper(), problem, rivals["density"], rivals["E"]) < 0.3
 
 
 def test_an_added_mass_tells_stiffness_from_mass(problem: SpecimenProblem, rivals: dict[str, Rival]) -> None:
@@ -84,8 +84,8 @@ def test_an_added_mass_tells_stiffness_from_mass(problem: SpecimenProblem, rival
     site = Site(problem, 0)
     light = AddedMass(site, np.array([0.4]), 0.002)
     heavy = AddedMass(site, np.array([0.4]), 0.05)
-    assert apart(heavy, problem, rivals["E"], rivals["density"]) > 3
-    assert apart(light, problem, rivals["E"], rivals["density"]) < apart(
+    assert separation_of(heavy, problem, rivals["E"], rivals["density"]) > 3
+    assert separation_of(light, problem, rivals["E"], rivals["density"]) < separation_of(
         heavy, problem, rivals["E"], rivals["density"]
     )
 
@@ -93,27 +93,27 @@ def test_an_added_mass_tells_stiffness_from_mass(problem: SpecimenProblem, rival
 def test_free_of_its_clamp_the_beam_shows_what_the_clamp_did(
     problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
-    assert apart(FreeFree(), problem, rivals["length"], rivals["E"]) > 5
+    assert separation_of(FreeFree(), problem, rivals["length"], rivals["E"]) > 5
     # stiffness and density make one and the same change of all frequencies, in a clamp or out of it
-    assert apart(FreeFree(), problem, rivals["density"], rivals["E"]) < 0.5
+    assert separation_of(FreeFree(), problem, rivals["density"], rivals["E"]) < 0.5
 
 
 def test_the_level_of_the_frfs_tells_density_from_stiffness(
     problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
-    assert apart(Shapes(Site(problem, 0)), problem, rivals["density"], rivals["E"]) > 3
+    assert separation_of(Shapes(Site(problem, 0)), problem, rivals["density"], rivals["E"]) > 3
 
 
 def test_a_sensor_on_the_balance_says_nothing_where_no_sensor_is_blamed(
     problem: SpecimenProblem, rivals: dict[str, Rival]
 ) -> None:
-    assert apart(WeighSensor(), problem, rivals["density"], rivals["E"]) == 0
+    assert separation_of(WeighSensor(), problem, rivals["density"], rivals["E"]) == 0
 
 
-def test_a_rival_is_never_told_from_itself(problem: SpecimenProblem, rivals: dict[str, Rival]) -> None:
+def test_a_rival_is_never_separated_from_itself(problem: SpecimenProblem, rivals: dict[str, Rival]) -> None:
     site = Site(problem, 0)
     for trial in (Caliper(), Weigh(clamped=True), FreeFree(), Shapes(site)):
-        assert apart(trial, problem, rivals["E"], rivals["E"]) < 1e-6
+        assert separation_of(trial, problem, rivals["E"], rivals["E"]) < 1e-6
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -187,7 +187,7 @@ def test_few_and_missing_modes_are_said() -> None:
 
 
 @pytest.mark.parametrize(("slope", "stated"), [(0.0, False), (-3e-6, False), (-3e-5, True)])
-def test_a_level_dependence_is_said_where_it_is_no_chance(slope: float, stated: bool) -> None:
+def test_a_level_dependence_is_stated_where_it_is_no_chance(slope: float, stated: bool) -> None:
     model = ExactBeam(BEAM.length, BEAM.width, BEAM.thickness).frequencies(5)
     test = replace(bare(model), slope=np.full(5, slope), slope_sigma=np.full(5, 3e-6), level=100.0)
     message = on_levels(test, fluid=True)

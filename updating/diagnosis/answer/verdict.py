@@ -109,7 +109,7 @@ def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
                 problem,
                 row.explanation,
                 row.extreme,
-                most=_looked_at(row),
+                most=_samples_taken(row),
             ),
             not row.extreme,
             row.p_value,
@@ -119,7 +119,7 @@ def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
     )
 
 
-def _looked_at(row: Compared) -> int:
+def _samples_taken(row: Compared) -> int:
     return HEAVIEST_SAMPLES if row.probability > NEGLIGIBLE_PROBABILITY else FEWER_SAMPLES
 
 

@@ -111,28 +111,7 @@ def read_table(path: Path, order: int) -> NodeTable:
     StudyError
         If a column is missing, a value is no number, or a row lies beyond the matrices.
     """
-    try:
-        table = pd.read_csv(path, comment="#", skipinitialspace=True, encoding="utf-8-sig")
-    except OSError as error:
-        raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
-    except (ValueError, pd.errors.ParserError) as error:
-        statement = " ".join(str(error).split())
-        raise StudyError(f"{path}: not a CSV table ({statement}); columns: {', '.join(COLUMNS)}") from error
-    if not table.index.equals(pd.RangeIndex(len(table))):
-        raise StudyError(f"{path}: lines have more values than the header has names; name every column")
-    table.columns = pd.Index([str(c).strip().lower() for c in table.columns])
-    if numbers := [c for c in table.columns if _is_number(c)]:
-        raise StudyError(
-            f"{path}, line 1: {numbers[0]!r} is no name of a column; is the header's line end lost?"
-        )
-    if missing := [c for c in COLUMNS if c not in table.columns]:
-        raise StudyError(
-            f"{path}: no column {', '.join(missing)}; the table needs {', '.join(COLUMNS)}, separated by commas"
-        )
-    try:
-        values = table[list(COLUMNS)].astype(float)
-    except (ValueError, OverflowError) as error:
-        raise StudyError(f"{path}: {error}; every column holds numbers") from error
+    values = _columns_of(path)
     rows = values["row"].to_numpy()
     if np.nanmin(rows, initial=1.0) < 0:
         raise StudyError(f"{path}: row {int(np.nanmin(rows))}; leave it empty where a support holds")
@@ -159,6 +138,32 @@ def read_table(path: Path, order: int) -> NodeTable:
     )
     found.check(order)
     return found
+
+
+def _columns_of(path: Path) -> pd.DataFrame:
+    """Return the columns of a node table as numbers, its heading checked."""
+    try:
+        table = pd.read_csv(path, comment="#", skipinitialspace=True, encoding="utf-8-sig")
+    except OSError as error:
+        raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
+    except (ValueError, pd.errors.ParserError) as error:
+        statement = " ".join(str(error).split())
+        raise StudyError(f"{path}: not a CSV table ({statement}); columns: {', '.join(COLUMNS)}") from error
+    if not table.index.equals(pd.RangeIndex(len(table))):
+        raise StudyError(f"{path}: lines have more values than the header has names; name every column")
+    table.columns = pd.Index([str(c).strip().lower() for c in table.columns])
+    if numbers := [c for c in table.columns if _is_number(c)]:
+        raise StudyError(
+            f"{path}, line 1: {numbers[0]!r} is no name of a column; is the header's line end lost?"
+        )
+    if missing := [c for c in COLUMNS if c not in table.columns]:
+        raise StudyError(
+            f"{path}: no column {', '.join(missing)}; the table needs {', '.join(COLUMNS)}, separated by commas"
+        )
+    try:
+        return table[list(COLUMNS)].astype(float)
+    except (ValueError, OverflowError) as error:
+        raise StudyError(f"{path}: {error}; every column holds numbers") from error
 
 
 def _is_number(name: str) -> bool:
