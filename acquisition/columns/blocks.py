@@ -264,7 +264,8 @@ def _check_above(above: Sequence[str], number: int, style: Style, least: int, pa
         mixed = last and whole and bool(numbers) and all(any(c.isdigit() for c in field) for field in fields)
         touching = last and bool(numbers) and all(_nearly(field) for field in fields)
         joined = last and whole and len(numbers) >= max(2, least - 1)
-        broken = last and len(fields) == 1 and not numbers and bool(alike) and "e" in line.lower()
+        begun = bool(alike) or (bool(fields) and fields[0][0] in "0123456789.+-" and _nearly(fields[0]))
+        broken = last and len(fields) == 1 and not numbers and begun and "e" in line.lower()
         if row or bare or mixed or touching or joined or broken:
             raise InputError(
                 f"{path}, line {line_number}: {line.strip()[:60]!r} is nearly a line of numbers; mend it, or leave it "

@@ -461,6 +461,7 @@ SLIPS = [
     (NODES + "*STEP\n*FREQUENCY\n3\n*END STEP\n1, 1, 3\n", "behind the end of a step"),
     (NODES + "*BOY\n1, 1, 3\n", "is \\*BOUNDARY meant"),
     (NODES + "*NSET, NSET=A, GETE\n1, 3\n", "is GENERATE meant"),
+    (NODES + "*NSET, NSET=A, GENOUNDARY\nA, 1, 3\n", "\\*NSET with GENOUNDARY is not followed"),
     (NODES + "*BOUNDARY" + " " * 90 + "x\n1, 1, 3\n", "is \\*BOUNDARY meant"),
     (NODES + "*\n", "is no card"),
     (NODES + "*NSET, NSET=A\n*STEP\n", "\\*NSET without a line"),

@@ -30,6 +30,16 @@ _NAME = re.compile(r"\*[^\W\d_][^\d]*")
 OPTIONS = ("NSET", "GENERATE", "SYSTEM", "INPUT")
 """Options that are followed."""
 
+KNOWN_OPTIONS = {
+    "*NODE": {"NSET", "SYSTEM", "INPUT"},
+    "*NSET": {"NSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"},
+    "*BOUNDARY": {"OP", "AMPLITUDE", "TIME DELAY", "LOAD CASE", "FIXED", "TYPE", "USER"},
+    "*TRANSFORM": {"NSET", "TYPE"},
+    "*INCLUDE": {"INPUT"},
+}
+"""Options that the cards followed may have, of CalculiX and Abaqus; any other one is refused, since lines that ran
+into each other look like it."""
+
 DIRECTIONS = range(1, 12)
 """Directions of a support: 1 to 6 are motions, the rest temperatures and pressures, which are passed over."""
 
@@ -160,6 +170,11 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
         )
         if plain and close and word not in known and plain.replace(" ", "") not in ALIKE:
             raise StudyError(f"{where}: {plain} is nothing known; is {close[0]} meant?")
+    strange = [option for option in options if option and option not in KNOWN_OPTIONS.get(card, options)]
+    if strange:
+        raise StudyError(
+            f"{where}: {card} with {strange[0][:40]} is not followed; write a node table (CSV) instead, or mend the card"
+        )
     if card == "*NSET" and not options.get("NSET"):
         raise StudyError(f"{where}: {line[:80]} names no set; write *NSET, NSET=name")
     if card in FOLLOWED and "" in options:

@@ -25,7 +25,7 @@ class Statistics:
     covariance : (p, p) array
         Of the coordinates; infinite variance where nothing determines a parameter.
     undetermined : (p,) bool array
-        Parameters of which the data alone say less than the doubt there was before.
+        Parameters of which the data alone say less than the doubt there was before, and do not contradict it.
     chi2 : float
         Sum of squared residuals over measurement variance [-].
     dof : int
@@ -61,8 +61,8 @@ def assess(system: System, linear: Linear, theta: FloatArray) -> Statistics:
     chi^2 / dof where the misfit is beyond what the measurement explains. With any other weights the scatter of
     the residuals stands in for the measurement's variance.
     """
-    stated = _stated(system, linear)
-    undetermined = stated.alone > 1.0
+    stated = _stated(system, linear, theta)
+    undetermined = stated.undetermined
     both = zip(linear.evaluations, system.specimens, strict=True)
     residual = np.concatenate([1 - evaluation.frequency / s.measured.frequency for evaluation, s in both])
     variance = np.concatenate([s.relative_variance for s in system.specimens])
@@ -95,7 +95,7 @@ def _strain(system: System, theta: FloatArray) -> float:
     return float(np.sqrt(moved / count))
 
 
-def _stated(system: System, linear: Linear) -> Determinability:
+def _stated(system: System, linear: Linear, theta: FloatArray) -> Determinability:
     """Return what the data determine at the solution, and what explains the nominal model's residual."""
     evaluations = system.evaluations(system.start)
     start = system.linear(system.start, evaluations)
@@ -106,6 +106,7 @@ def _stated(system: System, linear: Linear) -> Determinability:
         system.names,
         doubt=system.doubt,
         log=np.array([k.log for k in system.model_parameters]),
+        moved=theta - system.start,
         at_start=system.whitened(start) * system.doubt,
         residual=np.concatenate(
             [np.concatenate(residual)[system.used], np.sqrt(start.weight[behind:]) * start.residual[behind:]]

@@ -22,6 +22,10 @@ COUPLED = 0.05
 KNOWN = 0.3
 """A combination counts as determined if data bring its doubt down to this share [-]."""
 
+MOVED = 3.0
+"""A parameter that data moved by more of its own standard deviations is determined, however small the doubt was: the
+data contradict the doubt, which is then no yardstick. Doubling it calls undetermined what data moved by 3 to 6 [-]."""
+
 NOTHING = 1e-3
 """What data that say nothing leave is a thousand times the doubt, so that matrices can be inverted [-]."""
 
@@ -72,6 +76,8 @@ class Determinability(Displayed):
         narrow a direction; under 1 they say less than was known [-].
     alone : (p,) array
         Standard deviation of each parameter from the data alone, all others free, over its doubt [-].
+    undetermined : (p,) bool array
+        Parameters of which the data alone say less than the doubt, and which they do not contradict either.
     couplings : tuple of Coupling
         Parameters that only combinations determine, group by group.
     subset : tuple of str
@@ -82,6 +88,7 @@ class Determinability(Displayed):
 
     singular_values: FloatArray
     alone: FloatArray
+    undetermined: BoolArray
     couplings: tuple[Coupling, ...]
     subset: tuple[str, ...]
     explained: tuple[float, ...]
@@ -93,6 +100,7 @@ def determinability(
     *,
     doubt: FloatArray,
     log: BoolArray,
+    moved: FloatArray,
     at_start: FloatArray,
     residual: FloatArray,
 ) -> Determinability:
@@ -108,6 +116,8 @@ def determinability(
         1-sigma scales of the coordinates.
     log : (p,) bool array
         Which coordinates are logarithms.
+    moved : (p,) array
+        By how much the coordinates left the nominal model.
     at_start : (n, p) array
         ``scaled`` at the nominal model.
     residual : (n,) array
@@ -118,9 +128,10 @@ def determinability(
     padded[: len(size)] = size
     floored = np.maximum(padded, FLOOR * max(padded.max(initial=0.0), 1e-300))
     alone = np.sqrt(np.sum((right.T / floored) ** 2, axis=1))
-    couplings = _couplings(right, floored, alone, names, doubt, log)
+    undetermined = (alone > 1) & (np.abs(moved) <= MOVED * alone * doubt)
+    couplings = _couplings(right, floored, undetermined, names, doubt, log)
     subset, explained = best_subset(at_start, residual)
-    return Determinability(size, alone, couplings, tuple(names[i] for i in subset), explained)
+    return Determinability(size, alone, undetermined, couplings, tuple(names[i] for i in subset), explained)
 
 
 def best_subset(columns: FloatArray, residual: FloatArray) -> tuple[tuple[int, ...], tuple[float, ...]]:
@@ -167,12 +178,12 @@ def best_subset(columns: FloatArray, residual: FloatArray) -> tuple[tuple[int, .
 def _couplings(
     right: FloatArray,
     size: FloatArray,
-    alone: FloatArray,
+    undetermined: BoolArray,
     names: Sequence[str],
     doubt: FloatArray,
     log: BoolArray,
 ) -> tuple[Coupling, ...]:
-    lost = np.flatnonzero(alone > 1)
+    lost = np.flatnonzero(undetermined)
     if not len(lost):
         return ()
     empty = right[size < 1]
