@@ -264,9 +264,10 @@ def _check_above(above: Sequence[str], number: int, style: Style, least: int, pa
         mixed = last and whole and bool(numbers) and all(any(c.isdigit() for c in field) for field in fields)
         touching = last and bool(numbers) and all(_nearly(field) for field in fields)
         joined = last and whole and len(numbers) >= max(2, least - 1)
+        ending = last and bool(numbers) and all(f in numbers or _ENDS_LIKE.fullmatch(f) for f in fields)
         begun = bool(alike) or (bool(fields) and fields[0][0] in "0123456789.+-" and _nearly(fields[0]))
         broken = last and len(fields) == 1 and not numbers and begun and "e" in line.lower()
-        if row or bare or mixed or touching or joined or broken:
+        if row or bare or mixed or touching or joined or broken or ending:
             raise InputError(
                 f"{path}, line {line_number}: {line.strip()[:60]!r} is nearly a line of numbers; mend it, or leave it "
                 "out with skip in the layout"
@@ -276,6 +277,10 @@ def _check_above(above: Sequence[str], number: int, style: Style, least: int, pa
 _OF_NUMBERS = frozenset("0123456789.,eE+-")
 _LIKE = re.compile(r"(?=[^\d]*+\d)[\s\d.,eE+-]*+")
 """Words of characters that numbers have."""
+
+
+_ENDS_LIKE = re.compile(r".*\d[eE][+-]\d+")
+"""Words that end as a number with an exponent does: something ran into it."""
 
 
 def _nearly(field: str) -> bool:

@@ -364,7 +364,7 @@ def test_damage_where_a_row_has_two_columns(tmp_path):
     text = 'rate = 10.0\n[[column]]\nindex = 0\nquantity = "force"\n[[column]]\nindex = 1\nquantity = "velocity"\n'
     (tmp_path / "a.csv").write_text("Samples,4\n" + "1.0,2.0\n" * 4)
     assert read_columns(tmp_path / "a.csv", layout_file(tmp_path, text)).points[0].force.shape == (1, 4)
-    for row in ("1.0,2.0P+00", "5.5e-010.00x0e+00"):
+    for row in ("1.0,2.0P+00", "5.5e-010.00x0e+00", "*INCLUDE9469e-01,2.0"):
         (tmp_path / "a.csv").write_text(f"f,a\n{row}\n" + "1.0,2.0\n" * 4)
         with pytest.raises(InputError, match="is nearly a line of numbers"):
             read_columns(tmp_path / "a.csv", layout_file(tmp_path, text))
