@@ -37,12 +37,12 @@ from modalkit.workflow.case import open_study
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import Explanation, explain, finish
 from updating.diagnosis.search.goodness import p_values
-from updating.diagnosis.search.search import Compared, Search, search
+from updating.diagnosis.search.search import Compared, Search, log_prior, search
 from updating.effects import LIBRARY
 from updating.likelihood.comparison import CHANNELS
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
-from updating.thresholds import CLOSE_FITS, PAIR_PRIOR
+from updating.thresholds import CLOSE_FITS
 
 GAINED = 2.0
 """By how much more log evidence the truth must have from the truth than from the search, before the search is blamed:
@@ -127,7 +127,7 @@ def _cause(found: Search, leader: Compared, true: Explanation) -> tuple[str, flo
 
 def _score(explanation: Explanation) -> float:
     """Return log evidence and log prior of a set [-]."""
-    return explanation.log_evidence + (float(np.log(PAIR_PRIOR)) if len(explanation.names) > 1 else 0.0)
+    return explanation.log_evidence + log_prior(len(explanation.names), len(LIBRARY))
 
 
 def _known_score(explanation: Explanation | None) -> float:

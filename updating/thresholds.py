@@ -76,6 +76,18 @@ small by two or more. The p-value of a fit is never above the tail of this prior
 SINGLE_SCATTER_PRIOR = (0.3, 0.25, 0.2, 0.15, 0.1)
 """The same where nothing shows the scatter [-]: nearly any is as likely."""
 
+WORSE_SCALES = (2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
+"""How many times worse than thought a cell, one kind of data of one mode or one measuring channel, may be [-]: powers
+of two up to what hides any datum."""
+
+WORSE_CELL_PRIOR = 0.02
+"""Prior chance that a cell is worse than thought, spread evenly over these scales [-]. Judged: some one in fifty of
+the modes that an identification gives is not what its standard deviation says. A single datum is raised from four
+standard deviations on. Doubled: from 3.8 on, and a cause that shows in one mode alone needs ln 2 more evidence."""
+
+MOST_WORSE_CELLS = 3
+"""So many cells may be worse than thought. Doubled: a test of five modes has nothing left to contradict a cause."""
+
 END_REACH = 0.01
 """Points this near to an end, relative to the length, sit at it [-]: there is nothing to hit beyond. Doubled: nothing
 on usual grids, whose points are further apart."""
@@ -171,6 +183,10 @@ PROBABLE_BEHIND = 6.0
 """Explanations whose logarithm of the probability lies further behind the best have no say in whether one fits [-]:
 they hold less than 0.3 % of its probability."""
 
+NOTABLE_REMAINDER = 3.0
+"""R.m.s. residual of a kind of data of a mode, or of a measuring channel, from which on it is said to carry what an
+explanation leaves [standard deviations]. Doubled: only the plainest is pointed out."""
+
 CREDIBLE_SHARE = 0.95
 """Probability that the sets of an answer hold together [-]. The contract's."""
 
@@ -182,9 +198,20 @@ CLOSE_FITS = 4.0
 """Twice the difference of log-likelihood below which two explanations are equivalent [-]: 2 sigma, as the contract
 has it."""
 
-PAIR_PRIOR = 0.05
-"""Prior weight of a pair of effects against a single one [-]. Judged: one gap in twenty has two causes. Doubled:
-pairs gain ln 2 in all odds."""
+COUNT_PRIOR = (0.3, 0.5, 0.15, 0.04)
+"""Prior of so many causes at once, none first, each spread evenly over the sets of that number [-]. Judged: what is
+tested beside its model mostly has one cause that stands out. Doubled for two: pairs gain ln 2 in all odds."""
+
+SET_MARGIN = 2.0
+"""A set is weighed where the linear look says that its logarithm of the probability would come this near to the best,
+or above [-]: the look errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
+
+CLOSES_NEARLY_ALL = 90.0
+"""A cause that leaves more than noise is named where it closes so much of what can be closed, on modes held out [%].
+Doubling what is left out of it, to 80, names a part of the cause as if it were nearly all."""
+
+BEYOND_NOTHING = 3.0
+"""By how much the log evidence of an answer exceeds that of no effect at all [-]: odds of 20."""
 
 FORM_SHARE = 0.02
 """Forms of an effect with less than this share of the most probable one do not speak for its fit [-]: they are
@@ -219,6 +246,10 @@ PAIRS_WEIGHED = 8
 PAIRS_ANEW = 3
 """How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take half as long
 again."""
+
+TRIPLES_WEIGHED = 5
+"""How many effects are tried beside the best pair where no pair explains the data. Doubled: twice the time of
+these."""
 
 SAME_PEAK = 0.02
 """Peaks nearer to each other than this in every prior quantile are one [-]: narrower than samples are drawn."""

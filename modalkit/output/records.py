@@ -9,7 +9,7 @@ from acquisition import HitVerdict, ModalData, rejected_points
 from identification import ModalModel, mpc
 from modalkit.workflow.existing import Modes
 from updating import Diagnosis
-from updating.diagnosis.answer.result import Ranked
+from updating.diagnosis.answer.result import Ranked, Remainder
 
 
 def modes_record(
@@ -129,6 +129,8 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
                 "high95": shrink.closed.high95,
             },
         },
+        "remainder": _remainder_record(diagnosis.remainder),
+        "included": dict(diagnosis.included),
         "next_test": [
             {
                 "measure": t.measure,
@@ -139,6 +141,17 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
         ],
         "not_examined": {name: str(why) for name, why in diagnosis.not_examined.items()},
         "warnings": [*diagnosis.warnings, *warnings],
+    }
+
+
+def _remainder_record(left: Remainder | None) -> dict[str, Any] | None:
+    if left is None:
+        return None
+    return {
+        "significant": left.significant,
+        "percent": left.percent,
+        "sigma": left.sigma,
+        "carried_by": left.carried_by,
     }
 
 

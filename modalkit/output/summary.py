@@ -164,7 +164,16 @@ def _closes(diagnosis: Diagnosis) -> str:
         text += f"; on points held out {percent(shrink.points.before)} -> {percent(shrink.points.after)}"
     if shrink.closed is not None and diagnosis.verdict != "unknown":
         text += f"; closes {shrink.closed} of what can be closed"
-    return text
+    return text + _left(diagnosis)
+
+
+def _left(diagnosis: Diagnosis) -> str:
+    """Say what the answer leaves beyond noise, and where; nothing where it leaves nothing, or is none."""
+    left = diagnosis.remainder
+    if left is None or not left.significant or diagnosis.verdict == "unknown":
+        return ""
+    where = ", ".join(left.carried_by[:SHOWN]) or "all data together"
+    return f"; what it leaves is more than noise, {left.sigma:.0f} sigma ({where}), and unexplained"
 
 
 def _stretched(shrink: Shrink) -> str:

@@ -12,16 +12,17 @@ from threadpoolctl import threadpool_limits
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from updating.case import Case
+from updating.diagnosis.answer.remainder import remainder_of
 from updating.diagnosis.answer.result import Diagnosis, Gap, Shrink, Where
 from updating.diagnosis.answer.shrink import shrinkage
-from updating.diagnosis.answer.verdict import decide, is_significant, rank
+from updating.diagnosis.answer.verdict import decide, included, is_significant, rank
 from updating.diagnosis.answer.where import locate
 from updating.diagnosis.next_test import propose
 from updating.diagnosis.problem.doubtful import notes_on_doubtful
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.goodness import p_plain
 from updating.diagnosis.search.search import Search, search
 from updating.effects import LIBRARY, Effect
 from updating.models.state import State
@@ -113,17 +114,27 @@ def _diagnose(
 ) -> Diagnosis:
     effects = list(LIBRARY.values()) if library is None else list(library)
     found = search(problem, [effect for effect in effects if effect.name not in accepted])
-    chance = p_value(found.nothing.best)
+    chance = p_plain(found.nothing.best)
     significant = is_significant(found, chance)
     comparable = not any(one.mostly_alone for one in problem.specimens)
-    verdict, sets = decide(found, significant=significant, comparable=comparable)
+    draws = np.random.default_rng(1) if rng is None else rng
+    shrink = _shrink(problem, found, draws, significant=significant)
+    leader = next((row.explanation for row in found.compared if row.names), found.nothing)
+    left = remainder_of(problem, titles, leader, shrink)
+    verdict, sets = decide(
+        found,
+        significant=significant,
+        comparable=comparable,
+        closed=None if shrink.closed is None else shrink.closed.value,
+        left=left.significant,
+    )
     return Diagnosis(
         " and ".join(titles),
         significant,
         chance,
         _gap(problem, titles),
         _locate(problem, found, significant=significant),
-        _shrink(problem, found, np.random.default_rng(1) if rng is None else rng, significant=significant),
+        shrink,
         verdict,
         sets,
         rank(problem, found),
@@ -131,6 +142,8 @@ def _diagnose(
         tuple(dict.fromkeys((*warnings, *_notes(problem, found)))),
         found.not_examined,
         comparable,
+        None if verdict == "none" else left,
+        included(found),
     )
 
 

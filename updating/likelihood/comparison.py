@@ -35,6 +35,8 @@ class Block:
         stretching is a finding, and the rest [-].
     mode : (n,) int array
         Measured mode each datum belongs to.
+    source : (n,) int array, optional
+        Measuring channel it comes from; left out, none: the test as a whole.
     """
 
     channel: str
@@ -44,6 +46,7 @@ class Block:
     named: FloatArray
     own: FloatArray
     mode: IntArray
+    source: IntArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +66,8 @@ class Comparison:
         Which of ``CHANNELS``.
     mode : (n,) int array
         Measured mode each datum belongs to; those of further specimens count on.
+    source : (n,) int array
+        Measuring channel it comes from, -1 if from the whole test; those of further specimens count on.
     predictions : tuple of Prediction
         The predicted modes of each specimen, in the order of the measured ones.
     scale_prior : tuple of float
@@ -76,6 +81,7 @@ class Comparison:
     variance: FloatArray
     channel: IntArray
     mode: IntArray
+    source: IntArray
     predictions: tuple[Prediction, ...]
     scale_prior: tuple[float, ...]
     doubts: IntArray
@@ -136,10 +142,15 @@ def assemble(
         np.concatenate([block.variance for block in blocks]),
         np.concatenate([np.full(len(block.residual), CHANNELS.index(block.channel)) for block in blocks]),
         np.concatenate([block.mode for block in blocks]),
+        np.concatenate([_source(block) for block in blocks]),
         (prediction,),
         scale_prior,
         np.arange(named[-1]),
     )
+
+
+def _source(block: Block) -> IntArray:
+    return np.full(len(block.residual), -1) if block.source is None else block.source
 
 
 def join(parts: Sequence[Comparison]) -> Comparison:
@@ -148,12 +159,19 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         return parts[0]
     starts = np.cumsum([0, *(part.nuisance.shape[1] for part in parts)])
     modes = np.cumsum([0, *(len(part.prediction.frequency) for part in parts)])
+    sources = np.cumsum([0, *(1 + int(part.source.max(initial=-1)) for part in parts)])
     return Comparison(
         np.concatenate([part.residual for part in parts]),
         block_diag(*(part.nuisance for part in parts)),
         np.concatenate([part.variance for part in parts]),
         np.concatenate([part.channel for part in parts]),
         np.concatenate([part.mode + first for part, first in zip(parts, modes, strict=False)]),
+        np.concatenate(
+            [
+                np.where(part.source < 0, -1, part.source + first)
+                for part, first in zip(parts, sources, strict=False)
+            ]
+        ),
         tuple(p for part in parts for p in part.predictions),
         max((part.scale_prior for part in parts), key=lambda prior: -prior[0]),
         np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),

@@ -82,6 +82,7 @@ class Constants(Quantity):
             gain,
             np.hstack(own),
             np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel(),
+            np.repeat(np.arange(len(predicted)), predicted.shape[1]),
         )
 
     def _corrected(self, now: Prediction) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import pandas as pd
@@ -257,6 +257,34 @@ class Shrink(Displayed):
 
 
 @dataclass(frozen=True)
+class Remainder(Displayed):
+    """What the best explanation leaves beyond noise.
+
+    Parameters
+    ----------
+    significant : bool
+        Whether it is more than the stated noise makes: something else is there, or something was measured worse than
+        thought.
+    percent : float
+        R.m.s. left beyond the noise, in the metric of the gap [%].
+    sigma : float
+        Largest r.m.s. residual of a kind of data of a mode, or of a measuring channel [standard deviations].
+    carried_by : tuple of str
+        Which data carry it, most plainly first.
+    """
+
+    significant: bool
+    percent: float
+    sigma: float
+    carried_by: tuple[str, ...]
+
+    def _headline(self) -> str:
+        if not self.significant:
+            return "nothing beyond noise"
+        return f"{percent(self.percent)}, {self.sigma:.0f} sigma in {', '.join(self.carried_by) or 'all data together'}"
+
+
+@dataclass(frozen=True)
 class NextTest(Displayed):
     """A measurement, what it separates, and by how many sigma.
 
@@ -307,6 +335,10 @@ class Diagnosis(Displayed):
         Effects that could not be examined, and why.
     comparable : bool
         Whether most measured modes have a partner in the model; if not, no cause is named.
+    remainder : Remainder, optional
+        What the first set of the ranking leaves; None where there is no gap.
+    included : dict of str to float
+        Probability of each effect that it is among the causes [-].
     """
 
     title: str
@@ -322,6 +354,8 @@ class Diagnosis(Displayed):
     warnings: tuple[str, ...]
     not_examined: dict[str, Obstacle]
     comparable: bool = True
+    remainder: Remainder | None = None
+    included: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def effects(self) -> tuple[str, ...]:

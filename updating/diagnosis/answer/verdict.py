@@ -13,8 +13,10 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.search import Compared, Search
 from updating.thresholds import (
+    BEYOND_NOTHING,
     CHANCE_OF_A_FIT,
     CLOSE_FITS,
+    CLOSES_NEARLY_ALL,
     CREDIBLE_SHARE,
     FAR_BETTER,
     FEWER_SAMPLES,
@@ -51,7 +53,12 @@ def _by_chance(found: Search) -> float:
 
 
 def decide(
-    found: Search, *, significant: bool, comparable: bool = True
+    found: Search,
+    *,
+    significant: bool,
+    comparable: bool = True,
+    closed: float | None = None,
+    left: bool = False,
 ) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
     """Return the verdict and the sets of effects it rests on.
 
@@ -63,13 +70,19 @@ def decide(
         Whether there is a gap.
     comparable : bool
         Whether most measured modes have a partner: the rest alone names no cause.
+    closed : float, optional
+        What the first set closes of what can be closed, on modes held out; None where there is nothing to close [%].
+    left : bool
+        Whether the first set leaves more than noise.
     """
     if not significant:
         return "none", ()
     rows = [row for row in found.compared if row.names]
     if not rows or rows[0].rejected:
         return "unknown", ()
-    least = found.nothing.log_evidence
+    if left and closed is not None and closed < CLOSES_NEARLY_ALL:
+        return "unknown", ()
+    least = found.nothing.log_evidence + BEYOND_NOTHING
     better = [row for row in rows if not row.rejected and row.explanation.log_evidence > least]
     if not better:
         return "unknown", ()
@@ -94,6 +107,15 @@ def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
     return tuple(sets)
+
+
+def included(found: Search) -> dict[str, float]:
+    """Return the probability of each effect weighed that it is among the causes [-]."""
+    total = sum(row.probability for row in found.compared)
+    names = dict.fromkeys(name for row in found.compared for name in row.names)
+    return {
+        name: sum(row.probability for row in found.compared if name in row.names) / total for name in names
+    }
 
 
 def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from math import comb
 
 import numpy as np
 from scipy.special import logsumexp
@@ -23,18 +24,20 @@ from updating.models.spec import Theory
 from updating.problem.candidate import Candidate
 from updating.thresholds import (
     CLIMBS,
+    COUNT_PRIOR,
     DOUBTED_FIT,
     FINISHING_ROUNDS,
     FORM_SHARE,
     HELD_NEAR_END,
     HELD_SHARE,
     NEGLIGIBLE_PROBABILITY,
-    PAIR_PRIOR,
     PAIRS_ANEW,
     PAIRS_WEIGHED,
     PROBABLE_BEHIND,
     REJECTED_FIT,
+    SET_MARGIN,
     THEORY_BEYOND_NOISE,
+    TRIPLES_WEIGHED,
     WITHIN_REACH,
 )
 
@@ -114,8 +117,9 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     theory = _better_theory(problem, effects)
     drafts = _singles(problem, effects, nothing, theory)
     found = _finished(problem, [nothing, *drafts])
+    found = _finished(problem, found + _pairs(problem, found, least=not _explained(problem, found)))
     if not _explained(problem, found):
-        found = _finished(problem, found + _pairs(problem, found[1:]))
+        found = _finished(problem, found + _triples(problem, found))
     return Search(nothing, _merged(problem, _compare(found)), obstacles)
 
 
@@ -169,9 +173,14 @@ def _extreme(problem: DiagnosisProblem, explanation: Explanation) -> tuple[str, 
     return tuple(found)
 
 
+def log_prior(causes: int, examined: int) -> float:
+    """Return the logarithm of the prior of one set of so many causes, among so many effects examined [-]."""
+    return float(np.log(COUNT_PRIOR[causes] / comb(max(examined, causes), causes)))
+
+
 def _compare(found: list[Explanation]) -> list[Compared]:
-    prior = np.array([PAIR_PRIOR if len(e.names) > 1 else 1.0 for e in found])
-    score = np.array([e.log_evidence for e in found]) + np.log(prior)
+    examined = len({name for e in found for name in e.names})
+    score = np.array([e.log_evidence + log_prior(len(e.names), examined) for e in found])
     probability = np.exp(score - logsumexp(score))
     return [Compared(e, float(p), e.p_value) for e, p in zip(found, probability, strict=True)]
 
@@ -223,11 +232,26 @@ def _single(
     return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
 
 
-def _pairs(problem: DiagnosisProblem, singles: list[Explanation]) -> list[Explanation]:
-    """Weigh the pairs that a linear look at every pair finds the most promising."""
+def _pairs(problem: DiagnosisProblem, found: list[Explanation], *, least: bool) -> list[Explanation]:
+    """Weigh the pairs that a linear look at every pair finds the most promising.
+
+    Parameters
+    ----------
+    problem : SpecimenProblem or Several
+        Test and model.
+    found : list of Explanation
+        No effect, and every single one.
+    least : bool
+        Whether the most promising are weighed in any case: no single effect explains the data. Else only those are
+        whose linear look comes near the best.
+    """
+    singles = [e for e in found if e.names]
     possible = [e for e in singles if e.best.possible]
     if len(possible) < 2:
         return []
+    examined = len({e.names for e in singles})
+    best = max(e.log_evidence + log_prior(len(e.names), examined) for e in found)
+    volume = [e.best.marginal.log_likelihood - e.log_evidence for e in possible]  # what their parameters cost
     reached = _score_tests(problem, possible)
     data = len(problem.at(Candidate(), np.zeros(0)).residual)
     evaluations = []
@@ -238,24 +262,59 @@ def _pairs(problem: DiagnosisProblem, singles: list[Explanation]) -> list[Explan
         if len(first.best.coordinates) + len(second.best.coordinates) >= data:
             continue  # as many parameters as data explain anything
         weight = first.candidate.log_weight + second.candidate.log_weight
-        evaluations.append((max(reached[i, j], reached[j, i]) + weight, first, second))
+        likelihood = max(reached[i, j], reached[j, i])
+        expected = likelihood - volume[i] - volume[j] + log_prior(2, examined)
+        if least or expected > best - SET_MARGIN:
+            evaluations.append((likelihood + weight, first, second))
     evaluations = [evaluation for evaluation in evaluations if np.isfinite(evaluation[0])]
+    if not evaluations:
+        return []
     evaluations.sort(key=lambda evaluation: -evaluation[0])
     chosen: dict[frozenset[str], tuple[Explanation, Explanation]] = {}
     for _, first, second in evaluations:  # of every two effects, the most promising forms
         chosen.setdefault(frozenset(first.names + second.names), (first, second))
-    found: list[Explanation] = []
+    weighed: list[Explanation] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
     for first, second in list(chosen.values())[:PAIRS_WEIGHED]:
         pair_parts = [(e.candidate, e.best.coordinates) for e in (first, second)]
-        found.append(_pair(problem, pair_parts[0], pair_parts[1], bar))
-        bar = max(bar, found[-1].best.marginal.log_likelihood)
-    found.sort(key=lambda e: -e.log_evidence)
-    for i, pair in enumerate(found[:PAIRS_ANEW]):
+        weighed.append(_pair(problem, pair_parts[0], pair_parts[1], bar))
+        bar = max(bar, weighed[-1].best.marginal.log_likelihood)
+    weighed.sort(key=lambda e: -e.log_evidence)
+    for i, pair in enumerate(weighed[:PAIRS_ANEW]):
         again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True)
-        found[i] = max(pair, again, key=lambda e: e.log_evidence)
-        bar = max(bar, found[i].best.marginal.log_likelihood)
-    return found + _alike(problem, possible, found, bar)
+        weighed[i] = max(pair, again, key=lambda e: e.log_evidence)
+        bar = max(bar, weighed[i].best.marginal.log_likelihood)
+    return weighed + _alike(problem, possible, weighed, bar)
+
+
+def _triples(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
+    """Add to the best pair, one at a time, the single effects that a linear look finds the most promising."""
+    pairs = [e for e in found if len(e.names) == 2 and e.best.possible]
+    best = max(pairs, key=lambda e: e.log_evidence, default=None)
+    if best is None:
+        return []
+    data = len(best.best.comparison.residual)
+    others = [
+        e
+        for e in found
+        if len(e.names) == 1
+        and e.best.possible
+        and e.names[0] not in best.names
+        and len(best.best.coordinates) + len(e.best.coordinates) < data - 1
+    ]
+    if not others:
+        return []
+    reached = _score_tests(problem, [best, *others])[0, 1:]
+    weight = np.array([e.candidate.log_weight for e in others])
+    chosen: dict[tuple[str, ...], Explanation] = {}
+    for i in np.argsort(-(reached + weight)):
+        chosen.setdefault(others[i].names, others[i])
+    bar, weighed = best.best.marginal.log_likelihood, []
+    whole = (best.candidate, best.best.coordinates)
+    for other in list(chosen.values())[:TRIPLES_WEIGHED]:
+        weighed.append(_pair(problem, whole, (other.candidate, other.best.coordinates), bar))
+        bar = max(bar, weighed[-1].best.marginal.log_likelihood)
+    return weighed
 
 
 PairPart = tuple[Candidate, FloatArray]
@@ -346,7 +405,9 @@ def _score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> Float
     ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
     reached = np.full((len(singles), len(singles)), -np.inf)
     for i, leader in enumerate(singles):
-        normal, load = normal_equations(leader.best.comparison, everything, leader.best.marginal.scale)
+        normal, load = normal_equations(
+            leader.best.comparison, everything, leader.best.marginal.noise(leader.best.comparison)
+        )
         start = leader.best.marginal.log_likelihood
         mine = np.arange(ends[i] + 1, ends[i + 1])
         for j in range(len(singles)):

@@ -1,0 +1,75 @@
+"""What the best explanation leaves beyond noise, and which data carry it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from acquisition.arrays import BoolArray
+from updating.diagnosis.answer.result import Remainder, Shrink
+from updating.diagnosis.problem.face import DiagnosisProblem
+from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.goodness import p_plain
+from updating.likelihood.comparison import CHANNELS
+from updating.likelihood.worse import cells
+from updating.thresholds import NOTABLE_REMAINDER, REJECTED_FIT
+
+KINDS = {"frequency": "frequency", "damping": "damping", "frf": "shape", "phase": "phase", "level": "level"}
+"""What the data of each channel are of a mode."""
+
+
+def remainder_of(
+    problem: DiagnosisProblem, titles: Sequence[str], best: Explanation, shrink: Shrink
+) -> Remainder:
+    """Say what an explanation leaves.
+
+    Parameters
+    ----------
+    problem : SpecimenProblem or Several
+        Test and model.
+    titles : sequence of str
+        Of the studies; said where there are several.
+    best : Explanation
+        The set of effects.
+    shrink : Shrink
+        How far it closes the gap.
+    """
+    point = best.best
+    comparison = point.comparison
+    stated = comparison.noise(point.marginal.scale)
+    off = np.abs(point.left_over) / np.sqrt(stated)
+    group = cells(comparison)
+    strength = np.sqrt(group.sums(off**2) / np.maximum(group.size, 1))
+    raised = group.sums((point.marginal.worse > 1).astype(float)) == group.size
+    order = [int(i) for i in np.argsort(strength)[::-1] if group.size[i]]
+    significant = bool(
+        (point.marginal.worse > 1).any() or p_plain(point, best.samples.shape[1]) < REJECTED_FIT
+    )
+    carried = [i for i in order if raised[i] or strength[i] > NOTABLE_REMAINDER] if significant else []
+    beyond = max(shrink.after**2 - shrink.floor**2, 0.0)
+    return Remainder(
+        significant,
+        float(np.sqrt(beyond)),
+        float(strength.max(initial=0.0)),
+        tuple(dict.fromkeys(_said(problem, titles, best, group.members(i)) for i in carried)),
+    )
+
+
+def _said(problem: DiagnosisProblem, titles: Sequence[str], best: Explanation, rows: BoolArray) -> str:
+    """Name a cell: a kind of data of one mode, or all constants of one measuring channel."""
+    comparison = best.best.comparison
+    first = int(np.flatnonzero(rows)[0])
+    modes = np.unique(comparison.mode[rows])
+    which, mode, source = 0, int(modes[0]), int(comparison.source[first])
+    for specimen in problem.specimens:
+        count, channels = len(specimen.measured.frequency), len(specimen.measured.seen)
+        if mode < count:
+            break
+        which, mode, source = which + 1, mode - count, source - channels
+    title = f"{titles[which]}: " if len(problem.specimens) > 1 else ""
+    if len(modes) == 1:
+        return f"{title}mode {mode + 1} {KINDS[CHANNELS[int(comparison.channel[first])]]}"
+    test = problem.specimens[which].measured
+    roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
+    return f"{title}point {test.nodes[int(roving[source])]}, all modes"
