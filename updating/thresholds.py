@@ -179,6 +179,10 @@ DOUBTED_FIT = 0.02
 """Where no single effect fits better than this, pairs are weighed beside them, which must fit as well themselves [-].
 Doubled: pairs are tried in one test in 25 that needs none."""
 
+WELL_FITTED = 0.1
+"""Where a single effect fits better than this, with no datum worse than thought, sets of several are not weighed [-]:
+what they gain then is what the idealisation of the single one leaves. Doubled: twice as many tests weigh sets."""
+
 PROBABLE_BEHIND = 6.0
 """Explanations whose logarithm of the probability lies further behind the best have no say in whether one fits [-]:
 they hold less than 0.3 % of its probability."""

@@ -38,6 +38,7 @@ from updating.thresholds import (
     SET_MARGIN,
     THEORY_BEYOND_NOISE,
     TRIPLES_WEIGHED,
+    WELL_FITTED,
     WITHIN_REACH,
 )
 
@@ -117,18 +118,28 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     theory = _better_theory(problem, effects)
     drafts = _singles(problem, effects, nothing, theory)
     found = _finished(problem, [nothing, *drafts])
-    found = _finished(problem, found + _pairs(problem, found, least=not _explained(problem, found)))
+    if not _explained(problem, found, well=True):
+        found = _finished(problem, found + _pairs(problem, found, least=not _explained(problem, found)))
     if not _explained(problem, found):
         found = _finished(problem, found + _triples(problem, found))
     return Search(nothing, _merged(problem, _compare(found)), obstacles)
 
 
-def _explained(problem: DiagnosisProblem, found: list[Explanation]) -> bool:
-    """Tell whether any of the probable explanations fits beyond doubt, and at a plausible size."""
+def _explained(problem: DiagnosisProblem, found: list[Explanation], *, well: bool = False) -> bool:
+    """Tell whether any of the probable explanations fits beyond doubt, and at a plausible size.
+
+    Where it has to fit well, no datum may be worse than thought, and the fit no rarer than one in ten.
+    """
+    least = WELL_FITTED if well else DOUBTED_FIT
     rows = _compare(found)
     top = max(row.probability for row in rows)
     near = [row for row in rows if row.probability > top * np.exp(-PROBABLE_BEHIND)]
-    return any(row.p_value >= DOUBTED_FIT and not _extreme(problem, row.explanation) for row in near)
+    return any(
+        row.p_value >= least
+        and not (well and row.explanation.best.marginal.worse.max(initial=1.0) > 1)
+        and not _extreme(problem, row.explanation)
+        for row in near
+    )
 
 
 def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
