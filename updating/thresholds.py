@@ -85,7 +85,7 @@ WORSE_CELL_PRIOR = 0.02
 the modes that an identification gives is not what its standard deviation says. A single datum is raised from four
 standard deviations on. Doubled: from 3.8 on, and a cause that shows in one mode alone needs ln 2 more evidence."""
 
-MOST_WORSE_CELLS = 3
+MOST_WORSE_CELLS = 1
 """So many cells may be worse than thought. Doubled: a test of five modes has nothing left to contradict a cause."""
 
 END_REACH = 0.01
