@@ -76,18 +76,6 @@ small by two or more. The p-value of a fit is never above the tail of this prior
 SINGLE_SCATTER_PRIOR = (0.3, 0.25, 0.2, 0.15, 0.1)
 """The same where nothing shows the scatter [-]: nearly any is as likely."""
 
-WORSE_SCALES = (2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
-"""How many times worse than thought a cell, one kind of data of one mode or one measuring channel, may be [-]: powers
-of two up to what hides any datum."""
-
-WORSE_CELL_PRIOR = 0.02
-"""Prior chance that a cell is worse than thought, spread evenly over these scales [-]. Judged: some one in fifty of
-the modes that an identification gives is not what its standard deviation says. A single datum is raised from four
-standard deviations on. Doubled: from 3.8 on, and a cause that shows in one mode alone needs ln 2 more evidence."""
-
-MOST_WORSE_CELLS = 1
-"""So many cells may be worse than thought. Doubled: a test of five modes has nothing left to contradict a cause."""
-
 END_REACH = 0.01
 """Points this near to an end, relative to the length, sit at it [-]: there is nothing to hit beyond. Doubled: nothing
 on usual grids, whose points are further apart."""
@@ -180,8 +168,8 @@ DOUBTED_FIT = 0.02
 Doubled: pairs are tried in one test in 25 that needs none."""
 
 WELL_FITTED = 0.1
-"""Where a single effect fits better than this, with no datum worse than thought, sets of several are not weighed [-]:
-what they gain then is what the idealisation of the single one leaves. Doubled: twice as many tests weigh sets."""
+"""Where a single effect fits better than this sets of several are not weighed [-]: what they gain then is what the
+idealisation of the single one leaves. Doubled: twice as many tests weigh sets."""
 
 PROBABLE_BEHIND = 6.0
 """Explanations whose logarithm of the probability lies further behind the best have no say in whether one fits [-]:

@@ -8,14 +8,13 @@ prior; a misfit of shapes then counts for as much as their noise, judged by all 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.worse import Worse, cells, worse_than_thought
 from updating.thresholds import LARGEST_SENSITIVITY, SHAPE_NOISE_SCALES
 
 
@@ -35,8 +34,6 @@ class Marginal:
         Number of data.
     scale : float
         The most probable scale of the noise of the shapes [-].
-    worse : (n,) array
-        How many times worse than that the standard deviation of each datum was taken; 1 is as thought [-].
     """
 
     log_likelihood: float
@@ -44,11 +41,6 @@ class Marginal:
     shift: FloatArray
     count: int
     scale: float
-    worse: FloatArray
-
-    def noise(self, comparison: Comparison) -> FloatArray:
-        """Return the variance of the independent noise of a comparison as it was found to be, (n,) [-]."""
-        return comparison.noise(self.scale) * self.worse**2
 
 
 def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
@@ -68,40 +60,16 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     """
     if not _sound(comparison):
         nothing = np.zeros(comparison.nuisance.shape[1])
-        return Marginal(
-            -np.inf, np.inf, nothing, len(comparison.residual), 1.0, np.ones(len(comparison.residual))
-        )
+        return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
     shapes = comparison.scaled if keep is None else comparison.scaled & keep
     scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
     parts = gaussian(comparison, scales, keep)
     prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
     score = np.array([part.log_likelihood for part in parts]) + prior
-    best = int(np.argmax(score))
-    found = {i: _worse(comparison, scales[i], keep) for i in {0, best}}
-    for i, worse in found.items():
-        score[i] += worse.gain
-    best = max(found, key=lambda i: score[i])
-    top, worse = parts[best], found[best]
-    if (worse.factor > 1).any():
-        raised = replace(comparison, variance=comparison.variance * worse.factor**2)
-        (top,) = gaussian(raised, scales[best : best + 1], keep)
+    top = parts[int(np.argmax(score))]
     peak = float(score.max())
     total = peak + float(np.log(np.sum(np.exp(score - peak))))
-    return replace(top, log_likelihood=total, worse=worse.factor)
-
-
-def _worse(comparison: Comparison, scale: float, keep: BoolArray | None) -> Worse:
-    """Return what is worse than thought at a scale of the noise of the shapes, the data left out as thought."""
-    rows = np.ones(len(comparison.residual), dtype=bool) if keep is None else keep
-    found = worse_than_thought(
-        comparison.residual[rows],
-        comparison.nuisance[rows],
-        comparison.noise(scale)[rows],
-        cells(comparison, keep),
-    )
-    factor = np.ones(len(rows))
-    factor[rows] = found.factor
-    return Worse(factor, found.gain)
+    return Marginal(total, top.chi2, top.shift, top.count, top.scale)
 
 
 def _sound(comparison: Comparison) -> bool:
@@ -136,13 +104,12 @@ def gaussian(
     log_det += np.sum(np.log(d)) + 2 * shapes.sum() * np.log(np.asarray(scales))
     score = -0.5 * (chi2 + log_det + len(r) * np.log(2 * np.pi))
     return [
-        Marginal(float(score[i]), float(chi2[i]), shift[i], len(r), scale, np.ones(len(comparison.residual)))
-        for i, scale in enumerate(scales)
+        Marginal(float(score[i]), float(chi2[i]), shift[i], len(r), scale) for i, scale in enumerate(scales)
     ]
 
 
 def normal_equations(
-    comparison: Comparison, columns: FloatArray, noise: FloatArray, keep: BoolArray | None = None
+    comparison: Comparison, columns: FloatArray, scale: float, keep: BoolArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
     """Return normal matrix and load of least squares on ``columns``, the nuisances integrated out.
 
@@ -152,8 +119,8 @@ def normal_equations(
         Residual, nuisances and noise.
     columns : (n, k) array
         Change of the prediction per parameter.
-    noise : (n,) array
-        Variance of the independent noise as it was found to be; see :meth:`Marginal.noise` [-].
+    scale : float
+        Scale of the noise of the shapes [-].
     keep : (n,) bool array, optional
         Data to use; left out, all.
 
@@ -163,7 +130,7 @@ def normal_equations(
     load : (k,) array
     """
     rows = slice(None) if keep is None else keep
-    j, d, columns = comparison.nuisance[rows], noise[rows], columns[rows]
+    j, d, columns = comparison.nuisance[rows], comparison.noise(scale)[rows], columns[rows]
     inner = cho_factor(np.eye(j.shape[1]) + (j.T / d) @ j)
     solved = (columns.T / d).T - ((j.T / d).T) @ cho_solve(inner, (j.T / d) @ columns)
     return columns.T @ solved, solved.T @ comparison.residual[rows]

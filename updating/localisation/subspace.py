@@ -38,13 +38,13 @@ class BestSubspace(Localiser):
         comparison = problem.compare(NOMINAL)
         if not self.nuisances:
             comparison = replace(comparison, nuisance=comparison.nuisance[:, :0])
-        noise = marginal(comparison).noise(comparison)
-        normal, load = normal_equations(comparison, columns(problem, kind), noise)
+        scale = marginal(comparison).scale
+        normal, load = normal_equations(comparison, columns(problem, kind), scale)
         power = np.diag(normal)
         gain = np.where(
             power > 1e-12 * max(power.max(initial=0.0), 1e-300), load**2 / np.maximum(power, 1e-300), 0.0
         )
-        total, _ = normal_equations(comparison, comparison.residual[:, None], noise)
+        total, _ = normal_equations(comparison, comparison.residual[:, None], scale)
         if kind == "damping":
             gain = np.where(load > 0, gain, 0.0)  # a region cannot take damping away
         return np.asarray(np.clip(gain / max(float(total[0, 0]), 1e-300), 0.0, 1.0))

@@ -10,10 +10,9 @@ from acquisition.arrays import BoolArray
 from updating.diagnosis.answer.result import Remainder, Shrink
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.goodness import p_plain
+from updating.likelihood.cells import cells
 from updating.likelihood.comparison import CHANNELS
-from updating.likelihood.worse import cells
-from updating.thresholds import NOTABLE_REMAINDER, REJECTED_FIT
+from updating.thresholds import DOUBTED_FIT, NOTABLE_REMAINDER
 
 KINDS = {"frequency": "frequency", "damping": "damping", "frf": "shape", "phase": "phase", "level": "level"}
 """What the data of each channel are of a mode."""
@@ -41,12 +40,9 @@ def remainder_of(
     off = np.abs(point.left_over) / np.sqrt(stated)
     group = cells(comparison)
     strength = np.sqrt(group.sums(off**2) / np.maximum(group.size, 1))
-    raised = group.sums((point.marginal.worse > 1).astype(float)) == group.size
     order = [int(i) for i in np.argsort(strength)[::-1] if group.size[i]]
-    significant = bool(
-        (point.marginal.worse > 1).any() or p_plain(point, best.samples.shape[1]) < REJECTED_FIT
-    )
-    carried = [i for i in order if raised[i] or strength[i] > NOTABLE_REMAINDER] if significant else []
+    significant = best.p_value < DOUBTED_FIT
+    carried = [i for i in order if strength[i] > NOTABLE_REMAINDER] if significant else []
     beyond = max(shrink.after**2 - shrink.floor**2, 0.0)
     return Remainder(
         significant,

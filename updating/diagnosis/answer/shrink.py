@@ -44,7 +44,7 @@ def shrinkage(
 
     before, after = squares(plain.residual, plain, metric), held(best)
     alone = best.best.comparison if not best.names else None
-    fitted = best.best.left_over if alone is None else believed(alone, best.best.marginal)
+    fitted = best.best.left_over if alone is None else believed(alone, best.best.marginal.scale)
     floor = noise_squares(problem.specimens, plain, metric)
     return Shrink(
         metric,

@@ -53,7 +53,7 @@ class Rival:
         columns = np.hstack([best.comparison.nuisance, own])
         count = best.comparison.nuisance.shape[1]
         prior = np.concatenate([np.ones(count), np.full(own.shape[1], UNIFORM)])
-        noise = best.marginal.noise(best.comparison)
+        noise = best.comparison.noise(best.marginal.scale)
         return np.asarray(np.linalg.inv(np.diag(prior) + (columns.T / noise) @ columns))
 
 

@@ -282,7 +282,7 @@ def _step(
 
 
 def _curvature(point: Point, columns: FloatArray, keep: BoolArray | None) -> tuple[FloatArray, FloatArray]:
-    return normal_equations(point.comparison, _finite(columns), point.marginal.noise(point.comparison), keep)
+    return normal_equations(point.comparison, _finite(columns), point.marginal.scale, keep)
 
 
 def _finite(values: FloatArray) -> FloatArray:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 from scipy.stats import chi2, norm
 
-from acquisition.arrays import BoolArray
 from updating.diagnosis.search.fit import Point
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.likelihood.gaussian import gaussian, normal_equations
@@ -42,16 +40,10 @@ def p_values(point: Point, fitted: int = 0) -> dict[str, float]:
     if not np.isfinite(point.marginal.log_likelihood):
         return {"all": 0.0}
     same = _of_point(point)
-    found = _of_scales(comparison, fitted, point.marginal.worse > 1)
+    found = _of_scales(comparison, fitted)
     tails = np.cumsum(comparison.scale_prior[::-1])[::-1]
     tried = [{**values, **same, SCATTER: float(tail)} for values, tail in zip(found, tails, strict=False)]
     return max(tried, key=_corrected)
-
-
-def p_plain(point: Point, fitted: int = 0) -> float:
-    """Return :func:`p_value` as if no datum were worse than thought: what is left is held against the stated noise."""
-    marginal = replace(point.marginal, worse=np.ones_like(point.marginal.worse))
-    return p_value(replace(point, marginal=marginal), fitted)
 
 
 def p_value(point: Point, fitted: int = 0) -> float:
@@ -65,16 +57,13 @@ def _corrected(values: Mapping[str, float]) -> float:
     return float(min(1.0, len(asked) * min(asked), values.get(SCATTER, 1.0)))
 
 
-def _of_scales(comparison: Comparison, fitted: int, aside: BoolArray) -> list[dict[str, float]]:
-    """Return the p-values of chi-squared at each scale of the noise of the shapes, one where there are none.
-
-    What was taken to be worse than thought (n,) has paid for it, and is left aside.
-    """
+def _of_scales(comparison: Comparison, fitted: int) -> list[dict[str, float]]:
+    """Return the p-values of chi-squared at each scale of the noise of the shapes, one where there are none."""
     scales = SHAPE_NOISE_SCALES if comparison.scaled.any() else SHAPE_NOISE_SCALES[:1]
     tried: list[dict[str, float]] = [{} for _ in scales]
     for name in ("all", *CHANNELS):
         every = name == "all"
-        keep = (np.full(len(comparison.channel), every) | comparison.of(name)) & ~aside
+        keep = np.full(len(comparison.channel), every) | comparison.of(name)
         if not keep.any():
             continue
         freedom = max(int(keep.sum()) - (fitted if every else 0), 1)
@@ -87,9 +76,9 @@ def _of_point(point: Point) -> dict[str, float]:
     """Return the p-values that are asked at the point's own scale."""
     comparison, values = point.comparison, {}
     for name in ("frequency", "damping"):
-        together = (comparison.of(name) & (point.marginal.worse == 1)).astype(float)[:, None]
+        together = comparison.of(name).astype(float)[:, None]
         if together.any():
-            normal, load = normal_equations(comparison, together, point.marginal.noise(comparison))
+            normal, load = normal_equations(comparison, together, point.marginal.scale)
             values[f"{name} together"] = float(2 * norm.sf(abs(load[0]) / np.sqrt(normal[0, 0])))
     named = point.marginal.shift[comparison.doubts]
     if len(named):

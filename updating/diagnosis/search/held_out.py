@@ -13,7 +13,7 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import highest, sensitivities
 from updating.likelihood.comparison import Comparison
-from updating.likelihood.gaussian import Marginal, marginal, normal_equations
+from updating.likelihood.gaussian import marginal, normal_equations
 from updating.problem.candidate import Candidate
 from updating.thresholds import (
     BELIEVED_DOUBT,
@@ -91,7 +91,7 @@ def held_out(
         if not keep.any():
             errors[~keep] = np.nan
         elif not explanation.names:
-            errors[~keep] = believed(best.comparison, marginal(best.comparison, keep), keep)[~keep]
+            errors[~keep] = believed(best.comparison, marginal(best.comparison, keep).scale, keep)[~keep]
         else:
             errors[~keep] = _refitted(diagnosis_problem, explanation, columns, keep)[~keep]
     return errors
@@ -106,7 +106,7 @@ def _refitted(
         return highest(
             diagnosis_problem, explanation.candidate, best.coordinates, keep=keep, rounds=REFIT_STEPS
         ).left_over
-    normal, load = normal_equations(best.comparison, columns, best.marginal.noise(best.comparison), keep)
+    normal, load = normal_equations(best.comparison, columns, best.marginal.scale, keep)
     step = np.linalg.solve(normal + UNSEEN_CURVATURE * np.eye(len(load)), load)
     step = np.clip(best.coordinates + step, 0.0, 1.0) - best.coordinates
     if np.abs(step).max(initial=0.0) > SHORT_STEP:
@@ -117,20 +117,20 @@ def _refitted(
     return np.asarray(moved.residual - moved.nuisance @ marginal(moved, keep).shift)
 
 
-def believed(comparison: Comparison, found: Marginal, keep: BoolArray | None = None) -> FloatArray:
+def believed(comparison: Comparison, scale: float, keep: BoolArray | None = None) -> FloatArray:
     """Return what is left of a residual once all doubts, within what is believed of them, have done their best.
 
     Parameters
     ----------
     comparison : Comparison
         Residual, nuisances and noise.
-    found : Marginal
-        What its noise was found to be.
+    scale : float
+        Of the noise of the shapes [-].
     keep : (n,) bool array, optional
         Data that are fitted; left out, all.
     """
     rows = slice(None) if keep is None else keep
-    weight = 1 / np.sqrt(found.noise(comparison)[rows])
+    weight = 1 / np.sqrt(comparison.noise(scale)[rows])
     columns = comparison.nuisance[rows] * weight[:, None]
     count = columns.shape[1]
     whole = np.vstack([columns, np.eye(count)])
