@@ -87,7 +87,9 @@ def test_a_modulus_for_each() -> None:
     assert found["E beam"] == pytest.approx(0.955, abs=0.01)
     assert found["E plate"] == pytest.approx(0.91, abs=0.01)
     assert result.rms_percent() == pytest.approx(0.48, abs=0.01)
-    assert result.undetermined == ()  # the length ends many of its own sigmas, and of its tolerances, from its start
+    assert (
+        result.undetermined == ()
+    )  # the length ends many of its own sigmas, and of its tolerances, from its start
     assert {p.name: p.sigma for p in result.parameters}["length"] == pytest.approx(0.0018, rel=0.2)
 
 
