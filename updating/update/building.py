@@ -1,4 +1,4 @@
-"""From cases to the problem that is solved: specimens with their knobs, unknowns, weights."""
+"""From cases to the problem that is solved: specimens with their parameters, unknowns, weights."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ BEYOND = ("shapes", "constants")
 
 
 def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False) -> Specimen:
-    """Pair the modes of a case and find its knobs.
+    """Pair the modes of a case and find its parameters.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def _rows_of(kept: FloatArray, every: FloatArray) -> IntArray:
 
 
 def _on_own_basis(predictor: Predictor, parameter_set: ParameterSet) -> Predictor:
-    """Give a plain model whose knobs are factors a basis made for these; others keep theirs."""
+    """Give a plain model whose parameters are factors a basis made for these; others keep theirs."""
     if (
         predictor.additions
         or not eligible(parameter_set.model_parameters)

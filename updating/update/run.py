@@ -259,6 +259,7 @@ def _estimate(system: System, index: int, coordinate: float, sigma: float) -> Es
         model_parameter.nominal * model_parameter.high,
         model_parameter.nominal * model_parameter.start,
         relative=model_parameter.is_factor,
+        quantity=model_parameter.quantity,
     )
 
 

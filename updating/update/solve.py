@@ -28,7 +28,7 @@ class Solution:
     ----------
     theta : (p,) array
         Coordinates.
-    evaluations : tuple of Look
+    evaluations : tuple of Evaluation
         Specimens there.
     history : (iterations + 1, p) array
         Coordinates of every iteration.

@@ -26,7 +26,7 @@ def shape_residual(specimen: Specimen, evaluation: Evaluation) -> FloatArray:
 
 
 def shape_slopes(specimen: Specimen, values: Sequence[float], evaluation: Evaluation) -> FloatArray:
-    """Return the derivatives of the computed constants by the coordinates, whitened, (n, n_knobs) [-].
+    """Return the derivatives of the computed constants by the coordinates, whitened, (n, n_parameters) [-].
 
     The factors per mode are projected out (Golub and Pereyra 1973, with Kaufman's simplification).
     """

@@ -1,4 +1,4 @@
-"""One specimen in an update: its test, its model, its knobs, and what the knobs do to its frequencies."""
+"""One specimen in an update: its test, its model, its parameters, and what the parameters do to its frequencies."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ STEP = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """A specimen at one setting of its knobs.
+    """A specimen at one setting of its parameters.
 
     Parameters
     ----------
@@ -61,8 +61,8 @@ class Specimen:
         Their numbers in the test, from 1.
     order : (n_modes,) int array
         Rank of each one's partner, for data without shapes.
-    parameter_set : Panel
-        The knobs.
+    parameter_set : ParameterSet
+        The parameters.
     warnings : tuple of str
         What was left out.
     correction : (n_modes,) array
@@ -111,7 +111,7 @@ class Specimen:
 
     @cached_property
     def affine(self) -> Affine | None:
-        """The model as a function of its factors, where all knobs are factors."""
+        """The model as a function of its factors, where all parameters are factors."""
         base = self.predictor.base
         if not eligible(self.parameter_set.model_parameters) or base.released or base.theory is not None:
             return None
@@ -140,7 +140,7 @@ class Specimen:
         return self.predictor.predict()
 
     def slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:
-        """Return d ln f / d coordinate, (n_modes, n_knobs): Eqs. 16 and 17 for factors, differences for the rest."""
+        """Return d ln f / d coordinate, (n_modes, n_parameters): Eqs. 16, 17 for factors, else differences."""
         if self.affine is not None:
             eigenvalue = (2 * np.pi * at.prediction.frequency) ** 2
             return self.affine.slopes(np.log(values), eigenvalue, at.prediction.vectors)
@@ -162,7 +162,7 @@ class Specimen:
         return by * model_parameter.chain(values[index])
 
     def _ends(self, index: int, values: Sequence[float]) -> tuple[Evaluation, Evaluation, float]:
-        """Look on both sides of a knob's setting; return how far apart in its coordinate."""
+        """Evaluate on both sides of a parameter's value; return how far apart in its coordinate."""
         model_parameter = self.parameter_set.model_parameters[index]
         here, step = model_parameter.coordinate(values[index]), STEP * model_parameter.span()
         ends = [
@@ -200,7 +200,7 @@ class Specimen:
         return np.diag(mac_of_constants(self.measured, evaluation.prediction)).copy()
 
     def shape_slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:
-        """Return the derivatives of the partners' constants by the coordinates, (n_frf, n_modes, n_knobs) [1/kg]."""
+        """Return the slopes of the partners' constants by the coordinates, (n_frf, n_modes, n_parameters) [1/kg]."""
         model = self.affine
         if model is None:
             columns = [
@@ -239,7 +239,7 @@ class Specimen:
         )
 
     def settled(self, values: Sequence[float], evaluation: Evaluation) -> Specimen:
-        """Return the same specimen with its errors judged by the model at some values of its knobs."""
+        """Return the same specimen with its errors judged by the model at some values of its parameters."""
         count = int(evaluation.partner.max()) + 1
         near = self.predictor.predict(self.parameter_set.state(self.predictor, values), count=count)
         other = self._with(replace(self, near=near.select(evaluation.partner)))
@@ -258,7 +258,7 @@ class Specimen:
         return self._on(extended(self.predictor.reduced, modes))
 
     def around(self, values: Sequence[float]) -> Specimen:
-        """Return the same specimen on a basis that is good far around some values of its knobs."""
+        """Return the same specimen on a basis that is good far around some values of its parameters."""
         structure = self.predictor.reduced.structure
         plain = self.affine is not None and self.affine.rank < structure.unknowns
         if not plain or self.predictor.additions or not isinstance(structure, FieldStructure):

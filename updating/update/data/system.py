@@ -30,7 +30,7 @@ class Linear:
         Derivatives of the computed quantity by the coordinates.
     weight : (n,) array
         Diagonal of W_s.
-    evaluations : tuple of Look
+    evaluations : tuple of Evaluation
         The specimens.
     """
 
@@ -49,9 +49,9 @@ class System:
     specimens : tuple of Specimen
         The specimens.
     index : tuple of int arrays
-        For every specimen, which unknown each of its knobs is.
-    model_parameters : tuple of Knob
-        One knob for each unknown; a shared one stands for all specimens that have it.
+        For every specimen, which unknown each of its parameters is.
+    model_parameters : tuple of ModelParameter
+        One parameter for each unknown; a shared one stands for all specimens that have it.
     owner : tuple of int
         Specimen of each unknown, -1 where it is shared.
     weights : tuple of arrays
@@ -126,7 +126,7 @@ class System:
         return int(sum(np.sum(w > 0) for w in self.weights)) + (sum(free) if self.shapes else 0)
 
     def values(self, theta: FloatArray, specimen: int) -> list[float]:
-        """Return the factors and values of one specimen's knobs."""
+        """Return the factors and values of one specimen's parameters."""
         return [self.model_parameters[i].value(theta[i]) for i in self.index[specimen]]
 
     def evaluations(self, theta: FloatArray) -> tuple[Evaluation, ...]:
