@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.update.data.specimen import Evaluation
+from updating.update.data.nominal import Evaluation
 from updating.update.data.system import Linear, System
 
 NEGLIGIBLE = 1e-10

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.update.data.specimen import Evaluation, Specimen
+from updating.update.data.nominal import Evaluation
+from updating.update.data.specimen import Specimen
 
 
 def shape_residual(specimen: Specimen, evaluation: Evaluation) -> FloatArray:

@@ -10,8 +10,9 @@ from typing import Literal
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
+from updating.update.data.nominal import Evaluation
 from updating.update.data.shapes import shape_residual, shape_slopes
-from updating.update.data.specimen import Evaluation, Specimen
+from updating.update.data.specimen import Specimen
 from updating.update.parameters.parameters import ModelParameter
 
 Weights = Literal["covariance", "relative", "eigenvalue"] | Sequence[float]
@@ -247,9 +248,4 @@ class System:
         """Return the problem with other measured frequencies [Hz] and constants [1/kg], and another centre (p,)."""
         shapes = [None] * len(frequencies) if constants is None else constants
         both = zip(self.specimens, frequencies, shapes, strict=True)
-        other = replace(self, specimens=tuple(s.redrawn(f, c) for s, f, c in both), drawn=centre)
-        kept = ("low", "high", "start", "doubt", "prior", "used") + ("weight",) * (
-            self.quantity == "frequency"
-        )
-        other.__dict__.update({name: getattr(self, name) for name in kept})
-        return other
+        return replace(self, specimens=tuple(s.redrawn(f, c) for s, f, c in both), drawn=centre)
