@@ -200,7 +200,7 @@ class Effect(ABC):
         """Return the factor of the model that the only parameter moves, and by how much per unit; None for others."""
         return None
 
-    def weight(self, values: Values) -> float:
+    def weight(self, predictor: Predictor, values: Values) -> float:
         """Return by how much a balance shows the specimen heavier, beside what factors of the model do [kg]."""
         return 0.0
 

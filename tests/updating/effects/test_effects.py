@@ -302,3 +302,23 @@ def test_an_accepted_effect_must_exist() -> None:
 def test_values_that_nothing_has_are_refused(name: str, values: dict[str, float], says: str) -> None:
     with pytest.raises(StudyError, match=re.escape(says)):
         accepted_state(LOOK["beam"], name, values)
+
+
+@pytest.mark.parametrize("place", ["beam", "plate"])
+@pytest.mark.parametrize("name", ["lumped_mass", "damping_patch"])
+def test_a_balance_shows_the_mass_that_an_effect_adds_to_a_body_moving_as_one(name: str, place: str) -> None:
+    free = LOOK[place].of(replace(LOOK[place].spec, clamped=()))
+    values = {
+        "x": 0.2,
+        "y": 0.1,
+        "extent": 0.1,
+        "mass": 0.1,
+        "bulk": 0.0,
+        "stiffness": 0.0,
+        "loss_factor": 0.1,
+    }
+    moving = free.reduced.sampled["w"]
+    unit = np.linalg.lstsq(moving, np.ones(len(moving)), rcond=None)[0]
+    added = sum(LIBRARY[name].state(free, values).mass)
+    assert LIBRARY[name].weight(free, values) == pytest.approx(unit @ added @ unit, rel=1e-6)
+    assert LIBRARY[name].weight(free, values) > 0
