@@ -62,6 +62,10 @@ class DampingPatch(Effect):
             return Obstacle(Lack.MODEL, what)
         return damping_obstacle(predictor)
 
+    def damps(self, parameter: str = "") -> bool:
+        """Tell that the loss factor does, and nothing else."""
+        return parameter == "loss_factor"
+
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the damping alone, and with mass and stiffness; of imported matrices for each region."""
         bare = {"mass": 0.0, "stiffness": 0.0}

@@ -40,8 +40,10 @@ UNTOLD = np.log(2.0)
 
 def only_damps(name: str) -> bool:
     """Tell whether a parameter, as the user writes it, is a matter of damping alone."""
-    effect, coefficient = name.partition(".")[0], name.rpartition(".")[2]
-    return coefficient in DAMPERS or (effect in LIBRARY and LIBRARY[effect].only_damps)
+    effect, _, parameter = name.partition(".")
+    if effect in LIBRARY:
+        return LIBRARY[effect].damps(parameter)
+    return name.rpartition(".")[2] in DAMPERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +110,8 @@ class ModelParameter:
     @property
     def damps(self) -> bool:
         """Whether it is a matter of damping alone."""
-        return self.damper is not None or (self.effect in LIBRARY and LIBRARY[self.effect].only_damps)
+        effect = LIBRARY.get(self.effect)
+        return self.damper is not None or (effect is not None and effect.damps(self.parameter))
 
     @property
     def competes_with(self) -> str:
