@@ -36,7 +36,7 @@ class Part(Displayed):
     digest : str
         SHA-256 of its files.
     record : dict or None
-        As :func:`modalkit.batch.part_record` returns it; None where the study failed.
+        As :func:`modalkit.batch.part_document` returns it; None where the study failed.
     failure : str or None
         Message of a study that failed.
     """

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from updating_cases import BEAM, POINTS, blank
 
 from acquisition.errors import StudyError
-from modalkit.output.library import effects_record
+from modalkit.output.library import effects_document
 from updating import LIBRARY, Environment, Predictor
 from updating.effects import accepted_state
 from updating.models import PointMass
@@ -254,7 +254,7 @@ def test_a_mass_of_nothing_says_where_a_sensor_sits() -> None:
 
 
 def test_the_record_of_the_library_is_complete() -> None:
-    record = effects_record()
+    record = effects_document()
     assert record["schema"] == "modalkit.effects/1"
     assert [e["name"] for e in record["effects"]] == list(LIBRARY)
     keys = {
