@@ -250,6 +250,8 @@ def test_the_record_and_the_tables_of_the_docs_tell_the_same() -> None:
     first = record["cases"][0]
     assert first["grade"] == "partly"
     assert first["facts"][0]["covered"] is False
+    assert "cause" in first["diagnosis"]
+    assert "name" not in first["diagnosis"]
     page = put_between_markers(f"head\n{BEGIN}\nold\n{END}\ntail", real_markdown(record))
     assert "old" not in page
     assert page.startswith("head")
