@@ -68,3 +68,11 @@ def test_the_thresholds_of_the_page_are_those_of_the_code() -> None:
     }
     singles = re.findall(r"p = ([\d.]+)", (ROOT / "docs" / "effects.md").read_text(encoding="utf-8"))
     assert {float(value) for value in singles} == {thresholds.DOUBTED_FIT}
+
+
+def test_the_map_says_where_every_reason_against_a_hit_comes_from() -> None:
+    code = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "acquisition" / "hits").rglob("*.py"))
+    kinds = set(re.findall(r"Fault\(\s*\"([^\"]+)\"", code))
+    page = re.sub(r"\s+", " ", (ROOT / "docs" / "rooms" / "acquisition.md").read_text(encoding="utf-8"))
+    assert len(kinds) > 8
+    assert not {kind for kind in kinds if f"*{kind}*" not in page}
