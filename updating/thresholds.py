@@ -214,7 +214,7 @@ FINISHING_ROUNDS = 3
 """How often what is within reach is sought: finishing one moves the bar for the others."""
 
 PAIRS_WEIGHED = 8
-"""How many pairs are weighed, those that a linear look finds the most promising. Doubled: twice the time of pairs."""
+"""How many pairs are weighed, those that a score test finds the most promising. Doubled: twice the time of pairs."""
 
 PAIRS_ANEW = 3
 """How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take half as long

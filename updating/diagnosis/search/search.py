@@ -224,7 +224,7 @@ def _single(
 
 
 def _pairs(problem: DiagnosisProblem, singles: list[Explanation]) -> list[Explanation]:
-    """Weigh the pairs that a linear look at every pair finds the most promising."""
+    """Weigh the pairs that a score test of every pair finds the most promising."""
     possible = [e for e in singles if e.best.possible]
     if len(possible) < 2:
         return []
@@ -290,7 +290,7 @@ def _alike(
 ) -> list[Explanation]:
     """Draft what some data cannot tell from the best pair: one of the two in the place of an effect like it.
 
-    Such a rival may fit as well where it alone, at another place, fits too badly for the linear look to choose it.
+    Such a rival may fit as well where it alone, at another place, fits too badly for the score test to choose it.
     """
     best = max(pairs, key=lambda e: e.log_evidence, default=None)
     if best is None:
