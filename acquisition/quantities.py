@@ -27,6 +27,7 @@ under the unit in its heading, and a report of a fit gives values with six digit
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 
 MISSING = "–"
@@ -37,6 +38,9 @@ SMALLER = {"kg": (("g", 1e-3),), "m": (("mm", 1e-3),), "s": (("ms", 1e-3), ("us"
 
 UNSPOKEN = frozenset({"", "-", "node"})
 """Units that are not written: of ratios and of numbers of nodes."""
+
+EXPONENTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""How the characters of an exponent are raised."""
 
 SMALLEST_P = 1e-15
 """Below it a p-value is not written out [-]: no distribution of noise is known that far into its tail, some 8 sigma."""
@@ -54,6 +58,11 @@ def quantity(value: float, unit: str = "-") -> str:
     """Return a value [unit] in the unit that suits it: ``12.5 g``."""
     factor, handy = _handy(unit, value)
     return f"{number(value / factor)}{handy}"
+
+
+def raised(text: str) -> str:
+    """Return a text with the exponents of its units raised, for what is drawn: ``kg/m^3`` as ``kg/m³``."""
+    return re.sub(r"\^(-?\d+)", lambda found: found[1].translate(EXPONENTS), text)
 
 
 def estimate(value: float, unit: str, low: float, high: float, *, level: str = "") -> str:

@@ -195,8 +195,8 @@ COUNT_PRIOR = (0.3, 0.5, 0.15, 0.04)
 tested beside its model mostly has one cause that stands out. Doubled for two: pairs gain ln 2 in all odds."""
 
 SET_MARGIN = 2.0
-"""A set is weighed where the linear look says that its logarithm of the probability would come this near to the best,
-or above [-]: the look errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
+"""A set is weighed where a score test says that its logarithm of the probability would come this near to the best,
+or above [-]: the test errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
 
 CLOSES_NEARLY_ALL = 90.0
 """A cause that leaves more than noise is named where it closes so much of what can be closed, on modes held out [%].
@@ -233,7 +233,7 @@ FINISHING_ROUNDS = 3
 """How often what is within reach is sought: finishing one moves the bar for the others."""
 
 PAIRS_WEIGHED = 8
-"""How many pairs are weighed, those that a linear look finds the most promising. Doubled: twice the time of pairs."""
+"""How many pairs are weighed, those that a score test finds the most promising. Doubled: twice the time of pairs."""
 
 PAIRS_ANEW = 3
 """How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take half as long

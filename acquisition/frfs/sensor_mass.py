@@ -64,12 +64,12 @@ def remove_sensor_mass(frfs: FrfSet, *, mass: float | Mapping[Dof, float], rovin
     sets = loaded if roving else [list(sensors)]
     result = frfs.double().scaled(signs)
     for together in sets:
-        result = _removed(result, _Plan.of(result, together, masses))
+        result = _removed(result, _Mounted.of(result, together, masses))
     return result.scaled(signs)
 
 
 @dataclass(frozen=True, eq=False)
-class _Plan:
+class _Mounted:
     """Which FRFs the sensors have that were mounted together.
 
     masses (n,): of the sensors; between (n, n): row numbers of the FRFs between sensors, any where the column's
@@ -81,7 +81,7 @@ class _Plan:
     rows: IntArray
 
     @classmethod
-    def of(cls, frfs: FrfSet, sensors: Sequence[Dof], masses: Mapping[Dof, float]) -> _Plan:
+    def of(cls, frfs: FrfSet, sensors: Sequence[Dof], masses: Mapping[Dof, float]) -> _Mounted:
         found: dict[tuple[Dof, Dof], list[int]] = {}
         for row, (a, b) in enumerate(zip(frfs.responses, frfs.references, strict=True)):
             found.setdefault((_plain(a), _plain(b)), []).append(row)
@@ -127,35 +127,37 @@ def _listed(names: Sequence[str]) -> str:
     return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
 
 
-def _removed(frfs: FrfSet, plan: _Plan) -> FrfSet:
+def _removed(frfs: FrfSet, mounted: _Mounted) -> FrfSet:
     power = FORMS.index("accelerance") - FORMS.index(frfs.form)
-    dynamic = frfs.laplace**power * plan.masses[:, None]
-    matrix = np.moveaxis(frfs.values[plan.between] * dynamic, -1, 0)
-    inverse = np.asarray(np.linalg.inv(np.eye(len(plan.masses)) - matrix), dtype=np.complex128)
+    dynamic = frfs.laplace**power * mounted.masses[:, None]
+    matrix = np.moveaxis(frfs.values[mounted.between] * dynamic, -1, 0)
+    inverse = np.asarray(np.linalg.inv(np.eye(len(mounted.masses)) - matrix), dtype=np.complex128)
     inverse = np.moveaxis(inverse, 0, -1)
     values = np.array(frfs.values)
-    values[plan.rows] = np.einsum("ijl,jkl->ikl", inverse, frfs.values[plan.rows])
-    pushed = dynamic[:, None] * values[plan.rows]
+    values[mounted.rows] = np.einsum("ijl,jkl->ikl", inverse, frfs.values[mounted.rows])
+    pushed = dynamic[:, None] * values[mounted.rows]
     variance, scatter = frfs.variance, None
     if frfs.scatter is not None:
-        scatter = _scatter(frfs.scatter, plan, inverse, pushed)
+        scatter = _scatter(frfs.scatter, mounted, inverse, pushed)
         variance = scatter.variance(len(values))
     elif variance is not None:
-        variance = _variance(variance, plan, inverse, pushed)
+        variance = _variance(variance, mounted, inverse, pushed)
     return replace(frfs, values=values, variance=variance, scatter=scatter)
 
 
-def _scatter(scatter: HitScatter, plan: _Plan, inverse: ComplexArray, pushed: ComplexArray) -> HitScatter:
+def _scatter(
+    scatter: HitScatter, mounted: _Mounted, inverse: ComplexArray, pushed: ComplexArray
+) -> HitScatter:
     """Carry deviations through: d true_k = B (d A_k + sum_j d A_.j m_j s^2 true_jk), with B the inverse."""
     groups = []
-    position = {int(row): (i, k) for (i, k), row in np.ndenumerate(plan.rows)}
+    position = {int(row): (i, k) for (i, k), row in np.ndenumerate(mounted.rows)}
     for group in scatter.groups:
         moved = {int(row): group.deviations[:, c].astype(np.complex128) for c, row in enumerate(group.rows)}
         total: dict[int, ComplexArray] = {row: d for row, d in moved.items() if row not in position}
-        change = _change(moved, position, plan, pushed)
+        change = _change(moved, position, mounted, pushed)
         for k, right in change.items():
             turned = np.einsum("ijl,jhl->ihl", inverse, right)
-            total.update({int(row): turned[i] for i, row in enumerate(plan.rows[:, k])})
+            total.update({int(row): turned[i] for i, row in enumerate(mounted.rows[:, k])})
         rows = np.array(sorted(total), dtype=np.int64)
         deviations = np.stack([total[int(row)] for row in rows], axis=1)
         groups.append(HitGroup(rows, deviations.astype(group.deviations.dtype)))
@@ -165,11 +167,11 @@ def _scatter(scatter: HitScatter, plan: _Plan, inverse: ComplexArray, pushed: Co
 def _change(
     moved: Mapping[int, ComplexArray],
     position: Mapping[int, tuple[int, int]],
-    plan: _Plan,
+    mounted: _Mounted,
     pushed: ComplexArray,
 ) -> dict[int, ComplexArray]:
     """Return d A_k + d A_JJ m s^2 true_k of one group of hits, by column k, each (n_sensors, n_hits, n_lines)."""
-    n, n_points = plan.rows.shape
+    n, n_points = mounted.rows.shape
     shape = (n, *next(iter(moved.values())).shape)
     change: dict[int, ComplexArray] = {}
     for row, deviation in moved.items():
@@ -177,21 +179,23 @@ def _change(
             i, k = position[row]
             change.setdefault(k, np.zeros(shape, dtype=np.complex128))[i] += deviation
     for i, j in np.ndindex(n, n):
-        deviation_between = moved.get(int(plan.between[i, j]))
-        if deviation_between is not None and plan.masses[j] > 0:
+        deviation_between = moved.get(int(mounted.between[i, j]))
+        if deviation_between is not None and mounted.masses[j] > 0:
             for k in range(n_points):
                 part = change.setdefault(k, np.zeros(shape, dtype=np.complex128))
                 part[i] += deviation_between * pushed[j, k]
     return change
 
 
-def _variance(variance: FloatArray, plan: _Plan, inverse: ComplexArray, pushed: ComplexArray) -> FloatArray:
+def _variance(
+    variance: FloatArray, mounted: _Mounted, inverse: ComplexArray, pushed: ComplexArray
+) -> FloatArray:
     """Carry variances through, FRFs taken for independent (first order)."""
     result, gain = np.array(variance), np.abs(inverse) ** 2
-    for rows, push in zip(plan.rows.T, np.moveaxis(pushed, 1, 0), strict=True):
-        same = plan.between == rows[:, None]
+    for rows, push in zip(mounted.rows.T, np.moveaxis(pushed, 1, 0), strict=True):
+        same = mounted.between == rows[:, None]
         twice = np.abs(1 + np.einsum("ij,jl->il", same, push)) ** 2 * variance[rows]
-        others = np.where(same[:, :, None], 0.0, variance[plan.between])
+        others = np.where(same[:, :, None], 0.0, variance[mounted.between])
         right = twice + np.einsum("ijl,jl->il", others, np.abs(push) ** 2)
         result[rows] = np.einsum("ijl,jl->il", gain, right)
     return result

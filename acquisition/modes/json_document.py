@@ -39,14 +39,14 @@ def read_modes_json(path: Path | str) -> ModalData:
         If it cannot be read, is of another schema, or an entry is not what it should be.
     """
     path = Path(path)
-    return _modal(_record(path), path)
+    return _modal(_document(path), path)
 
 
-def _modal(record: Mapping[str, Any], path: Path) -> ModalData:
+def _modal(document: Mapping[str, Any], path: Path) -> ModalData:
     modes = [
-        _mapping(m, f"{path}: mode {n}") for n, m in enumerate(_list(record, "modes", str(path)), start=1)
+        _mapping(m, f"{path}: mode {n}") for n, m in enumerate(_list(document, "modes", str(path)), start=1)
     ]
-    check_keys(record, _KEYS, str(path))
+    check_keys(document, _KEYS, str(path))
     check_same_keys(modes, f"{path}: modes")
     if not modes:
         raise InputError(f"{path}: holds no mode; identify with a band that has some")
@@ -63,7 +63,7 @@ def _modal(record: Mapping[str, Any], path: Path) -> ModalData:
     frequency, frequency_sigma, damping, damping_sigma = (
         _column(modes, key, path, needed=key == _OF_MODE[0]) for key in _OF_MODE[:4]
     )
-    nodes, places = _nodes(record, path)
+    nodes, places = _nodes(document, path)
     try:
         return ModalData(
             frequency=frequency,
@@ -80,9 +80,9 @@ def _modal(record: Mapping[str, Any], path: Path) -> ModalData:
         raise InputError(f"{path}: {error}") from None
 
 
-def _record(path: Path) -> Mapping[str, Any]:
+def _document(path: Path) -> Mapping[str, Any]:
     try:
-        record = json.loads(path.read_bytes(), object_pairs_hook=once)
+        document = json.loads(path.read_bytes(), object_pairs_hook=once)
     except OSError as error:
         raise InputError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
     except InputError as error:
@@ -91,13 +91,13 @@ def _record(path: Path) -> Mapping[str, Any]:
         raise InputError(
             f"{path}: is no JSON ({type(error).__name__}); write it with identify --json"
         ) from None
-    schema = record.get("schema") if isinstance(record, Mapping) else None
+    schema = document.get("schema") if isinstance(document, Mapping) else None
     if schema != SCHEMA:
         found = f"of schema {str(schema)[:40]!r}" if schema else "without a schema"
         raise InputError(
             f"{path}: is JSON {found}; modes are of schema {SCHEMA!r}, as identify --json writes them"
         )
-    return dict(record)
+    return dict(document)
 
 
 def _shape(mode: Mapping[str, Any], where: str) -> dict[Dof, tuple[float, float, float]]:
@@ -119,10 +119,10 @@ def _shape(mode: Mapping[str, Any], where: str) -> dict[Dof, tuple[float, float,
     return shape
 
 
-def _nodes(record: Mapping[str, Any], path: Path) -> tuple[tuple[int, ...], FloatArray]:
-    """Return the numbers and the places [m] of the nodes of the record, where it has any."""
+def _nodes(document: Mapping[str, Any], path: Path) -> tuple[tuple[int, ...], FloatArray]:
+    """Return the numbers and the places [m] of the nodes of the document, where it has any."""
     where = f"{path}: nodes"
-    nodes = [_mapping(node, where) for node in _list(record, "nodes", str(path))]
+    nodes = [_mapping(node, where) for node in _list(document, "nodes", str(path))]
     places = [[_number(node, axis, where, needed=True) for axis in "xyz"] for node in nodes]
     return tuple(_whole(node, "node", where) for node in nodes), np.array(places)
 
@@ -133,8 +133,8 @@ def _column(modes: list[Mapping[str, Any]], key: str, path: Path, *, needed: boo
     )
 
 
-def _list(record: Mapping[str, Any], key: str, where: str) -> list[Any]:
-    value = record.get(key, [])
+def _list(document: Mapping[str, Any], key: str, where: str) -> list[Any]:
+    value = document.get(key, [])
     if not isinstance(value, list):
         raise InputError(f"{where}: {key} is no list; write the file with identify --json")
     return value
@@ -146,16 +146,16 @@ def _mapping(value: Any, where: str) -> Mapping[str, Any]:
     return value
 
 
-def _whole(record: Mapping[str, Any], key: str, where: str) -> int:
-    value = record.get(key)
+def _whole(document: Mapping[str, Any], key: str, where: str) -> int:
+    value = document.get(key)
     if type(value) is not int or abs(value) >= 2**31:
         raise InputError(f"{where}: {key} = {str(value)[:40]} is no whole number; correct it")
     return value
 
 
-def _number(record: Mapping[str, Any], key: str, where: str, *, needed: bool = False) -> float:
+def _number(document: Mapping[str, Any], key: str, where: str, *, needed: bool = False) -> float:
     """Return a number; nan for null or nothing, unless it is needed."""
-    value = record.get(key)
+    value = document.get(key)
     if value is None and not needed:
         return math.nan
     try:

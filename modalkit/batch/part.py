@@ -10,7 +10,7 @@ import numpy as np
 
 from acquisition import ModalData
 from acquisition.errors import ModalkitError
-from modalkit.output.records import diagnosis_record
+from modalkit.output.documents import diagnosis_document
 from modalkit.output.update import to_json
 from modalkit.study.read import Study, read_study
 from modalkit.workflow.case import Session, modes_in_band, open_study, process
@@ -21,7 +21,7 @@ from updating import Measured
 SCHEMA = "modalkit.part/1"
 
 
-def part_record(path: Path | str) -> dict[str, Any]:
+def part_document(path: Path | str) -> dict[str, Any]:
     """Identify a study, update it where it has an ``[update]``, and diagnose it where it has a ``[model]``.
 
     Parameters
@@ -57,7 +57,7 @@ def part_record(path: Path | str) -> dict[str, Any]:
     diagnosis = diagnose_studies([session])
     return record | {
         "modes": _modes(session.case.measured),
-        "diagnosis": diagnosis_record(diagnosis),
+        "diagnosis": diagnosis_document(diagnosis),
         "warnings": [*diagnosis.warnings, *warnings_of([session])],
     }
 

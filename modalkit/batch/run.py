@@ -16,6 +16,7 @@ from acquisition.display import Displayed
 from acquisition.errors import EstimationError, InputError
 from modalkit import __version__
 from modalkit.batch.find import Found
+from modalkit.workers.client import CommandFailedError
 from modalkit.workers.journal import Journal, is_store, read_journal
 from modalkit.workers.pool import RunCommand, in_flight, warm_pool
 
@@ -35,7 +36,7 @@ class Part(Displayed):
     digest : str
         SHA-256 of its files.
     record : dict or None
-        As :func:`modalkit.batch.part_record` returns it; None where the study failed.
+        As :func:`modalkit.batch.part_document` returns it; None where the study failed.
     failure : str or None
         Message of a study that failed.
     """
@@ -212,10 +213,10 @@ def run_part(found: Found, run: RunCommand) -> Part:
         try:
             run(found.path.parent, ["part", found.path.name, "--json", str(out)])
             return Part(found.name, found.digest, json.loads(out.read_text(encoding="utf-8")), None)
+        except CommandFailedError as error:
+            return Part(found.name, found.digest, None, error.statement.removeprefix(f"{found.path.name}: "))
         except EstimationError as error:
-            statement = str(error).removeprefix("`modalkit part` ended with code 2: ")
-            statement = statement.removeprefix(f"{found.path.name}: ")
-            return Part(found.name, found.digest, None, statement)
+            return Part(found.name, found.digest, None, str(error))
         except (OSError, ValueError) as error:
             return Part(found.name, found.digest, None, f"no readable result: {error}")
 

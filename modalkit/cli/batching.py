@@ -14,7 +14,7 @@ from acquisition.errors import EstimationError
 from modalkit.batch import (
     BatchResult,
     find_studies,
-    part_record,
+    part_document,
     run_batch,
     table_places,
     tables,
@@ -86,7 +86,7 @@ def part(
 ) -> None:
     """Work out one study of a batch."""
     check_outputs((json, PART), reads=read_by([study]))
-    write_json(json, part_record(study))
+    write_json(json, part_document(study))
 
 
 def _part_place(folder: Path, name: str) -> Path:

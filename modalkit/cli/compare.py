@@ -23,7 +23,7 @@ from modalkit.cli.common import (
     working,
 )
 from modalkit.cli.options import Figures
-from modalkit.output.correlation import correlation_record
+from modalkit.output.correlation import correlation_document
 from modalkit.output.destinations import Kind, check_outputs, json_of, text_of
 from modalkit.output.whole import write_json, write_text
 from modalkit.study.read import read_study
@@ -90,7 +90,7 @@ def correlate(
         out.print(f"Model's FRFs: {result.frfs.damping}.")
     show_warnings([*result.warnings, *session.warnings])
     if json is not None:
-        write_json(json, correlation_record(result, session.warnings))
+        write_json(json, correlation_document(result, session.warnings))
         out.print(f"written: {json}", markup=False)
     show_figures(figures, lambda: _correlation_figures(session, result))
 
@@ -112,7 +112,7 @@ def _correlate_tests(first: Path, second: Path, json: Path | None, figures: Path
         show_table(numbered, title, digits=dict.fromkeys(map(str, numbered.columns), 2))
     show_warnings(found.notes)
     if json is not None:
-        write_json(json, comparing.comparison_record(found))
+        write_json(json, comparing.comparison_document(found))
         out.print(f"written: {json}", markup=False)
     show_figures(figures, lambda: _drawn(found))
 

@@ -23,8 +23,8 @@ from modalkit.cli.common import (
 )
 from modalkit.cli.options import Figures
 from modalkit.output.destinations import check_outputs, json_of
-from modalkit.output.library import effects_record, effects_table
-from modalkit.output.records import diagnosis_record
+from modalkit.output.documents import diagnosis_document
+from modalkit.output.library import effects_document, effects_table
 from modalkit.output.summary import separates, summary_text
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
@@ -61,7 +61,7 @@ def diagnose(
         diagnosis = diagnose_studies(sessions, _names(shared), _names(without))
     show_diagnosis(diagnosis, *sessions)
     if json is not None:
-        write_json(json, diagnosis_record(diagnosis, warnings_of(sessions)))
+        write_json(json, diagnosis_document(diagnosis, warnings_of(sessions)))
         out.print(f"written: {json}", markup=False)
     if report is not None or figures is not None:
         _draw(diagnosis, sessions, report, figures)
@@ -142,7 +142,7 @@ def effects(
 ) -> None:
     """List the effects that can be named, with priors, footprints and what separates them."""
     check_outputs((json, json_of("modalkit.effects/1")))
-    record = effects_record()
+    record = effects_document()
     if json is not None:
         write_json(json, record)
         out.print(f"written: {json}", markup=False)

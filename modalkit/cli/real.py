@@ -12,7 +12,7 @@ from modalkit.cli.common import out, progress, show_table
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.whole import write_json
 from modalkit.papers.a.chain import sample_folder
-from modalkit.papers.real import CASES, RULES, RealOutcome, counts, real_record, real_table, run_real
+from modalkit.papers.real import CASES, RULES, RealOutcome, counts, real_document, real_table, run_real
 
 _GAP = """\
 Gap: r.m.s. error of the frequencies where nothing else is said, before and after, the latter on modes held out; beside
@@ -49,7 +49,7 @@ def show_real(data: Path | None, json: Path | None, workers: int) -> None:
         )
     print_real(outcomes)
     if json is not None:
-        write_json(json, real_record(outcomes))
+        write_json(json, real_document(outcomes))
         out.print(f"written: {json}", markup=False)
 
 

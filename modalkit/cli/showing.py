@@ -27,13 +27,13 @@ def save_modes(
     output: Path | None,
 ) -> None:
     """Write the modes as JSON, and as what the ending of the output names, where files are given, and say so."""
+    from modalkit.output.documents import modes_document
     from modalkit.output.modes import write_modes
-    from modalkit.output.records import modes_record
 
     hits = () if processed is None else processed.hits
     title = "" if processed is None else processed.content.title
     if json is not None:
-        write_json(json, modes_record(model, hits, warnings))
+        write_json(json, modes_document(model, hits, warnings))
         out.print(f"written: {json}", markup=False)
     if output is not None:
         write_modes(output, model, hits=hits, warnings=warnings, title=title)
@@ -42,7 +42,7 @@ def save_modes(
 
 def show_rejected(hits: Sequence[HitVerdict], more: Sequence[str] = ()) -> None:
     """Print the points that were left out, with the reason."""
-    from modalkit.output.records import without_hits
+    from modalkit.output.documents import without_hits
 
     for text in [*without_hits(hits), *more]:
         out.print(f"left out: {text}", markup=False)

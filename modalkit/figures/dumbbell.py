@@ -51,29 +51,9 @@ def dumbbells(
             axes.barh(rows, 2 * band, left=-band, height=0.62, color=colour, label=name, zorder=1.1)
     if after is not None:
         axes.hlines(rows, before, after, color=FAINT, linewidth=2.2, zorder=2)
-    axes.scatter(
-        before,
-        rows,
-        s=52,
-        facecolor="white",
-        edgecolor=MUTED,
-        linewidth=1.6,
-        label="before",
-        zorder=3,
-        clip_on=False,
-    )
+    _dots(axes, before, "before", size=52, face="white", edge=MUTED, line=1.6, zorder=3)
     if after is not None:
-        axes.scatter(
-            after,
-            rows,
-            s=58,
-            color=BLUE,
-            edgecolor="white",
-            linewidth=0.8,
-            label="after",
-            zorder=4,
-            clip_on=False,
-        )
+        _dots(axes, after, "after", size=58, face=BLUE, edge="white", line=0.8, zorder=4)
     axes.set_yticks(rows, [f"{i + 1}   {hertz(f)}" for i, f in enumerate(frequency)])
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
@@ -82,6 +62,24 @@ def dumbbells(
     if not signed:
         axes.set_xlim(0)
     key(axes, indent)
+
+
+def _dots(
+    axes: Axes,
+    values: FloatArray,
+    label: str,
+    *,
+    size: float,
+    face: str,
+    edge: str,
+    line: float,
+    zorder: float,
+) -> None:
+    """Draw one dot per row."""
+    axes.scatter(
+        values, np.arange(len(values)), s=size, facecolor=face, edgecolor=edge, linewidth=line, label=label,
+        zorder=zorder, clip_on=False,
+    )  # fmt: skip
 
 
 def key(axes: Axes, indent: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes
@@ -9,6 +10,8 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
+
+from acquisition.quantities import raised
 
 WIDTH = 12.0
 """Width of a figure [in]; 1200 px at 100 dots per inch."""
@@ -38,6 +41,9 @@ PROBABILITY = LinearSegmentedColormap.from_list("probability", ["#f3f6f9", "#9fc
 
 SIGNED = LinearSegmentedColormap.from_list("signed", ["#07497a", "#5fa5d3", "#f6f6f4", "#f0a067", "#a63c02"])
 """Blue is negative, orange positive."""
+
+BREAKS = re.compile(r"(?<!\d) | (?![^\W\d]|%)")
+"""Spaces at which a line may be broken: not those between a number and its unit."""
 
 SMALL, TEXT, HEAD, TITLE = 10.0, 11.0, 12.5, 17.0
 """Font sizes [pt]."""
@@ -77,8 +83,8 @@ def tidy(axes: Axes, *, x: str = "", y: str = "", grid: str = "both") -> Axes:
         axes.grid(visible=True, axis=grid, color=GRID, linewidth=0.8)  # type: ignore[arg-type]
     axes.tick_params(colors=FAINT, labelcolor=INK, labelsize=SMALL, width=0.8, length=3)
     axes.tick_params(which="minor", color=FAINT, width=0.6, length=1.5)
-    axes.set_xlabel(x, fontsize=TEXT, color=INK)
-    axes.set_ylabel(y, fontsize=TEXT, color=INK)
+    axes.set_xlabel(raised(x), fontsize=TEXT, color=INK)
+    axes.set_ylabel(raised(y), fontsize=TEXT, color=INK)
     return axes
 
 
@@ -163,9 +169,9 @@ def text_width(text: str, size: float, *, weight: str = "normal") -> float:
 
 
 def broken(text: str, room: float, size: float, *, weight: str = "normal") -> list[str]:
-    """Break a text at its plain spaces into lines no wider than ``room`` [pt]."""
+    """Break a text into lines no wider than ``room`` [pt], never between a number and the word or sign after it."""
     lines: list[str] = []
-    for word in filter(None, text.split(" ")):
+    for word in filter(None, BREAKS.split(text)):
         longer = f"{lines[-1]} {word}" if lines else word
         if lines and text_width(longer, size, weight=weight) <= room:
             lines[-1] = longer

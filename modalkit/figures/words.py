@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from acquisition.quantities import p_value, percent, place
+from acquisition.quantities import p_value, percent, place, raised
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import Ranked
 
@@ -37,7 +37,7 @@ def parameters(row: Ranked) -> str:
     for name, estimate in row.parameters.items():
         bound = " at its bound" if estimate.at_bound else ""
         statement = name.rpartition(".")[2].replace("_", " ")
-        parts.append(f"{statement} {estimate}{bound}")
+        parts.append(f"{statement} {raised(str(estimate))}{bound}")
     return ", ".join(parts)
 
 
@@ -72,7 +72,7 @@ def _detail(diagnosis: Diagnosis) -> tuple[str, str]:
         return "", ""
     if len(row.parameters) == 1:
         (estimate,) = row.parameters.values()
-        return "", f": {estimate.whole}".replace(" ", NO_BREAK)
+        return "", f": {raised(estimate.whole)}".replace(" ", NO_BREAK)
     seated = diagnosis.where.location is not None and len(row.effects) == 1
     return (f" {located(diagnosis)}" if seated else ""), ""
 

@@ -22,7 +22,7 @@ NAMES = {
 }
 
 
-def correlation_record(correlation: Correlation, warnings: Sequence[str] = ()) -> dict[str, Any]:
+def correlation_document(correlation: Correlation, warnings: Sequence[str] = ()) -> dict[str, Any]:
     """Return a correlation as ``modalkit.correlation/1``.
 
     Parameters

@@ -9,16 +9,16 @@ from updating.effects.specimens import SHOWN, example, kinds_of
 from updating.models.spec import Kind
 
 
-def effects_record() -> dict[str, Any]:
+def effects_document() -> dict[str, Any]:
     """Return the library of effects as ``modalkit.effects/1``."""
     return {
         "schema": "modalkit.effects/1",
         "specimen": SHOWN,
-        "effects": [effect_record(effect) for effect in LIBRARY.values()],
+        "effects": [effect_document(effect) for effect in LIBRARY.values()],
     }
 
 
-def effect_record(effect: Effect) -> dict[str, Any]:
+def effect_document(effect: Effect) -> dict[str, Any]:
     """Return one effect: sentences, and its parameters on the first kind of model that has each of them."""
     kinds = kinds_of(effect)
     named: dict[str, Parameter] = {}

@@ -93,8 +93,8 @@ def write_modes(
     if ending == ".csv":
         write_text(path, modes_csv(modes.modal))
     elif ending == ".json":
-        from modalkit.output.records import modes_record
+        from modalkit.output.documents import modes_document
 
-        write_json(path, modes_record(modes, hits, statement))
+        write_json(path, modes_document(modes, hits, statement))
     else:
         write_uff(path, modal=modes.modal, geometry=modes.modal.geometry, title=title)

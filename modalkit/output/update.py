@@ -1,4 +1,4 @@
-"""An update as the plain record of its JSON file, whose keys are a contract."""
+"""An update as the document of its JSON file, whose keys are a contract."""
 
 from __future__ import annotations
 

@@ -34,6 +34,25 @@ _KEPT = frozenset(
 _SET = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
 
 
+class CommandFailedError(EstimationError):
+    """A command ended with a code, not with a result.
+
+    Parameters
+    ----------
+    command : str
+        Its name.
+    code : int
+        The code [-].
+    statement : str
+        What it said of its failure.
+    """
+
+    def __init__(self, command: str, code: int, statement: str) -> None:
+        """Say what failed, and how."""
+        super().__init__(f"`modalkit {command}` ended with code {code}: {statement}")
+        self.statement = statement
+
+
 class WarmProcess:
     """A process with modalkit loaded, for commands that must not know anything of this one.
 
@@ -168,9 +187,7 @@ class WarmProcess:
                 died = f"ended by {_signal_name(answer['signal'])}"
             elif answer["code"] != 0:
                 statement = answer["message"].removeprefix("modalkit: ") or "no message"
-                raise EstimationError(
-                    f"`modalkit {arguments[0]}` ended with code {answer['code']}: {statement}"
-                )
+                raise CommandFailedError(arguments[0], answer["code"], statement)
             else:
                 return
         raise EstimationError(

@@ -101,7 +101,7 @@ def compare(first: ModesOf, second: ModesOf) -> Correlation:
     return correlate_modes(modes_of(first), modes_of(second))
 
 
-def comparison_record(found: Correlation, warnings: Sequence[str] = ()) -> dict[str, Any]:
+def comparison_document(found: Correlation, warnings: Sequence[str] = ()) -> dict[str, Any]:
     """Return two tests compared as ``modalkit.comparison/1``; modes are counted from 1."""
     first, second = found.test.frequency, found.model.frequency
     return {

@@ -14,6 +14,7 @@ from acquisition.quantities import (
     place,
     probability,
     quantity,
+    raised,
     severity,
     sigmas,
     uncertainty,
@@ -65,6 +66,10 @@ def test_the_largest_of_value_and_interval_chooses_the_unit() -> None:
     assert estimate(-0.9, "kg", -1.2, -0.7) == "-0.9 kg (-1.2 to -0.7)"
     assert estimate(0.9, "-", 0.89, 0.91) == "0.9 (0.89 to 0.91)"
     assert estimate(9353.7, "N m/rad", 8163.9, 11300.1) == "9350 N m/rad (8160 to 11300)"
+
+
+def test_exponents_are_raised_where_something_is_drawn() -> None:
+    assert raised("998 kg/m^3, 3 mm^4, m s^-2 and 12^") == "998 kg/m³, 3 mm⁴, m s⁻² and 12^"
 
 
 def test_errors_have_two_digits_and_from_ten_on_three() -> None:

@@ -44,6 +44,29 @@ def test_no_room_imports_to_its_right(room: str) -> None:
         assert not wrong, f"{path.relative_to(ROOT)} imports {wrong}"
 
 
+NOT_OBJECTS = {"acquisition/lazy.py", "acquisition/display.py"}
+"""What reads or writes the names of modules and of classes."""
+
+
+def reached_around(tree: ast.Module) -> set[str]:
+    """Return by what an object is written to behind the back of its class, but at its birth."""
+    births = {
+        id(node)
+        for function in ast.walk(tree)
+        if isinstance(function, ast.FunctionDef) and function.name == "__post_init__"
+        for node in ast.walk(function)
+    }
+    names = {n.attr for n in ast.walk(tree) if isinstance(n, ast.Attribute) and id(n) not in births}
+    return names & {"__dict__", "__setattr__"}
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_objects_are_complete_at_birth(room: str) -> None:
+    for path in sources(room):
+        if path.relative_to(ROOT).as_posix() not in NOT_OBJECTS:
+            assert not reached_around(ast.parse(path.read_text(encoding="utf-8"))), path
+
+
 EVERY_MODULE = """
 import importlib, pkgutil, sys
 for package in sys.argv[1:]:

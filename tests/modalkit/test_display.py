@@ -177,6 +177,7 @@ def test_an_update_is_drawn_in_one_call(session: modalkit.Session, tmp_path: Any
     drawn = modalkit.draw(result, folder=str(tmp_path / "figures"))
     assert set(drawn) == {"update", "evolution"}
     assert (tmp_path / "figures" / "update.png").is_file()
+    assert {text.get_text() for text in drawn["evolution"].texts} >= {"factors", "extension"}
     words = " ".join(text.get_text() for text in drawn["update"].texts)
     assert (
         "Errors, mode by mode" in words

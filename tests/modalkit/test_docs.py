@@ -56,3 +56,23 @@ def test_the_page_of_a_room_names_each_of_its_sub_rooms(room: str) -> None:
     inside = {path.parent.name for path in (ROOT / room).glob("*/__init__.py")}
     assert not {name for name in inside if f"`{name}`" not in page}
     assert len(page.splitlines()) <= 60, "a page of a room is at most a screen"
+
+
+def test_the_thresholds_of_the_page_are_those_of_the_code() -> None:
+    page = (ROOT / "docs" / "diagnosis.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `([A-Z_]+)` \| ([\d.]+) \|", page, flags=re.MULTILINE)
+    thresholds = importlib.import_module("updating.thresholds")
+    assert len(rows) >= 5
+    assert {name: float(value) for name, value in rows} == {
+        name: getattr(thresholds, name) for name, _ in rows
+    }
+    singles = re.findall(r"p = ([\d.]+)", (ROOT / "docs" / "effects.md").read_text(encoding="utf-8"))
+    assert {float(value) for value in singles} == {thresholds.DOUBTED_FIT}
+
+
+def test_the_map_says_where_every_reason_against_a_hit_comes_from() -> None:
+    code = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "acquisition" / "hits").rglob("*.py"))
+    kinds = set(re.findall(r"Fault\(\s*\"([^\"]+)\"", code))
+    page = re.sub(r"\s+", " ", (ROOT / "docs" / "rooms" / "acquisition.md").read_text(encoding="utf-8"))
+    assert len(kinds) > 8
+    assert not {kind for kind in kinds if f"*{kind}*" not in page}

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from modalkit.cli import app
 from modalkit.figures.words import answer, phrase
-from modalkit.output.library import effects_record, effects_table
+from modalkit.output.library import effects_document, effects_table
 from modalkit.output.summary import summary_text
 from modalkit.study.named_effects import parse_effect
 from modalkit.study.stated_effects import accepted_values
@@ -94,7 +94,7 @@ def code() -> str:
 def test_the_table_is_what_the_command_prints() -> None:
     message = CliRunner().invoke(app, ["effects", "--table"])
     assert message.exit_code == 0
-    assert message.stdout == effects_table(effects_record())
+    assert message.stdout == effects_table(effects_document())
     begin = PAGE.read_text(encoding="utf-8").split("| effect |")[1]
     written = "| effect |" + begin.split("\n\n")[0] + "\n"
     assert written == message.stdout, (

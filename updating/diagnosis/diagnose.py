@@ -22,7 +22,7 @@ from updating.diagnosis.problem.doubtful import notes_on_doubtful
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.goodness import p_plain
+from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.search import Search, search
 from updating.effects import LIBRARY, Effect
 from updating.models.state import State
@@ -114,7 +114,7 @@ def _diagnose(
 ) -> Diagnosis:
     effects = list(LIBRARY.values()) if library is None else list(library)
     found = search(problem, [effect for effect in effects if effect.name not in accepted])
-    chance = p_plain(found.nothing.best)
+    chance = p_value(found.nothing.best)
     significant = is_significant(found, chance)
     comparable = not any(one.mostly_alone for one in problem.specimens)
     draws = np.random.default_rng(1) if rng is None else rng

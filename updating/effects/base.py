@@ -160,8 +160,6 @@ class Effect(ABC):
     """An effect that makes one and the same change; one of the two says so."""
     competes_with: ClassVar[str] = ""
     """The modeller's doubt of which it is more than that: a factor with a tolerance, or ``calibration``."""
-    only_damps: ClassVar[bool] = False
-    """Whether an update need not look at frequencies to find it."""
 
     @abstractmethod
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -200,7 +198,11 @@ class Effect(ABC):
         """Return the factor of the model that the only parameter moves, and by how much per unit; None for others."""
         return None
 
-    def weight(self, values: Values) -> float:
+    def damps(self, parameter: str = "") -> bool:
+        """Tell whether a parameter, all of them where none is named, changes damping alone."""
+        return False
+
+    def weight(self, predictor: Predictor, values: Values) -> float:
         """Return by how much a balance shows the specimen heavier, beside what factors of the model do [kg]."""
         return 0.0
 

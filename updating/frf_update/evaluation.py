@@ -126,7 +126,7 @@ def changes(
     ----------
     predictor : Predictor
         The specimen.
-    parameter_set : Panel
+    parameter_set : ParameterSet
         Its parameters.
     values : sequence of float
         Their factors and values.
@@ -168,7 +168,7 @@ def sensitivity(
 
     Parameters
     ----------
-    at : Look
+    at : Evaluation
         The model.
     change : Change
         What the coordinate changes.

@@ -23,7 +23,7 @@ def expand(at: Evaluation, ends: Columns, measured: ComplexArray) -> ComplexArra
 
     Parameters
     ----------
-    at : Look
+    at : Evaluation
         The model.
     ends : Columns
         The points of every FRF.

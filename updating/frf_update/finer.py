@@ -46,7 +46,7 @@ def finer(specimen: Specimen, steps: Sequence[Step]) -> tuple[Specimen, list[Ste
     old_frfs, new_frfs = predictor.receptance(laplace, step.state), new.receptance(laplace, there)
     if np.abs(new_frfs - old_frfs).max() <= AGREES * np.abs(new_frfs).max():
         return None
-    return replace(specimen, predictor=new), moved
+    return replace(specimen, model=replace(specimen.model, predictor=new)), moved
 
 
 def _moved(step: Step, predictor: Predictor) -> Step:

@@ -29,7 +29,7 @@ def shifted(at: Evaluation, ends: Columns, shift: FloatArray) -> ComplexArray:
 
     Parameters
     ----------
-    at : Look
+    at : Evaluation
         The model.
     ends : Columns
         The points of every FRF.

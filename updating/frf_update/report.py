@@ -129,6 +129,7 @@ def _estimate(model_parameter: ModelParameter, coordinate: float, sigma: float) 
         model_parameter.nominal * model_parameter.high,
         model_parameter.nominal * model_parameter.start,
         relative=model_parameter.is_factor,
+        quantity=model_parameter.quantity,
     )
 
 

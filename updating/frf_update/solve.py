@@ -43,7 +43,7 @@ class Solved:
     ----------
     theta : (p,) array
         Coordinates.
-    at : Look
+    at : Evaluation
         The model there.
     discrepancy : float
         Relative discrepancy of the model [-].

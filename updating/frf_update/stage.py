@@ -39,7 +39,7 @@ class Stage:
         Measured FRFs on the lines of this stage.
     ends : Columns
         Their points.
-    parameter_set : Panel
+    parameter_set : ParameterSet
         The parameters of this stage.
     earlier : State
         What the stages before have settled.
@@ -113,7 +113,7 @@ class Stage:
         ----------
         theta : (p,) array
             Coordinates.
-        at : Look
+        at : Evaluation
             The model there.
         measured : bool
             With the measured column expanded (Eq. 9 as it stands) or with the model's own.

@@ -7,6 +7,7 @@ matrices, so that no effect needs an exact form beside its own.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import chain, combinations
 from typing import Any, cast
 
@@ -27,28 +28,33 @@ class ReducedOnlyError(ModalkitError):
     """What was asked for is a full matrix on all degrees of freedom, and known on a reduced basis alone."""
 
 
+@dataclass(frozen=True, eq=False)
 class Whole(Reduced):
     """A structure as its own basis: every matrix is sparse and over all degrees of freedom.
 
     Parameters
     ----------
-    small : Reduced
+    structure, basis, ranks
+        As of :class:`Reduced`; the basis is a sparse unit matrix.
+    on_basis : Reduced
         The same structure on a reduced basis, for what needs one.
     """
 
-    def __init__(self, small: Reduced) -> None:
+    on_basis: Reduced
+
+    @classmethod
+    def of(cls, small: Reduced) -> Whole:
         """Take the structure of a reduced model."""
         structure = small.structure
         kinds = sorted(structure.fixed)
         sets = chain.from_iterable(combinations(kinds, n) for n in range(len(kinds) + 1))
         every = sparse.eye_array(structure.n_dofs, format="csr")
-        super().__init__(structure, cast(FloatArray, every), {frozenset(s): structure.n_dofs for s in sets})
-        object.__setattr__(self, "_small", small)
+        return cls(structure, cast(FloatArray, every), {frozenset(s): structure.n_dofs for s in sets}, small)
 
     @property
     def small(self) -> Reduced:
         """The structure on a reduced basis."""
-        return cast(Reduced, self.__dict__["_small"])
+        return self.on_basis
 
     @property
     def whole(self) -> bool:

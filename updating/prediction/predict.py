@@ -140,7 +140,7 @@ class Predictor(Displayed):
     @cached_property
     def whole(self) -> Predictor:
         """The same specimen on all degrees of freedom, for states of its full matrices."""
-        return self.on(Whole(self.reduced))
+        return self.on(Whole.of(self.reduced))
 
     def once(self, name: str, build: Callable[[], FloatArray]) -> FloatArray:
         """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""

@@ -1,4 +1,4 @@
-"""From cases to the problem that is solved: specimens with their knobs, unknowns, weights."""
+"""From cases to the problem that is solved: specimens with their parameters, unknowns, weights."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from updating.models.structure import FieldStructure
 from updating.nominal import predictor_of
 from updating.prediction.matching import pair_modes
 from updating.prediction.predict import Predictor
+from updating.update.data.nominal import Nominal, UpdatedModel
 from updating.update.data.specimen import Specimen
 from updating.update.data.system import Quantity, System, Weights
 from updating.update.parameters.affine import eligible
@@ -25,8 +26,10 @@ BEYOND = ("shapes", "constants")
 """What can be data beside the frequencies."""
 
 
-def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False) -> Specimen:
-    """Pair the modes of a case and find its knobs.
+def build_specimen(
+    case: Case, parameters: Sequence[str], *, lean: bool = False, level: bool = False
+) -> Specimen:
+    """Pair the modes of a case and find its parameters.
 
     Parameters
     ----------
@@ -37,6 +40,8 @@ def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False)
     lean : bool
         Whether a basis made for these parameters will do, without static answers at the test's points: for
         frequencies and shapes, not for FRFs.
+    level : bool
+        Whether measured constants are data with their level, not up to a factor per mode.
 
     Raises
     ------
@@ -64,13 +69,14 @@ def build_specimen(case: Case, parameters: Sequence[str], *, lean: bool = False)
     if updated & set(accepted):
         kept = tuple((n, v) for n, v in case.accepted if n not in updated)
         predictor = predictor_of(replace(case, accepted=kept))
+    model = UpdatedModel(predictor.for_test(paired.measured), parameter_set)
     return Specimen(
         case.title,
-        predictor.for_test(paired.measured),
+        model,
+        Nominal(model, paired.measured, paired.order, level),
         paired.measured,
         number,
         paired.order,
-        parameter_set,
         (*case.measured.warnings, *paired.warnings),
         np.ones(len(number)),
     )
@@ -86,7 +92,7 @@ def _rows_of(kept: FloatArray, every: FloatArray) -> IntArray:
 
 
 def _on_own_basis(predictor: Predictor, parameter_set: ParameterSet) -> Predictor:
-    """Give a plain model whose knobs are factors a basis made for these; others keep theirs."""
+    """Give a plain model whose parameters are factors a basis made for these; others keep theirs."""
     if (
         predictor.additions
         or not eligible(parameter_set.model_parameters)

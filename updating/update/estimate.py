@@ -37,6 +37,8 @@ class Estimate:
         data about as well, of the mixture of all [``unit``].
     relative : bool
         Whether its course over the iterations is that of the factor, not of the value.
+    quantity : str
+        What is updated, without where or of which effect: ``alpha`` of ``root.alpha``.
     """
 
     name: str
@@ -51,3 +53,4 @@ class Estimate:
     initial: float = np.nan
     interval: tuple[float, float] | None = None
     relative: bool = False
+    quantity: str = ""

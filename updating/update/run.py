@@ -127,8 +127,10 @@ def fit(
     several = [cases] if isinstance(cases, Case) else list(cases)
     names = per_case(parameters, len(several))
     check_data(data, several, weights)
-    specimens = [build_specimen(case, own, lean=True) for case, own in zip(several, names, strict=True)]
-    specimens = [replace(s, level="constants" in data) for s in specimens]
+    specimens = [
+        build_specimen(case, own, lean=True, level="constants" in data)
+        for case, own in zip(several, names, strict=True)
+    ]
     system = build_system(
         specimens,
         shared,
@@ -259,6 +261,7 @@ def _estimate(system: System, index: int, coordinate: float, sigma: float) -> Es
         model_parameter.nominal * model_parameter.high,
         model_parameter.nominal * model_parameter.start,
         relative=model_parameter.is_factor,
+        quantity=model_parameter.quantity,
     )
 
 
@@ -266,7 +269,7 @@ def _pairs(system: System, solution: Solution) -> pd.DataFrame:
     weights = system.weights
     parts = []
     for specimen, evaluation, weight in zip(system.specimens, solution.evaluations, weights, strict=True):
-        before = specimen.nominal
+        before = specimen.nominal.evaluation
         parts.append(
             pd.DataFrame(
                 {

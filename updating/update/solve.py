@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.update.data.specimen import Evaluation
+from updating.update.data.nominal import Evaluation
 from updating.update.data.system import Linear, System
 
 NEGLIGIBLE = 1e-10
@@ -28,7 +28,7 @@ class Solution:
     ----------
     theta : (p,) array
         Coordinates.
-    evaluations : tuple of Look
+    evaluations : tuple of Evaluation
         Specimens there.
     history : (iterations + 1, p) array
         Coordinates of every iteration.

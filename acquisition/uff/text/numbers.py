@@ -23,6 +23,8 @@ def numbers_of(text: bytes) -> FloatArray:
     InputError
         If something else stands among them.
     """
+    if b"\v" in text or b"\f" in text:  # numpy takes them for blanks, and a number falls in two
+        raise InputError("a control character stands among its values; the file is damaged")
     if _signs_touch(text):
         text = _TOUCHING.sub(b" ", _NO_LETTER.sub(rb"E\1", text))
     if b"D" in text or b"d" in text:

@@ -21,11 +21,11 @@ from modalkit.blind.scoring.calibration import (
 from modalkit.blind.scoring.closing import closing_summary, closing_table
 from modalkit.blind.scoring.confusion import answer_table, confusion_matrix
 from modalkit.blind.scoring.cover import cover_table
+from modalkit.blind.scoring.document import nested, numbers, outcome_documents, table_rows
 from modalkit.blind.scoring.headline import headline
 from modalkit.blind.scoring.open_set import OpenSet, open_set
 from modalkit.blind.scoring.places import channel_table, place_summary, place_table
 from modalkit.blind.scoring.rates import asked, effect_table, group_table, rates
-from modalkit.blind.scoring.record import nested, numbers, outcome_records, records
 from modalkit.blind.scoring.severity import point_table, severity_summary, severity_table
 from modalkit.blind.scoring.trials import trial_table
 
@@ -113,24 +113,24 @@ class Score:
             "schema": SCHEMA,
             "seed": self.seed,
             "plan": self.result.plan.to_json(),
-            **{name: records(getattr(self, name)) for name in tables},
+            **{name: table_rows(getattr(self, name)) for name in tables},
             "confusion": nested(self.confusion),
             "abstention": _curve(self.abstention),
             "abstention_outside": _curve(self.abstention_outside),
             "open_set": {
-                "effects": records(self.open_set.effects),
+                "effects": table_rows(self.open_set.effects),
                 "area": numbers(self.open_set.area),
-                "roc": records(self.open_set.roc),
+                "roc": table_rows(self.open_set.roc),
             },
-            "trials": records(
+            "trials": table_rows(
                 self.trials.drop(columns="seconds").join(self.forecasts[["brier", "log", "size"]])
             ),
-            "outcomes": outcome_records(self.result.outcomes),
+            "outcomes": outcome_documents(self.result.outcomes),
         }
 
 
 def _curve(part: Abstention) -> dict[str, Any]:
-    return {"area": numbers(part.area), "rule": numbers(part.rule), "curve": records(part.curve)}
+    return {"area": numbers(part.area), "rule": numbers(part.rule), "curve": table_rows(part.curve)}
 
 
 def score(result: BlindResult) -> Score:

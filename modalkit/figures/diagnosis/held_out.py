@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
@@ -53,29 +55,10 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float, fitted: bool
     axes.axvspan(low, max(floor, low), color=GRID, zorder=0.5, linewidth=0)
     axes.hlines(range(len(rows)), low, values, color=FAINT, linewidth=1.2, linestyle=(0, (1, 2)))
     for i, (_, value, best) in enumerate(rows):
-        colour = BLUE if best else FAINT
-        axes.scatter(
-            [values[i]], [i], s=95 if best else 70, color=colour, edgecolor="white", zorder=4, clip_on=False
-        )
-        axes.annotate(
-            diagnosis.shrink.size(value),
-            (values[i], i),
-            xytext=(9, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=TEXT,
-            color=INK,
-            fontweight="bold" if best else "normal",
-        )
+        _dot(axes, values[i], i, diagnosis.shrink.size(value), best=best)
     if inside is not None:
         _ring(axes, inside, len(rows) - 1, diagnosis.shrink.size(inside))
-    names = [shortened(label, 72 * room, TEXT, weight="bold") for label, _, _ in rows]
-    axes.set_yticks(range(len(rows)), names, fontsize=TEXT)
-    for label, (_, _, best) in zip(axes.get_yticklabels(), rows, strict=True):
-        label.set_fontweight("bold" if best else "normal")
-    axes.set_ylim(len(rows) - 0.45, -0.95)
-    axes.tick_params(axis="y", length=0)
-    axes.spines["left"].set_visible(False)
+    _names(axes, [(label, best) for label, _, best in rows], room)
     wide = np.log(max(floor, low) / low) > 0.25 * np.log(high / low)
     axes.annotate(
         f"noise {diagnosis.shrink.size(floor)}",
@@ -90,6 +73,29 @@ def draw_held_out(axes: Axes, diagnosis: Diagnosis, *, room: float, fitted: bool
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if high / low < 300 else (1.0,)))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / whole:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _dot(axes: Axes, value: float, row: int, size: str, *, best: bool) -> None:
+    """Mark what one explanation leaves, and write it beside."""
+    colour = BLUE if best else FAINT
+    axes.scatter(
+        [value], [row], s=95 if best else 70, color=colour, edgecolor="white", zorder=4, clip_on=False
+    )
+    axes.annotate(
+        size, (value, row), xytext=(9, 0), textcoords="offset points", va="center", fontsize=TEXT, color=INK,
+        fontweight="bold" if best else "normal",
+    )  # fmt: skip
+
+
+def _names(axes: Axes, rows: Sequence[tuple[str, bool]], room: float) -> None:
+    """Write the explanations left of the panel, those of the answer bold."""
+    names = [shortened(label, 72 * room, TEXT, weight="bold") for label, _ in rows]
+    axes.set_yticks(range(len(rows)), names, fontsize=TEXT)
+    for label, (_, best) in zip(axes.get_yticklabels(), rows, strict=True):
+        label.set_fontweight("bold" if best else "normal")
+    axes.set_ylim(len(rows) - 0.45, -0.95)
+    axes.tick_params(axis="y", length=0)
+    axes.spines["left"].set_visible(False)
 
 
 def _ring(axes: Axes, value: float, row: int, size: str) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
 from acquisition import InputError, ModalData
@@ -78,13 +80,20 @@ def mac_figure(
     figure = new_figure(top + tall + below + 0.2, width=width)
     caption(figure, title, note)
     axes = place(figure, left, top, wide, tall, name="matrix")
-    image = axes.pcolormesh(values, cmap=PROBABILITY, vmin=0, vmax=1, edgecolors="white", linewidth=1.0)
-    axes.invert_yaxis()
+    image = _cells(axes, values)
     axes.set_xticks(np.arange(len(columns)) + 0.5, columns, rotation=90, fontsize=SMALL, color=INK)
     axes.set_yticks(np.arange(len(rows)) + 0.5, rows, fontsize=SMALL, color=INK)
     axes.tick_params(length=0)
     axes.set_xlabel(column_name, fontsize=11, color=INK)
     axes.set_ylabel(row_name, fontsize=11, color=INK)
+    _scale(place(figure, left + wide + 0.25, top, 0.12, min(tall, 2.4), name="scale"), figure, image)
+    return figure
+
+
+def _cells(axes: Axes, values: FloatArray) -> QuadMesh:
+    """Colour the cells, the first row at the top, and write the values into them where they are few."""
+    image = axes.pcolormesh(values, cmap=PROBABILITY, vmin=0, vmax=1, edgecolors="white", linewidth=1.0)
+    axes.invert_yaxis()
     for spine in axes.spines.values():
         spine.set_visible(False)
     if max(values.shape) <= WRITTEN:
@@ -92,12 +101,15 @@ def mac_figure(
             text = "" if not np.isfinite(value) or value < 0.005 else f"{100 * value:.0f}"
             colour = "white" if value > 0.5 else MUTED
             axes.text(j + 0.5, i + 0.5, text, fontsize=SMALL, color=colour, ha="center", va="center")
-    bar = place(figure, left + wide + 0.25, top, 0.12, min(tall, 2.4), name="scale")
+    return image
+
+
+def _scale(bar: Axes, figure: Figure, image: QuadMesh) -> None:
+    """Draw what the colours mean."""
     scale = figure.colorbar(image, cax=bar, ticks=[0, 0.5, 1])
     scale.outline.set_visible(False)
     bar.tick_params(labelsize=SMALL, length=0, labelcolor=MUTED)
     bar.set_yticklabels(["0", "50", "100 %"])
-    return figure
 
 
 def auto_mac_figure(modal: ModalData) -> Figure:

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from acquisition.quantities import raised
 from modalkit.figures.update.errors import update_figure
 from modalkit.figures.update.evolution import Course, Courses, evolution_figure
 from modalkit.figures.update.frac import frac_figure
@@ -65,7 +66,7 @@ def _errors(result: Update, pairs: pd.DataFrame, study: str, *, alone: bool) -> 
 
 def _value(p: Estimate) -> str:
     spread = f" ± {p.sigma:.2g}" if np.isfinite(p.sigma) else ", not determined by the data"
-    return f"{p.name} = {p.value:.4g}{spread} {'' if p.unit == '-' else p.unit}".rstrip()
+    return f"{p.name} = {p.value:.4g}{spread} {'' if p.unit == '-' else raised(p.unit)}".rstrip()
 
 
 def _iterations(result: Update) -> str:
@@ -77,12 +78,10 @@ def _iterations(result: Update) -> str:
 def _courses(result: Update) -> list[Courses]:
     """Sort the history into panels: all factors together, what is no factor by its unit; six lines at most each."""
     panels: dict[str, list[Course]] = {}
+    titles = {"-": "factors"}
     repeats = tuple(np.cumsum(result.stages).tolist()) if isinstance(result, FrfUpdate) else ()
     for name, p in zip(result.names, result.parameters, strict=True):
         unit = "-" if p.relative else p.unit
+        titles.setdefault(unit, p.quantity.replace("_", " "))
         panels.setdefault(unit, []).append(Course(name, result.history[name].to_numpy(), repeats=repeats))
-    titles = {"-": "factors"}
-    return [
-        Courses(titles.get(u, lines[0].label.rpartition(".")[2]), u, tuple(lines[:LINES]))
-        for u, lines in panels.items()
-    ]
+    return [Courses(titles[u], u, tuple(lines[:LINES])) for u, lines in panels.items()]

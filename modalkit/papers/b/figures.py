@@ -98,4 +98,4 @@ def _courses(update: Staged, number: int, rows: Mapping[str, tuple[str, float, f
 
 
 def _unit(name: str) -> str:
-    return printed.UNITS[name].replace("^2", "²").replace("^4", "⁴").replace("1e-6 s", "µs")
+    return printed.UNITS[name].replace("1e-6 s", "µs")

@@ -2,8 +2,8 @@
 
 from modalkit.papers.real.case import Case, Fact, Source
 from modalkit.papers.real.cases import CASES
+from modalkit.papers.real.document import counts, put_between_markers, real_document, real_markdown
 from modalkit.papers.real.judging import RULES, Judgement, judge
-from modalkit.papers.real.record import counts, put_between_markers, real_markdown, real_record
 from modalkit.papers.real.running import RealOutcome, diagnose_together_by, run_real
 from modalkit.papers.real.table import real_table
 
@@ -19,8 +19,8 @@ __all__ = [
     "diagnose_together_by",
     "judge",
     "put_between_markers",
+    "real_document",
     "real_markdown",
-    "real_record",
     "real_table",
     "run_real",
 ]

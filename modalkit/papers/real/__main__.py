@@ -6,7 +6,7 @@ import json
 import sys
 from pathlib import Path
 
-from modalkit.papers.real.record import put_between_markers, real_markdown
+from modalkit.papers.real.document import put_between_markers, real_markdown
 
 
 def main(record: str, page: str) -> None:

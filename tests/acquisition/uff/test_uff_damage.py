@@ -232,6 +232,16 @@ def test_numbers_with_three_digits_of_exponent_and_fortran_ones(tmp_path, reread
         assert (after is not None and after.warnings == ()) == fits
 
 
+@pytest.mark.parametrize("character", [b"\v", b"\f"])
+def test_a_control_character_inside_a_number_is_said(tmp_path, reread, rng, character):
+    """numpy takes it for a blank, and one number would be two."""
+    write_uff(tmp_path / "a.uff", tests=some_test(rng), form="ascii", precision="single")
+    data = (tmp_path / "a.uff").read_bytes()
+    place = bodies(data)[0][0] + 3 * 79
+    after = reread(data[: place + 4] + character + data[place + 5 :])
+    assert after is None or after.warnings
+
+
 def table(number: int, *lines: str) -> bytes:
     return (f"    -1\n{number:6d}\n" + "".join(line + "\n" for line in lines) + "    -1\n").encode()
 

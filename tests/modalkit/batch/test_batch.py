@@ -14,7 +14,7 @@ import pytest
 
 from acquisition.errors import InputError
 from modalkit import cli
-from modalkit.batch import BatchResult, Part, find_studies, part_record, tables, write_tables
+from modalkit.batch import BatchResult, Part, find_studies, part_document, tables, write_tables
 from modalkit.batch import run as batch_run
 from modalkit.batch.find import Found
 from modalkit.batch.run import run_batch
@@ -95,7 +95,7 @@ def test_a_scheduler_that_does_not_answer_leaves_no_store(tmp_path: Path) -> Non
 
 def test_a_part_is_what_the_single_commands_say(fleet: Path, tmp_path: Path, monkeypatch: Any) -> None:
     study = fleet / "b" / "beam" / "published.toml"
-    record = json.loads(json.dumps(_plain(part_record(study))))
+    record = json.loads(json.dumps(_plain(part_document(study))))
     for command, key in (("update", "update"), ("diagnose", "diagnosis")):
         out = tmp_path / f"{command}.json"
         assert modalkit(monkeypatch, command, study, "--json", out) == 0

@@ -47,6 +47,14 @@ def test_text_is_broken_and_shortened_to_its_room(text: str, room: float) -> Non
     assert text_width(shortened(text, room, 11), 11) <= room
 
 
+@given(st.floats(20, 400))
+def test_a_number_and_its_unit_stay_on_one_line(room: float) -> None:
+    text = "Mass of the sensor 12.5 g (11.9 to 13.1), density 998 kg/m^3 at 3 %, modes 3 5 7"
+    ends = [line.rsplit(" ", 1)[-1] for line in broken(text, room, 11)]
+    assert not {"12.5", "998", "3"} & set(ends[:-2])
+    assert not any(line.startswith(("g ", "kg/m", "%")) for line in broken(text, room, 11))
+
+
 def test_files_are_whole_and_nothing_else_is_left(tmp_path: Path) -> None:
     folder = tmp_path / "new" / "figures"
     figure = mac_figure(np.eye(2), ["1", "2"], ["1", "2"])

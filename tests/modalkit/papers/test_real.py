@@ -19,14 +19,14 @@ from modalkit.papers.real import (
     counts,
     judge,
     put_between_markers,
+    real_document,
     real_markdown,
-    real_record,
     real_table,
     run_real,
 )
 from modalkit.papers.real.anonymous import data_files, without_tables, write_anonymous
 from modalkit.papers.real.case import PUBLISHED, sets
-from modalkit.papers.real.record import BEGIN, END
+from modalkit.papers.real.document import BEGIN, END
 
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLES = ROOT / "sample_data"
@@ -244,12 +244,14 @@ def test_the_record_and_the_tables_of_the_docs_tell_the_same() -> None:
         )
 
     outcomes = run_real([case(facts=(WATER,)), case().left_out()], SAMPLES, None, diagnose=diagnose)
-    record = json.loads(json.dumps(real_record(outcomes), allow_nan=False))
+    record = json.loads(json.dumps(real_document(outcomes), allow_nan=False))
     assert record["schema"] == "modalkit.real/1"
     assert record["counts"] == {"right": 1, "partly": 1, "wrong": 0}
     first = record["cases"][0]
     assert first["grade"] == "partly"
     assert first["facts"][0]["covered"] is False
+    assert "cause" in first["diagnosis"]
+    assert "name" not in first["diagnosis"]
     page = put_between_markers(f"head\n{BEGIN}\nold\n{END}\ntail", real_markdown(record))
     assert "old" not in page
     assert page.startswith("head")

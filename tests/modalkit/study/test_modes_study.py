@@ -9,7 +9,7 @@ import pytest
 from scipy.io import savemat
 
 from acquisition.errors import EstimationError, InputError, StudyError
-from modalkit.batch.part import part_record
+from modalkit.batch.part import part_document
 from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from modalkit.workflow.update import update_studies
@@ -68,7 +68,7 @@ def test_the_band_holds_for_modes_as_for_files(tmp_path: Path) -> None:
 
 def test_the_band_holds_for_a_part_without_a_model(tmp_path: Path) -> None:
     alone = '[test]\nmodes = "modes.csv"\n{keys}\n'
-    record = part_record(written(tmp_path, FIVE, "band = [100.0, 1000.0]", alone))
+    record = part_document(written(tmp_path, FIVE, "band = [100.0, 1000.0]", alone))
     assert [mode["frequency_hz"] for mode in record["modes"]] == [176.0, 493.0, 966.0]
 
 

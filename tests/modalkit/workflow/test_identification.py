@@ -24,7 +24,7 @@ from acquisition import (
 )
 from acquisition.synthetic import HammerPlan, modal_system
 from modalkit.figures.test.hits import _gather
-from modalkit.output.records import modes_record
+from modalkit.output.documents import modes_document
 from modalkit.workflow.files import read_files
 from modalkit.workflow.identification import read
 from modalkit.workflow.joining import together
@@ -115,10 +115,10 @@ def test_a_point_without_hits_is_named_everywhere(tmp_path: Path) -> None:
     processed = read(saved(tmp_path, "r.uff", tests=test))
     assert any("no hit is used at 2+Z" in w for w in processed.warnings)
     model = processed.identify(band=(20.0, 300.0))
-    record = modes_record(model, processed.hits, processed.warnings)
+    record = modes_document(model, processed.hits, processed.warnings)
     assert record["points_rejected"] == ["2+Z: none of its hits is used"]
     fine = read(saved(tmp_path, "fine.uff", tests=three()))
-    assert modes_record(fine.identify(band=(20.0, 300.0)), fine.hits, ())["points_rejected"] == []
+    assert modes_document(fine.identify(band=(20.0, 300.0)), fine.hits, ())["points_rejected"] == []
 
 
 def test_the_band_ends_where_the_force_does(tmp_path: Path) -> None:

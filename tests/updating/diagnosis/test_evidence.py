@@ -140,7 +140,8 @@ def comparison(seed: int, n: int = 24, p: int = 5, *, residual: bool = False) ->
         noise = np.sqrt(variance) * np.where(channel == 2, scale, 1.0) * rng.standard_normal(n)
         size = nuisance @ rng.standard_normal(p) + noise
     mode = np.tile(np.arange(n // 3), 3)
-    return Comparison(size, nuisance, variance, channel, mode, (), REPEATED_SCATTER_PRIOR, np.arange(2))
+    prior, none = REPEATED_SCATTER_PRIOR, np.full(n, -1)
+    return Comparison(size, nuisance, variance, channel, mode, none, (), prior, np.arange(2))
 
 
 def full(data: Comparison, scale: float, keep: np.ndarray) -> np.ndarray:

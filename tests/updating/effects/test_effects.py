@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from updating_cases import BEAM, POINTS, blank
 
 from acquisition.errors import StudyError
-from modalkit.output.library import effects_record
+from modalkit.output.library import effects_document
 from updating import LIBRARY, Environment, Predictor
 from updating.effects import accepted_state
 from updating.models import PointMass
@@ -48,10 +48,13 @@ def test_what_is_mistaken_for_each_other_says_so_of_each_other(name: str) -> Non
         assert name in LIBRARY[other].equivalent_to, other
 
 
-@admitted(places=["beam", "plate"])
+def test_the_contract_is_in_the_library() -> None:
+    assert set(CONTRACT) <= set(LIBRARY)
+
+
+@admitted(CONTRACT, places=["beam", "plate"])
 def test_names_and_parameters_are_those_of_the_contract(name: str, place: str) -> None:
     names = {p.name for p in LIBRARY[name].parameters(LOOK[place])} | set(LIBRARY[name].labels)
-    assert name in CONTRACT
     assert names <= CONTRACT[name]
     assert names >= CONTRACT[name] - ({"y", "dy"} if place == "beam" else set())
 
@@ -254,7 +257,7 @@ def test_a_mass_of_nothing_says_where_a_sensor_sits() -> None:
 
 
 def test_the_record_of_the_library_is_complete() -> None:
-    record = effects_record()
+    record = effects_document()
     assert record["schema"] == "modalkit.effects/1"
     assert [e["name"] for e in record["effects"]] == list(LIBRARY)
     keys = {
@@ -302,3 +305,23 @@ def test_an_accepted_effect_must_exist() -> None:
 def test_values_that_nothing_has_are_refused(name: str, values: dict[str, float], says: str) -> None:
     with pytest.raises(StudyError, match=re.escape(says)):
         accepted_state(LOOK["beam"], name, values)
+
+
+@pytest.mark.parametrize("place", ["beam", "plate"])
+@pytest.mark.parametrize("name", ["lumped_mass", "damping_patch"])
+def test_a_balance_shows_the_mass_that_an_effect_adds_to_a_body_moving_as_one(name: str, place: str) -> None:
+    free = LOOK[place].of(replace(LOOK[place].spec, clamped=()))
+    values = {
+        "x": 0.2,
+        "y": 0.1,
+        "extent": 0.1,
+        "mass": 0.1,
+        "bulk": 0.0,
+        "stiffness": 0.0,
+        "loss_factor": 0.1,
+    }
+    moving = free.reduced.sampled["w"]
+    unit = np.linalg.lstsq(moving, np.ones(len(moving)), rcond=None)[0]
+    added = sum(LIBRARY[name].state(free, values).mass)
+    assert LIBRARY[name].weight(free, values) == pytest.approx(unit @ added @ unit, rel=1e-6)
+    assert LIBRARY[name].weight(free, values) > 0

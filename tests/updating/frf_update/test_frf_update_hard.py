@@ -16,7 +16,7 @@ from updating.models.response import receptance
 from updating.models.state import NOMINAL, State
 from updating.test_data.measured_frfs import MeasuredFrfs
 from updating.tolerances import Tolerances
-from updating.update.parameters.parameters import build_parameter_set
+from updating.update.parameters.parameters import build_parameter_set, only_damps
 
 STEEL = Material(210e9, 7850.0, 0.3)
 CANTILEVER = Spec(
@@ -78,6 +78,23 @@ def test_a_window_that_nobody_stated_comes_back(order: int) -> None:
     assert sigma < 0.1
     assert result.undetermined == ()
     assert result.frac["after"].iloc[-1] > 0.9999  # at the tip; noise rules near the clamp
+
+
+def test_a_parameter_of_an_effect_is_staged_as_damping_by_what_it_does() -> None:
+    names = [
+        "uniform_damping.alpha",
+        "exponential_window",
+        "alpha",
+        "tip.beta",
+        "E",
+        "damping_patch",
+        "damping_patch.x",
+    ]
+    assert [n for n in names if only_damps(n)] == names[:4]
+    predictor = Predictor(CANTILEVER, hit_beam(CANTILEVER)[0])
+    values = {"uniform_damping": {"beta": 0.0, "loss_factor": 0.0}}
+    parameter_set = build_parameter_set(["uniform_damping.alpha", "E"], predictor, Tolerances(), values)
+    assert [p.damps for p in parameter_set.model_parameters] == [True, False]
 
 
 def test_an_accepted_window_is_in_the_model_s_frfs() -> None:

@@ -40,10 +40,9 @@ class Weigh(InstrumentReading):
     def read(self, site: Site, parts: Parts, state: State) -> FloatArray:
         """Return the logarithm of the mass."""
         log_mass = sum(p * np.log(state.factors.get(n, 1.0)) for n, p in self._powers.items())
-        bodies = sum(effect.weight(values) for effect, values in parts)
-        return (
-            np.array([log_mass + np.log1p(bodies / total_mass(site.problem.predictor.spec))]) / BALANCE_SIGMA
-        )
+        predictor = site.problem.predictor
+        bodies = sum(effect.weight(predictor, values) for effect, values in parts)
+        return np.array([log_mass + np.log1p(bodies / total_mass(predictor.spec))]) / BALANCE_SIGMA
 
     @property
     def _powers(self) -> dict[str, float]:

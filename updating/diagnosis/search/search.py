@@ -128,18 +128,13 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
 def _explained(problem: DiagnosisProblem, found: list[Explanation], *, well: bool = False) -> bool:
     """Tell whether any of the probable explanations fits beyond doubt, and at a plausible size.
 
-    Where it has to fit well, no datum may be worse than thought, and the fit no rarer than one in ten.
+    Where it has to fit well, its fit is no rarer than one in ten.
     """
     least = WELL_FITTED if well else DOUBTED_FIT
     rows = _compare(found)
     top = max(row.probability for row in rows)
     near = [row for row in rows if row.probability > top * np.exp(-PROBABLE_BEHIND)]
-    return any(
-        row.p_value >= least
-        and not (well and row.explanation.best.marginal.worse.max(initial=1.0) > 1)
-        and not _extreme(problem, row.explanation)
-        for row in near
-    )
+    return any(row.p_value >= least and not _extreme(problem, row.explanation) for row in near)
 
 
 def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
@@ -244,7 +239,7 @@ def _single(
 
 
 def _pairs(problem: DiagnosisProblem, found: list[Explanation], *, least: bool) -> list[Explanation]:
-    """Weigh the pairs that a linear look at every pair finds the most promising.
+    """Weigh the pairs that a score test at every pair finds the most promising.
 
     Parameters
     ----------
@@ -254,7 +249,7 @@ def _pairs(problem: DiagnosisProblem, found: list[Explanation], *, least: bool) 
         No effect, and every single one.
     least : bool
         Whether the most promising are weighed in any case: no single effect explains the data. Else only those are
-        whose linear look comes near the best.
+        whose score test comes near the best.
     """
     singles = [e for e in found if e.names]
     possible = [e for e in singles if e.best.possible]
@@ -299,7 +294,7 @@ def _pairs(problem: DiagnosisProblem, found: list[Explanation], *, least: bool) 
 
 
 def _triples(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
-    """Add to the best pair, one at a time, the single effects that a linear look finds the most promising."""
+    """Add to the best pair, one at a time, the single effects that a score test finds the most promising."""
     pairs = [e for e in found if len(e.names) == 2 and e.best.possible]
     best = max(pairs, key=lambda e: e.log_evidence, default=None)
     if best is None:
@@ -360,7 +355,7 @@ def _alike(
 ) -> list[Explanation]:
     """Draft what some data cannot tell from the best pair: one of the two in the place of an effect like it.
 
-    Such a rival may fit as well where it alone, at another place, fits too badly for the linear look to choose it.
+    Such a rival may fit as well where it alone, at another place, fits too badly for the score test to choose it.
     """
     best = max(pairs, key=lambda e: e.log_evidence, default=None)
     if best is None:
@@ -416,9 +411,7 @@ def _score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> Float
     ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
     reached = np.full((len(singles), len(singles)), -np.inf)
     for i, leader in enumerate(singles):
-        normal, load = normal_equations(
-            leader.best.comparison, everything, leader.best.marginal.noise(leader.best.comparison)
-        )
+        normal, load = normal_equations(leader.best.comparison, everything, leader.best.marginal.scale)
         start = leader.best.marginal.log_likelihood
         mine = np.arange(ends[i] + 1, ends[i + 1])
         for j in range(len(singles)):

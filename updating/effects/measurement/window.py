@@ -17,12 +17,15 @@ class ExponentialWindow(Effect):
     footprint = "Damping ratios rise in inverse proportion to frequency; nothing else changes."
     models = ("beam", "plate", "matrices")
     phrase = "an exponential window left in the data"
-    only_damps = True
     equivalent_to = ("uniform_damping",)
     twin = Twin(
         "uniform_damping", "both add one decay to every mode", "look the window up in the analyser's settings"
     )
     separated_by = "the analyser's settings, or a repeat with another window or a longer record"
+
+    def damps(self, parameter: str = "") -> bool:
+        """Tell that a decay is no frequency."""
+        return True
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the decay rate."""

@@ -35,6 +35,10 @@ class UniformDamping(Effect):
     phrase = "damping spread over the whole structure"
     separated_by = "a repeat without window, on softer suspension, or in vacuum"
 
+    def damps(self, parameter: str = "") -> bool:
+        """Tell that it does nothing else."""
+        return True
+
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the coefficients."""
         hertz = predictor.measured.frequency

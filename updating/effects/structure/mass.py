@@ -131,7 +131,7 @@ class LumpedMass(Effect):
         places = _outline(predictor)
         return (Parameter("mass", "kg", 2e-3 * high, high, why, log=True), *places, _bulk(CUBE))
 
-    def weight(self, values: Values) -> float:
+    def weight(self, predictor: Predictor, values: Values) -> float:
         """Return the mass of the body, which stays on when the specimen is weighed [kg]."""
         return float(values["mass"])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import Place, covered, mirror_images, place, shares, starting_places
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import region_centre, region_parameter, stiff_regions
@@ -62,6 +62,10 @@ class DampingPatch(Effect):
             return Obstacle(Lack.MODEL, what)
         return damping_obstacle(predictor)
 
+    def damps(self, parameter: str = "") -> bool:
+        """Tell that the loss factor does, and nothing else."""
+        return parameter == "loss_factor"
+
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the damping alone, and with mass and stiffness; of imported matrices for each region."""
         bare = {"mass": 0.0, "stiffness": 0.0}
@@ -85,6 +89,14 @@ class DampingPatch(Effect):
             mass=(values["mass"] * mass,) if values["mass"] else (),
             losses=(Loss(values["loss_factor"] * (1 + values["stiffness"]) * stiffness, -1.0),),
         )
+
+    def weight(self, predictor: Predictor, values: Values) -> float:
+        """Return the mass of the layer on a beam or plate, which stays on when the specimen is weighed [kg]."""
+        if not values["mass"] or not predictor.spec.outlined:
+            return 0.0
+        sizes = predictor.reduced.fields.weights
+        under = float(sizes @ shares(predictor, values) / sizes.sum())
+        return float(values["mass"]) * under * total_mass(predictor.spec)
 
     def _covered(self, predictor: Predictor, values: Values) -> tuple[FloatArray, FloatArray]:
         """Return stiffness and mass of the bare structure under the layer, each (r, r) [SI]."""

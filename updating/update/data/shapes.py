@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.update.data.specimen import Evaluation, Specimen
+from updating.update.data.nominal import Evaluation
+from updating.update.data.specimen import Specimen
 
 
 def shape_residual(specimen: Specimen, evaluation: Evaluation) -> FloatArray:
@@ -26,7 +27,7 @@ def shape_residual(specimen: Specimen, evaluation: Evaluation) -> FloatArray:
 
 
 def shape_slopes(specimen: Specimen, values: Sequence[float], evaluation: Evaluation) -> FloatArray:
-    """Return the derivatives of the computed constants by the coordinates, whitened, (n, n_knobs) [-].
+    """Return the derivatives of the computed constants by the coordinates, whitened, (n, n_parameters) [-].
 
     The factors per mode are projected out (Golub and Pereyra 1973, with Kaufman's simplification).
     """

@@ -1,10 +1,9 @@
-"""One specimen in an update: its test, its model, its knobs, and what the knobs do to its frequencies."""
+"""One specimen in an update: its test, its model, its parameters, and what the parameters do to its frequencies."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -15,34 +14,15 @@ from updating.prediction.matching import mac_of_constants, match
 from updating.prediction.predict import Prediction, Predictor
 from updating.test_data.chain import level_of
 from updating.test_data.measured import Measured
-from updating.update.data.shape_errors import constant_errors
+from updating.update.data.nominal import Evaluation, Nominal, UpdatedModel
 from updating.update.data.whitening import Whitening
-from updating.update.parameters.affine import Affine, affine, eligible
+from updating.update.parameters.affine import Affine
 from updating.update.parameters.basis import WIDE, extended, update_basis
 from updating.update.parameters.parameters import ModelParameter, ParameterSet
 from updating.update.parameters.sensitivity import log_frequency_by
 
 STEP = 1e-4
 """Step of the differences, relative to the width of a parameter's range [-]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Evaluation:
-    """A specimen at one setting of its knobs.
-
-    Parameters
-    ----------
-    frequency : (n_modes,) array
-        Frequencies of the partners of the measured modes [Hz].
-    partner : (n_modes,) int array
-        Which of the model's elastic modes they are, from 0.
-    prediction : Prediction
-        The partners.
-    """
-
-    frequency: FloatArray
-    partner: IntArray
-    prediction: Prediction
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,37 +33,55 @@ class Specimen:
     ----------
     title : str
         For tables.
-    predictor : Predictor
-        The model, accepted effects included, as seen from the test's points.
+    model : UpdatedModel
+        The model and its parameters, as seen from the test's points.
+    nominal : Nominal
+        The test as it was measured beside the model before the update; what is drawn anew is still judged by it.
     measured : Measured
         The measured modes that have a partner.
     number : (n_modes,) int array
         Their numbers in the test, from 1.
     order : (n_modes,) int array
         Rank of each one's partner, for data without shapes.
-    parameter_set : Panel
-        The knobs.
     warnings : tuple of str
         What was left out.
     correction : (n_modes,) array
         Ratio of the full model's frequencies to the reduced model's [-].
-    level : bool
-        Whether the measured constants are data with their level, not up to a factor per mode.
-    near : Prediction, optional
-        Partners in a model nearer to the test than the nominal one, by which misplaced points and calibration are
-        judged.
     """
 
     title: str
-    predictor: Predictor
+    model: UpdatedModel
+    nominal: Nominal
     measured: Measured
     number: IntArray
     order: IntArray
-    parameter_set: ParameterSet
     warnings: tuple[str, ...]
     correction: FloatArray
-    level: bool = False
-    near: Prediction | None = None
+
+    @property
+    def predictor(self) -> Predictor:
+        """The model, accepted effects included, as seen from the test's points."""
+        return self.model.predictor
+
+    @property
+    def parameter_set(self) -> ParameterSet:
+        """The parameters."""
+        return self.model.parameter_set
+
+    @property
+    def affine(self) -> Affine | None:
+        """The model as a function of its factors, where all parameters are factors."""
+        return self.model.affine
+
+    @property
+    def level(self) -> bool:
+        """Whether the measured constants are data with their level, not up to a factor per mode."""
+        return self.nominal.level
+
+    @property
+    def errors(self) -> Whitening:
+        """Covariance of the measured constants, calibration included where their level is data."""
+        return self.nominal.errors
 
     def evaluate(self, values: Sequence[float]) -> Evaluation:
         """Evaluate the model, and find the partner of every measured mode by MAC."""
@@ -97,10 +95,10 @@ class Specimen:
 
     def _quick(self, model: Affine, logs: FloatArray) -> Prediction:
         """Predict the lowest modes with no more than an update by factors needs."""
-        values, vectors = model.eigen(logs, self.rigid + self.count)
-        vectors = vectors[:, self.rigid :]
-        frequency = np.sqrt(np.maximum(values[self.rigid :], 0.0)) / (2 * np.pi)
-        shape = self.shape_rows[:, : len(vectors)] @ vectors
+        values, vectors = model.eigen(logs, self.model.rigid + self.nominal.count)
+        vectors = vectors[:, self.model.rigid :]
+        frequency = np.sqrt(np.maximum(values[self.model.rigid :], 0.0)) / (2 * np.pi)
+        shape = self.model.shape_rows[:, : len(vectors)] @ vectors
         hit = np.where(self.measured.hit[:, None] < 0, 1.0, shape[self.measured.hit])
         constants = self._gain * shape[self.measured.seen] * hit
         nothing = np.zeros((0, *constants.shape))
@@ -109,38 +107,8 @@ class Specimen:
             np.zeros((len(frequency), 0)), np.zeros((*constants.shape, 0)), vectors,
         )  # fmt: skip
 
-    @cached_property
-    def affine(self) -> Affine | None:
-        """The model as a function of its factors, where all knobs are factors."""
-        base = self.predictor.base
-        if not eligible(self.parameter_set.model_parameters) or base.released or base.theory is not None:
-            return None
-        return affine(self.predictor.reduced, self.parameter_set.model_parameters, base)
-
-    @cached_property
-    def shape_rows(self) -> FloatArray:
-        """Displacement of the basis at the test points, (n_points, r)."""
-        if not len(self.measured.points):
-            return np.zeros((0, self.predictor.reduced.basis.shape[1]))
-        return self.predictor.nominal_rows["w"]
-
-    @cached_property
-    def rigid(self) -> int:
-        """Number of rigid-body modes."""
-        return self.predictor.reduced.structure.rigid_modes
-
-    @cached_property
-    def count(self) -> int:
-        """Number of elastic modes among which partners are looked for."""
-        return max(len(self.nominal_modes.frequency), int(self.order.max()) + 4)
-
-    @cached_property
-    def nominal_modes(self) -> Prediction:
-        """The modes of the model before the update."""
-        return self.predictor.predict()
-
     def slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:
-        """Return d ln f / d coordinate, (n_modes, n_knobs): Eqs. 16 and 17 for factors, differences for the rest."""
+        """Return d ln f / d coordinate, (n_modes, n_parameters): Eqs. 16, 17 for factors, else differences."""
         if self.affine is not None:
             eigenvalue = (2 * np.pi * at.prediction.frequency) ** 2
             return self.affine.slopes(np.log(values), eigenvalue, at.prediction.vectors)
@@ -162,7 +130,7 @@ class Specimen:
         return by * model_parameter.chain(values[index])
 
     def _ends(self, index: int, values: Sequence[float]) -> tuple[Evaluation, Evaluation, float]:
-        """Look on both sides of a knob's setting; return how far apart in its coordinate."""
+        """Evaluate on both sides of a parameter's value; return how far apart in its coordinate."""
         model_parameter = self.parameter_set.model_parameters[index]
         here, step = model_parameter.coordinate(values[index]), STEP * model_parameter.span()
         ends = [
@@ -186,13 +154,6 @@ class Specimen:
         ]
         return np.asarray((ends[1] - ends[0]) / spacing)
 
-    @cached_property
-    def nominal(self) -> Evaluation:
-        """The model before the update: every factor 1, and no effect that the modeller has not accepted."""
-        prediction = self.nominal_modes
-        partner = match(self.measured, prediction, self.order)
-        return Evaluation(prediction.frequency[partner], partner, prediction.select(partner))
-
     def mac(self, evaluation: Evaluation) -> FloatArray:
         """Return the MAC of every pair, nan where no shapes were measured [-]."""
         if not self.measured.has_shapes:
@@ -200,15 +161,15 @@ class Specimen:
         return np.diag(mac_of_constants(self.measured, evaluation.prediction)).copy()
 
     def shape_slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:
-        """Return the derivatives of the partners' constants by the coordinates, (n_frf, n_modes, n_knobs) [1/kg]."""
+        """Return the slopes of the partners' constants by the coordinates, (n_frf, n_modes, n_parameters) [1/kg]."""
         model = self.affine
         if model is None:
             columns = [
                 self._shape_difference(i, values, at) for i in range(len(self.parameter_set.model_parameters))
             ]
             return np.stack(columns, axis=-1)
-        turned = model.turns(np.log(values), at.partner, self.rigid)
-        here, change = self.shape_rows @ at.prediction.vectors, self.shape_rows @ turned
+        turned = model.turns(np.log(values), at.partner, self.model.rigid)
+        here, change = self.model.shape_rows @ at.prediction.vectors, self.model.shape_rows @ turned
         # the solver's sign of a shape is of no account in a product of two components of the same solution
         flip = self._signs(model, values, at)
         change = change * flip
@@ -223,32 +184,18 @@ class Specimen:
         return level_of(self.predictor.base.gain, self.measured)
 
     def _signs(self, model: Affine, values: Sequence[float], at: Evaluation) -> FloatArray:
-        vectors = model.eigen(np.log(values), model.rank)[1][:, at.partner + self.rigid]
+        vectors = model.eigen(np.log(values), model.rank)[1][:, at.partner + self.model.rigid]
         return np.asarray(np.sign(np.sum(vectors * at.prediction.vectors, axis=0)))
 
-    @cached_property
-    def errors(self) -> Whitening:
-        """Covariance of the measured constants, calibration included where their level is data."""
-        at = self.nominal.prediction if self.near is None else self.near
-        turned = any(
-            model_parameter.competes_with == "calibration"
-            for model_parameter in self.parameter_set.model_parameters
-        )
-        return constant_errors(
-            self.measured, at, self.measured.level_sigma if self.level and not turned else 0.0
-        )
-
     def settled(self, values: Sequence[float], evaluation: Evaluation) -> Specimen:
-        """Return the same specimen with its errors judged by the model at some values of its knobs."""
+        """Return the same specimen with its errors judged by the model at some values of its parameters."""
         count = int(evaluation.partner.max()) + 1
         near = self.predictor.predict(self.parameter_set.state(self.predictor, values), count=count)
-        other = self._with(replace(self, near=near.select(evaluation.partner)))
-        other.__dict__.pop("errors", None)
-        return other
+        return replace(self, nominal=replace(self.nominal, near=near.select(evaluation.partner)))
 
     def corrected(self, factor: FloatArray) -> Specimen:
         """Return the same specimen with other corrections of the reduced model's frequencies (n_modes,) [-]."""
-        return self._with(replace(self, correction=factor))
+        return replace(self, correction=factor)
 
     def enriched(self, modes: FloatArray) -> Specimen | None:
         """Return the same specimen with modes of the full model (n_dofs, n) in its basis, or None if it has no own."""
@@ -258,7 +205,7 @@ class Specimen:
         return self._on(extended(self.predictor.reduced, modes))
 
     def around(self, values: Sequence[float]) -> Specimen:
-        """Return the same specimen on a basis that is good far around some values of its knobs."""
+        """Return the same specimen on a basis that is good far around some values of its parameters."""
         structure = self.predictor.reduced.structure
         plain = self.affine is not None and self.affine.rank < structure.unknowns
         if not plain or self.predictor.additions or not isinstance(structure, FieldStructure):
@@ -278,21 +225,13 @@ class Specimen:
 
     def _on(self, reduced: Reduced) -> Specimen:
         """Return the same specimen on another basis."""
-        other = replace(self, predictor=self.predictor.on(reduced), correction=np.ones(len(self.number)))
-        other.__dict__.update(nominal=self.nominal, rigid=self.rigid, count=self.count)
-        other.__dict__.update({"errors": self.errors} if self.measured.has_shapes else {})
-        return other
+        model = replace(self.model, predictor=self.predictor.on(reduced))
+        return replace(self, model=model, correction=np.ones(len(self.number)))
 
     def redrawn(self, frequency: FloatArray, constants: FloatArray | None = None) -> Specimen:
         """Return the same specimen with other measured frequencies [Hz] and constants [1/kg]."""
         own = self.measured.constants if constants is None else constants
-        return self._with(replace(self, measured=replace(self.measured, frequency=frequency, constants=own)))
-
-    def _with(self, other: Specimen) -> Specimen:
-        """Hand on what was worked out and stays."""
-        kept = ("errors", "affine", "shape_rows", "rigid", "count", "nominal_modes", "nominal")
-        other.__dict__.update({name: self.__dict__[name] for name in kept if name in self.__dict__})
-        return other
+        return replace(self, measured=replace(self.measured, frequency=frequency, constants=own))
 
     @property
     def relative_variance(self) -> FloatArray:

@@ -10,8 +10,9 @@ from typing import Literal
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
+from updating.update.data.nominal import Evaluation
 from updating.update.data.shapes import shape_residual, shape_slopes
-from updating.update.data.specimen import Evaluation, Specimen
+from updating.update.data.specimen import Specimen
 from updating.update.parameters.parameters import ModelParameter
 
 Weights = Literal["covariance", "relative", "eigenvalue"] | Sequence[float]
@@ -30,7 +31,7 @@ class Linear:
         Derivatives of the computed quantity by the coordinates.
     weight : (n,) array
         Diagonal of W_s.
-    evaluations : tuple of Look
+    evaluations : tuple of Evaluation
         The specimens.
     """
 
@@ -49,9 +50,9 @@ class System:
     specimens : tuple of Specimen
         The specimens.
     index : tuple of int arrays
-        For every specimen, which unknown each of its knobs is.
-    model_parameters : tuple of Knob
-        One knob for each unknown; a shared one stands for all specimens that have it.
+        For every specimen, which unknown each of its parameters is.
+    model_parameters : tuple of ModelParameter
+        One parameter for each unknown; a shared one stands for all specimens that have it.
     owner : tuple of int
         Specimen of each unknown, -1 where it is shared.
     weights : tuple of arrays
@@ -126,7 +127,7 @@ class System:
         return int(sum(np.sum(w > 0) for w in self.weights)) + (sum(free) if self.shapes else 0)
 
     def values(self, theta: FloatArray, specimen: int) -> list[float]:
-        """Return the factors and values of one specimen's knobs."""
+        """Return the factors and values of one specimen's parameters."""
         return [self.model_parameters[i].value(theta[i]) for i in self.index[specimen]]
 
     def evaluations(self, theta: FloatArray) -> tuple[Evaluation, ...]:
@@ -247,9 +248,4 @@ class System:
         """Return the problem with other measured frequencies [Hz] and constants [1/kg], and another centre (p,)."""
         shapes = [None] * len(frequencies) if constants is None else constants
         both = zip(self.specimens, frequencies, shapes, strict=True)
-        other = replace(self, specimens=tuple(s.redrawn(f, c) for s, f, c in both), drawn=centre)
-        kept = ("low", "high", "start", "doubt", "prior", "used") + ("weight",) * (
-            self.quantity == "frequency"
-        )
-        other.__dict__.update({name: getattr(self, name) for name in kept})
-        return other
+        return replace(self, specimens=tuple(s.redrawn(f, c) for s, f, c in both), drawn=centre)

@@ -31,7 +31,7 @@ class Group:
     ----------
     kind : {"stiffness", "mass"}
         Which matrix.
-    powers : tuple of float, length n_knobs
+    powers : tuple of float, length n_parameters
         Power of each parameter in it [-].
     members : tuple of (int, int)
         Index of the term and of the region; the region after the last is no region.
@@ -75,7 +75,7 @@ class Affine:
         ``stiffness`` and ``mass`` that no parameter scales [SI].
     parts : mapping of str to (n_groups, n, n) array
         What parameters scale, as it is where they are 1 [SI].
-    powers : mapping of str to (n_groups, n_knobs) array
+    powers : mapping of str to (n_groups, n_parameters) array
         Powers of the parameters [-].
     """
 
@@ -127,18 +127,18 @@ class Affine:
         return values, np.asarray(self._root @ vectors)
 
     def slopes(self, logs: FloatArray, eigenvalue: FloatArray, vectors: FloatArray) -> FloatArray:
-        """Return d ln f / d ln factor (n_modes, n_knobs), Eqs. 16 and 17 [-]."""
+        """Return d ln f / d ln factor (n_modes, n_parameters), Eqs. 16 and 17 [-]."""
         by = {kind: self._forms(kind, logs, vectors).T @ self.powers[kind] for kind in self.parts}
         return np.asarray((by["stiffness"] / eigenvalue[:, None] - by["mass"]) / 2)
 
     def turns(self, logs: FloatArray, chosen: IntArray, rigid: int) -> FloatArray:
-        """Return the derivatives of some mode shapes by the logarithms of the factors, (n_knobs, n, n_modes).
+        """Return the derivatives of some mode shapes by the logarithms of the factors, (n_parameters, n, n_modes).
 
         Modal expansion over all modes of the basis (Fox and Kapoor 1968).
 
         Parameters
         ----------
-        logs : (n_knobs,) array
+        logs : (n_parameters,) array
             Where [-].
         chosen : (n_modes,) int array
             Which elastic modes, from 0.
@@ -157,7 +157,7 @@ class Affine:
         return np.asarray(vectors @ share)
 
     def _crossed(self, kind: str, logs: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
-        """Return left' dK right for every knob, shape (n_knobs, n, n_modes)."""
+        """Return left' dK right for every parameter, shape (n_parameters, n, n_modes)."""
         scale = np.exp(self.powers[kind] @ logs)[:, None] * self.powers[kind]
         parts = left.T @ (self.parts[kind] @ right)
         return np.asarray(np.tensordot(scale.T, parts, axes=1))
@@ -175,7 +175,7 @@ def affine(reduced: Reduced, model_parameters: Sequence[ModelParameter], base: S
     ----------
     reduced : Reduced
         The model.
-    model_parameters : sequence of Knob
+    model_parameters : sequence of ModelParameter
         Parameters; see :func:`eligible`.
     base : State
         What is in the model beforehand; must release no clamp.

@@ -47,7 +47,7 @@ def update_basis(
     ----------
     structure : Structure
         The full model.
-    model_parameters : sequence of Knob
+    model_parameters : sequence of ModelParameter
         The parameters.
     highest : float
         Highest measured frequency [Hz].

@@ -40,8 +40,10 @@ UNTOLD = np.log(2.0)
 
 def only_damps(name: str) -> bool:
     """Tell whether a parameter, as the user writes it, is a matter of damping alone."""
-    effect, coefficient = name.partition(".")[0], name.rpartition(".")[2]
-    return coefficient in DAMPERS or (effect in LIBRARY and LIBRARY[effect].only_damps)
+    effect, _, parameter = name.partition(".")
+    if effect in LIBRARY:
+        return LIBRARY[effect].damps(parameter)
+    return name.rpartition(".")[2] in DAMPERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +103,15 @@ class ModelParameter:
         return self.factor is not None and not self.effect
 
     @property
+    def quantity(self) -> str:
+        """What is updated, without where or of which effect."""
+        return self.parameter or self.damper or str(self.factor)
+
+    @property
     def damps(self) -> bool:
         """Whether it is a matter of damping alone."""
-        return self.damper is not None or (self.effect in LIBRARY and LIBRARY[self.effect].only_damps)
+        effect = LIBRARY.get(self.effect)
+        return self.damper is not None or (effect is not None and effect.damps(self.parameter))
 
     @property
     def competes_with(self) -> str:
@@ -119,7 +127,7 @@ class ModelParameter:
         return float(np.exp(coordinate)) if self.log else float(coordinate)
 
     def chain(self, value: float) -> float:
-        """Return d ln(factor) / d coordinate, for knobs that are a factor of the model."""
+        """Return d ln(factor) / d coordinate, for parameters that are a factor of the model."""
         return 1.0 if self.log else self.reach / (1 + self.reach * value)
 
     def span(self) -> float:
@@ -129,11 +137,11 @@ class ModelParameter:
 
 @dataclass(frozen=True, eq=False)
 class ParameterSet:
-    """All knobs of one specimen.
+    """All parameters of one specimen.
 
     Parameters
     ----------
-    model_parameters : tuple of Knob
+    model_parameters : tuple of ModelParameter
         The parameters to be updated.
     fixed : mapping of str to mapping
         Values of parameters that stay, by effect: those of effects only some of whose parameters are updated.
@@ -165,7 +173,7 @@ class ParameterSet:
         return state
 
     def effects(self, values: Sequence[float]) -> dict[str, dict[str, float]]:
-        """Return the values of the effects among the knobs, by effect."""
+        """Return the values of the effects among the parameters, by effect."""
         found: dict[str, dict[str, float]] = {}
         for model_parameter, value in zip(self.model_parameters, values, strict=True):
             if model_parameter.effect:
@@ -181,7 +189,7 @@ def build_parameter_set(
     tolerances: Tolerances,
     fixed: Mapping[str, Mapping[str, float]],
 ) -> ParameterSet:
-    """Find the knobs that names stand for.
+    """Find the parameters that names stand for.
 
     Parameters
     ----------
@@ -214,7 +222,7 @@ def build_parameter_set(
 
 
 def _check_complete(parameter_set: ParameterSet, predictor: Predictor) -> None:
-    """See that every effect with a knob has all its parameters."""
+    """See that every effect with a parameter has all its parameters."""
     for name, given in parameter_set.effects([k.start for k in parameter_set.model_parameters]).items():
         missing = {p.name for p in LIBRARY[name].parameters(predictor) if p.default is None} - set(given)
         if missing:

@@ -9,7 +9,8 @@ import numpy as np
 
 from updating.effects.box import mirror_images
 from updating.prediction.assignment import mac_of_constants
-from updating.update.data.specimen import Evaluation, Specimen
+from updating.update.data.nominal import Evaluation
+from updating.update.data.specimen import Specimen
 from updating.update.data.system import System
 from updating.update.solve import Solution
 

@@ -12,7 +12,8 @@ import numpy as np
 from scipy.stats import chi2, norm, qmc
 
 from acquisition.arrays import FloatArray
-from updating.update.data.specimen import Evaluation, Specimen
+from updating.update.data.nominal import Evaluation
+from updating.update.data.specimen import Specimen
 from updating.update.data.system import System
 from updating.update.estimate import Estimate
 from updating.update.parameters.affine import eligible

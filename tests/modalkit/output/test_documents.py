@@ -14,8 +14,8 @@ from acquisition import HitVerdict
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from modalkit.output import whole
-from modalkit.output.library import effects_record
-from modalkit.output.records import diagnosis_record, modes_record
+from modalkit.output.documents import diagnosis_document, modes_document
+from modalkit.output.library import effects_document
 from modalkit.output.whole import plain, write_json, write_text
 from modalkit.study.read import read_study
 from modalkit.workflow.case import process
@@ -80,7 +80,7 @@ def written(record: dict[str, Any]) -> dict[str, Any]:
 def test_the_record_of_an_identification(tmp_path: Path) -> None:
     study = read_study(SAMPLE)
     processed, model = process(study)
-    record = written(modes_record(model, processed.hits, processed.warnings))
+    record = written(modes_document(model, processed.hits, processed.warnings))
     assert set(record) >= MODES
     assert record["schema"] == "modalkit.modes/1"
     assert record["window_decay_removed"] == pytest.approx(8.0)
@@ -98,10 +98,10 @@ def test_the_record_of_an_identification(tmp_path: Path) -> None:
 
 
 def test_the_record_of_a_hit() -> None:
-    from modalkit.output.records import hit_record
+    from modalkit.output.documents import hit_document
 
     verdict = HitVerdict(Dof(3, -3), 2, False, ("double hit",), 1.0, 1.0, 1.0, 1.0)
-    assert written(hit_record(verdict)) == {
+    assert written(hit_document(verdict)) == {
         "point": "3-Z",
         "hit": 2,
         "used": False,
@@ -130,7 +130,7 @@ def check(record: dict[str, Any]) -> None:
 
 
 def test_the_record_of_a_diagnosis(diagnosis: Diagnosis) -> None:
-    record = written(diagnosis_record(diagnosis, ["take care"]))
+    record = written(diagnosis_document(diagnosis, ["take care"]))
     check(record)
     assert record["cause"]["effects"] == ["E"]
     assert record["cause"]["sets"] == [["E"]]
@@ -143,7 +143,7 @@ def test_the_record_of_a_diagnosis(diagnosis: Diagnosis) -> None:
 def test_what_may_be_missing_is_null_or_complete(diagnosis: Diagnosis) -> None:
     shrink = replace(diagnosis.shrink, closed=Closed(90.0, 80.0, 95.0), held_runner_up=None)
     tests = (NextTest("weigh it", ("E", "density"), 12.0),)
-    record = written(diagnosis_record(replace(diagnosis, shrink=shrink, next_test=tests)))
+    record = written(diagnosis_document(replace(diagnosis, shrink=shrink, next_test=tests)))
     check(record)
     assert record["shrink"]["closed_percent"] == {"value": 90.0, "low95": 80.0, "high95": 95.0}
     assert record["shrink"]["held_out"]["runner_up_percent"] is None
@@ -151,11 +151,11 @@ def test_what_may_be_missing_is_null_or_complete(diagnosis: Diagnosis) -> None:
         {"measure": "weigh it", "separates": ["E", "density"], "expected_sigma": 12.0}
     ]
     none = replace(diagnosis, shrink=replace(shrink, closed=None))
-    assert written(diagnosis_record(none))["shrink"]["closed_percent"] is None
+    assert written(diagnosis_document(none))["shrink"]["closed_percent"] is None
 
 
 def test_the_library_can_be_written() -> None:
-    assert written(effects_record())["schema"] == "modalkit.effects/1"
+    assert written(effects_document())["schema"] == "modalkit.effects/1"
 
 
 numbers = st.one_of(

@@ -1,4 +1,4 @@
-"""Results as the plain records of the JSON files, whose keys are a contract."""
+"""Results as the documents of the JSON files, whose keys are a contract."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from updating import Diagnosis
 from updating.diagnosis.answer.result import Ranked, Remainder
 
 
-def modes_record(
+def modes_document(
     model: ModalModel | Modes, hits: Sequence[HitVerdict] = (), warnings: Sequence[str] = ()
 ) -> dict[str, Any]:
     """Return an identification, or modes that were read, as ``modalkit.modes/1``.
@@ -42,7 +42,7 @@ def modes_record(
             *without_hits(hits),
             *(() if isinstance(model, Modes) else model.points_rejected),
         ],
-        "hits": [hit_record(h) for h in hits],
+        "hits": [hit_document(h) for h in hits],
         "window_decay_removed": 0.0 if isinstance(model, Modes) else model.frfs.decay,
         "warnings": list(warnings),
         "nodes": [
@@ -72,12 +72,12 @@ def without_hits(hits: Sequence[HitVerdict]) -> list[str]:
     return [f"{point}: none of its hits is used" for point in rejected_points(hits)]
 
 
-def hit_record(hit: HitVerdict) -> dict[str, Any]:
+def hit_document(hit: HitVerdict) -> dict[str, Any]:
     """Return the verdict on one hit."""
     return {"point": str(hit.point), "hit": hit.hit, "used": hit.used, "reasons": list(hit.reasons)}
 
 
-def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict[str, Any]:
+def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict[str, Any]:
     """Return a diagnosis as ``modalkit.diagnosis/1``."""
     where, shrink = diagnosis.where, diagnosis.shrink
     return {
@@ -85,7 +85,7 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
         "title": diagnosis.title,
         "significant": diagnosis.significant,
         "p_value": diagnosis.p_value,
-        "gap": _gap_record(diagnosis),
+        "gap": _gap_document(diagnosis),
         "where": {
             "channel": where.channel,
             "channels": where.channels,
@@ -100,7 +100,7 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
             "verdict": diagnosis.verdict,
             "effects": diagnosis.effects,
             "sets": diagnosis.sets,
-            "ranking": [_ranked_record(r, named=r.effects in diagnosis.sets) for r in diagnosis.ranking],
+            "ranking": [_ranked_document(r, named=r.effects in diagnosis.sets) for r in diagnosis.ranking],
         },
         "shrink": {
             "metric": shrink.metric,
@@ -129,7 +129,7 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
                 "high95": shrink.closed.high95,
             },
         },
-        "remainder": _remainder_record(diagnosis.remainder),
+        "remainder": _remainder_document(diagnosis.remainder),
         "included": dict(diagnosis.included),
         "next_test": [
             {
@@ -144,7 +144,7 @@ def diagnosis_record(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict
     }
 
 
-def _remainder_record(left: Remainder | None) -> dict[str, Any] | None:
+def _remainder_document(left: Remainder | None) -> dict[str, Any] | None:
     if left is None:
         return None
     return {
@@ -155,7 +155,7 @@ def _remainder_record(left: Remainder | None) -> dict[str, Any] | None:
     }
 
 
-def _gap_record(diagnosis: Diagnosis) -> dict[str, Any]:
+def _gap_document(diagnosis: Diagnosis) -> dict[str, Any]:
     gap = diagnosis.gap
     modes = [
         {
@@ -178,7 +178,7 @@ def _gap_record(diagnosis: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _ranked_record(row: Ranked, *, named: bool) -> dict[str, Any]:
+def _ranked_document(row: Ranked, *, named: bool) -> dict[str, Any]:
     """Return a row of the ranking; points and sensors stand in the rows of the answer alone, numbers in all."""
     stated = {n: e for n, e in row.parameters.items() if named or not isinstance(e.value, tuple | str)}
     return {

@@ -13,7 +13,7 @@ import pandas as pd
 from modalkit.blind.outcome import Outcome
 
 
-def records(table: pd.DataFrame) -> list[dict[str, Any]]:
+def table_rows(table: pd.DataFrame) -> list[dict[str, Any]]:
     """Return a table as a list of rows; what is not a number becomes null."""
     named = table.index.name is not None
     rows = (table.reset_index() if named else table).to_dict(orient="records")
@@ -31,7 +31,7 @@ def numbers(values: Mapping[str, Any]) -> dict[str, Any]:
     return {key: _plain(value) for key, value in values.items()}
 
 
-def outcome_records(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
+def outcome_documents(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
     """Return truth, answer and seal of every trial; not the time it took, which is no part of the result."""
     return [_outcome(outcome) for outcome in outcomes]
 

@@ -15,13 +15,13 @@ BEGIN, END = "<!-- real: begin -->", "<!-- real: end -->"
 _KEPT = ("significant", "p_value", "where", "cause", "shrink")
 
 
-def real_record(outcomes: Sequence[RealOutcome]) -> dict[str, Any]:
+def real_document(outcomes: Sequence[RealOutcome]) -> dict[str, Any]:
     """Return the outcome as ``modalkit.real/1``."""
     return {
         "schema": SCHEMA,
         "rules": RULES.strip().splitlines(),
         "counts": counts(outcomes),
-        "cases": [_record(o) for o in outcomes],
+        "cases": [_document(o) for o in outcomes],
     }
 
 
@@ -31,9 +31,9 @@ def counts(outcomes: Sequence[RealOutcome]) -> dict[str, int]:
     return {grade: grades.count(grade) for grade in ("right", "partly", "wrong")}
 
 
-def _record(outcome: RealOutcome) -> dict[str, Any]:
+def _document(outcome: RealOutcome) -> dict[str, Any]:
     case, document, answer, judgement = outcome.case, outcome.document, outcome.answer, outcome.judgement
-    record: dict[str, Any] = {
+    written: dict[str, Any] = {
         "name": case.name,
         "data": case.kind,
         "withheld": case.withheld,
@@ -48,7 +48,7 @@ def _record(outcome: RealOutcome) -> dict[str, Any]:
         "row": row_of(outcome),
     }
     if document is None or answer is None or judgement is None:
-        return record
+        return written
     facts = [
         {
             "parameter": fact.parameter,
@@ -59,19 +59,24 @@ def _record(outcome: RealOutcome) -> dict[str, Any]:
         for fact, estimate in estimates(case, answer)
     ]
     slim = {key: document[key] for key in _KEPT if key in document}
-    return record | {"grade": judgement.grade, "reason": judgement.reason, "facts": facts, "diagnosis": slim}
+    return written | {
+        "grade": judgement.grade,
+        "reason": judgement.reason,
+        "facts": facts,
+        "diagnosis": slim,
+    }
 
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def real_markdown(record: Mapping[str, Any]) -> str:
-    """Return the tables of the documentation from a record.
+def real_markdown(document: Mapping[str, Any]) -> str:
+    """Return the tables of the documentation from a document.
 
     Parameters
     ----------
-    record : mapping
+    document : mapping
         ``modalkit.real/1``.
 
     Returns
@@ -80,8 +85,8 @@ def real_markdown(record: Mapping[str, Any]) -> str:
         Markdown: how many are right, the tables with the library whole and without the true effects, and what is
         withheld and known with its source.
     """
-    whole = [c for c in record["cases"] if not c["without"]]
-    left_out = [c for c in record["cases"] if c["without"]]
+    whole = [c for c in document["cases"] if not c["without"]]
+    left_out = [c for c in document["cases"] if c["without"]]
     parts = [
         *_stated("The library whole", whole),
         *_stated("The true effects taken out of the library", left_out),
