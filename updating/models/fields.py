@@ -150,6 +150,9 @@ class Fields:
     @cached_property
     def sampled(self) -> dict[str, Sparse]:
         """Fields at the quadrature points, each (n_points, n_dofs)."""
+        return self._sampled()
+
+    def _sampled(self) -> dict[str, Sparse]:
         merged: dict[str, Sparse] = {}
         for component in self.components:
             merged |= component.sampled(self.n_dofs)
@@ -158,6 +161,39 @@ class Fields:
     def at(self, points: FloatArray) -> dict[str, Sparse]:
         """Return the fields of the displacement at any points (n_points, dim) [m]."""
         return self.components[0].at(np.asarray(points, dtype=float).reshape(-1, self.dim), self.n_dofs)
+
+
+@dataclass(frozen=True, eq=False)
+class ShearFields(Fields):
+    """Fields of a plate whose sections turn by themselves: no locking, for without shear they are those of a thin plate.
+
+    The strain ``gx = dw/dx - theta_x`` is what the slope of the displacement, interpolated at the nodes of the
+    rotation, and the rotation there differ by. The section turns by ``rx = dw/dx - gx``, so that where ``gx`` is nil
+    it bends exactly as a thin plate does: the hierarchic form of Echter, Oesterle and Bischoff (Comput. Methods Appl.
+    Mech. Eng. 254 (2013) 170-180), with rotations at the nodes so that a clamp can hold them. ``gy`` and ``ry``
+    likewise.
+    """
+
+    def _sampled(self) -> dict[str, Sparse]:
+        merged = super()._sampled()
+        deflection = {name: merged[name] for name in ("w", "wx", "wy")}
+        strains: dict[str, Sparse] = {}
+        for axis, component in zip("xy", self.components[1:], strict=True):
+            slope = self.components[0].at(component.basis.doflocs.T, self.n_dofs)[f"w{axis}"]
+            own = sparse.eye_array(slope.shape[0], self.n_dofs, k=component.offset)
+            strain = Sparse(slope - own)
+            for name, interpolated in component.sampled(self.n_dofs).items():
+                local = interpolated[:, component.offset : component.offset + slope.shape[0]]
+                strains[name.replace("t", "g")] = Sparse(local @ strain)
+        turns = {f"r{axis}": merged[f"w{axis}"] - strains[f"g{axis}"] for axis in "xy"}
+        bends = {
+            f"r{axis}{along}": merged["w" + "".join(sorted(axis + along))] - strains[f"g{axis}{along}"]
+            for axis in "xy"
+            for along in "xy"
+        }
+        twist = {"rt": bends.pop("rxy") + bends.pop("ryx")}
+        shear = {f"g{axis}": strains[f"g{axis}"] for axis in "xy"}
+        return deflection | turns | shear | {n: Sparse(m) for n, m in (bends | twist).items()}
 
 
 def beam_fields(length: float, elements: int) -> Fields:
@@ -181,14 +217,32 @@ def timoshenko_fields(length: float, elements: int) -> Fields:
     )
 
 
+PLATE_NAMES = {"w": (), "wx": (0,), "wy": (1,), "wxx": (0, 0), "wyy": (1, 1), "wxy": (0, 1)}
+
+
 def plate_fields(length: float, width: float, elements: tuple[int, int]) -> Fields:
     """Bogner-Fox-Schmit rectangles: conforming bicubic displacement w of a Kirchhoff plate."""
-    mesh = skfem.MeshQuad.init_tensor(
+    basis = skfem.Basis(_rectangles(length, width, elements), skfem.ElementQuadBFS(), intorder=6)
+    return Fields((Component(basis, 0, PLATE_NAMES),), 2)
+
+
+def mindlin_fields(length: float, width: float, elements: tuple[int, int]) -> Fields:
+    """Bicubic displacement w with biquadratic rotations of the section about both axes."""
+    mesh = _rectangles(length, width, elements)
+    deflection = skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6)
+    rotation = skfem.Basis(mesh, skfem.ElementQuad2(), intorder=6)
+    first, count = int(deflection.N), int(rotation.N)
+    turns = [
+        Component(rotation, first + i * count, {f"t{a}": (), f"t{a}x": (0,), f"t{a}y": (1,)})
+        for i, a in enumerate("xy")
+    ]
+    return ShearFields((Component(deflection, 0, PLATE_NAMES), *turns), 2)
+
+
+def _rectangles(length: float, width: float, elements: tuple[int, int]) -> Any:
+    return skfem.MeshQuad.init_tensor(
         np.linspace(0.0, length, elements[0] + 1), np.linspace(0.0, width, elements[1] + 1)
     )
-    basis = skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6)
-    names = {"w": (), "wx": (0,), "wy": (1,), "wxx": (0, 0), "wyy": (1, 1), "wxy": (0, 1)}
-    return Fields((Component(basis, 0, names),), 2)
 
 
 def _hermite(edges: FloatArray, x: FloatArray) -> tuple[IntArray, tuple[FloatArray, FloatArray]]:

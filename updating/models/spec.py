@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from updating.models.imported.matrices import Imported
 
 Kind = Literal["beam", "plate", "matrices"]
-Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko", "kirchhoff", "imported"]
+Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko", "kirchhoff", "mindlin", "imported"]
 
 EDGES = {"beam": {"x0", "x1"}, "plate": {"x0", "x1", "y0", "y1"}, "matrices": set[str]()}
 """Edges that can be clamped; imported matrices come with their supports."""
 
 THEORIES = {
     "beam": {"euler-bernoulli", "rayleigh", "timoshenko"},
-    "plate": {"kirchhoff"},
+    "plate": {"kirchhoff", "mindlin"},
     "matrices": {"imported"},
 }
 """Theories of each kind of model."""
