@@ -173,7 +173,7 @@ def _check_card(card: str, options: dict[str, str], line: str, where: str) -> No
     strange = [option for option in options if option and option not in KNOWN_OPTIONS.get(card, options)]
     if strange:
         raise StudyError(
-            f"{where}: {card} with {strange[0][:40]} is not followed; write a node table (CSV) instead, or mend the card"
+            f"{where}: {card} with {strange[0][:40]} is not followed; write a node table (CSV) instead"
         )
     if card == "*NSET" and not options.get("NSET"):
         raise StudyError(f"{where}: {line[:80]} names no set; write *NSET, NSET=name")
