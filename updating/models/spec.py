@@ -143,7 +143,8 @@ class Spec(Displayed):
     clamped : tuple of str
         Clamped edges, of x0, x1 and for plates y0, y1; empty is free.
     theory : str
-        euler-bernoulli, rayleigh (with rotary inertia) or timoshenko for beams, kirchhoff for plates; imported.
+        euler-bernoulli, rayleigh (with rotary inertia) or timoshenko for beams, kirchhoff or mindlin
+        (with shear and rotary inertia) for plates; imported.
     material : Material
         Material of everything that no region overrides.
     regions : tuple of Region

@@ -167,8 +167,9 @@ def build_field_structure(spec: Spec) -> FieldStructure:
         If a region lies off the structure.
     """
     if spec.kind == "plate":
-        build = mindlin_fields if spec.theory == "mindlin" else plate_fields
-        fields = build(spec.length, spec.width, (spec.elements[0], spec.elements[1]))
+        size = spec.length, spec.width, (spec.elements[0], spec.elements[1])
+        thin = spec.theory == "kirchhoff"
+        fields = plate_fields(*size) if thin else mindlin_fields(*size, spec.thickness)
     elif spec.theory == "timoshenko":
         fields = timoshenko_fields(spec.length, spec.elements[0])
     else:
@@ -184,10 +185,10 @@ def build_field_structure(spec: Spec) -> FieldStructure:
     terms = (
         plate_terms(spec, fields, region_of) if spec.kind == "plate" else beam_terms(spec, fields, region_of)
     )
-    return FieldStructure(spec, fields, terms, region_of, _fixed(spec, fields))
+    return FieldStructure(spec, fields, terms, region_of, clamped_dofs(spec, fields))
 
 
-def _fixed(spec: Spec, fields: Fields) -> Mapping[str, IntArray]:
+def clamped_dofs(spec: Spec, fields: Fields) -> Mapping[str, IntArray]:
     """Sort the degrees of freedom of the clamped edges into what holds translation and what rotation."""
     if not spec.clamped:
         return MappingProxyType({})
