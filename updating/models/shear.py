@@ -15,8 +15,10 @@ from dataclasses import replace
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
 from updating.models.fields import PLATE_NAMES, Fields, Sparse
 from updating.models.reduced import Change, Reduced
+from updating.models.spec import Spec
 from updating.models.structure import FieldStructure, build_field_structure, clamped_dofs
 from updating.models.terms import FieldTerm, plate_terms
 
@@ -53,8 +55,7 @@ def sheared(reduced: Reduced) -> Reduced:
 
 def _changes(structure: FieldStructure, basis: FloatArray) -> tuple[Change, ...]:
     spec = structure.spec
-    coarse = spec.with_elements(*(min(n, MOST) for n in spec.elements))
-    thick = build_field_structure(coarse.with_theory("mindlin"))
+    thick = _thick(spec.with_theory("mindlin"))
     own = structure.fields.components[0].hermite(thick.fields.points, structure.n_dofs, PLATE_NAMES)
     thin = {name: np.asarray(matrix @ basis) for name, matrix in own.items()}
     stiffness = basis.T @ (structure.matrix("stiffness") @ basis)
@@ -70,6 +71,14 @@ def _changes(structure: FieldStructure, basis: FloatArray) -> tuple[Change, ...]
         if t.kind == "mass" and t.left != "w"
     ]
     return (Change("stiffness", (softer + softer.T) / 2, POWERS), *turning)
+
+
+def _thick(spec: Spec) -> FieldStructure:
+    """Return a thick plate on no more elements than shear needs, or than its regions need."""
+    try:
+        return build_field_structure(spec.with_elements(*(min(n, MOST) for n in spec.elements)))
+    except StudyError:  # a region falls between the points of a mesh so coarse
+        return build_field_structure(spec)
 
 
 def _residual(thick: FieldStructure, thin: Mapping[str, FloatArray]) -> FloatArray:

@@ -26,6 +26,9 @@ THEORIES = {
 }
 """Theories of each kind of model."""
 
+FULLER: dict[Kind, Theory] = {"beam": "timoshenko", "plate": "mindlin"}
+"""The theory of each kind of model that leaves out neither shear nor rotary inertia."""
+
 MOST_ELEMENTS = 20_000
 """More elements than this of a uniform beam or plate say nothing new and cost memory: some 2 GB on a plate [-]."""
 
@@ -215,9 +218,11 @@ class Spec(Displayed):
         """Whether length, width and thickness are its own, so that any place on it and any caliper mean something."""
         return self.imported is None
 
-    def knows(self, theory: Theory) -> bool:
-        """Tell whether this kind of model can be put on a theory."""
-        return theory in THEORIES[self.kind]
+    @property
+    def fuller(self) -> Theory | None:
+        """The theory with the shear and rotary inertia that the model leaves out; None where it leaves out nothing."""
+        fuller = FULLER.get(self.kind)
+        return None if fuller == self.theory else fuller
 
     def with_theory(self, theory: Theory) -> Spec:
         """Return the same specimen under another theory."""
