@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from updating_cases import PLATE, STEEL, blank
 
-from updating import Predictor, Region, Spec, build_structure
+from updating import Case, Predictor, Region, Spec, build_structure
 from updating.effects import LIBRARY
 from updating.models.state import State
+from updating.nominal import predictor_of
 
 THICK = replace(PLATE, theory="mindlin")
 POINTS = np.array([(x, y) for x in np.linspace(0.05, 0.376, 5) for y in (0.0, 0.07, 0.2)])
@@ -238,3 +239,13 @@ def test_a_thin_model_with_what_shear_changes_is_the_thick_one(
         )
         assert still.max() < 0.1 * wrong.max()
         assert not np.allclose(found.vectors, plain.vectors)
+
+
+def test_a_study_that_accepts_shear_has_the_thick_model() -> None:
+    thin = replace(PLATE, elements=(8, 6))
+    case = Case("thick", thin, blank(POINTS), accepted=(("shear", {}),))
+    found = predictor_of(case)
+    assert found.spec.theory == "mindlin"
+    assert found.predict(count=4).frequency == pytest.approx(
+        frequencies(thin.with_theory("mindlin"), 4), rel=1e-4
+    )
