@@ -86,9 +86,7 @@ def test_the_thick_plate_of_this_file_is_the_published_one(
 
 @pytest.mark.parametrize("thickness", [0.003175, 0.01])
 @pytest.mark.parametrize("clamped", [("x0",), ("x0", "x1", "y0", "y1"), ()])
-def test_what_thin_plates_lack_is_known_mode_by_mode(
-    thickness: float, clamped: tuple[str, ...]
-) -> None:
+def test_what_thin_plates_lack_is_known_mode_by_mode(thickness: float, clamped: tuple[str, ...]) -> None:
     spec = replace(PLATE, thickness=thickness, clamped=clamped, elements=(20, 12))
     found = theory_error(evaluate(spec), np.arange(8))
     structure = build_structure(replace(spec, elements=(38, 20)))
