@@ -14,7 +14,9 @@ def predictor_of(case: Case) -> Predictor:
     """Return the nominal model of a case with the accepted effects, on the theory they ask for."""
     predictor = Predictor(case.spec, case.measured, case.environment, accepted_additions(case.accepted))
     theory = predictor.base.theory
-    return predictor if theory is None else predictor.under(theory)
+    if theory is None or theory == case.spec.theory:
+        return predictor
+    return predictor.of(case.spec.with_theory(theory))
 
 
 def accepted_additions(

@@ -10,14 +10,9 @@ LEAST_FREQUENCY_NOISE = 1e-6
 """No frequency is known better than this, relative [-]. From the digits of files that hold frequencies alone; it
 keeps a variance of zero out. Doubled: nothing, where a repeatability is stated."""
 
-THEORY_EXPECTED = 0.5
-"""How much of what a plate's theory leaves out is expected, and in doubt, and how much of the mesh's own error in
-each mode [-]. Between 0 (a thin plate) and 1 (the estimate, which is Reissner's to first order), each as likely.
-Doubled: all of it is expected, with as much doubt."""
-
-THEORY_UNEVENNESS = 0.15
-"""How much of what a plate's theory leaves out is in doubt mode by mode [-]. Judged. Doubled: modes of short waves,
-where the theory leaves out most, count a quarter as much once this is their whole noise."""
+MESH_UNEVENNESS = 0.5
+"""How much of the mesh's own error is in doubt mode by mode, beside all of it in common [-]. Judged. Doubled: on a
+coarse mesh modes of short waves count a quarter as much once this is their whole noise."""
 
 CARRIED_DOUBT = 0.3
 """How far what the model missed in the baseline may miss differently now, relative to what it missed [-]. Judged.
@@ -222,8 +217,9 @@ regions [-]. The contract lets their rows be left out. Doubled: nothing that is 
 # --------------------------------------------------------------------------------- how the search is carried out
 
 THEORY_BEYOND_NOISE = 0.3
-"""A better beam theory is weighed beside every effect where it moves a mode by more than this part of the noise [-]:
-less adds a tenth to the variance. Doubled: a bias of half a sigma goes unseen."""
+"""A fuller theory is weighed beside the model's own where it moves a frequency, or the constants of a mode on average,
+by more than this part of the noise [-]: less adds a tenth to the variance. Doubled: a bias of half a sigma goes
+unseen."""
 
 WITHIN_REACH = 7.0
 """Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]: a draft's

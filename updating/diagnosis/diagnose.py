@@ -256,11 +256,10 @@ def _shrink(
 def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:
     """Return what the reader ought to know about how the answer was reached."""
     notes = []
-    leader = next((row for row in found.compared if row.names), None)
-    if leader is not None and leader.explanation.candidate.theory is not None:
+    if found.both:
         notes.append(
-            "the beam theory of the model leaves out shear and rotary inertia by more than the noise; "
-            "every effect was weighed with and without them"
+            "the theory of the model leaves out shear and rotary inertia, which show beyond the noise: "
+            "every set of causes was weighed with and without them"
         )
     for one in problem.specimens:
         notes += notes_on_doubtful(one)

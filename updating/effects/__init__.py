@@ -92,7 +92,7 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
     if name not in LIBRARY:
         raise StudyError(f"[[model.effect]] knows no effect {name!r}; `modalkit effects` lists them")
     effect = LIBRARY[name]
-    there_already = effect.theory is not None and predictor.spec.theory == effect.theory
+    there_already = effect.fuller and predictor.spec.fuller is None and predictor.spec.outlined
     if not there_already and (obstacle := effect.why_not(predictor)) is not None:
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
     parameters = effect.parameters(predictor)

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from updating.effects.obstacles import Lack, Obstacle
-from updating.models.spec import Kind, Spec, Theory
+from updating.models.spec import Kind, Spec
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -152,8 +152,8 @@ class Effect(ABC):
     """How a sentence names it; left out, by its own name."""
     elsewhere: ClassVar[Mapping[Kind, str]] = MappingProxyType({})
     """Why it does not apply to a kind of model that is not among ``models``, where there is more to say."""
-    theory: ClassVar[Theory | None] = None
-    """Theory that the model is put on, where that is what the effect is."""
+    fuller: ClassVar[bool] = False
+    """Whether it is that the model's theory leaves something out."""
     undone_by: ClassVar[frozenset[Undoing]] = frozenset()
     """Tests in which it is gone."""
     twin: ClassVar[Twin | None] = None

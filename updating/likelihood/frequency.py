@@ -9,7 +9,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
-from updating.thresholds import LEAST_FREQUENCY_NOISE, THEORY_EXPECTED, THEORY_UNEVENNESS
+from updating.thresholds import LEAST_FREQUENCY_NOISE, MESH_UNEVENNESS
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,13 +22,12 @@ class Frequencies(Quantity):
         Test and model.
     accepted : (n_modes,) array
         Variance of ln f by how far the idealisations of the effects put into the model beforehand may be off [-].
-    left_off : tuple of two (n_modes,) arrays, optional
-        What the mesh, and what a theory that is no effect, leave off in ln f; None where nothing is known of it, or a
-        baseline has taken it out [-].
+    mesh : (n_modes,) array, optional
+        What the mesh leaves off in ln f; None where nothing is known of it, or a baseline has taken it out [-].
     """
 
     accepted: FloatArray
-    left_off: tuple[FloatArray, FloatArray] | None = None
+    mesh: FloatArray | None = None
 
     @property
     def present(self) -> bool:
@@ -48,28 +47,18 @@ class Frequencies(Quantity):
         variance = variance + self.accepted
         n = len(test.frequency)
         named = np.zeros((n, 0))
-        expected, own, uneven = self._unmodelled()
+        own, uneven = self._mesh()
         variance = variance + uneven
         if view.doubt.fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
             doubtful = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)
             variance, named = variance + doubtful**2, doubtful[:, None]
-        residual = np.log(test.frequency / now.frequency) - expected
+        residual = np.log(test.frequency / now.frequency)
         return Block("frequency", residual, variance, by, named, own, np.arange(n))
 
-    def _unmodelled(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return what mesh and theory leave off in ln f: its expectation, columns of doubt, variance mode by mode.
-
-        The estimate may be half of itself off and a test may come from a thin plate: half of what the theory leaves off
-        is expected.
-        """
-        if self.left_off is None:
+    def _mesh(self) -> tuple[FloatArray, FloatArray]:
+        """Return what the mesh leaves off in ln f: a column of doubt common to all modes, variance mode by mode."""
+        if self.mesh is None:
             n = len(self.setting.measured.frequency)
-            return np.zeros(n), np.zeros((n, 0)), np.zeros(n)
-        mesh, theory = self.left_off
-        columns = np.stack([mesh, THEORY_EXPECTED * theory], axis=1)
-        return (
-            THEORY_EXPECTED * theory,
-            columns,
-            (THEORY_UNEVENNESS * theory) ** 2 + (THEORY_EXPECTED * mesh) ** 2,
-        )
+            return np.zeros((n, 0)), np.zeros(n)
+        return self.mesh[:, None], (MESH_UNEVENNESS * self.mesh) ** 2

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import skfem
@@ -19,6 +19,8 @@ from scipy import sparse
 from acquisition.arrays import FloatArray, IntArray
 
 Sparse = sparse.csr_array
+
+Matrix = TypeVar("Matrix", Sparse, FloatArray)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +73,17 @@ class Component:
         if "w" not in self.names:
             return self._elsewhere(points, n_dofs)
         dim = len(self._grid[0])
-        names = {"w": (0,) * dim, "wx": (1, 0)[:dim]} | ({"wy": (0, 1)} if dim == 2 else {})
+        return self.hermite(points, n_dofs, {"w": (), "wx": (0,)} | ({"wy": (1,)} if dim == 2 else {}))
+
+    def hermite(
+        self, points: FloatArray, n_dofs: int, names: Mapping[str, tuple[int, ...]]
+    ) -> dict[str, Sparse]:
+        """Return derivatives of the displacement at any points (n_points, dim) [m], each (n_points, n_dofs).
+
+        ``names`` are the directions differentiated along, as in :attr:`names`; exact on elements however narrow, where
+        the element library inverts an ill-conditioned matrix.
+        """
+        dim = len(self._grid[0])
         if len(points) == 0:
             return {name: Sparse((0, n_dofs)) for name in names}
         edges, numbers = self._grid
@@ -82,8 +94,8 @@ class Component:
             [numbers[tuple(c + e for c, e in zip(cells, end, strict=True))] for end in ends], 1
         )
         found = {}
-        for name, derivative in names.items():
-            parts = [shape[d] for (_, shape), d in zip(axes, derivative, strict=True)]
+        for name, along in names.items():
+            parts = [shape[along.count(axis)] for axis, (_, shape) in enumerate(axes)]
             # nodal order: w, wx, wy, wxy, that is (value, slope along x) for each of (value, slope along y)
             values = parts[0] if dim == 1 else np.einsum("pai,pbj->pabji", *parts)
             data = values.reshape(len(points), -1)
@@ -150,14 +162,76 @@ class Fields:
     @cached_property
     def sampled(self) -> dict[str, Sparse]:
         """Fields at the quadrature points, each (n_points, n_dofs)."""
+        return self._sampled()
+
+    def _sampled(self) -> dict[str, Sparse]:
         merged: dict[str, Sparse] = {}
         for component in self.components:
             merged |= component.sampled(self.n_dofs)
         return merged
 
+    @cached_property
+    def element_dofs(self) -> IntArray:
+        """Degrees of freedom of every element in rising order, (n_elements, k)."""
+        own = [np.asarray(c.basis.element_dofs).T + c.offset for c in self.components]
+        return np.sort(np.concatenate(own, axis=1), axis=1)
+
+    def by_element(self, name: str) -> FloatArray:
+        """Return a field by element: (n_elements, points of one, its degrees of freedom as `element_dofs` has them)."""
+        table, matrix = self.element_dofs, self.sampled[name].tocoo()
+        points = len(self.weights) // len(table)
+        cell = matrix.row // points
+        keys = (np.arange(len(table))[:, None] * self.n_dofs + table).ravel()
+        column = (
+            np.searchsorted(keys, cell.astype(np.int64) * self.n_dofs + matrix.col) - cell * table.shape[1]
+        )
+        found = np.zeros((len(table), points, table.shape[1]))
+        found[cell, matrix.row % points, column] = matrix.data
+        return found
+
     def at(self, points: FloatArray) -> dict[str, Sparse]:
         """Return the fields of the displacement at any points (n_points, dim) [m]."""
         return self.components[0].at(np.asarray(points, dtype=float).reshape(-1, self.dim), self.n_dofs)
+
+
+@dataclass(frozen=True, eq=False)
+class ShearFields(Fields):
+    """Fields of a plate whose sections turn by themselves; without shear those of a thin plate, so that none locks.
+
+    The strain ``gx = dw/dx - theta_x`` is what the slope of the displacement, interpolated at the nodes of the
+    rotation, and the rotation there differ by. The section turns by ``rx = dw/dx - gx``, so that where ``gx`` is nil
+    it bends exactly as a thin plate does: the hierarchic form of Echter, Oesterle and Bischoff (Comput. Methods Appl.
+    Mech. Eng. 254 (2013) 170-180), with rotations at the nodes so that a clamp can hold them. ``gy`` and ``ry``
+    likewise.
+    """
+
+    def _sampled(self) -> dict[str, Sparse]:
+        thin = self.components[0].hermite(self.points, self.n_dofs, PLATE_NAMES)
+        strains: dict[str, Sparse] = {}
+        for axis, component in zip("xy", self.components[1:], strict=True):
+            slope = self.components[0].at(component.basis.doflocs.T, self.n_dofs)[f"w{axis}"]
+            own = sparse.eye_array(slope.shape[0], self.n_dofs, k=component.offset)
+            strain = Sparse(slope - own)
+            strain.eliminate_zeros()
+            for name, interpolated in component.sampled(self.n_dofs).items():
+                local = interpolated[:, component.offset : component.offset + slope.shape[0]]
+                strains[name.replace("t", "g")] = Sparse(local @ strain)
+        return {n: thin[n] for n in ("w", "wx", "wy")} | strains | turned(thin, strains)
+
+
+def turned(thin: Mapping[str, Matrix], strains: Mapping[str, Matrix]) -> dict[str, Matrix]:
+    """Return how sections turn, ``rx`` and ``ry``, and bend, ``rxx``, ``ryy`` and twice the twist ``rt``.
+
+    Parameters
+    ----------
+    thin : mapping
+        Slopes and curvatures of the displacement.
+    strains : mapping
+        Shear strains ``gx`` and ``gy``, and their derivatives ``gxx``, ``gxy``, ``gyx`` and ``gyy``.
+    """
+    turns = {f"r{axis}": thin[f"w{axis}"] - strains[f"g{axis}"] for axis in "xy"}
+    bends = {f"r{axis * 2}": thin[f"w{axis * 2}"] - strains[f"g{axis * 2}"] for axis in "xy"}
+    return turns | bends | {"rt": 2 * thin["wxy"] - strains["gxy"] - strains["gyx"]}
 
 
 def beam_fields(length: float, elements: int) -> Fields:
@@ -181,33 +255,68 @@ def timoshenko_fields(length: float, elements: int) -> Fields:
     )
 
 
+PLATE_NAMES = {"w": (), "wx": (0,), "wy": (1,), "wxx": (0, 0), "wyy": (1, 1), "wxy": (0, 1)}
+
+
 def plate_fields(length: float, width: float, elements: tuple[int, int]) -> Fields:
     """Bogner-Fox-Schmit rectangles: conforming bicubic displacement w of a Kirchhoff plate."""
     mesh = skfem.MeshQuad.init_tensor(
-        np.linspace(0.0, length, elements[0] + 1), np.linspace(0.0, width, elements[1] + 1)
+        *(_lines(*side) for side in zip((length, width), elements, strict=True))
     )
-    basis = skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6)
-    names = {"w": (), "wx": (0,), "wy": (1,), "wxx": (0, 0), "wyy": (1, 1), "wxy": (0, 1)}
-    return Fields((Component(basis, 0, names),), 2)
+    return Fields((Component(skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6), 0, PLATE_NAMES),), 2)
 
 
-def _hermite(edges: FloatArray, x: FloatArray) -> tuple[IntArray, tuple[FloatArray, FloatArray]]:
-    """Return the element each place lies in, and Hermite's cubics and their slopes there.
+LAYER = 0.7
+"""Width of the elements along the edges of a thick plate, in thicknesses [-]. There the twisting moment dies out over
+h / sqrt(10), which takes more from modes that twist than all the rest of shear. With one row of 0.7 h frequencies are
+0.01 % off, with 1.5 h 0.05 %, with none 0.15 % on elements of 3 h."""
+
+
+def mindlin_fields(length: float, width: float, elements: tuple[int, int], thickness: float) -> ShearFields:
+    """Bicubic displacement w, biquadratic rotations of the section about both axes, narrow elements at the edges."""
+    sides = zip((length, width), elements, strict=True)
+    mesh = skfem.MeshQuad.init_tensor(*(_lines(*side, LAYER * thickness) for side in sides))
+    deflection = skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6)
+    rotation = skfem.Basis(mesh, skfem.ElementQuad2(), intorder=6)
+    first, count = int(deflection.N), int(rotation.N)
+    turns = [
+        Component(rotation, first + i * count, {f"t{a}": (), f"t{a}x": (0,), f"t{a}y": (1,)})
+        for i, a in enumerate("xy")
+    ]
+    return ShearFields((Component(deflection, 0, PLATE_NAMES), *turns), 2)
+
+
+def _lines(size: float, elements: int, layer: float = 0.0) -> FloatArray:
+    """Return where elements end along a side; with a layer, narrow ones at both ends where the others are wider [m]."""
+    even = np.linspace(0.0, size, elements + 1)
+    narrow = [layer, size - layer] if 0 < layer < 0.7 * size / elements else []
+    return np.unique(np.concatenate([even, narrow]))
+
+
+ON_A_NODE = 1e-9
+"""So near to the end of an element, relative to its length, a place is on it, and knows nothing of the next one [-]."""
+
+
+def _hermite(edges: FloatArray, x: FloatArray) -> tuple[IntArray, tuple[FloatArray, FloatArray, FloatArray]]:
+    """Return the element each place lies in, and Hermite's cubics, their slopes and curvatures there.
 
     Returns
     -------
     cell : (n,) int array
-    shapes : pair of (n, 2, 2) arrays
-        Value and slope of the cubics of each end's displacement [-] and slope [m]; places outside count as the end.
+    shapes : three (n, 2, 2) arrays
+        Value and derivatives of the cubics of each end's displacement [-] and slope [m]; places outside count as the
+        end.
     """
     x = np.clip(x, edges[0], edges[-1])
     cell = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2)
     h = edges[cell + 1] - edges[cell]
     t = (x - edges[cell]) / h
+    t = np.where(np.abs(t - np.round(t)) < ON_A_NODE, np.round(t), t)
     value = np.stack(
         [(1 + 2 * t) * (1 - t) ** 2, h * t * (1 - t) ** 2, t**2 * (3 - 2 * t), h * t**2 * (t - 1)], axis=1
     )
     slope = np.stack(
         [6 * t * (t - 1) / h, (1 - t) * (1 - 3 * t), 6 * t * (1 - t) / h, t * (3 * t - 2)], axis=1
     )
-    return cell, (value.reshape(-1, 2, 2), slope.reshape(-1, 2, 2))
+    curve = np.stack([(12 * t - 6) / h**2, (6 * t - 4) / h, (6 - 12 * t) / h**2, (6 * t - 2) / h], axis=1)
+    return cell, (value.reshape(-1, 2, 2), slope.reshape(-1, 2, 2), curve.reshape(-1, 2, 2))

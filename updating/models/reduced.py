@@ -18,7 +18,7 @@ from scipy import sparse
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from updating.models.base import FACTORS, Structure, Term
+from updating.models.base import FACTORS, Structure, Term, scale_of
 from updating.models.fields import Fields, Sparse
 from updating.models.state import State
 from updating.models.structure import FieldStructure
@@ -35,6 +35,29 @@ SMALL = 90
 
 
 @dataclass(frozen=True, eq=False)
+class Change:
+    """A change of the stiffness or the mass of a reduced model: a term that has no regions.
+
+    Parameters
+    ----------
+    kind : {"stiffness", "mass"}
+        Which matrix.
+    matrix : (r, r) array
+        In the coordinates of the reduced basis [SI].
+    powers : mapping
+        Power in each factor, as a term has it [-].
+    """
+
+    kind: str
+    matrix: FloatArray
+    powers: Mapping[str, float]
+
+    def scale(self, factors: Mapping[str, float]) -> float:
+        """Return the product of the factors to their powers [-]."""
+        return scale_of(self.powers, factors)
+
+
+@dataclass(frozen=True, eq=False)
 class Reduced:
     """A structure on a reduced basis.
 
@@ -47,11 +70,14 @@ class Reduced:
     ranks : mapping of frozenset to int
         For each set of releases (none, the rotation, the translation, both), how many leading columns belong to it;
         where the translation alone is released, :meth:`matrices` holds the slopes that other columns have.
+    changes : tuple of Change
+        What a better theory changes of the whole.
     """
 
     structure: Structure
     basis: FloatArray
     ranks: Mapping[frozenset[str], int]
+    changes: tuple[Change, ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -137,7 +163,7 @@ class Reduced:
         """Return stiffness and mass of a state on the columns its releases admit [SI]."""
         n = self.ranks[state.released]
         total = {"stiffness": np.zeros((n, n)), "mass": self.point_masses[:n, :n].copy()}
-        for term, parts in zip(self.structure.terms, self._totals(state), strict=True):
+        for term, parts in self._terms(state):
             scale = term.scale(state.factors)
             total[term.kind] += parts[:n, :n] if scale == 1.0 else parts[:n, :n] * scale
         for kind, added in (("stiffness", state.stiffness), ("mass", state.mass)):
@@ -170,6 +196,13 @@ class Reduced:
         """Matrix of every term over all regions, each (r, r) [SI]."""
         return tuple(p.sum(axis=0) for p in self.parts)
 
+    def _terms(self, state: State) -> list[tuple[Term, FloatArray]]:
+        """Return every term and change with its matrix, the factors of the whole structure not applied."""
+        terms: list[tuple[Term, FloatArray]] = list(
+            zip(self.structure.terms, self._totals(state), strict=True)
+        )
+        return terms + [(change, change.matrix) for change in self.changes]
+
     def _totals(self, state: State) -> list[FloatArray]:
         if not state.regional:
             return list(self.sums)
@@ -185,7 +218,7 @@ class Reduced:
         """Return dK and dM per unit of the logarithm of a factor, at a state [SI]."""
         n = self.ranks[state.released]
         change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
-        for term, parts in zip(self.structure.terms, self._totals(state), strict=True):
+        for term, parts in self._terms(state):
             power = term.powers.get(factor, 0.0)
             if power:
                 change[term.kind] += power * term.scale(state.factors) * parts[:n, :n]
@@ -194,10 +227,7 @@ class Reduced:
     def scaled_terms(self, state: State) -> list[tuple[Term, FloatArray]]:
         """Return every term with its matrix under a state's factors, on the columns its releases admit [SI]."""
         n = self.ranks[state.released]
-        return [
-            (term, term.scale(state.factors) * whole[:n, :n])
-            for term, whole in zip(self.structure.terms, self._totals(state), strict=True)
-        ]
+        return [(term, term.scale(state.factors) * whole[:n, :n]) for term, whole in self._terms(state)]
 
     def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return displacement and slopes of the basis at points (n_points, dim) [m], each (n_points, r).

@@ -152,12 +152,10 @@ class Softening:
 
     @cached_property
     def _fields(self) -> tuple[IntArray, dict[str, FloatArray]]:
-        """Degrees of freedom of every element (n_elements, k), and the curvatures they make at its points."""
-        sampled = self.structure.fields.sampled
+        """Degrees of freedom of every element (n_elements, k), and the strains they make at its points."""
+        fields = self.structure.fields
         names = {name for term in self._terms for name in (term.left, term.right)}
-        shape = (self.structure.fields.components[0].basis.nelems, -1, _per_row(sampled[min(names)]))
-        values = {name: np.asarray(sampled[name].data, dtype=float).reshape(shape) for name in names}
-        return np.asarray(sampled[min(names)].indices, dtype=np.int64).reshape(shape)[:, 0], values
+        return fields.element_dofs, {name: fields.by_element(name) for name in names}
 
     def _place(self, inside: FloatArray, factors: Mapping[str, float]) -> tuple[IntArray, Sparse]:
         """Return the degrees of freedom of a place (n,) and its stiffness between them (n, n) [SI]."""
@@ -182,10 +180,6 @@ class Softening:
     def _scale(self, factors: Mapping[str, float]) -> float:
         """Return by how much factors stiffen the structure as a whole: the geometric mean of its terms [-]."""
         return float(np.exp(np.mean([np.log(term.scale(factors)) for term in self._terms])))
-
-
-def _per_row(field: Sparse) -> int:
-    return int(field.nnz // field.shape[0])
 
 
 def _leading(loads: FloatArray) -> FloatArray:

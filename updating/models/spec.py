@@ -14,17 +14,20 @@ if TYPE_CHECKING:
     from updating.models.imported.matrices import Imported
 
 Kind = Literal["beam", "plate", "matrices"]
-Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko", "kirchhoff", "imported"]
+Theory = Literal["euler-bernoulli", "rayleigh", "timoshenko", "kirchhoff", "mindlin", "imported"]
 
 EDGES = {"beam": {"x0", "x1"}, "plate": {"x0", "x1", "y0", "y1"}, "matrices": set[str]()}
 """Edges that can be clamped; imported matrices come with their supports."""
 
 THEORIES = {
     "beam": {"euler-bernoulli", "rayleigh", "timoshenko"},
-    "plate": {"kirchhoff"},
+    "plate": {"kirchhoff", "mindlin"},
     "matrices": {"imported"},
 }
 """Theories of each kind of model."""
+
+FULLER: dict[Kind, Theory] = {"beam": "timoshenko", "plate": "mindlin"}
+"""The theory of each kind of model that leaves out neither shear nor rotary inertia."""
 
 MOST_ELEMENTS = 20_000
 """More elements than this of a uniform beam or plate say nothing new and cost memory: some 2 GB on a plate [-]."""
@@ -143,7 +146,8 @@ class Spec(Displayed):
     clamped : tuple of str
         Clamped edges, of x0, x1 and for plates y0, y1; empty is free.
     theory : str
-        euler-bernoulli, rayleigh (with rotary inertia) or timoshenko for beams, kirchhoff for plates; imported.
+        euler-bernoulli, rayleigh (with rotary inertia) or timoshenko for beams, kirchhoff or mindlin
+        (with shear and rotary inertia) for plates; imported.
     material : Material
         Material of everything that no region overrides.
     regions : tuple of Region
@@ -214,9 +218,11 @@ class Spec(Displayed):
         """Whether length, width and thickness are its own, so that any place on it and any caliper mean something."""
         return self.imported is None
 
-    def knows(self, theory: Theory) -> bool:
-        """Tell whether this kind of model can be put on a theory."""
-        return theory in THEORIES[self.kind]
+    @property
+    def fuller(self) -> Theory | None:
+        """The theory with the shear and rotary inertia that the model leaves out; None where it leaves out nothing."""
+        fuller = FULLER.get(self.kind)
+        return None if fuller == self.theory else fuller
 
     def with_theory(self, theory: Theory) -> Spec:
         """Return the same specimen under another theory."""

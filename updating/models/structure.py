@@ -19,7 +19,14 @@ from scipy import sparse
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.models.base import Structure
-from updating.models.fields import Fields, Sparse, beam_fields, plate_fields, timoshenko_fields
+from updating.models.fields import (
+    Fields,
+    Sparse,
+    beam_fields,
+    mindlin_fields,
+    plate_fields,
+    timoshenko_fields,
+)
 from updating.models.spec import Region, Spec
 from updating.models.state import State
 from updating.models.terms import FieldTerm, beam_terms, plate_terms, product
@@ -160,7 +167,9 @@ def build_field_structure(spec: Spec) -> FieldStructure:
         If a region lies off the structure.
     """
     if spec.kind == "plate":
-        fields = plate_fields(spec.length, spec.width, (spec.elements[0], spec.elements[1]))
+        size = spec.length, spec.width, (spec.elements[0], spec.elements[1])
+        thin = spec.theory == "kirchhoff"
+        fields = plate_fields(*size) if thin else mindlin_fields(*size, spec.thickness)
     elif spec.theory == "timoshenko":
         fields = timoshenko_fields(spec.length, spec.elements[0])
     else:
@@ -176,23 +185,24 @@ def build_field_structure(spec: Spec) -> FieldStructure:
     terms = (
         plate_terms(spec, fields, region_of) if spec.kind == "plate" else beam_terms(spec, fields, region_of)
     )
-    return FieldStructure(spec, fields, terms, region_of, _fixed(spec, fields))
+    return FieldStructure(spec, fields, terms, region_of, clamped_dofs(spec, fields))
 
 
-def _fixed(spec: Spec, fields: Fields) -> Mapping[str, IntArray]:
+def clamped_dofs(spec: Spec, fields: Fields) -> Mapping[str, IntArray]:
     """Sort the degrees of freedom of the clamped edges into what holds translation and what rotation."""
     if not spec.clamped:
         return MappingProxyType({})
     held: dict[str, list[IntArray]] = {"translation": [], "rotation": []}
+    shears = spec.theory in ("timoshenko", "mindlin")
     for edge in spec.clamped:
         axis, end = "xy".index(edge[0]), int(edge[1])
         normal = "u_x" if axis == 0 else "u_y"
-        for component in fields.components:
+        for number, component in enumerate(fields.components):
             place = component.basis.mesh.p[axis].max() if end else component.basis.mesh.p[axis].min()
             found = component.basis.get_dofs(lambda p, a=axis, at=place: np.isclose(p[a], at))
-            for name, dofs in found.nodal.items():
-                turns = component.offset > 0 or name in (normal, "u_xy")
-                if spec.theory == "timoshenko" and name == normal:
-                    continue  # the slope of a clamped Timoshenko beam is its shear strain, and free
+            for name, dofs in [*found.nodal.items(), *found.facet.items()]:
+                if number == 0 and shears and name in (normal, "u_xy"):
+                    continue  # the slope of the displacement across a clamp is the shear strain there, and free
+                turns = number == 1 + axis if number else name in (normal, "u_xy")
                 held["rotation" if turns else "translation"].append(np.asarray(dofs) + component.offset)
     return MappingProxyType({k: np.unique(np.concatenate(v)) for k, v in held.items()})

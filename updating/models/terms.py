@@ -106,8 +106,15 @@ def shear_coefficient(poisson: float) -> float:
     return 10 * (1 + poisson) / (12 + 11 * poisson)
 
 
+PLATE_SHEAR = 5 / 6
+"""Shear coefficient of plates; Reissner, J. Appl. Mech. 12 (1945) A69 [-]."""
+
+
 def plate_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[FieldTerm, ...]:
-    """Return the stiffness and mass of a Kirchhoff plate."""
+    """Return the stiffness and mass of a plate: Kirchhoff's, or Mindlin's with shear and rotary inertia.
+
+    Mindlin, J. Appl. Mech. 18 (1951) 31-38, with Reissner's shear coefficient.
+    """
     thickness = _local(spec, region_of, "thickness", spec.thickness)
     modulus = _local(spec, region_of, "E", spec.material.E)
     density = _local(spec, region_of, "density", spec.material.density)
@@ -118,10 +125,28 @@ def plate_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[FieldT
     along, across = bending | {"length": -3.0, "width": 1.0}, bending | {"length": 1.0, "width": -3.0}
     mixed = bending | {"length": -1.0, "width": -1.0}
     inertial = {"density": 1.0, "thickness": 1.0, "width": 1.0, "length": 1.0}
+    mass = FieldTerm("mass", "w", "w", w * density * thickness, inertial)
+    if spec.theory == "kirchhoff":
+        return (
+            FieldTerm("stiffness", "wxx", "wxx", rigidity, along),
+            FieldTerm("stiffness", "wyy", "wyy", rigidity, across),
+            FieldTerm("stiffness", "wxx", "wyy", 2 * nu * rigidity, mixed),
+            FieldTerm("stiffness", "wxy", "wxy", 2 * (1 - nu) * rigidity, mixed),
+            mass,
+        )
+    # rotations are per unit of stretched length, as those of Timoshenko's beam
+    stiff = w * PLATE_SHEAR * modulus / (2 * (1 + nu)) * thickness
+    turning = w * density * thickness**3 / 12
+    shear, rotary = {"E": 1.0, "thickness": 1.0}, {"density": 1.0, "thickness": 3.0}
+    over_length, over_width = {"length": -1.0, "width": 1.0}, {"length": 1.0, "width": -1.0}
     return (
-        FieldTerm("stiffness", "wxx", "wxx", rigidity, along),
-        FieldTerm("stiffness", "wyy", "wyy", rigidity, across),
-        FieldTerm("stiffness", "wxx", "wyy", 2 * nu * rigidity, mixed),
-        FieldTerm("stiffness", "wxy", "wxy", 2 * (1 - nu) * rigidity, mixed),
-        FieldTerm("mass", "w", "w", w * density * thickness, inertial),
+        FieldTerm("stiffness", "rxx", "rxx", rigidity, along),
+        FieldTerm("stiffness", "ryy", "ryy", rigidity, across),
+        FieldTerm("stiffness", "rxx", "ryy", 2 * nu * rigidity, mixed),
+        FieldTerm("stiffness", "rt", "rt", (1 - nu) / 2 * rigidity, mixed),
+        FieldTerm("stiffness", "gx", "gx", stiff, shear | over_length),
+        FieldTerm("stiffness", "gy", "gy", stiff, shear | over_width),
+        mass,
+        FieldTerm("mass", "rx", "rx", turning, rotary | over_length),
+        FieldTerm("mass", "ry", "ry", turning, rotary | over_width),
     )

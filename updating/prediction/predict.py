@@ -21,6 +21,7 @@ from updating.models.complex_modes import ComplexModes, complex_modes
 from updating.models.damping import Matrices, damping_matrices, layer_slowing, modal_losses
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
+from updating.models.shear import sheared
 from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State
 from updating.models.whole import Whole
@@ -158,11 +159,18 @@ class Predictor(Displayed):
         return self.expects(self.base)
 
     def under(self, theory: Theory) -> Predictor:
-        """Return the predictor of the same specimen under another theory, kept for the next call."""
+        """Return the predictor of the same specimen under another theory, kept for the next call.
+
+        A thin plate that is to shear keeps its basis, see :mod:`updating.models.shear`; all others are built anew.
+        """
         if theory == self.spec.theory:
             return self
         if theory not in self._others:
-            self._others[theory] = self.of(self.spec.with_theory(theory))
+            spec = self.spec.with_theory(theory)
+            thin = (self.spec.theory, theory) == ("kirchhoff", "mindlin")
+            self._others[theory] = (
+                replace(self, spec=spec, basis=sheared(self.reduced)) if thin else self.of(spec)
+            )
         return self._others[theory]
 
     @cached_property

@@ -12,7 +12,7 @@ from acquisition.arrays import FloatArray
 from updating.effects import Effect, Parameter, Variant
 from updating.effects.base import Values
 from updating.likelihood.base import Doubt
-from updating.models.spec import Theory
+from updating.models.spec import FULLER
 from updating.models.state import State, combine
 from updating.prediction.predict import Predictor
 
@@ -28,14 +28,14 @@ class Candidate:
     ----------
     effects : tuple of Effect
         The effects; empty is 'only the tolerances'.
-    theory : str, optional
-        Theory the model is put on because the nominal one is known to fall short.
+    fuller : bool
+        Whether the model is put on the fuller theory because the nominal one is known to fall short.
     chosen : tuple of Variant
         The form of each effect; empty is the plain form of all.
     """
 
     effects: tuple[Effect, ...] = ()
-    theory: Theory | None = None
+    fuller: bool = False
     chosen: tuple[Variant, ...] = ()
 
     @property
@@ -60,13 +60,9 @@ class Candidate:
 
     def stage(self, predictor: Predictor) -> Predictor:
         """Return the predictor the effects act on."""
-        wanted = (self.theory, *(effect.theory for effect in self.effects))
-        theory = next((theory for theory in wanted if theory is not None), None)
-        if theory is None or not predictor.spec.knows(
-            theory
-        ):  # of several specimens, beams alone have another
-            return predictor
-        return predictor.under(theory)
+        theory = predictor.spec.fuller
+        wanted = self.fuller or any(effect.fuller for effect in self.effects)
+        return predictor.under(theory) if wanted and theory is not None else predictor
 
     def parameters(self, predictor: Predictor) -> tuple[tuple[str, Parameter], ...]:
         """Return the parameters that are searched, as (effect.parameter, prior)."""
@@ -101,8 +97,7 @@ class Candidate:
 
     def assemble(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
         """Return the state of the model at values of the effects' parameters."""
-        known = self.theory is not None and stage.spec.knows(self.theory)
-        theory = State(theory=self.theory if known else None)
+        theory = State(theory=FULLER.get(stage.spec.kind) if self.fuller else None)
         return combine([*(effect.state(stage, values) for effect, values in parts), theory])
 
     def locations(

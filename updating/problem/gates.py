@@ -51,16 +51,10 @@ def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
     worst = int(np.argmax(np.abs(found.theory) / noise))
     if abs(found.theory[worst]) > noise[worst]:
         notes.append(
-            f"{spec.theory} theory leaves out shear and rotary inertia: some {_percent(found.theory[worst])} in mode "
-            f"{worst + 1}, more than the noise of {_percent(noise[worst])}" + _advice(spec)
+            f"{spec.theory} theory leaves out shear and rotary inertia: {_percent(found.theory[worst])} in mode "
+            f'{worst + 1}, more than the noise of {_percent(noise[worst])}; theory = "{spec.fuller}" has them'
         )
     return notes
-
-
-def _advice(spec: Spec) -> str:
-    if spec.kind == "beam":
-        return '; theory = "timoshenko" has them'
-    return "; along free edges this softens modes that twist, and is no effect to be named"
 
 
 def _percent(share: float) -> str:

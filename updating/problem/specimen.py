@@ -57,7 +57,7 @@ class SpecimenProblem:
     accepted : tuple of Effect
         Effects put into the model beforehand, the first of the predictor's additions.
     theory_error : Shortfall, optional
-        How far the mesh, and a plate's theory, leave each mode's frequency off.
+        How far the mesh, and the theory, leave each mode's frequency off.
     mostly_alone : bool
         Whether most of the measured modes have no partner, and are left out.
     """
@@ -199,7 +199,7 @@ class SpecimenProblem:
         setting = self.setting
         phases = Phases(setting)
         every = (
-            Frequencies(setting, self._accepted_variance(), self._left_off()),
+            Frequencies(setting, self._accepted_variance(), self._mesh()),
             Dampings(setting),
             Constants(setting, phases),
             phases,
@@ -217,16 +217,10 @@ class SpecimenProblem:
         """Rows of modes whose damping is measured and expected."""
         return Dampings(self.setting).rows
 
-    def _left_off(self) -> tuple[FloatArray, FloatArray] | None:
-        """Return what mesh and theory leave off in ln f, or None where nothing is known of it.
-
-        A baseline has taken it out. A beam's theory is an effect of its own; a plate's is none.
-        """
+    def _mesh(self) -> FloatArray | None:
+        """Return what the mesh leaves off in ln f, or None where nothing is known of it or a baseline took it out."""
         found = self.theory_error
-        if found is None or not found.known or self.baseline is not None:
-            return None
-        theory = found.theory if self.predictor.spec.kind == "plate" else np.zeros(len(found.theory))
-        return found.mesh, theory
+        return None if found is None or not found.known or self.baseline is not None else found.mesh
 
     def _accepted_variance(self) -> FloatArray:
         """Return how far the idealisations of the effects put into the model beforehand may be off, relative [-]."""

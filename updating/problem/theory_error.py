@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,13 +14,15 @@ from updating.models.build import build_structure
 from updating.models.reduced import Reduced
 from updating.models.spec import Spec
 from updating.models.state import NOMINAL
+from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
+from updating.thresholds import LEAST_CONSTANT_NOISE, LEAST_FREQUENCY_NOISE, THEORY_BEYOND_NOISE
+
+if TYPE_CHECKING:
+    from updating.problem.specimen import SpecimenProblem
 
 MANY_ELEMENTS = 500
 """Plates with more elements are compared with a coarser mesh and extrapolated, which costs less."""
-
-SHEAR_COEFFICIENT = 5 / 6
-"""Of plates; Reissner, J. Appl. Mech. 12 (1945) A69 [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +74,7 @@ def theory_error(predictor: Predictor, order: IntArray, *, count: int | None = N
     if not reduced.structure.refinable:
         return TheoryError(np.zeros(len(order)), np.zeros(len(order)), known=False)
     base, vectors = _elastic(reduced, needed)
-    theory = (
-        _beam_theory(predictor, base)
-        if predictor.spec.kind == "beam"
-        else _plate_theory(reduced, base, vectors)
-    )
-    return TheoryError(_mesh(predictor.spec, base)[order], theory[order])
+    return TheoryError(_mesh(predictor.spec, base)[order], _theory(predictor, base, vectors)[order])
 
 
 def _elastic(reduced: Reduced, count: int) -> tuple[FloatArray, FloatArray]:
@@ -110,42 +108,44 @@ def _frequencies(structure: Structure, count: int) -> FloatArray:
     return np.asarray(np.sqrt(structure.eigen(first + count)[0][first:]))
 
 
-def _beam_theory(predictor: Predictor, base: FloatArray) -> FloatArray:
-    """Return what shear and rotary inertia take from each mode: Timoshenko's beam on the same mesh."""
-    fuller = replace(predictor.spec, theory="timoshenko")
-    if "timoshenko" in (predictor.spec.theory, predictor.base.theory):
-        return np.zeros(len(base))
-    return np.asarray(np.log(_frequencies(build_structure(fuller), len(base)) / base))
+def _theory(predictor: Predictor, base: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return what shear and rotary inertia take from each mode, (n_modes,) [-].
 
-
-def _plate_theory(reduced: Reduced, base: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Return an estimate of what Mindlin's plate takes from each mode of Kirchhoff's, accurate to half itself.
-
-    Inside, shear and rotary inertia take (k h)^2 / 24 (1 + 2 / (kappa (1 - nu))) from a wave of number k: Mindlin's
-    dispersion (J. Appl. Mech. 18 (1951) 31-38) to second order, with k^2 = omega sqrt(rho h / D). Along free edges the
-    twisting moment dies out over h / sqrt(12 kappa), to first order in the thickness: a strip twists as if it were
-    narrower by 0.63 h (Timoshenko and Goodier, Theory of Elasticity, 1970, article 109).
+    Of beams by rank, on the same mesh; of plates, whose modes may change places, by the nearest on the same basis.
     """
-    spec = reduced.structure.spec
-    material, h = spec.material, spec.thickness
-    rigidity = material.E * h**3 / (12 * (1 - material.poisson**2))
-    wave = base * np.sqrt(material.density * h / rigidity)
-    inside = wave * h**2 / 24 * (1 + 2 / (SHEAR_COEFFICIENT * (1 - material.poisson)))
-    energy = _edge_energy(reduced, vectors)
-    return np.asarray(-inside - h / np.sqrt(12 * SHEAR_COEFFICIENT) * energy / base**2)
+    fuller = predictor.spec.fuller
+    if fuller is None or fuller == predictor.base.theory:
+        return np.zeros(len(base))
+    if predictor.spec.kind == "beam":
+        better = build_structure(predictor.spec.with_theory(fuller))
+        return np.asarray(np.log(_frequencies(better, len(base)) / base))
+    values, others = predictor.bare.under(fuller).reduced.eigen(NOMINAL)
+    first = predictor.reduced.structure.rigid_modes
+    partner = first + np.argmax(np.abs(vectors.T @ others[:, first : first + 2 * len(base) + 5]), axis=1)
+    return np.asarray(np.log(np.sqrt(values[partner]) / base))
 
 
-def _edge_energy(reduced: Reduced, vectors: FloatArray) -> FloatArray:
-    """Return the twisting energy per metre of free edge, summed along the edges, (n_modes,) [J/m per kg m^2]."""
-    spec, points = reduced.structure.spec, reduced.fields.points
-    (term,) = [
-        t for t in reduced.structure.terms if t.kind == "stiffness" and getattr(t, "left", "") == "wxy"
-    ]
-    twist = reduced.sampled["wxy"][:, : len(vectors)]
-    density = getattr(term, "coefficient")[:, None] / 2 * (twist @ vectors) ** 2  # noqa: B009
-    total = np.zeros(vectors.shape[1])
-    for axis, (size, count) in enumerate(zip((spec.length, spec.width), spec.elements, strict=True)):
-        for end in (end for end in "01" if "xy"[axis] + end not in spec.clamped):
-            row = np.abs(points[:, axis] - size * int(end)) < size / count
-            total += density[row].sum(axis=0) / (size / count)
-    return total
+def theory_shows(problem: SpecimenProblem) -> bool:
+    """Tell whether the fuller theory moves frequencies or shapes by more than a part of the noise.
+
+    Parameters
+    ----------
+    problem : SpecimenProblem
+        Test and model, whatever was put into the model beforehand included.
+    """
+    theory, test, here = problem.predictor.spec.fuller, problem.measured, problem.nominal
+    if theory is None:
+        return False
+    there = problem.predictor.under(theory).predict(at_least=problem.reach)
+    there = there.select(match(test, there, problem.order))
+    noise = np.hypot(test.frequency_sigma / test.frequency, max(test.repeatability, LEAST_FREQUENCY_NOISE))
+    if np.any(np.abs(np.log(there.frequency / here.frequency)) > THEORY_BEYOND_NOISE * noise):
+        return True
+    if not test.has_shapes:
+        return False
+    level = np.sum(there.constants * here.constants, axis=0) / np.sum(here.constants**2, axis=0)
+    moved = there.constants / level - here.constants
+    size = np.linalg.norm(test.constants, axis=0) / np.linalg.norm(here.constants, axis=0)
+    least = LEAST_CONSTANT_NOISE * np.sqrt(np.mean(test.constants**2, axis=0))
+    share = np.sqrt(np.mean((moved * size) ** 2 / (test.constants_sigma**2 + least**2), axis=0))
+    return bool(np.any(share > THEORY_BEYOND_NOISE))

@@ -115,8 +115,8 @@ def simulated(
         predictor = _from_points(predictor, np.asarray(points, dtype=float), directions)
     whole = predictor.for_test(predictor.measured, (*predictor.additions, *map(_function, departures)))
     theory = whole.base.theory
-    if theory is not None:
-        whole = whole.under(theory)
+    if theory is not None and theory != whole.spec.theory:
+        whole = whole.of(whole.spec.with_theory(theory))
     _check(whole)
     seen = slice(None) if points is None else slice(-len(points), None)
     matrices, rigid = whole.matrices(), whole.reduced.structure.rigid_modes

@@ -69,16 +69,13 @@ def fitted(diagnosis: Diagnosis, case: Case, *, alone: bool = True) -> Fitted:
     leader = diagnosis.ranking[0] if diagnosis.ranking and diagnosis.verdict != "none" else None
     if leader is None or any(name not in LIBRARY for name in leader.effects):
         return Fitted(problem)
-    spec = problem.predictor.spec
-    better = {effect.theory for effect in LIBRARY.values() if effect.theory and spec.knows(effect.theory)}
-    theories = (None, *sorted(better))
     found: list[tuple[Candidate, Point]] = []
-    for theory in theories:
+    for fuller in (False, True)[: 1 + (problem.predictor.spec.fuller is not None)]:
         given = _stated(leader.parameters, case.title)
         applying = [n for n in leader.effects if problem.applies(LIBRARY[n]) is None]
         stated = dict(zip(leader.effects, leader.forms, strict=False))
         forms = tuple(Variant(stated[n]) if n in stated else _form(n, given) for n in applying)
-        candidate = Candidate(tuple(LIBRARY[n] for n in applying), theory, forms)
+        candidate = Candidate(tuple(LIBRARY[n] for n in applying), fuller, forms)
         start = _start(problem, candidate, given)
         point = highest(problem, candidate, start, rounds=6) if alone else evaluate(problem, candidate, start)
         found.append((candidate, point))

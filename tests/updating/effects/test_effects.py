@@ -84,7 +84,7 @@ def test_forms_have_shares_and_fix_what_is_known(name: str, place: str) -> None:
 
 def test_what_cannot_be_examined_is_said() -> None:
     assert not admits("clamp_rotation", "free")
-    assert not admits("shear", "plate")
+    assert admits("shear", "plate")
     assert not admits("sensor_mass", "no shapes")
     assert not admits("calibration_gain", "no shapes")
     thick, unknown = (
@@ -92,6 +92,8 @@ def test_what_cannot_be_examined_is_said() -> None:
         replace(LOOK["beam"].measured, damping=np.full(2, np.nan)),
     )
     assert "already" in str(LIBRARY["shear"].obstacle(thick))
+    mindlin = LOOK["plate"].of(LOOK["plate"].spec.with_theory("mindlin"))
+    assert "already" in str(LIBRARY["shear"].obstacle(mindlin))
     assert "damping" in str(LIBRARY["exponential_window"].obstacle(LOOK["beam"].for_test(unknown)))
 
 
@@ -118,7 +120,8 @@ def test_priors_have_a_range_and_quantiles_go_there_and_back(name: str, place: s
 @admitted()
 def test_any_state_within_the_prior_has_modes(name: str, place: str) -> None:
     effect, predictor = LIBRARY[name], LOOK[place]
-    stage = predictor.under("timoshenko") if name == "shear" else predictor
+    fuller = predictor.spec.fuller
+    stage = predictor.under(fuller) if effect.fuller and fuller else predictor
     for u in (0.0, 0.5, 1.0):
         for chosen in effect.variants(predictor)[:6]:
             values = {**form(effect, predictor, u), **chosen.values}
@@ -224,6 +227,15 @@ def test_frequencies_move_the_way_they_must(name: str, place: str) -> None:
         assert RISES[name] * np.log(high / low).sum() > 1e-4
     else:
         assert high == pytest.approx(low, rel=1e-9)
+
+
+def test_shear_turns_a_thin_plate_into_a_thick_one() -> None:
+    plate = LOOK["plate"]
+    found = plate.predict(LIBRARY["shear"].state(plate, {}), count=5).frequency
+    thick = plate.of(plate.spec.with_theory("mindlin")).predict(count=5).frequency
+    thin = plate.predict(count=5).frequency
+    assert np.log(found / thin) == pytest.approx(np.log(thick / thin), abs=0.06 * np.log(thin / thick).max())
+    assert np.all(found < thin)
 
 
 def test_shear_lowers_the_higher_modes_most() -> None:

@@ -86,16 +86,15 @@ def test_the_thick_plate_of_this_file_is_the_published_one(
 
 @pytest.mark.parametrize("thickness", [0.003175, 0.01])
 @pytest.mark.parametrize("clamped", [("x0",), ("x0", "x1", "y0", "y1"), ()])
-def test_what_thin_plates_lack_is_estimated_to_half_of_itself(
-    thickness: float, clamped: tuple[str, ...]
-) -> None:
+def test_what_thin_plates_lack_is_known_mode_by_mode(thickness: float, clamped: tuple[str, ...]) -> None:
     spec = replace(PLATE, thickness=thickness, clamped=clamped, elements=(20, 12))
     found = theory_error(evaluate(spec), np.arange(8))
     structure = build_structure(replace(spec, elements=(38, 20)))
     values = structure.eigen(structure.rigid_modes + 8)[0][structure.rigid_modes :]
     exact = np.log(thick_plate(spec, 8) / (np.sqrt(values) / (2 * np.pi)))
     assert np.all(exact < 0)
-    assert np.all(np.abs(found.theory - exact) < 0.5 * np.abs(exact) + 2e-4)
+    # the polynomials do not quite resolve what happens within the thickness of a free edge
+    assert np.all(np.abs(found.theory - exact) < 0.2 * np.abs(exact) + 2e-4)
 
 
 def test_beams_are_compared_with_exact_ones() -> None:

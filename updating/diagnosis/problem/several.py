@@ -116,7 +116,7 @@ class Several:
         blocks = []
         for effect, form in zip(candidate.effects, candidate.forms, strict=True):
             for i in self._specimens_of(effect):
-                own = Candidate((effect,), candidate.theory, (form,))
+                own = Candidate((effect,), candidate.fuller, (form,))
                 stage = own.stage(self.specimens[i].predictor)
                 blocks.append((effect, form, i, list(own.parameters(stage))))
         return blocks
@@ -136,7 +136,7 @@ class Several:
         """Return prior quantiles from which to search: the same start on all specimens."""
         parts = []
         for effect, form, i, _ in self._blocks(candidate):
-            own = Candidate((effect,), candidate.theory, (form,)).starts(self.specimens[i].predictor)
+            own = Candidate((effect,), candidate.fuller, (form,)).starts(self.specimens[i].predictor)
             parts.append((effect.name, own))
         names = list(dict.fromkeys(name for name, _ in parts))
         counts = {name: min(len(own) for n, own in parts if n == name) for name in names}
@@ -152,7 +152,7 @@ class Several:
         start = 0
         for effect, form, i, own in self._blocks(candidate):
             end = start + len(own)
-            single = Candidate((effect,), candidate.theory, (form,))
+            single = Candidate((effect,), candidate.fuller, (form,))
             stage = single.stage(self.specimens[i].predictor)
             ((_, found),) = single.split(stage, coordinates[start:end].tolist())
             everywhere = self._kept[effect.name] if effect.name in self.shared else [i]
@@ -223,7 +223,7 @@ class Several:
         problem, doubt = self.specimens[i], candidate.doubt_on(self.specimens[i].predictor)
         acting = tuple((e, tuple(own[e.name].items())) for e in candidate.effects if e.name in own)
         stage = candidate.stage(problem.predictor)
-        key = (i, candidate.theory, stage, acting, doubt, None if shift is None else shift.tobytes())
+        key = (i, candidate.fuller, stage, acting, doubt, None if shift is None else shift.tobytes())
         return self.recent.get(
             key, lambda: problem.compare(self._state(candidate, problem, own), shift, doubt=doubt)
         )
@@ -244,5 +244,5 @@ class Several:
                 columns += range(start, end)
                 kept.append((effect, form))
             start = end
-        part = Candidate(tuple(e for e, _ in kept), candidate.theory, tuple(f for _, f in kept))
+        part = Candidate(tuple(e for e, _ in kept), candidate.fuller, tuple(f for _, f in kept))
         return part, np.array(columns, dtype=np.int64)

@@ -18,10 +18,10 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain, finish
 from updating.diagnosis.search.fit import sensitivities
-from updating.effects import Effect, Obstacle, Variant
+from updating.effects import Effect, Lack, Obstacle, Variant
 from updating.likelihood.gaussian import normal_equations
-from updating.models.spec import Theory
 from updating.problem.candidate import Candidate
+from updating.problem.theory_error import theory_shows
 from updating.thresholds import (
     CLIMBS,
     COUNT_PRIOR,
@@ -36,11 +36,13 @@ from updating.thresholds import (
     PROBABLE_BEHIND,
     REJECTED_FIT,
     SET_MARGIN,
-    THEORY_BEYOND_NOISE,
     TRIPLES_WEIGHED,
     WELL_FITTED,
     WITHIN_REACH,
 )
+
+BENEATH = "what it changes of a plate is computed, and put under every set of causes where it shows"
+"""Why a plate's theory is not weighed as a cause."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,16 +91,22 @@ class Search:
         All sets of effects, most probable first; the empty set is among them.
     not_examined : dict
         Effects left out, and why.
+    both : bool
+        Whether every set was weighed on the model's theory and on the fuller one.
     """
 
     nothing: Explanation
     compared: tuple[Compared, ...]
     not_examined: dict[str, Obstacle]
+    both: bool = False
 
 
 def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, Obstacle]]:
     """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
     obstacles = {effect.name: problem.applies(effect) for effect in library}
+    for effect in library:
+        if effect.fuller and obstacles[effect.name] is None and _beneath(problem):
+            obstacles[effect.name] = Obstacle(Lack.MODEL, BENEATH)
     possible = [effect for effect in library if obstacles[effect.name] is None]
     return possible, {name: why for name, why in obstacles.items() if why is not None}
 
@@ -115,14 +123,16 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     """
     effects, obstacles = examine(problem, library)
     nothing = explain(problem, Candidate())
-    theory = _better_theory(problem, effects)
-    drafts = _singles(problem, effects, nothing, theory)
+    both = _on_both(problem, effects, nothing)
+    if both and _beneath(problem):
+        nothing = _either(nothing, explain(problem, Candidate(fuller=True)))
+    drafts = _singles(problem, effects, nothing, both=both)
     found = _finished(problem, [nothing, *drafts])
     if not _explained(problem, found, well=True):
         found = _finished(problem, found + _pairs(problem, found, least=not _explained(problem, found)))
     if not _explained(problem, found):
         found = _finished(problem, found + _triples(problem, found))
-    return Search(nothing, _merged(problem, _compare(found)), obstacles)
+    return Search(nothing, _merged(problem, _compare(found)), obstacles, both)
 
 
 def _explained(problem: DiagnosisProblem, found: list[Explanation], *, well: bool = False) -> bool:
@@ -191,50 +201,56 @@ def _compare(found: list[Explanation]) -> list[Compared]:
     return [Compared(e, float(p), e.p_value) for e, p in zip(found, probability, strict=True)]
 
 
-def _better_theory(problem: DiagnosisProblem, effects: list[Effect]) -> Theory | None:
-    """Return the better beam theory on which every effect must also be weighed, or None.
+def _beneath(problem: DiagnosisProblem) -> bool:
+    """Tell whether theory is no cause to be named but what every set, the empty one too, stands on: of plates.
 
-    It must where the theory shifts frequencies by more than a part of the noise, unless the better theory alone
-    explains the data: then nothing else is needed beside it.
+    What a thin plate lacks is computed mode by mode; nobody who models one means that the specimen has no shear.
     """
-    better = next((effect for effect in effects if effect.theory is not None), None)
-    if better is None or better.theory is None:
-        return None
-    if explain(problem, Candidate((better,))).p_value >= REJECTED_FIT:
-        return None
-    count = len(problem.nominal.frequency) + 5
-    here = problem.predictor.predict(count=count).frequency
-    there = problem.predictor.under(better.theory).predict(count=count).frequency
-    within = here <= 1.001 * problem.nominal.frequency.max()
-    noise = np.hypot(
-        problem.measured.repeatability, np.min(problem.measured.frequency_sigma / problem.measured.frequency)
-    )
-    return better.theory if np.abs(np.log(there / here))[within].max() > THEORY_BEYOND_NOISE * noise else None
+    return all(one.predictor.spec.kind == "plate" for one in problem.specimens)
+
+
+def _on_both(problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation) -> bool:
+    """Tell whether every set must be weighed on the fuller theory as well.
+
+    It must where that theory moves frequencies or shapes by more than a part of the noise, unless, where theory is a
+    cause like others, it alone explains the data: then nothing else is needed beside it.
+    """
+    if not any(theory_shows(one) for one in problem.specimens):
+        return False
+    if _beneath(problem):
+        return True
+    fuller = next((effect for effect in effects if effect.fuller), None)
+    return fuller is not None and explain(problem, Candidate((fuller,))).p_value < REJECTED_FIT
 
 
 def _singles(
-    problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, theory: Theory | None
+    problem: DiagnosisProblem, effects: list[Effect], nothing: Explanation, *, both: bool
 ) -> list[Explanation]:
     """Weigh every form of every effect, the simple ones first: what they reach is the bar for the others."""
     forms = [(effect, form) for effect in effects for form in problem.forms(effect)]
     forms.sort(key=lambda pair: len(problem.parameters(Candidate((pair[0],), chosen=(pair[1],)))))
     bar, found = nothing.best.marginal.log_likelihood, []
     for effect, form in forms:
-        found.append(_single(problem, effect, form, theory, bar))
+        found.append(_single(problem, effect, form, bar, both=both))
         bar = max(bar, found[-1].best.marginal.log_likelihood)
     return found
 
 
 def _single(
-    problem: DiagnosisProblem, effect: Effect, form: Variant, theory: Theory | None, bar: float
+    problem: DiagnosisProblem, effect: Effect, form: Variant, bar: float, *, both: bool
 ) -> Explanation:
-    """Weigh one form of an effect; where the theory falls short, on either theory and half the evidence of each."""
+    """Weigh one form of an effect, where the theory falls short on either theory."""
     plain = explain(problem, Candidate((effect,), chosen=(form,)), laplace_only=True, bar=bar)
-    if theory is None or effect.theory is not None:
+    if not both or effect.fuller:
         return plain
-    better = explain(problem, Candidate((effect,), theory=theory, chosen=(form,)), laplace_only=True, bar=bar)
-    total = float(np.logaddexp(plain.log_evidence, better.log_evidence) - np.log(2))
-    chosen = max(plain, better, key=lambda e: e.log_evidence)
+    fuller = Candidate((effect,), fuller=True, chosen=(form,))
+    return _either(plain, explain(problem, fuller, laplace_only=True, bar=bar))
+
+
+def _either(plain: Explanation, fuller: Explanation) -> Explanation:
+    """Return the better of one set on two theories, with half the evidence of each."""
+    total = float(np.logaddexp(plain.log_evidence, fuller.log_evidence) - np.log(2))
+    chosen = max(plain, fuller, key=lambda e: e.log_evidence)
     return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
 
 
@@ -341,7 +357,7 @@ def _pair(
     if anew:
         starts += [np.concatenate([a, own]) for own in problem.starts(two)]
         starts += [np.concatenate([own, b]) for own in problem.starts(one)]
-    both = Candidate(one.effects + two.effects, theory=one.theory or two.theory, chosen=one.forms + two.forms)
+    both = Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
     unlike = list(
         {tuple(u.tolist()): u for u in starts}.values()
     )  # of an effect without parameters all are alike
@@ -378,7 +394,7 @@ def _parts_of_pair(problem: DiagnosisProblem, pair: Explanation) -> tuple[PairPa
     """Take a pair apart."""
     whole = pair.candidate
     first, second = (
-        Candidate((effect,), theory=whole.theory, chosen=(form,))
+        Candidate((effect,), fuller=whole.fuller, chosen=(form,))
         for effect, form in zip(whole.effects, whole.forms, strict=True)
     )
     count = len(problem.parameters(first))

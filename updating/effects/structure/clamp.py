@@ -103,6 +103,8 @@ def edge_slopes(structure: Structure) -> Sparse:
     normal = {"x": "wx", "y": "wy"}
     if structure.spec.theory == "timoshenko":
         normal["x"] = "r"
+    if structure.spec.theory == "mindlin":
+        normal = {"x": "tx", "y": "ty"}
     return _along_edges(structure, normal)
 
 
@@ -127,6 +129,7 @@ def _along_edges(structure: FieldStructure, names: Mapping[str, str]) -> Sparse:
             nodes, weights = np.polynomial.legendre.leggauss(40)
             span, weights = (nodes + 1) * size / 2, weights * size / 2
             ends = (np.full(40, place), span) if edge[0] == "x" else (span, np.full(40, place))
-            rows = fields.at(np.stack(ends, axis=1))[name]
+            component = next(c for c in fields.components if name in c.names)
+            rows = component.at(np.stack(ends, axis=1), fields.n_dofs)[name]
         total = total + rows.T @ sparse.diags_array(weights) @ rows
     return Sparse(total)

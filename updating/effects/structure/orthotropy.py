@@ -9,8 +9,14 @@ from updating.models.state import State
 from updating.models.terms import FieldTerm
 from updating.prediction.predict import Predictor
 
-SHARES = {("wyy", "wyy"): 1.0, ("wxx", "wyy"): 0.5, ("wxy", "wxy"): 0.5}
-"""Power of D_y / D_x in each term of the bending energy, by Huber (1923)."""
+SHARES = {("wyy", "wyy"): 1.0, ("wxx", "wyy"): 0.5, ("wxy", "wxy"): 0.5} | {
+    ("ryy", "ryy"): 1.0,
+    ("rxx", "ryy"): 0.5,
+    ("rt", "rt"): 0.5,
+    ("gx", "gx"): 0.5,
+    ("gy", "gy"): 0.5,
+}
+"""Power of D_y / D_x in each term of the energy of a thin plate (Huber 1923) and of a thick one (G as the twist)."""
 
 
 class Orthotropy(Effect):

@@ -1,29 +1,32 @@
-"""Shear deformation and rotary inertia that Euler-Bernoulli theory leaves out."""
+"""Shear deformation and rotary inertia that slender theories leave out."""
 
 from types import MappingProxyType
-from typing import ClassVar
 
 from updating.effects.base import Effect, Parameter, Values
 from updating.effects.obstacles import Lack, Obstacle
-from updating.models.spec import Theory
+from updating.models.spec import FULLER
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
 
 class Shear(Effect):
-    """Timoshenko's beam in place of Euler and Bernoulli's (Timoshenko 1921; coefficient of Cowper 1966)."""
+    """Timoshenko's beam in place of Euler and Bernoulli's, Mindlin's plate in place of Kirchhoff's.
+
+    Timoshenko (1921) with the coefficient of Cowper (1966); Mindlin (1951) with that of Reissner (1945).
+    """
 
     name = "shear"
     channel = "stiffness"
-    summary = "The beam theory leaves out shear deformation and rotary inertia."
-    footprint = "Frequencies fall, in proportion to the square of the thickness over the wavelength."
-    models = ("beam",)
-    separated_by = "a Timoshenko model; nothing has to be measured"
-    phrase = "shear and rotary inertia"
-    elsewhere = MappingProxyType(
-        {"plate": "plates are modelled as thin; shear in plates is not in the library"}
+    summary = "The theory of the model leaves out shear deformation and rotary inertia."
+    footprint = (
+        "Frequencies fall, in proportion to the square of the thickness over the wavelength; on plates with free edges "
+        "those of modes that twist fall most, in proportion to the thickness."
     )
-    theory: ClassVar[Theory] = "timoshenko"
+    models = ("beam", "plate")
+    separated_by = 'theory = "timoshenko" (beams) or "mindlin" (plates); nothing has to be measured'
+    phrase = "shear and rotary inertia"
+    elsewhere = MappingProxyType({"matrices": "the elements that made the matrices have it or have it not"})
+    fuller = True
     fidelity = 0.01
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
@@ -31,10 +34,10 @@ class Shear(Effect):
         return ()
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
-        """Need a beam whose theory lacks it."""
-        there = predictor.spec.theory == self.theory
+        """Need a theory that lacks it."""
+        there = predictor.spec.fuller is None
         return Obstacle(Lack.MODEL, "the model has it already") if there else None
 
     def state(self, predictor: Predictor, values: Values) -> State:
-        """Return the same structure as a Timoshenko beam."""
-        return State(theory=self.theory)
+        """Return the same structure under the fuller theory."""
+        return State(theory=FULLER[predictor.spec.kind])
