@@ -7,7 +7,7 @@ matrices, so that no effect needs an exact form beside its own.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain, combinations
 from typing import Any, cast
 
@@ -40,7 +40,7 @@ class Whole(Reduced):
         The same structure on a reduced basis, for what needs one.
     """
 
-    on_basis: Reduced
+    on_basis: Reduced = field(kw_only=True)
 
     @classmethod
     def of(cls, small: Reduced) -> Whole:
@@ -49,7 +49,8 @@ class Whole(Reduced):
         kinds = sorted(structure.fixed)
         sets = chain.from_iterable(combinations(kinds, n) for n in range(len(kinds) + 1))
         every = sparse.eye_array(structure.n_dofs, format="csr")
-        return cls(structure, cast(FloatArray, every), {frozenset(s): structure.n_dofs for s in sets}, small)
+        ranks = {frozenset(s): structure.n_dofs for s in sets}
+        return cls(structure, cast(FloatArray, every), ranks, on_basis=small)
 
     @property
     def small(self) -> Reduced:
