@@ -62,6 +62,11 @@ class HammerPlan:
     drift : float
         Standard deviation of the frequencies from point to point, as temperature and set-up make it: a factor
         common to all modes while a point is hit [-].
+    ringing : float
+        Height of the swing at 1 / ``width``, twice the frequency of the pulse, in which the hammer itself goes on
+        after it, relative to the pulse's; force and responses both have it [-].
+    noisy : mapping of int to float
+        Rows of points, from 0, to how many times noisier than the others' their response records are [-].
     anti_alias : {"smooth", "sharp"}
         The filter in front of the converter: one that falls smoothly and does not ring, or an elliptic one of
         eighth order, as converters have, that rings for some tens of samples after a short pulse.
@@ -104,6 +109,8 @@ class HammerPlan:
     response_range: float | None = None
     position_sigma: float = 0.0
     drift: float = 0.0
+    ringing: float = 0.0
+    noisy: Mapping[int, float] = field(default_factory=dict)
     anti_alias: Literal["smooth", "sharp"] = "smooth"
     decay: float = 0.0
     gain: float = 1.0

@@ -31,6 +31,28 @@ def pulse_transform(
     return np.asarray(0.5 * (1 - end) * rate**2 / (laplace * (laplace**2 + rate**2)), dtype=np.complex128)
 
 
+RING_RATIO = 0.08
+"""Damping ratio of a hammer's own resonance: the swing has died away after some two more widths; half as much lasts
+twice as long [-]."""
+
+
+def ringing(laplace: ComplexArray, width: float, height: float) -> ComplexArray:
+    """Return what a resonance of the hammer at 1 / width adds to its pulse, relative to it, shape as ``laplace`` [-].
+
+    Parameters
+    ----------
+    laplace : complex array
+        Where in the Laplace plane [rad/s].
+    width : float
+        Length of the pulse [s].
+    height : float
+        Of the swing over that of the pulse; the swing builds up to about half pi times its own transform's size [-].
+    """
+    rate = 2 * np.pi / width
+    swing = rate * laplace / (laplace**2 + 2 * RING_RATIO * rate * laplace + rate**2)
+    return np.asarray(height / (0.5 * np.pi) * swing, dtype=np.complex128)
+
+
 def anti_alias(frequency: FloatArray, rate: float) -> FloatArray:
     """Return the gain of the filter: 1 up to rate / 2.56, a smooth fall, 0 from the Nyquist frequency on [-].
 

@@ -16,7 +16,7 @@ from acquisition.geometry import Geometry
 from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.synthetic.faults import clip, coloured, cut_off, quantise
 from acquisition.synthetic.procedure import HammerPlan
-from acquisition.synthetic.pulses import anti_alias, pulse_transform, sharp_anti_alias
+from acquisition.synthetic.pulses import anti_alias, pulse_transform, ringing, sharp_anti_alias
 from acquisition.synthetic.system import ModalSystem
 
 
@@ -138,6 +138,8 @@ def _one_hit(
     s = contour.laplace
     push = level * pulse_transform(s, width, plan.pulse) * np.exp(-s * start)
     second = rng.uniform((0.15, 4 * plan.width), (0.5, 4 * plan.width + 0.015))
+    if plan.ringing:
+        push = push * (1 + ringing(s, width, plan.ringing))
     if kind == "double":
         push = push * (1 + second[0] * np.exp(-s * second[1]))
     structure = at_level(float(level))
@@ -147,7 +149,7 @@ def _one_hit(
     force, motion = contour.samples(push), contour.samples(receptance * (transducer * push))
     largest = np.abs(motion).max(axis=-1, keepdims=True)
     force = force + plan.force_noise * coloured(rng.standard_normal(force.shape), plan.noise_slope)
-    noise = np.hypot(plan.response_noise * largest, plan.response_floor)
+    noise = plan.noisy.get(place[0], 1.0) * np.hypot(plan.response_noise * largest, plan.response_floor)
     motion = motion + noise * coloured(rng.standard_normal(motion.shape), plan.noise_slope)
     if kind == "clipped":
         return clip(force), clip(motion)

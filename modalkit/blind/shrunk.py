@@ -23,6 +23,7 @@ _BOUND = 3.0
 _FREQUENCY_SIGMA = 2e-4
 _HELD_OUT = 3
 _LEAST = 1e-3
+_RIGID = 0.1  # of the compliance that a stiffer place keeps at least, a loss of -9
 _STANDS = 0.02  # of the first nominal frequency; what is slower has buckled
 
 
@@ -135,10 +136,8 @@ def _as_box(values: dict[str, Any]) -> dict[str, Any]:
     """Return a soft place as the library means it, a box, and with the compliance that is told, which counts."""
     if "compliance" not in values:
         return values | {"form": "rectangle"}
-    return values | {
-        "form": "rectangle",
-        "loss": values["compliance"] / (values["compliance"] + values["extent"]),
-    }
+    left = max(values["compliance"] + values["extent"], _RIGID * values["extent"])
+    return values | {"form": "rectangle", "loss": 1.0 - values["extent"] / left}
 
 
 def _errors(trial: Trial, added: Scene, metric: str) -> tuple[FloatArray, FloatArray] | None:

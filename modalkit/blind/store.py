@@ -19,7 +19,7 @@ from modalkit.blind.seal import SALT_BYTES, open_seal
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.workers.journal import Journal, read_journal
 
-SCHEMA = "modalkit.blindrun/1"
+SCHEMA = "modalkit.blindrun/2"
 _ROUNDS = 200_000  # of the hash of the seed, so that guessing many takes long
 
 

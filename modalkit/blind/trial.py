@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from acquisition.errors import StudyError
-from modalkit.blind.visibility import visibility
+from modalkit.blind.visibility import shown
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
 from modalkit.simulator.hidden import HiddenEffect, Values
@@ -67,6 +67,9 @@ class Truth:
         Whether the FRFs have an absolute level.
     gap_percent : float
         R.m.s. gap between the frequencies of the nominal model and of the specimen [%].
+    left_visible : float or None
+        Standard deviations of the change that the best single effect of the library leaves, linearised; None where
+        the library has all that is hidden [-].
     """
 
     kind: str
@@ -83,6 +86,7 @@ class Truth:
     baseline: bool
     calibrated: bool
     gap_percent: float
+    left_visible: float | None = None
 
     def to_json(self) -> dict[str, Any]:
         """Return the truth as JSON can carry it."""
@@ -166,7 +170,7 @@ def _setup_and_hidden_effects(
     for _ in range(_ATTEMPTS):
         setup = draw_setup(build, plan=plan)
         if lacks_shear(setup) and (
-            sort not in ("single", "pair") or "shear" not in (plan.effects or ("shear",))
+            sort not in ("single", "pair", "triple") or "shear" not in (plan.effects or ("shear",))
         ):
             setup = replace(setup, theory="timoshenko")
         hidden_effects = choose_hidden_effects(choose, setup, sort, plan)
@@ -186,6 +190,8 @@ def _truth(
     strength: tuple[str, float],
 ) -> Truth:
     setup = scene.setup
+    seen = shown(scene, _plain(before, hidden_effects))
+    in_library = all(s.in_library for s in hidden_effects)
     named = list(zip(hidden_effects, values, strict=True))
     without = tuple(s.name for s in hidden_effects if s.in_library) if plan.leave_out else ()
     return Truth(
@@ -198,16 +204,17 @@ def _truth(
             if not isinstance(value, str)
         },
         accepted=right_answers(hidden_effects, values, setup, without),
-        in_library=all(s.in_library for s in hidden_effects),
+        in_library=in_library,
         without=without,
         severity=strength[1],
         level=strength[0],
-        visibility=visibility(scene, _plain(before, hidden_effects)),
+        visibility=seen.length,
         size=setup.size,
         places=tuple(place for s, drawn in named for place in s.places(setup, drawn)),
         baseline=setup.baseline,
         calibrated=setup.calibrated,
         gap_percent=gap_percent(scene),
+        left_visible=None if in_library and not without else seen.left(without),
     )
 
 

@@ -2,83 +2,54 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray
-from modalkit.simulator.bodies.solid.solid import Solid
-from modalkit.simulator.matching import match
-from modalkit.simulator.scene import Scene, nominal_scene
-from modalkit.simulator.setup import Setup
-
-_FREQUENCY_SIGMA = 2e-4
-_SHAPE_SIGMA = 0.02
-_DAMPING_SIGMA = 0.05
-_STEP = 1e-3
-_ELEMENTS: dict[str, Any] = {"beam": 6, "plate": (4, 2), "solid": 6}
-_HARDER = 1.5
-_TOLERANCES = ("E", "density", "thickness", "length", "width")
+from acquisition.arrays import FloatArray
+from modalkit.blind.reading import FREQUENCY_SIGMA, SHAPE_SIGMA, Scales, scales
+from modalkit.blind.signatures import signatures
+from modalkit.simulator.scene import Scene
 
 
 @dataclass(frozen=True, eq=False)
-class _Reading:
-    """What a test reads of the modes the band was chosen for.
+class Shown:
+    """What an effect does to the data.
 
-    Frequency [rad/s], decay [1/s], modal constants phi_i phi_sensor [1/kg], the change of ln f from the median
-    level to a harder hit, and the scatter that the test's conduct adds to ln f and to the constants [-].
+    Parameters
+    ----------
+    change : (n,) array
+        Change of the data in standard deviations [-].
+    scatter : float
+        Squared: what scatters from hit to hit more than hits do, which no effect of the library makes [-].
+    scales : Scales
+        Of the test.
     """
 
-    frequency: FloatArray
-    decay: FloatArray
-    constants: ComplexArray
-    level_shift: FloatArray
-    drift: float
-    tilt: float
+    change: FloatArray
+    scatter: float
+    scales: Scales
 
-    def vector(self, scale: FloatArray) -> FloatArray:
-        """Return ln f, ln decay, level shifts, and the constants over their modes' ``scale``, in one row."""
-        constants = (self.constants / scale).ravel()
-        return np.concatenate(
-            [np.log(self.frequency), np.log(self.decay), self.level_shift, constants.real, constants.imag]
-        )
+    @property
+    def length(self) -> float:
+        """Mahalanobis length of the whole change [-]."""
+        return float(np.sqrt(self.change @ self.change + self.scatter))
 
+    def left(self, without: Sequence[str] = ()) -> float:
+        """Return the length of what the best single effect of the rig's library leaves of the change [-].
 
-def _read(scene: Scene, like: _Reading | None = None, shapes: Scene | None = None) -> _Reading:
-    setup = scene.setup
-    if not isinstance(scene.body, Solid):
-        scene = scene.with_body(elements=_ELEMENTS[setup.kind])
-    modes = scene.elastic()
-    if shapes is not None:
-        nominal = shapes.elastic().take(slice(0, setup.modes))
-        chosen = match(nominal, modes)
-    else:
-        chosen = np.arange(setup.modes)
-    poles = modes.poles[chosen]
-    constants = modes.residues[:, chosen] * 2j * poles.imag
-    constants = scene.chain.gain * constants * np.exp(-1j * poles.imag * scene.chain.delay)
-    shift = np.zeros(len(chosen))
-    if scene.depends_on_level:
-        harder = scene.elastic(_HARDER * setup.peak).poles[chosen]
-        shift = np.log(np.abs(harder) / np.abs(poles))
-    return _Reading(
-        np.abs(poles),
-        scene.chain.window - poles.real,
-        constants,
-        shift,
-        scene.chain.drift,
-        scene.chain.tilt,
-    )
+        Parameters
+        ----------
+        without : sequence of str
+            Effects that the library lacks in this trial.
+        """
+        left = [signature.left(self.change) for signature in signatures(self.scales, without)]
+        return float(np.sqrt(min(left, default=float(self.change @ self.change)) + self.scatter))
 
 
-def visibility(scene: Scene, before: Scene) -> float:
-    """Return how many standard deviations an effect moves the data off what tolerances allow.
-
-    The data are taken as Gaussian with rough figures for identification (frequency 0.02 %, decay 5 %,
-    constants 2 % of each mode's largest), plus the stated repeatability, calibration, tolerances and places of
-    the points, whose effect is linearised on the rig's own model. With a baseline, tolerances and calibration
-    cancel. What scatters from hit to hit counts by its scatter over that of the hits.
+def shown(scene: Scene, before: Scene) -> Shown:
+    """Return by how many standard deviations an effect moves the data off what tolerances allow.
 
     Parameters
     ----------
@@ -87,45 +58,12 @@ def visibility(scene: Scene, before: Scene) -> float:
 
     Returns
     -------
-    float
-        Mahalanobis length of the change [-].
+    Shown
+        In the scales of :func:`modalkit.blind.reading.scales`. What scatters from hit to hit counts by its
+        scatter over that of the hits.
     """
-    setup = scene.setup
-    nominal = nominal_scene(setup)
-    base = _read(nominal)
-    scale = np.abs(base.constants).max(axis=0)
-    first, second = _read(scene, shapes=nominal), _read(before, shapes=nominal)
-    change = second.vector(scale) - first.vector(scale)
-    n = setup.modes
-    sigma = np.concatenate(
-        [
-            np.full(n, np.hypot(_FREQUENCY_SIGMA, setup.repeatability)),
-            np.full(n, _DAMPING_SIGMA),
-            np.full(n, _FREQUENCY_SIGMA),
-            np.full(len(change) - 3 * n, _SHAPE_SIGMA),
-        ]
-    )
-    covariance = np.diag(sigma**2) * (2.0 if setup.baseline else 1.0)
-    if not setup.baseline:
-        columns = _tolerance_columns(setup, base, scale)
-        covariance = covariance + columns @ columns.T
-    square = change @ np.linalg.solve(covariance, change)
-    square += n * (first.drift / _FREQUENCY_SIGMA) ** 2 / len(setup.points)
-    square += len(setup.points) * (0.5 * first.tilt**2 / _SHAPE_SIGMA) ** 2
-    return float(np.sqrt(square))
-
-
-def _tolerance_columns(setup: Setup, nominal: _Reading, scale: FloatArray) -> FloatArray:
-    """Return the change of the data per standard deviation of each doubt, one column each."""
-    start = nominal.vector(scale)
-    columns = []
-    for name in _TOLERANCES:
-        moved = _read(nominal_scene(setup, factors={name: 1.0 + _STEP}))
-        columns.append((moved.vector(scale) - start) / _STEP * getattr(setup.tolerances, name))
-    n = setup.modes
-    constants = (nominal.constants / scale).ravel()
-    gain = np.concatenate([np.zeros(3 * n), constants.real, constants.imag])
-    damping = np.zeros((len(start), n))
-    share = (nominal.decay - setup.window) / nominal.decay
-    damping[n + np.arange(n), np.arange(n)] = setup.tolerances.damping * share
-    return np.column_stack([*columns, setup.calibration * gain, damping])
+    setup, chain = scene.setup, scene.chain
+    of = scales(setup)
+    scatter = setup.modes * (chain.drift / FREQUENCY_SIGMA) ** 2 / len(setup.points)
+    scatter += len(setup.points) * (0.5 * chain.tilt**2 / SHAPE_SIGMA) ** 2
+    return Shown(of.change(scene, before), float(scatter), of)

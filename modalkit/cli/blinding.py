@@ -92,7 +92,7 @@ def blind(
     check_outputs(
         (json, json_of(f"modalkit.{_DOCUMENTS[job]}/1")),
         (markdown, MARKDOWN),
-        (store, store_of("modalkit.blindrun/1")),
+        (store, store_of("modalkit.blindrun/2")),
         reads=read_by([study] if study is not None else []),
     )
     check_folder(figures)

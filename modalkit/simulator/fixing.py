@@ -12,6 +12,9 @@ from modalkit.simulator.bodies.plate.parts import Patch, PlateAbsorber, PlateAtt
 from modalkit.simulator.bodies.solid.solid import Cut, Solid
 from modalkit.simulator.scene import Scene
 
+_SPRINGS = 9
+"""Springs that stand for a foundation along a stretch; twice as many move no frequency by more than 1e-4 [-]."""
+
 
 def appended(scene: Scene, name: str, part: Any) -> Scene:
     """Return the scene with one more part in a tuple of its body's.
@@ -62,44 +65,71 @@ def hung(scene: Scene, place: tuple[float, ...], *, mass: float, hertz: float, r
     return appended(scene, "absorbers", part(*place, mass=mass, stiffness=stiffness, damping=damping))
 
 
+def sprung(
+    scene: Scene, place: tuple[float, ...], *, extent: float, stiffness: float, damping: float = 0.0
+) -> Scene:
+    """Return the scene with springs and dashpots to the ground, at a place or evenly over some length.
+
+    Parameters
+    ----------
+    scene : Scene
+        The rig.
+    place : (x,) or (x, y)
+        Their middle [m].
+    extent : float
+        How far they reach along x, 0 at a place [m].
+    stiffness, damping : float
+        Of all together [N/m], [N s/m].
+    """
+    count = _SPRINGS if extent else 1
+    for offset in extent * ((np.arange(count) + 0.5) / count - 0.5):
+        at = (place[0] + float(offset), *place[1:])
+        scene = attached(scene, at, stiffness=stiffness / count, damping=damping / count)
+    return scene
+
+
 def softened(scene: Scene, values: Mapping[str, Any]) -> Scene:
-    """Return the scene with a local loss of bending stiffness.
+    """Return the scene with a local loss, or gain, of bending stiffness.
 
     Parameters
     ----------
     scene : Scene
         The rig.
     values : mapping
-        x, on plates y, extent [m], loss [-], and ``form``: cosine where it is left out. A solid gets a slot
-        of the depth that leaves as much of the section's stiffness.
+        x, on plates y, extent and extent_y [m], loss, negative where it is stiffer [-], and ``form``: cosine where
+        it is left out. A solid gets a slot of the depth that leaves as much of the section's stiffness.
     """
     if isinstance(scene.body, Solid):
         depth = scene.body.thickness * (1.0 - (1.0 - values["loss"]) ** (1 / 3))
         return appended(scene, "cuts", Cut(values["x"], values["extent"], depth))
     smooth = values.get("form", "cosine") == "cosine"
     if "y" in values:
-        at, side, loss = (values["x"], values["y"]), values["extent"], values["loss"]
-        return appended(scene, "spots", SoftSpot(*at, side, side, loss=loss, smooth=smooth))
+        at, along, loss = (values["x"], values["y"]), values["extent"], values["loss"]
+        across = values.get("extent_y", along)
+        return appended(scene, "spots", SoftSpot(*at, along, across, loss=loss, smooth=smooth))
     if smooth:
         return appended(scene, "notches", Notch(values["x"], values["extent"], values["loss"]))
     return appended(scene, "stretches", Stretch(values["x"], values["extent"], bending=1 - values["loss"]))
 
 
 def covered(scene: Scene, values: Mapping[str, Any]) -> Scene:
-    """Return the scene with a layer on a stretch of a beam or on a square of a plate.
+    """Return the scene with a layer on a stretch of a beam or on a rectangle of a plate.
 
     Parameters
     ----------
     scene : Scene
         The rig.
     values : mapping
-        x, on plates y, extent [m], loss_factor, and what it adds: mass and stiffness [-].
+        x, on plates y, extent and extent_y [m]; loss_factor [-], alpha [1/s] and beta [s]; and what it adds:
+        mass and stiffness [-].
     """
-    extent, loss = values["extent"], values["loss_factor"]
+    extent, loss = values["extent"], values.get("loss_factor", 0.0)
+    viscous = {name: values.get(name, 0.0) for name in ("alpha", "beta")}
     mass, stiffness = values.get("mass", 0.0), values.get("stiffness", 0.0)
     if "y" in values:
         at = values["x"], values["y"]
-        layer = Patch(*at, extent, extent, loss_factor=loss, mass=mass, stiffness=stiffness)
+        across = values.get("extent_y", extent)
+        layer = Patch(*at, extent, across, loss_factor=loss, mass=mass, stiffness=stiffness, **viscous)
         return appended(scene, "patches", layer)
-    part = Stretch(values["x"], extent, bending=1 + stiffness, line=1 + mass, loss=loss)
+    part = Stretch(values["x"], extent, bending=1 + stiffness, line=1 + mass, loss=loss, **viscous)
     return appended(scene, "stretches", part)

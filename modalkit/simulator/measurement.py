@@ -15,6 +15,7 @@ from acquisition.hits.hammer import HammerTest
 from acquisition.synthetic import BAD_HITS, BadHit, HammerPlan, ModalSystem, hammer_test
 from acquisition.uff import write_uff
 from modalkit.simulator.bodies.complex_modes import ComplexModes
+from modalkit.simulator.conduct import Conduct, draw_conduct
 from modalkit.simulator.scene import MARKED, Scene
 from modalkit.simulator.setup import Setup
 
@@ -25,6 +26,7 @@ _FORCE_NOISE = 0.1
 _LEVELS = np.exp(np.linspace(-1.6, 1.6, 9))
 _STEADY = 0.8
 _WANDER = 0.15
+_PERFECT = Conduct()
 
 
 def remounting(setup: Setup, count: int, rng: np.random.Generator) -> FloatArray:
@@ -86,7 +88,9 @@ def hit_points(setup: Setup) -> list[int]:
     return [i for i in range(len(setup.points)) if setup.drive or i != setup.sensor]
 
 
-def hammer_plan(scene: Scene, modes: ComplexModes, rng: np.random.Generator) -> HammerPlan:
+def hammer_plan(
+    scene: Scene, modes: ComplexModes, rng: np.random.Generator, made: Conduct = _PERFECT
+) -> HammerPlan:
     """Return how the test is made: the record is lengthened until the slowest mode has died away.
 
     Parameters
@@ -97,6 +101,8 @@ def hammer_plan(scene: Scene, modes: ComplexModes, rng: np.random.Generator) -> 
         Its modes.
     rng : numpy.random.Generator
         Draws which hits are bad.
+    made : Conduct
+        How far from perfect the test is; default perfect.
 
     Returns
     -------
@@ -125,6 +131,9 @@ def hammer_plan(scene: Scene, modes: ComplexModes, rng: np.random.Generator) -> 
         gain=chain.gain,
         delay=chain.delay,
         bad=bad_hits(setup, rng),
+        ringing=made.ringing,
+        anti_alias="sharp" if made.sharp else "smooth",
+        noisy=made.noisy,
     )
 
 
@@ -186,8 +195,8 @@ def _interpolated(systems: list[ModalSystem], levels: FloatArray) -> Callable[[f
     return at
 
 
-def _structure(scene: Scene, factors: FloatArray, rng: np.random.Generator) -> _Hit:
-    """Return what each hit meets."""
+def _structure(scene: Scene, factors: FloatArray, rng: np.random.Generator, slow: FloatArray) -> _Hit:
+    """Return what each hit meets; ``slow`` is each point's factor on all frequencies, (n_points, 1)."""
     setup = scene.setup
 
     def system(level: float) -> ModalSystem:
@@ -201,7 +210,31 @@ def _structure(scene: Scene, factors: FloatArray, rng: np.random.Generator) -> _
         only = system(setup.peak)
         at_level = lambda level: only  # noqa: E731
     shape = (len(hit_points(setup)), setup.hits)
-    return _Hit(at_level, _stages(scene.chain.drift, shape, rng), _pushes(scene.chain.tilt, shape, rng))
+    stages = slow * _stages(scene.chain.drift, shape, rng)
+    return _Hit(at_level, stages, _pushes(scene.chain.tilt, shape, rng))
+
+
+def slow_drift(sigma: float, points: int, rng: np.random.Generator) -> FloatArray:
+    """Return what temperature does to all frequencies while each point is hit: a smooth course of stated size.
+
+    Parameters
+    ----------
+    sigma : float
+        1-sigma at any point, over tests; its mean over a test is part of the test's own shift [-].
+    points : int
+        Number of points, hit one after the other [-].
+    rng : numpy.random.Generator
+        Source of randomness.
+
+    Returns
+    -------
+    (points, 1) array
+        Factors: a half-wave of random phase over the whole test, so that neighbours hardly differ [-].
+    """
+    time = np.pi * np.arange(points)[:, None] / points
+    a, b = rng.standard_normal(2)
+    factors: FloatArray = 1.0 + sigma * (a * np.cos(time) + b * np.sin(time))
+    return factors
 
 
 def _stages(drift: float, shape: tuple[int, int], rng: np.random.Generator) -> FloatArray:
@@ -238,12 +271,16 @@ def measure(scene: Scene, *, rng: np.random.Generator) -> HammerTest:
         Its ``decay`` is the stated one, since the record itself does not know better.
     """
     setup = scene.setup
-    mount, conduct, hit = rng.spawn(3)
+    mount, conduct, hit, faults = rng.spawn(4)
+    points = len(hit_points(setup))
+    made = draw_conduct(points, faults)
     coordinates = np.zeros((len(setup.points), 3))
     coordinates[:, : len(setup.size)] = setup.places
     geometry = Geometry(tuple(range(1, len(setup.points) + 1)), coordinates)
-    structure = _structure(scene, remounting(setup, len(scene.scatter), mount), conduct)
-    plan = hammer_plan(scene, scene.modes(), conduct)
+    mounted = 1.0 + made.mounting * (remounting(setup, len(scene.scatter), mount) - 1.0)
+    slow = slow_drift(made.drift * setup.repeatability, points, faults)
+    structure = _structure(scene, mounted, conduct, slow)
+    plan = hammer_plan(scene, scene.modes(), conduct, made)
     test = hammer_test(structure.at_level, plan, rng=hit, geometry=geometry, at_hit=structure)
     return replace(test, decay=setup.window, source=setup.title)
 

@@ -52,6 +52,11 @@ class Chain:
         Relative change of all frequencies from the first hit of the test to the last [-].
     tilt : float
         1-sigma of the hammer's angle off the normal, in each hit anew [rad].
+    gains : mapping of int to float
+        Factors on the FRFs of single points [-].
+    arms : tuple of float
+        What the sensor sees of the slope along each axis, beside the deflection: its cross-axis sensitivity times
+        its height [m].
     """
 
     gain: float = 1.0
@@ -62,6 +67,8 @@ class Chain:
     moved: Mapping[int, tuple[float, ...]] = field(default_factory=lambda: MappingProxyType({}))
     drift: float = 0.0
     tilt: float = 0.0
+    gains: Mapping[int, float] = field(default_factory=lambda: MappingProxyType({}))
+    arms: tuple[float, ...] = ()
 
 
 def _same(body: Body, level: float) -> Body:
@@ -115,11 +122,15 @@ class Scene:
             places[point] += away
         inside = inside_body(body, np.vstack([places, sensor_place(setup, self.marks)]))
         count = len(self.scatter)
-        modes = complex_modes(body, inside[:-1], inside[-1], count=count, scatter=self.scatter)
+        modes = complex_modes(body, inside, inside[-1], count=count, scatter=self.scatter)
+        seen = modes.sensor + sum((a * s for a, s in zip(chain.arms, modes.slopes[:, -1], strict=False)), 0.0)
+        modes = replace(modes, points=modes.points[:-1], slopes=modes.slopes[:, :-1], sensor=seen)
         order, sign = np.arange(len(places)), np.ones(len(places))
         for a, b in chain.exchanged:
             order[[a, b]] = order[[b, a]]
         sign[list(chain.reversed)] = -1.0
+        for point, gain in chain.gains.items():
+            sign[point] *= gain
         return replace(
             modes,
             points=sign[:, None] * modes.points[order],

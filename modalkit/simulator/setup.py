@@ -92,6 +92,9 @@ class Setup:
         Whether the specimen was also tested before the effect was there.
     environment : float or None
         Fluid density that the study states [kg/m3].
+    free_surface, bottom : float or None
+        Distances of the fluid's surface above and of its bottom below the specimen, stated with the density; None
+        is a fluid without end on that side [m].
     """
 
     kind: str
@@ -128,6 +131,8 @@ class Setup:
     window: float
     baseline: bool
     environment: float | None
+    free_surface: float | None = None
+    bottom: float | None = None
 
     @property
     def size(self) -> tuple[float, ...]:

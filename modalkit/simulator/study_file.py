@@ -60,7 +60,9 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str, expects_damp
         }
         tables.insert(-1, ("[[model.mass]]", known))
     if setup.environment is not None:
-        tables.append(("[environment]", {"fluid_density": setup.environment}))
+        borders = {"free_surface": setup.free_surface, "bottom": setup.bottom}
+        known_borders = {name: place for name, place in borders.items() if place is not None}
+        tables.append(("[environment]", {"fluid_density": setup.environment, **known_borders}))
     lines = [f"title = {_value(setup.title)}"]
     for header, entries in tables:
         lines += [header, *(f"{key} = {_value(value)}" for key, value in entries.items())]

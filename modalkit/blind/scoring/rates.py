@@ -72,7 +72,7 @@ def _about_known(trials: pd.DataFrame) -> Questions:
 def _about_silence(trials: pd.DataFrame) -> Questions:
     seen = asked(trials) & (trials["sort"] != "none")
     none = trials["sort"] == "none"
-    faint = ~none & ~trials["visible"]
+    faint = trials["faint"]
     silent, unknown = trials["verdict"] == "none", trials["verdict"] == "unknown"
     return {
         "visible effect called none": (silent, seen),

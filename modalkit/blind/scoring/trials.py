@@ -17,6 +17,10 @@ from modalkit.blind.trial import Truth
 VISIBLE = 3.0
 """Standard deviations from which an effect is expected to be seen [-]."""
 
+LEFT_VISIBLE = 5.0
+"""Standard deviations that the best effect of the library has to leave of one that it lacks, before to name the
+library's is wrong: below, the two differ by no more than noise and linearisation do [-]."""
+
 _FAILED: dict[str, Any] = {
     "verdict": "failed",
     "answered": "failed",
@@ -45,7 +49,7 @@ def trial_table(outcomes: Sequence[Outcome]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        Truth (``effect``, ``sort``, ``kind``, ``level``, ``severity``, ``visibility``, ``visible``,
+        Truth (``effect``, ``sort``, ``kind``, ``level``, ``severity``, ``visibility``, ``left_visible``, ``visible``,
         ``baseline``, ``calibrated``, ``gap_percent``), answer (``verdict``, ``answered``, ``sets``,
         ``p_value``, ``fit`` of the best row), judgement (``right``, ``top``, ``holds``, ``commits``,
         ``credit`` of a class counted fairly), and what the probabilities say whatever the verdict:
@@ -66,13 +70,21 @@ def _row(outcome: Outcome) -> dict[str, Any]:
         "level": truth.level,
         "severity": truth.severity,
         "visibility": truth.visibility,
-        "visible": truth.visibility >= VISIBLE,
+        "left_visible": np.nan if truth.left_visible is None else truth.left_visible,
+        "faint": bool(truth.effects) and truth.visibility < VISIBLE,
+        "visible": is_visible(truth),
         "baseline": truth.baseline,
         "calibrated": truth.calibrated,
         "gap_percent": truth.gap_percent,
     }
     statement = _FAILED if answer is None else _statement(answer, truth)
     return hidden | statement | {"seconds": outcome.seconds, "failure": outcome.failure or ""}
+
+
+def is_visible(truth: Truth) -> bool:
+    """Tell whether the data show an effect; of one that the library lacks, whether they show that it does."""
+    enough = truth.left_visible is None or truth.left_visible >= LEFT_VISIBLE
+    return truth.visibility >= VISIBLE and enough
 
 
 def _statement(answer: Answer, truth: Truth) -> dict[str, Any]:

@@ -89,6 +89,8 @@ class Stretch:
         Factors on bending stiffness and on mass per length [-].
     loss : float
         Loss factor of the stretch, K (1 + i loss) there [-].
+    alpha, beta : float
+        Viscous damping of the stretch, C = alpha M + beta K there [1/s], [s].
     """
 
     x: float
@@ -96,6 +98,8 @@ class Stretch:
     bending: float = 1.0
     line: float = 1.0
     loss: float = 0.0
+    alpha: float = 0.0
+    beta: float = 0.0
 
     @property
     def window(self) -> tuple[float, float]:

@@ -6,11 +6,16 @@ from typing import Any
 
 import numpy as np
 
+from acquisition.arrays import FloatArray
 from modalkit.simulator.drawing.ranges import DrawRanges
 
 MATERIALS = ((210e9, 7850.0, 0.30), (70e9, 2700.0, 0.33), (100e9, 8500.0, 0.34))
 """E [Pa], density [kg/m3] and Poisson's ratio [-] of steel, aluminium and brass."""
 MATERIAL_SHARES = (0.45, 0.4, 0.15)
+FAINT = 0.15
+"""Share of tests whose sensor sits near a node of some mode [-]."""
+LEAST_SEEN = 0.01
+"""What the sensor sees of every mode at least, over the mode's largest [-]."""
 
 
 def draw_test(rng: np.random.Generator, plan: DrawRanges) -> dict[str, Any]:
@@ -44,6 +49,49 @@ def draw_test(rng: np.random.Generator, plan: DrawRanges) -> dict[str, Any]:
         "baseline": bool(rng.random() < plan.baseline),
         "environment": 998.0 if rng.random() < 0.25 else None,
     }
+
+
+def near_a_node(rng: np.random.Generator, shapes: FloatArray, sensor: int) -> int:
+    """Return the sensor's point, or now and then one at which some mode hardly moves.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Source of randomness.
+    shapes : (n_points, n_modes) array
+        Of the modes that the band was chosen for [any].
+    sensor : int
+        Index of the point drawn at first [-].
+
+    Returns
+    -------
+    int
+        The point that is nearest to a node of a mode drawn at random, but moves in all of them.
+    """
+    wanted, mode = rng.random() < FAINT, int(rng.integers(shapes.shape[1]))
+    share = np.abs(shapes) / np.abs(shapes).max(axis=0)
+    seen = np.where(share.min(axis=1) > LEAST_SEEN, share[:, mode], np.inf)
+    return int(np.argmin(seen)) if wanted and np.isfinite(seen).any() else sensor
+
+
+def draw_tank(rng: np.random.Generator, short: float) -> dict[str, float]:
+    """Draw how far the surface and the bottom of a fluid are, each one there in half of the draws.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Source of randomness.
+    short : float
+        Shorter side of the specimen [m].
+
+    Returns
+    -------
+    dict
+        ``free_surface`` and ``bottom`` of those that are there [m].
+    """
+    there = {name: rng.random() < 0.5 for name in ("free_surface", "bottom")}
+    far = np.exp(rng.uniform(np.log(0.15), np.log(2.0), size=2)) * short
+    return {name: round(float(x), 4) for (name, here), x in zip(there.items(), far, strict=True) if here}
 
 
 def rayleigh(rng: np.random.Generator, lowest: float, highest: float) -> tuple[float, float]:

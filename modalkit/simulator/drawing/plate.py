@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from acquisition.arrays import FloatArray
 from modalkit.simulator.bodies.plate.plate import Plate
-from modalkit.simulator.drawing.common import MATERIAL_SHARES, MATERIALS, draw_test, rayleigh, two_digits
+from modalkit.simulator.drawing.common import (
+    MATERIAL_SHARES,
+    MATERIALS,
+    draw_tank,
+    draw_test,
+    near_a_node,
+    rayleigh,
+    two_digits,
+)
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.setup import Setup, Tolerances
 
@@ -41,8 +52,10 @@ def draw_plate(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
     share, modes = rng.uniform(0.0, 0.006), int(rng.choice([5, 6, 7]))
     elements = int(rng.integers(16, 31)), int(rng.integers(10, 17))
     kinds, stated = draw_test(rng, plan), rng.random()
+    tank: dict[str, Any] = draw_tank(rng, min(length, width)) if kinds["environment"] is not None else {}
     thickness = _thin_enough((length, width), thickness, material, clamped, modes, kinds["repeatability"])
-    hz = _bare_hz((length, width), thickness, material, clamped, modes)
+    hz, seen = _bare_modes((length, width), thickness, material, clamped, modes, points)
+    sensor = near_a_node(rng, seen, sensor)
     alpha, beta = rayleigh(rng, float(hz[0]), float(hz[-1]))
     window = round(rng.uniform(0.5, 2.0) * 0.5 * alpha, 2)
     if hz[0] < 5.0 or 1.2 * hz[-1] > 6000.0 or thickness < _THINNEST:
@@ -69,6 +82,7 @@ def draw_plate(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
         band=(two_digits(0.25 * hz[0]), two_digits(1.1 * hz[-1])),
         window=window if stated < 0.35 else 0.0,
         **kinds,
+        **tank,
     )
 
 
@@ -78,11 +92,24 @@ def _bare_hz(
     material: tuple[float, float, float],
     clamped: tuple[str, ...],
     modes: int,
-) -> np.ndarray:
+) -> FloatArray:
+    return _bare_modes(size, thickness, material, clamped, modes)[0]
+
+
+def _bare_modes(
+    size: tuple[float, float],
+    thickness: float,
+    material: tuple[float, float, float],
+    clamped: tuple[str, ...],
+    modes: int,
+    points: tuple[tuple[float, float], ...] = ((0.0, 0.0),),
+) -> tuple[FloatArray, FloatArray]:
+    """Return elastic frequencies [Hz] of the plate alone, and shapes at some points, (n_points, n_modes)."""
     E, density, poisson = material
     body = Plate(0.0, size[0], size[1], thickness, E, density, poisson, clamped, elements=(3, 2))
-    omega, _ = body.real_modes(modes + body.rigid_modes)
-    return np.asarray(omega[body.rigid_modes :] / (2 * np.pi))
+    omega, shapes = body.real_modes(modes + body.rigid_modes)
+    seen = body.rows(np.array(points), "w") @ shapes[:, body.rigid_modes :]
+    return np.asarray(omega[body.rigid_modes :] / (2 * np.pi)), seen
 
 
 def _thin_enough(

@@ -28,6 +28,8 @@ class DrawRanges:
         Share of trials without any effect [-].
     pairs : float
         Share of trials with two effects of the library at once [-].
+    triples : float
+        Share of trials with three of them [-].
     outside : float
         Share of trials with an effect that the library lacks [-].
     mild, strong : float
@@ -44,10 +46,11 @@ class DrawRanges:
     """
 
     kinds: tuple[str, ...] = ("beam", "plate")
-    plates: float = 0.15
+    plates: float = 1 / 3
     effects: tuple[str, ...] = ()
     none: float = 0.12
     pairs: float = 0.10
+    triples: float = 0.0
     outside: float = 0.15
     mild: float = 0.2
     strong: float = 0.15
@@ -61,11 +64,11 @@ class DrawRanges:
         unknown = [kind for kind in self.kinds if kind not in KINDS]
         if unknown or not self.kinds:
             raise StudyError(f"plan: kinds {unknown or 'empty'}; choose from {', '.join(KINDS)}")
-        shares = ("plates", "none", "pairs", "outside", "mild", "strong", "baseline")
+        shares = ("plates", "none", "pairs", "triples", "outside", "mild", "strong", "baseline")
         wrong = [name for name in shares if not 0.0 <= getattr(self, name) <= 1.0]
         if wrong:
             raise StudyError(f"plan: {wrong[0]} = {getattr(self, wrong[0])} is no share; give 0 to 1")
-        for names in (("none", "pairs", "outside"), ("mild", "strong")):
+        for names in (("none", "pairs", "triples", "outside"), ("mild", "strong")):
             if sum(getattr(self, name) for name in names) > 1.0 + 1e-9:
                 raise StudyError(f"plan: the shares {', '.join(names)} add up to more than 1")
 

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from acquisition.errors import StudyError
 from modalkit.simulator.bodies.beam.beam import Beam
 from modalkit.simulator.bodies.solid.solid import available
-from modalkit.simulator.drawing.common import MATERIAL_SHARES, MATERIALS, draw_test, rayleigh, two_digits
+from modalkit.simulator.drawing.common import (
+    MATERIAL_SHARES,
+    MATERIALS,
+    draw_tank,
+    draw_test,
+    near_a_node,
+    rayleigh,
+    two_digits,
+)
 from modalkit.simulator.drawing.plate import draw_plate
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.setup import Setup, Tolerances
@@ -98,11 +107,14 @@ def _tested(
     sensor_mass = round(rng.uniform(0.0, 0.01) * density * length * width * thickness, 5)
     modes = int(rng.choice([4, 5]))
     beam = Beam(0.0, length, 0.02, thickness, E, density, poisson, clamped, elements=5)
-    omega, _ = beam.real_modes(modes + beam.rigid_modes)
+    omega, shapes = beam.real_modes(modes + beam.rigid_modes)
+    seen = beam.rows(np.array(points), "w") @ shapes[:, beam.rigid_modes :]
+    sensor = near_a_node(rng, seen, sensor)
     bare = omega[beam.rigid_modes :] / (2 * np.pi)
     band = (two_digits(0.25 * bare[0]), two_digits(1.2 * bare[-1]))
     alpha, beta = rayleigh(rng, float(bare[0]), float(bare[-1]))
     test = draw_test(rng, plan)
+    tank: dict[str, Any] = draw_tank(rng, width) if test["environment"] is not None else {}
     setup = Setup(
         kind=kind,
         title=f"Beam of {1e3 * length:.0f} x {1e3 * width:.0f} x {1e3 * thickness:.1f} mm",
@@ -125,6 +137,7 @@ def _tested(
         band=band,
         window=round(rng.uniform(0.5, 2.0) * 0.5 * alpha, 2) if rng.random() < 0.35 else 0.0,
         **test,
+        **tank,
     )
     return None if bare[0] < 5.0 or band[1] > 6000.0 else setup
 

@@ -179,6 +179,48 @@ def draw_place(rng: np.random.Generator, setup: Setup, low: float = 0.06, high: 
     return place if setup.kind != "plate" else place | {"y": float(rng.uniform(0.1, 0.9) * setup.width)}
 
 
+def draw_within(
+    rng: np.random.Generator, setup: Setup, extents: tuple[float, ...], low: float = 0.0, high: float = 1.0
+) -> Values:
+    """Draw a place for something of some size that stays on the structure [m].
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Source of randomness.
+    setup : Setup
+        With the extents.
+    extents : tuple of float
+        Of the thing, along each axis [m].
+    low, high : float
+        Shares of the length between which its middle lies, as far as its size allows [-].
+    """
+    place: Values = {}
+    for axis, extent, size, bounds in zip(
+        ("x", "y"), extents, setup.size, ((low, high), (0.1, 0.9)), strict=False
+    ):
+        half = 0.5 * extent / size
+        first, last = max(bounds[0], half), min(bounds[1], 1.0 - half)
+        place[axis] = float(rng.uniform(min(first, last), max(first, last)) * size)
+    return place
+
+
+def draw_extents(rng: np.random.Generator, setup: Setup, low: float, high: float) -> Values:
+    """Draw an extent along each axis, independent of each other, as shares of the structure's [m].
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        Source of randomness.
+    setup : Setup
+        With the extents.
+    low, high : float
+        Shares, uniform in the logarithm [-].
+    """
+    names = ("extent", "extent_y")
+    return {name: log_uniform(rng, low, high) * size for name, size in zip(names, setup.size, strict=False)}
+
+
 def clamped_places(setup: Setup, values: Values) -> tuple[Place, ...]:
     """Return the middles of the clamped edges."""
     middle = np.array(setup.size) / 2

@@ -26,23 +26,24 @@ def _draw_delay(rng: np.random.Generator, setup: Setup, strength: float) -> Valu
     return {"delay": float(either_sign(rng) * turn / (2 * np.pi * setup.nominal_hz[setup.modes - 1]))}
 
 
-def _hit_points(setup: Setup) -> list[int]:
+def hit_points(setup: Setup) -> list[int]:
+    """Return the indices of the points that are hit."""
     return [i for i in range(len(setup.points)) if setup.drive or i != setup.sensor]
 
 
 def _draw_reversed(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    among = _hit_points(setup)
+    among = hit_points(setup)
     count = 1 if rng.random() < 0.7 or len(among) < 5 else 2
     return {"points": sorted(int(i) + 1 for i in rng.choice(among, count, replace=False))}
 
 
 def _draw_exchanged(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    return {"points": sorted(int(i) + 1 for i in rng.choice(_hit_points(setup), 2, replace=False))}
+    return {"points": sorted(int(i) + 1 for i in rng.choice(hit_points(setup), 2, replace=False))}
 
 
 def _draw_moved(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
     """Draw a point and how far off it really lies; the place stays on the structure."""
-    among, size = _hit_points(setup), np.array(setup.size)
+    among, size = hit_points(setup), np.array(setup.size)
     while True:
         point = int(rng.choice(among))
         way = rng.standard_normal(len(size))
@@ -63,7 +64,8 @@ def _moved_places(setup: Setup, values: Values) -> tuple[Place, ...]:
     return (tuple(x + values[name] for x, name in zip(stated, ("dx", "dy"), strict=False)),)
 
 
-def _point_places(setup: Setup, values: Values) -> tuple[Place, ...]:
+def point_places(setup: Setup, values: Values) -> tuple[Place, ...]:
+    """Return the places of the points that the parameters name."""
     return tuple(setup.points[node - 1] for node in values["points"])
 
 
@@ -90,7 +92,7 @@ CHAIN = tuple(
             "polarity",
             _draw_reversed,
             lambda scene, values: scene.with_chain(reversed=tuple(n - 1 for n in values["points"])),
-            places=_point_places,
+            places=point_places,
             graded=False,
             metric="",
         ),
@@ -98,7 +100,7 @@ CHAIN = tuple(
             "swapped_points",
             _draw_exchanged,
             lambda scene, values: scene.with_chain(exchanged=(tuple(n - 1 for n in values["points"]),)),
-            places=_point_places,
+            places=point_places,
             graded=False,
             exclusive="labels",
             metric="",

@@ -15,6 +15,7 @@ from modalkit.simulator.setup import Setup
 
 _MILD = (0.15, 0.5)
 _STRONG = (1.5, 2.5)
+_COUNTS = {"single": 1, "outside": 1, "pair": 2, "triple": 3}
 
 
 def checked(plan: DrawRanges) -> DrawRanges:
@@ -50,15 +51,16 @@ def choose_sort(rng: np.random.Generator, plan: DrawRanges) -> str:
 
     Returns
     -------
-    {"none", "pair", "outside", "single"}
+    {"none", "pair", "triple", "outside", "single"}
         Among named effects, those inside and outside the library are singles alike.
     """
     named = [n for n in plan.effects if n != "none"]
     inside = [n for n in named if HIDDEN_EFFECTS[n].in_library]
-    weights = {"none": plan.none, "pair": plan.pairs, "outside": plan.outside}
+    weights = {"none": plan.none, "pair": plan.pairs, "triple": plan.triples, "outside": plan.outside}
     if plan.effects:
         weights["none"] = (plan.none if named else 1.0) if "none" in plan.effects else 0.0
         weights["pair"] = plan.pairs if len(inside) > 1 else 0.0
+        weights["triple"] = plan.triples if len(inside) > 2 else 0.0
         weights["outside"] = 0.0
     weights["single"] = 1.0 - sum(weights.values())
     sorts = list(weights)
@@ -91,12 +93,12 @@ def choose_hidden_effects(
     if sort == "none":
         return ()
     pool = [s for s in HIDDEN_EFFECTS.values() if not plan.effects or s.name in plan.effects]
-    if not plan.effects or sort == "pair":
+    if not plan.effects or sort in ("pair", "triple"):
         pool = [s for s in pool if s.in_library == (sort != "outside")]
     pool = [s for s in pool if s.fits(setup)]
     chosen: list[HiddenEffect] = []
     forced = [s for s in pool if s.name == "shear" and lacks_shear(setup)]
-    for _ in range(2 if sort == "pair" else 1):
+    for _ in range(_COUNTS[sort]):
         free = forced or [s for s in pool if s not in chosen and not _clash(s, chosen)]
         if not free:
             return None

@@ -11,7 +11,9 @@ from modalkit.simulator.hidden.base import (
     Place,
     Values,
     at_its_place,
+    draw_extents,
     draw_place,
+    draw_within,
     log_uniform,
     place_of,
 )
@@ -20,6 +22,17 @@ from modalkit.simulator.setup import Setup
 
 _BESIDE = 0.01
 _STRIPS = 64
+_AT_EDGE = 0.25
+_STIFFER = 0.3
+_LEAST = 0.1
+"""What a stiffer place keeps of its compliance at least: ten times as stiff, a loss of -9 [-]."""
+
+_FORMS = {"beam": ("cosine", "rectangle", "crack"), "plate": ("cosine", "rectangle"), "solid": ("slot",)}
+_EXTENTS = {"cosine": (0.03, 0.33), "rectangle": (0.02, 0.33)}
+_NARROW = {"crack": (0.004, 0.01), "slot": (0.01, 0.03)}
+_LAYERS = {"beam": (0.1, 0.45), "plate": (0.2, 0.6)}
+_LAWS = (0.6, 0.2, 0.2)
+"""Shares of layers that lose by a loss factor, in proportion to mass, and to stiffness [-]."""
 
 
 def _draw_sensor(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
@@ -33,12 +46,20 @@ def _act_sensor(scene: Scene, values: Values) -> Scene:
     return attached(scene, place, mass=values["mass"], inertia=values["mass"] * arm**2)
 
 
-def _sensor_places(setup: Setup, values: Values) -> tuple[Place, ...]:
+def sensor_places(setup: Setup, values: Values) -> tuple[Place, ...]:
+    """Return the sensor's place."""
     return (setup.points[setup.sensor],)
 
 
 def _draw_mass(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    return {"mass": min(strength * log_uniform(rng, 0.015, 0.12), 0.3) * setup.mass, **draw_place(rng, setup)}
+    """Draw a mass anywhere, or now and then on a free end or edge."""
+    mass = min(strength * log_uniform(rng, 0.015, 0.12), 0.3) * setup.mass
+    place = draw_place(rng, setup)
+    free = [edge for edge in ("x0", "x1", "y0", "y1")[: 2 * len(setup.size)] if edge not in setup.clamped]
+    if free and rng.random() < _AT_EDGE:
+        edge = free[int(rng.integers(len(free)))]
+        place[edge[0]] = float(edge[1]) * setup.size["xy".index(edge[0])]
+    return {"mass": mass, **place}
 
 
 def _act_mass(scene: Scene, values: Values) -> Scene:
@@ -56,23 +77,25 @@ def _mass_equals(setup: Setup, values: Values) -> tuple[str, ...]:
 
 
 def _draw_soft(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    """Draw a smooth, a rectangular or a crack-like loss; what counts is its compliance.
+    """Draw a smooth, a rectangular or a crack-like loss, or a gain as of a rib or a repair; what counts is its
+    compliance.
 
     A solid gets a slot. What it costs is more than the section that is left, so no compliance is told.
     """
-    forms = {"beam": ("cosine", "rectangle", "crack"), "plate": ("cosine", "rectangle"), "solid": ("slot",)}[
-        setup.kind
-    ]
-    form = forms[int(rng.integers(len(forms)))]
-    extent = {"cosine": (0.03, 0.1), "rectangle": (0.02, 0.1), "crack": (0.004, 0.01), "slot": (0.01, 0.03)}[
-        form
-    ]
+    form = _FORMS[setup.kind][int(rng.integers(len(_FORMS[setup.kind])))]
+    stiffer = form in _EXTENTS and rng.random() < _STIFFER
+    low, high = _EXTENTS.get(form, _NARROW.get(form, (0.0, 0.0)))
+    extents = draw_extents(rng, setup, 2 * low if stiffer or setup.kind == "plate" else low, high)
+    length = extents["extent"]
+    place = draw_within(
+        rng, setup, tuple(extents.values()), *((0.05, 0.9) if setup.clamped else (0.12, 0.88))
+    )
     wider = 2.0 if setup.kind == "plate" else 1.0
-    place = draw_place(rng, setup, *((0.05, 0.9) if setup.clamped else (0.12, 0.88)))
-    length = float(wider * rng.uniform(*extent) * setup.length)
-    relative = 1.0 + wider * strength * log_uniform(rng, 0.02, 0.15) * setup.length / length
-    loss = 1.0 - 1.0 / relative ** (2 if form == "cosine" else 1)
-    values = {**place, "extent": length, "loss": float(min(loss, 0.97)), "form": form}
+    lost = wider * strength * log_uniform(rng, 0.02, 0.15) * setup.length / length
+    power = 2 if form == "cosine" else 1
+    relative = max(1.0 - lost, _LEAST ** (1 / power)) if stiffer else 1.0 + lost
+    loss = float(min(1.0 - 1.0 / relative**power, 0.97))
+    values = {**place, **extents, "loss": loss, "form": form}
     return values if form == "slot" else values | {"compliance": _compliance(values)}
 
 
@@ -88,14 +111,17 @@ def _compliance(values: Values) -> float:
 
 
 def _draw_patch(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    extent = float(rng.uniform(0.1, 0.35) * setup.length)
-    extent = extent if setup.kind == "beam" else min(1.5 * extent, 0.9 * min(setup.size))
-    half = extent / 2 / setup.length
+    """Draw a layer, bare or not, that loses by one of three laws, alike in the second mode."""
+    extents = draw_extents(rng, setup, *_LAYERS[setup.kind])
     bare = rng.random() < 0.4
+    loss = min(strength * log_uniform(rng, 0.03, 0.3), 0.5)
+    omega = 2 * np.pi * setup.nominal_hz[1]
+    law = ("loss_factor", "alpha", "beta")[int(rng.choice(3, p=_LAWS))]
+    size = {"loss_factor": loss, "alpha": loss * omega, "beta": loss / omega}
     return {
-        **draw_place(rng, setup, half, 1 - half),
-        "extent": extent,
-        "loss_factor": min(strength * log_uniform(rng, 0.03, 0.3), 0.5),
+        **draw_within(rng, setup, tuple(extents.values())),
+        **extents,
+        **{name: float(value) if name == law else 0.0 for name, value in size.items()},
         "mass": 0.0 if bare else float(rng.uniform(0.0, 0.08)),
         "stiffness": 0.0 if bare else float(rng.uniform(0.0, 0.08)),
     }
@@ -107,7 +133,7 @@ LOCAL = (
         _draw_sensor,
         _act_sensor,
         equals=lambda setup, values: ("lumped_mass",),
-        places=_sensor_places,
+        places=sensor_places,
         solid=True,
     ),
     HiddenEffect("lumped_mass", _draw_mass, _act_mass, equals=_mass_equals, places=at_its_place, solid=True),

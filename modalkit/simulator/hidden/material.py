@@ -40,7 +40,12 @@ def _act_section(scene: Scene, values: Values) -> Scene:
 
 
 def _draw_ratio(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    return {"ratio": float(np.exp(either_sign(rng) * min(strength * log_uniform(rng, 0.06, 0.5), 1.0)))}
+    """Draw two elastic constants, each of its own."""
+
+    def one(low: float, high: float, most: float) -> float:
+        return float(np.exp(either_sign(rng) * min(strength * log_uniform(rng, low, high), most)))
+
+    return {"ratio": one(0.06, 0.5, 1.0), "shear_ratio": one(0.02, 0.25, 0.5)}
 
 
 def _section_equals(setup: Setup, values: Values) -> tuple[str, ...]:
@@ -78,7 +83,9 @@ MATERIAL = (
     HiddenEffect(
         "orthotropy",
         _draw_ratio,
-        lambda scene, values: scene.with_body(ratio=values["ratio"]),
+        lambda scene, values: scene.with_body(
+            ratio=values["ratio"], shear_ratio=values.get("shear_ratio", 1.0)
+        ),
         applies=is_plate,
         share=0.4,
     ),

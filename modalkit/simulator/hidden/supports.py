@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from modalkit.simulator.scene import Scene
 from modalkit.simulator.setup import Setup
 
 _PROBE = 300.0
+_TENSION = 0.02
+_HARDENS = 0.4
 
 
 def edge_length(setup: Setup) -> float:
@@ -51,16 +54,26 @@ def _draw_translation(rng: np.random.Generator, setup: Setup, strength: float) -
 
 
 def _draw_slope(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    return {"slope": -min(strength * log_uniform(rng, 0.008, 0.05), 0.08) / setup.peak}
+    """Draw a joint that softens, or between two clamps now and then one that hardens."""
+    size = min(strength * log_uniform(rng, 0.008, 0.05), 0.08) / setup.peak
+    return {"slope": size if held_apart(setup) and rng.random() < _HARDENS else -size}
+
+
+def held_apart(setup: Setup) -> bool:
+    """Tell whether both ends along x are clamped, so that they cannot approach each other."""
+    return {"x0", "x1"} <= set(setup.clamped)
 
 
 def _act_slope(scene: Scene, values: Values) -> Scene:
     """Let the clamp turn the more, the harder the hit; the slope is the mean over the modes of the band.
 
     At rest the clamp is as it was. Its compliance grows in proportion to the force, and to first order each
-    mode falls in proportion to the compliance.
+    mode falls in proportion to the compliance. Where it hardens, the ends do not approach each other, and bending
+    stretches: a tension grows with the force.
     """
     setup, rest = scene.setup, scene.body
+    if values["slope"] > 0:
+        return _hardening(scene, values["slope"])
     probe = _PROBE * _rigidity(setup) / _span(setup) / edge_length(setup)
     chosen = slice(rest.rigid_modes, rest.rigid_modes + setup.modes)
     held, _ = rest.real_modes(chosen.stop)
@@ -73,6 +86,26 @@ def _act_slope(scene: Scene, values: Values) -> Scene:
     return with_level(scene, change)
 
 
+def _hardening(scene: Scene, slope: float) -> Scene:
+    """Return the scene with a tension that grows with the force, the slope again the mean over the modes."""
+    setup, rest = scene.setup, scene.body
+    probe = _TENSION * buckling(setup)
+    chosen = slice(rest.rigid_modes, rest.rigid_modes + setup.modes)
+    slack, _ = rest.real_modes(chosen.stop)
+    tight, _ = replace(rest, axial=rest.axial + probe).real_modes(chosen.stop)  # type: ignore
+    share = float(np.mean(tight[chosen] / slack[chosen] - 1.0))
+
+    def change(body: Any, level: float) -> Any:
+        return replace(body, axial=body.axial + probe * slope * level / share)
+
+    return with_level(scene, change)
+
+
+def buckling(setup: Setup) -> float:
+    """Return the load along x that buckles the structure as drawn [N]."""
+    return (4.0 if held_apart(setup) else 0.25) * setup.rigidity * (np.pi / setup.length) ** 2
+
+
 def _turning(body: Body, stiffness: float) -> Body:
     return replace(body, clamp_rotation=stiffness)  # type: ignore[type-var]
 
@@ -83,9 +116,8 @@ def can_show_levels(setup: Setup) -> bool:
 
 
 def _draw_load(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
-    ends = 4.0 if {"x0", "x1"} <= set(setup.clamped) else 0.25
-    buckling = ends * setup.rigidity * (np.pi / setup.length) ** 2
-    return {"force": float(either_sign(rng) * min(strength * log_uniform(rng, 0.08, 0.5), 0.7) * buckling)}
+    size = min(strength * log_uniform(rng, 0.08, 0.5), 0.7)
+    return {"force": float(either_sign(rng) * size * buckling(setup))}
 
 
 SUPPORTS = (

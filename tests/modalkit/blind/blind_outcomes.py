@@ -58,7 +58,17 @@ def interval(value: float, low: float, high: float) -> dict[str, Any]:
 
 def truth(*effects: str, visibility: float = 10.0, **more: Any) -> Truth:
     """Return what is hidden; parameters of a single effect by their short names."""
-    fields = ("kind", "without", "accepted", "level", "size", "places", "baseline", "calibrated")
+    fields = (
+        "kind",
+        "without",
+        "accepted",
+        "level",
+        "size",
+        "places",
+        "baseline",
+        "calibrated",
+        "left_visible",
+    )
     parameters = {f"{effects[0]}.{k}": v for k, v in more.items() if k not in fields}
     unknowable = any(name in OUTSIDE for name in effects) or "without" in more
     also = ALSO.get(effects[0], ()) if len(effects) == 1 else ()
@@ -78,6 +88,7 @@ def truth(*effects: str, visibility: float = 10.0, **more: Any) -> Truth:
         baseline=more.get("baseline", False),
         calibrated=more.get("calibrated", True),
         gap_percent=2.0,
+        left_visible=more.get("left_visible", visibility if unknowable and effects else None),
     )
 
 

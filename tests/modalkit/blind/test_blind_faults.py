@@ -9,6 +9,7 @@ import pytest
 
 from acquisition import estimate_frfs
 from modalkit.blind.trial import draw_trial
+from modalkit.simulator.conduct import Conduct
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.measurement import bad_hits, hit_points, measure
 from modalkit.simulator.scene import Scene, draw_scene, nominal_scene
@@ -87,10 +88,11 @@ def test_drift_moves_the_peaks_from_point_to_point() -> None:
     assert (tops[-1] - tops[0]) / first == pytest.approx(0.05 * (1 - 1 / len(tops)), abs=0.02 + resolution)
 
 
-def test_levels_reach_the_records() -> None:
+def test_levels_reach_the_records(monkeypatch: pytest.MonkeyPatch) -> None:
     """A joint that slips lowers the frequencies of hard hits, in the records themselves."""
+    monkeypatch.setattr("modalkit.simulator.measurement.draw_conduct", lambda points, rng: Conduct())
     plan = DrawRanges(kinds=("beam",), effects=("joint_nonlinearity",), pairs=0.0, mild=0.0, strong=0.0)
-    trial = draw_trial(5, 0, plan=plan)
+    trial = draw_trial(5, 1, plan=plan)
     setup = replace(
         trial.scene.setup, noise=1e-9, bits=24, bad_hits=0.0, repeatability=0.0, position_sigma=0.0
     )

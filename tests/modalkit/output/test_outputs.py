@@ -181,11 +181,11 @@ def test_a_journal_cuts_nothing_off_the_file_of_another(tmp_path: Path, content:
     assert path.read_text(encoding="utf-8") == content
 
 
-@pytest.mark.parametrize("torn", [b"{", b'{"schema":"modalkit.blindrun/1","ver'])
+@pytest.mark.parametrize("torn", [b"{", b'{"schema":"modalkit.blindrun/2","ver'])
 def test_a_store_that_was_torn_in_its_first_line_is_begun_anew(tmp_path: Path, torn: bytes) -> None:
     path = tmp_path / "store.jsonl"
     path.write_bytes(torn)
-    check_outputs((path, store_of("modalkit.blindrun/1")))
+    check_outputs((path, store_of("modalkit.blindrun/2")))
     with Journal(path, resume=True) as journal:
         assert journal.found == ()
 

@@ -34,12 +34,19 @@ class Beam(BeamFields):
         return np.vstack([self.spread(bend, self.bending), self.spread(slide, shear)])
 
     @cached_property
-    def _material_mass(self) -> FloatArray:
-        x, read = self.gauss
+    def _line(self) -> FloatArray:
+        """Mass per length at the Gauss points [kg/m]."""
+        x, _ = self.gauss
         t = self.thickness_at(x)
-        line = self.density * self.width * t
+        line: FloatArray = self.density * self.width * t * (1.0 + self.density_slope * self.middled(x))
         for part in self.stretches:
             line = line * (1.0 + (part.line - 1.0) * part.inside(x))
+        return line
+
+    @cached_property
+    def _material_mass(self) -> FloatArray:
+        x, read = self.gauss
+        line, t = self._line, self.thickness_at(x)
         rotary = line * t**2 / 12 / (1.0 if self.shear else STIFF)
         move, turn = self.spread(read["w"], line), self.spread(read["theta"], rotary)
         mass: FloatArray = move.T @ move + turn.T @ turn
@@ -53,7 +60,8 @@ class Beam(BeamFields):
         for k, hanging in enumerate(self.absorbers):
             mass[2 * len(self.nodes) + k, 2 * len(self.nodes) + k] = hanging.mass
         if self.fluid_density:
-            stations, matrix = added_mass(self.length, self.width, self.thickness, density=self.fluid_density)
+            size, tank = (self.length, self.width, self.thickness), (self.free_surface, self.bottom)
+            stations, matrix = added_mass(*size, density=self.fluid_density, tank=tank)
             rows = self.rows(self.start + stations, "w")
             mass += rows.T @ matrix @ rows
         return mass
@@ -67,6 +75,7 @@ class Beam(BeamFields):
     def _spring_rows(self) -> FloatArray:
         rows = [np.sqrt(p.stiffness) * self._row(p.x, "w") for p in self.attached if p.stiffness]
         rows += [np.sqrt(h.stiffness) * self._relative_row(k) for k, h in enumerate(self.absorbers)]
+        rows += [self._arch_row] if self.rise else []
         for end in self.clamped:
             x = self.start if end == "x0" else self.end
             for stiffness, quantity in ((self.clamp_translation, "w"), (self.clamp_rotation, "theta")):
@@ -78,7 +87,27 @@ class Beam(BeamFields):
     def _tension_rows(self) -> FloatArray:
         """G with G^T G the geometric stiffness of the load's size [sqrt(N/m)]."""
         x, read = self.gauss
-        return self.spread(read["slope"], np.full_like(x, abs(self.axial)))
+        load = abs(self.axial) * (1.0 + 2 * self.axial_lean * self.middled(x))
+        return self.spread(read["slope"], load)
+
+    @cached_property
+    def _arch_row(self) -> FloatArray:
+        """Read the stretching of a shallow arch, times the root of E A / L [sqrt(N/m)].
+
+        Its thrust is the same all along: E A / L times the integral of w0' w' (linearised; Lacarbonara and Rega,
+        Int. J. Non-Linear Mechanics 38 (2003) 873). One row of F, whose shape (1 - cos(2 pi x / L)) / 2 is that
+        of a beam clamped at both ends.
+        """
+        x, read = self.gauss
+        slope = np.pi * self.rise / self.length * np.sin(2 * np.pi * (self.middled(x) + 0.5))
+        shifted = np.zeros(self.n_dofs)
+        shifted[: 2 * len(self.nodes) : 2] = 1.0
+        roots = self.spread(read["w"], np.ones_like(x)) @ shifted
+        stiffness = self.E * self.width * self.thickness / self.length
+        row: FloatArray = (
+            np.sqrt(stiffness) * self.spread(read["slope"], np.ones_like(x)).T @ (roots * slope.ravel())
+        )
+        return row
 
     def modal_damping(self, shapes: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return what damps some modes: the material as expected, and what else is viscous.
@@ -121,9 +150,13 @@ class Beam(BeamFields):
             losses.append(Loss(self.added_loss * strain.T @ strain, -1.0))
         x, read = self.gauss
         for part in self.stretches:
-            if part.loss:
+            if part.loss or part.beta:
                 strain = self.spread(read["curvature"], self.bending * part.inside(x)) @ shapes
                 losses.append(Loss(part.loss * strain.T @ strain, -1.0))
+                losses.append(Loss(part.beta * strain.T @ strain, 0.0))
+            if part.alpha:
+                moved = self.spread(read["w"], self._line * part.inside(x)) @ shapes
+                losses.append(Loss(part.alpha * moved.T @ moved, 0.0))
         if self.drag:
             stations, matrix = layer_damping(self.length, self.width, self.thickness, drag=self.drag)
             moved = self.rows(self.start + stations, "w") @ shapes

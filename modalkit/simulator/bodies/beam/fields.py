@@ -36,10 +36,16 @@ class BeamFields:
         Stiffness of each clamp [N m/rad], [N/m].
     taper : float
         Relative change of thickness from start to end, about the middle [-].
-    axial : float
-        Tension [N].
+    density_slope : float
+        Relative change of density from start to end, about the middle [-].
+    axial, axial_lean : float
+        Tension, its mean along the beam [N]; its relative excess at the end and lack at the start, below one [-].
+    rise : float
+        Of a shallow arch (1 - cos(2 pi x / L)) / 2 between ends that do not part [m].
     fluid_density : float
         Density of the fluid all around [kg/m3].
+    free_surface, bottom : float
+        Distances of the fluid's surface above and of its bottom below the faces [m].
     drag : float
         Density times viscosity of the fluid whose boundary layer damps [kg2/(m4 s)].
     shear : bool
@@ -66,8 +72,13 @@ class BeamFields:
     clamp_rotation: float = np.inf
     clamp_translation: float = np.inf
     taper: float = 0.0
+    density_slope: float = 0.0
     axial: float = 0.0
+    axial_lean: float = 0.0
+    rise: float = 0.0
     fluid_density: float = 0.0
+    free_surface: float = np.inf
+    bottom: float = np.inf
     drag: float = 0.0
     shear: bool = True
     notches: tuple[Notch, ...] = ()
@@ -131,7 +142,11 @@ class BeamFields:
 
     def thickness_at(self, x: FloatArray) -> FloatArray:
         """Return the thickness at places, shape as ``x`` [m]."""
-        return self.thickness * (1.0 + self.taper * ((x - self.start) / self.length - 0.5))
+        return self.thickness * (1.0 + self.taper * self.middled(x))
+
+    def middled(self, x: FloatArray) -> FloatArray:
+        """Return places as shares of the length from the middle, -1/2 to 1/2 [-]."""
+        return (x - self.start) / self.length - 0.5
 
     @cached_property
     def gauss(self) -> tuple[FloatArray, dict[str, FloatArray]]:

@@ -1,6 +1,7 @@
 """Added mass of water on a beam that moves across its width, by doublets on its surface.
 
-The beam is a flat strip in an unbounded ideal fluid. Its surface carries doublet panels of constant strength;
+The beam is a flat strip in an ideal fluid, unbounded or between a free surface and a
+bottom (``images``). Its surface carries doublet panels of constant strength;
 the normal velocity of a rectangular panel in its own plane has a closed form (a vortex ring of four straight
 sides; Katz and Plotkin, Low-Speed Aerodynamics, 2nd ed., section 10.4.5). Panels and collocation points are
 cosine-spaced across and along, which takes care of the square-root edges. The finite thickness enters as the
@@ -15,6 +16,7 @@ import numpy as np
 import scipy.optimize
 
 from acquisition.arrays import FloatArray, frozen_array
+from modalkit.simulator.bodies.images import all_corners, images
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(80)
 
@@ -58,20 +60,16 @@ def _side(angle: float) -> float:
     return float(4 * 0.25 * np.pi * np.sum(_WEIGHTS * values))
 
 
-def _corner(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Return sqrt(x^2 + y^2) / (x y), the contribution of one corner of a panel [1/m]."""
-    corner: FloatArray = np.hypot(x, y) / (x * y)
-    return corner
-
-
 @lru_cache(maxsize=64)
-def _flat_plate(aspect: float, along: int, across: int) -> tuple[FloatArray, FloatArray]:
-    """Solve a plate of unit width: stations along it, and added mass between them for unit density."""
+def _flat_plate(
+    aspect: float, along: int, across: int, tank: tuple[float, float]
+) -> tuple[FloatArray, FloatArray]:
+    """Solve a plate of unit width in a tank: stations along it, and added mass between them for unit density."""
     edge_x, x = _cosine(aspect, along)
     edge_y, y = _cosine(1.0, across)
     dx = x[:, None] - edge_x[None, :]
     dy = y[:, None] - edge_y[None, :]
-    grid = _corner(dx[:, None, :, None], dy[None, :, None, :])
+    grid = all_corners(dx[:, None, :, None], dy[None, :, None, :], images(*tank))
     velocity = (grid[..., 1:, 1:] - grid[..., :-1, 1:] - grid[..., 1:, :-1] + grid[..., :-1, :-1]) / (
         4 * np.pi
     )
@@ -96,7 +94,14 @@ def _cosine(length: float, count: int) -> tuple[FloatArray, FloatArray]:
 
 
 def added_mass(
-    length: float, width: float, thickness: float, *, density: float, along: int = 40, across: int = 10
+    length: float,
+    width: float,
+    thickness: float,
+    *,
+    density: float,
+    tank: tuple[float, float] = (np.inf, np.inf),
+    along: int = 40,
+    across: int = 10,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the added mass of a strip, as a matrix between stations along it.
 
@@ -106,6 +111,8 @@ def added_mass(
         Of the strip [m].
     density : float
         Of the fluid [kg/m3].
+    tank : (surface, bottom)
+        Their distances from the faces, above and below [m].
     along, across : int
         Panels [-].
 
@@ -116,7 +123,8 @@ def added_mass(
     matrix : (along, along) array
         Symmetric; ``velocity @ matrix @ velocity / 2`` is the kinetic energy of the fluid [kg].
     """
-    x, matrix = _flat_plate(round(length / width, 6), along, across)
+    distances = tuple(round((far + 0.5 * thickness) / width, 6) for far in tank)
+    x, matrix = _flat_plate(round(length / width, 6), along, across, distances)
     return x * width, density * width**3 * thickness_factor(thickness / width) * matrix
 
 

@@ -11,7 +11,15 @@ from acquisition.arrays import FloatArray
 from modalkit.simulator.bodies.plate.grid import Grid
 from modalkit.simulator.bodies.plate.matrices import Section
 from modalkit.simulator.bodies.plate.mesh import plate_lines
-from modalkit.simulator.bodies.plate.parts import Patch, PlateAbsorber, PlateAttached, Rib, SoftSpot, Spot
+from modalkit.simulator.bodies.plate.parts import (
+    Cavity,
+    Patch,
+    PlateAbsorber,
+    PlateAttached,
+    Rib,
+    SoftSpot,
+    Spot,
+)
 
 _STIFF = 100.0
 _LAYER = 1.5
@@ -41,12 +49,23 @@ class PlateFields:
         Angle between the edge x0 and the y axis about its middle, positive towards +x at y1 [rad].
     ratio : float
         E across over E along; coupling, twist and shear follow the geometric mean [-].
+    shear_ratio : float
+        Shear modulus in the plane, which twist follows, over that of the geometric mean [-].
     taper : float
         Relative change of thickness from x0 to x1, about the middle [-].
+    density_slope : float
+        Relative change of density from x0 to x1, about the middle [-].
     axial, axial_across : float
         Whole tension along x and along y [N].
+    axial_lean, axial_bow : float
+        How the first is spread: relative excess at x1 and lack at x0; relative excess in the middle of the width
+        over the mean, which the edges lack twice [-].
+    rise : float
+        Of a shallow arch (1 - cos(2 pi x / L)) / 2 along x, between edges that do not part [m].
     fluid_density : float
         Density of a fluid on both faces [kg/m3].
+    free_surface, bottom : float
+        Distances of the fluid's surface above and of its bottom below the faces [m].
     drag : float
         Density times viscosity of the fluid whose boundary layer damps [kg2/(m4 s)].
     wall : bool
@@ -57,6 +76,8 @@ class PlateFields:
         Kappa (Reissner) [-].
     spots, patches, ribs, attached, absorbers : tuples
         Local losses of stiffness; layers; ribs; masses, springs and dashpots; masses that hang.
+    cavity : Cavity, optional
+        Air shut in behind it.
     alpha, beta : float
         Rayleigh damping that the modeller expects [1/s], [s].
     added_alpha, added_beta, added_loss : float
@@ -80,10 +101,17 @@ class PlateFields:
     clamp_translation: float = np.inf
     skew: float = 0.0
     ratio: float = 1.0
+    shear_ratio: float = 1.0
     taper: float = 0.0
+    density_slope: float = 0.0
     axial: float = 0.0
     axial_across: float = 0.0
+    axial_lean: float = 0.0
+    axial_bow: float = 0.0
+    rise: float = 0.0
     fluid_density: float = 0.0
+    free_surface: float = np.inf
+    bottom: float = np.inf
     drag: float = 0.0
     wall: bool = True
     shear: bool = True
@@ -93,6 +121,7 @@ class PlateFields:
     ribs: tuple[Rib, ...] = ()
     attached: tuple[PlateAttached, ...] = ()
     absorbers: tuple[PlateAbsorber, ...] = ()
+    cavity: Cavity | None = None
     alpha: float = 0.0
     beta: float = 0.0
     added_alpha: float = 0.0
@@ -156,8 +185,20 @@ class PlateFields:
     def points(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Gauss points on the plate, x and y, and the thickness there [m]."""
         grid_x, y, _, _ = self.grid.gauss
-        thick = self.thickness * (1.0 + self.taper * ((grid_x - self.start) / self.length - 0.5))
+        thick = self.thickness * (1.0 + self.taper * self.middled(grid_x))
         return self.grid.place(grid_x, y), y, thick
+
+    def middled(self, x: FloatArray) -> FloatArray:
+        """Return places as shares of the length from the middle, -1/2 to 1/2 [-]."""
+        return (x - self.start) / self.length - 0.5
+
+    @property
+    def load(self) -> FloatArray:
+        """Tension along x per width at the Gauss points [N/m]."""
+        x, y, _ = self.points
+        across = 2 * (y - self.side) / self.width - 1.0
+        spread = 1.0 + 2 * self.axial_lean * self.middled(x) + self.axial_bow * (1.0 - 3.0 * across**2)
+        return self.axial / self.width * spread
 
     @cached_property
     def section(self) -> Section:
@@ -167,18 +208,28 @@ class PlateFields:
         for spot in self.spots:
             bending = bending * spot.factor(x, y)
         modulus = self.shear_factor * self.E / (2 * (1 + self.poisson)) * np.sqrt(self.ratio)
-        return Section(bending, modulus * thick * (1.0 if self.shear else _STIFF), self.ratio, self.poisson)
+        shear = modulus * thick * (1.0 if self.shear else _STIFF)
+        return Section(bending, shear, self.ratio, self.poisson, self.shear_ratio)
 
     def under(self, patch: Patch) -> Section:
         """Return the stiffness of the bare plate where a patch covers it, and nothing elsewhere."""
         x, y, _ = self.points
         bare = self.section
-        return Section(bare.bending * patch.covers(x, y), bare.shear, bare.ratio, bare.poisson)
+        return Section(
+            bare.bending * patch.covers(x, y), bare.shear, bare.ratio, bare.poisson, bare.shear_ratio
+        )
+
+    def mass_under(self, patch: Patch) -> tuple[FloatArray, FloatArray]:
+        """Return mass and rotary inertia per area where a patch covers the plate, and nothing elsewhere."""
+        x, y, _ = self.points
+        area, rotary = self.inertia()
+        covered = patch.covers(x, y)
+        return area * covered, rotary * covered
 
     def inertia(self) -> tuple[FloatArray, FloatArray]:
         """Return mass and rotary inertia per area at the Gauss points [kg/m2], [kg]."""
         x, y, thick = self.points
-        area = self.density * thick
+        area = self.density * thick * (1.0 + self.density_slope * self.middled(x))
         rotary = area * thick**2 / 12 / (1.0 if self.shear else _STIFF**2)
         for patch in self.patches:
             area = area * (1.0 + patch.mass * patch.covers(x, y))

@@ -30,12 +30,15 @@ class Section:
         D along x [N m] and kappa G t [N/m].
     ratio, poisson : float
         D across over D along, and Poisson's ratio [-].
+    shear_ratio : float
+        Stiffness against twist over that of the geometric mean [-].
     """
 
     bending: FloatArray
     shear: FloatArray
     ratio: float
     poisson: float
+    shear_ratio: float = 1.0
 
 
 def _blocks(grid: Grid) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -90,7 +93,7 @@ def stiffness_matrix(grid: Grid, section: Section, *, shear: bool = True) -> Spa
     root = np.sqrt(section.ratio)
     d11, d22 = section.bending, section.bending * section.ratio
     d12 = section.bending * section.poisson * root
-    d66 = section.bending * 0.5 * (1 - section.poisson) * root
+    d66 = section.bending * 0.5 * (1 - section.poisson) * root * section.shear_ratio
     blocks = {
         (1, 1): _pair(dx, d11, dx) + _pair(dy, d66, dy),
         (2, 2): _pair(dy, d22, dy) + _pair(dx, d66, dx),
@@ -117,10 +120,12 @@ def mass_matrix(grid: Grid, area: FloatArray, rotary: FloatArray) -> Sparse:
     return _spread(grid, {(0, 0): _pair(value, area, value), (1, 1): turn, (2, 2): turn})
 
 
-def load_matrix(grid: Grid, along: float, across: float) -> Sparse:
-    """Return the stiffness that loads in the plane give, from forces per length along x and y [N/m]."""
+def load_matrix(grid: Grid, along: FloatArray | float, across: FloatArray | float) -> Sparse:
+    """Return the stiffness that loads in the plane give, from forces per length along x and y, also at the
+    Gauss points [N/m].
+    """
     value, dx, dy = _blocks(grid)
-    ones = np.ones(value.shape[:2])
+    ones = np.ones(value.shape[0] * value.shape[1])
     return _spread(grid, {(0, 0): _pair(dx, along * ones, dx) + _pair(dy, across * ones, dy)})
 
 

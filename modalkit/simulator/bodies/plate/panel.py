@@ -1,6 +1,7 @@
 """Fluid on both faces of a rectangular plate, by a lattice of doublet panels over its length and width.
 
-The plate is flat and its panels carry jumps of potential that are constant on each; the normal velocity of a
+The fluid is unbounded, or lies between a free surface and a bottom (``images``). The
+plate is flat and its panels carry jumps of potential that are constant on each; the normal velocity of a
 rectangular panel in its own plane has a closed form (Katz and Plotkin, Low-Speed Aerodynamics, 2nd ed.,
 section 10.4.5). Edges and collocation points are evenly spaced in the angle along both sides, which takes
 care of the square-root edges (Lan, J. Aircraft 11 (1974) 518). All places move as they like: nothing is lumped
@@ -19,6 +20,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, frozen_array
 from modalkit.simulator.bodies.beam.water import slip_factor, thickness_factor
+from modalkit.simulator.bodies.images import Images, all_corners, images
 from modalkit.simulator.bodies.plate.panel_slip import slip_gram
 
 _PANELS = 28, 16
@@ -71,21 +73,26 @@ class Wetted:
 
 
 @lru_cache(maxsize=32)
-def _lattice(length: float, width: float, wall: bool, along: int, across: int) -> tuple[FloatArray, ...]:
+def _lattice(
+    length: float, width: float, wall: bool, along: int, across: int, tank: tuple[float, float]
+) -> tuple[FloatArray, ...]:
     """Return panel edges and collocation points along both sides, and the inverse of the influences [m]."""
     edge_x, x = _cosine(length, along, half=wall)
     edge_y, y = _cosine(width, across, half=False)
-    influence = _velocity(x, edge_x, y, edge_y)
+    mirrored = images(*tank)
+    influence = _velocity(x, edge_x, y, edge_y, mirrored)
     if wall:
-        influence = influence + _velocity(-x, edge_x, y, edge_y)
+        influence = influence + _velocity(-x, edge_x, y, edge_y, mirrored)
     return tuple(frozen_array(a) for a in (edge_x, edge_y, x, y, np.linalg.inv(influence)))
 
 
-def _velocity(x: FloatArray, edge_x: FloatArray, y: FloatArray, edge_y: FloatArray) -> FloatArray:
+def _velocity(
+    x: FloatArray, edge_x: FloatArray, y: FloatArray, edge_y: FloatArray, mirrored: Images
+) -> FloatArray:
     """Return the normal velocity at points that panels of unit strength induce [1/m]."""
     dx = (x[:, None] - edge_x)[:, None, :, None]
     dy = (y[:, None] - edge_y)[None, :, None, :]
-    corner = np.hypot(dx, dy) / (dx * dy)
+    corner = all_corners(dx, dy, mirrored)
     panel = np.diff(np.diff(corner, axis=2), axis=3) / (4 * np.pi)
     return np.asarray(panel.reshape(len(x) * len(y), -1))
 
@@ -104,6 +111,7 @@ def wetted(
     thickness: float,
     *,
     wall: bool = False,
+    tank: tuple[float, float] = (np.inf, np.inf),
     panels: tuple[int, int] = _PANELS,
 ) -> Wetted:
     """Return what an ideal fluid of unit density does on both faces of a plate.
@@ -116,6 +124,8 @@ def wetted(
         Of the plate, not zero [m].
     wall : bool
         Whether the low edge along x stands at an endless wall.
+    tank : (surface, bottom)
+        Their distances from the faces, above and below [m].
     panels : (along, across)
         Panels [-].
 
@@ -129,7 +139,8 @@ def wetted(
     low_x = along[0] - (0.0 if wall else reach)
     low_y = across[0] - reach
     size = along[1] + reach - low_x, across[1] + reach - low_y
-    edge_x, edge_y, x, y, jump = _lattice(round(size[0], 9), round(size[1], 9), wall, *panels)
+    distances = tuple(round(far + 0.5 * thickness, 9) for far in tank)
+    edge_x, edge_y, x, y, jump = _lattice(round(size[0], 9), round(size[1], 9), wall, *panels, distances)
     area = np.outer(np.diff(edge_x), np.diff(edge_y)).reshape(-1, 1)
     matrix = area * jump
     px, py = np.meshgrid(np.clip(low_x + x, *along), np.clip(low_y + y, *across), indexing="ij")

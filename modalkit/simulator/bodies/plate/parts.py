@@ -115,13 +115,37 @@ class Patch(Spot):
     ----------
     loss_factor : float
         Of the covered part, K (1 + i eta) [-].
+    alpha, beta : float
+        Its viscous damping, C = alpha M + beta K [1/s], [s].
     mass, stiffness : float
         What the layer adds, relative to the bare plate's mass and bending stiffness there [-].
     """
 
     loss_factor: float = 0.0
+    alpha: float = 0.0
+    beta: float = 0.0
     mass: float = 0.0
     stiffness: float = 0.0
+
+
+@dataclass(frozen=True)
+class Cavity:
+    """A closed volume behind the plate, with a mass of air in its neck: a resonator driven by the volume displaced.
+
+    The pressure is ``stiffness`` times the volume that the plate takes less the volume that leaves by the neck
+    (Kinsler, Fundamentals of Acoustics, 4th ed., section 10.8).
+
+    Parameters
+    ----------
+    stiffness : float
+        Of the air shut in, rho c^2 / V [Pa/m3].
+    inertance, resistance : float
+        Of the neck: pressure over the acceleration and over the rate of its volume [kg/m4], [Pa s/m3].
+    """
+
+    stiffness: float
+    inertance: float
+    resistance: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.linalg
 import scipy.sparse
 
 from acquisition.arrays import FloatArray
@@ -38,6 +39,10 @@ from modalkit.simulator.bodies.plate.panel import Wetted, wetted
 from modalkit.simulator.bodies.plate.parts import PlateAbsorber, PlateAttached
 from modalkit.simulator.bodies.plate.solve import lowest_modes
 
+_BASIS = 16
+"""Modes beyond those wanted, between which stiffness that spans the whole plate is put in; twice as many move the
+frequencies by less than 1e-4 and cost half as much again."""
+
 
 @dataclass(frozen=True)
 class Plate(PlateFields):
@@ -45,8 +50,30 @@ class Plate(PlateFields):
 
     @property
     def n_dofs(self) -> int:
-        """Degrees of freedom: three a node, and one for every mass that hangs [-]."""
-        return 3 * self.grid.count + len(self.absorbers)
+        """Degrees of freedom: three a node, one for every mass that hangs, one for a cavity's neck [-]."""
+        return 3 * self.grid.count + len(self._hanging)
+
+    @property
+    def _hanging(self) -> list[float]:
+        """Masses of the DOFs that are no node's: those that hang, and the air in a neck [kg], [kg/m4]."""
+        neck = [] if self.cavity is None else [self.cavity.inertance]
+        return [p.mass for p in self.absorbers] + neck
+
+    @cached_property
+    def _coupled_rows(self) -> FloatArray:
+        """Rows whose squares are stiffness that spans the whole plate: of a cavity, of an arch."""
+        _, _, weight, read = self.grid.gauss
+        rows = []
+        if self.cavity is not None:
+            row = read.rows({0: read.value}, self.n_dofs).T @ weight
+            row[-1] -= 1.0
+            rows.append(np.sqrt(self.cavity.stiffness) * row)
+        if self.rise:
+            at = self.middled(self.points[0]) + 0.5
+            slope = np.pi * self.rise / self.length * np.sin(2 * np.pi * at)
+            stiffness = self.E * self.thickness / (1 - self.poisson**2) / self.length / self.width
+            rows.append(np.sqrt(stiffness) * (read.rows({0: read.dx}, self.n_dofs).T @ (weight * slope)))
+        return np.array(rows).reshape(len(rows), self.n_dofs)
 
     @cached_property
     def _layers(self) -> tuple[Sparse, ...]:
@@ -89,8 +116,7 @@ class Plate(PlateFields):
         """Of the material, loads, edges and springs."""
         whole = self._material_stiffness
         if self.axial or self.axial_across:
-            per_metre = self.axial / self.width, self.axial_across / self.length
-            whole = whole + plate_matrices.load_matrix(self.grid, *per_metre)
+            whole = whole + plate_matrices.load_matrix(self.grid, self.load, self.axial_across / self.length)
         springs = {"shift": self.clamp_translation, "turn": self.clamp_rotation}
         whole = self._padded(whole + plate_edges.edge_springs(self.grid, self.clamped, **springs))
         if self.attached or self.absorbers:
@@ -103,12 +129,12 @@ class Plate(PlateFields):
         whole = self._material_mass
         if self.attached:
             whole = whole + plate_matrices.attached_mass(self.grid, self.attached)
-        return self._padded(whole, [p.mass for p in self.absorbers])
+        return self._padded(whole, self._hanging)
 
     def _padded(self, matrix: Sparse, last: list[float] | None = None) -> Sparse:
-        if not self.absorbers:
+        if not self._hanging:
             return matrix.tocsr()
-        rest = scipy.sparse.diags_array(last or [0.0] * len(self.absorbers))
+        rest = scipy.sparse.diags_array(last or [0.0] * len(self._hanging))
         return Sparse(scipy.sparse.block_diag([matrix, rest], format="csr"))
 
     @cached_property
@@ -118,6 +144,7 @@ class Plate(PlateFields):
             (self.side, self.side + self.width),
             self.thickness,
             wall=self.wall and set(self.clamped) == {"x0"},
+            tank=(self.free_surface, self.bottom),
         )
 
     def modal_damping(self, shapes: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -140,6 +167,8 @@ class Plate(PlateFields):
         if self.attached or self.absorbers:
             moved = self._relative_rows("damping") @ shapes
             others = others + moved.T @ moved
+        if self.cavity is not None:
+            others = others + self.cavity.resistance * np.outer(shapes[-1], shapes[-1])
         return material, others
 
     def modal_losses(self, shapes: FloatArray) -> tuple[Loss, ...]:
@@ -162,6 +191,12 @@ class Plate(PlateFields):
             if patch.loss_factor:
                 factor = patch.loss_factor * (1.0 + patch.stiffness)
                 losses.append(Loss(factor * nodal.T @ (layer @ nodal), -1.0))
+            if patch.beta:
+                factor = patch.beta * (1.0 + patch.stiffness)
+                losses.append(Loss(factor * nodal.T @ (layer @ nodal), 0.0))
+            if patch.alpha:
+                under = plate_matrices.mass_matrix(self.grid, *self.mass_under(patch))
+                losses.append(Loss(patch.alpha * nodal.T @ (under @ nodal), 0.0))
         if self.drag:
             moved = self._sparse_rows(self._wet.places, "w") @ shapes
             losses.append(Loss(np.sqrt(self.drag / 2) * self._wet.slip(moved), 0.5, inertia=True))
@@ -210,10 +245,24 @@ class Plate(PlateFields):
             Angular frequencies; close to zero for rigid-body motion [rad/s].
         shapes : (n_dofs, count) array
             Mass-normalised shapes in all DOFs [kg^-1/2].
+
+        Notes
+        -----
+        Stiffness that spans the whole plate would fill its sparse matrix; it is put in between the lowest
+        modes without it, some more than are wanted.
         """
+        if not len(self._coupled_rows):
+            return self._local_modes(count)
+        omega, shapes = self._local_modes(count + _BASIS)
+        moved = self._coupled_rows @ shapes
+        values, mixed = scipy.linalg.eigh(np.diag(omega**2) + moved.T @ moved)
+        return np.sqrt(np.maximum(values[:count], 0.0)), shapes @ mixed[:, :count]
+
+    def _local_modes(self, count: int) -> tuple[FloatArray, FloatArray]:
+        """Return the modes without what spans the whole plate."""
         free = {"shift": np.isfinite(self.clamp_translation), "turn": np.isfinite(self.clamp_rotation)}
         motions = plate_edges.free_motions(self.grid, self.clamped, **free)
-        kept = self._padded(motions, [1.0] * len(self.absorbers))
+        kept = self._padded(motions, [1.0] * len(self._hanging))
         added = None
         if self.fluid_density:
             rows = self._sparse_rows(self._wet.places, "w") @ kept
