@@ -101,13 +101,16 @@ def test_levels_reach_the_records(monkeypatch: pytest.MonkeyPatch) -> None:
     row = int(np.argmax([np.ptp(np.log(np.abs(p.force).max(axis=-1))) for p in test.points]))
     point = test.points[row]
     level = np.abs(point.force).max(axis=-1)
-    spectra = np.abs(np.fft.rfft(point.motion[:, 0], 8 * point.motion.shape[-1], axis=-1))
-    line = np.arange(spectra.shape[-1]) * test.rate / (8 * point.motion.shape[-1])
+    spectra = np.abs(np.fft.rfft(point.motion[:, 0], 64 * point.motion.shape[-1], axis=-1))
+    line = np.arange(spectra.shape[-1]) * test.rate / (64 * point.motion.shape[-1])
     first = scene.elastic().frequency[0]
     near = np.flatnonzero(np.abs(line / first - 1) < 0.15)
     tops = line[near[np.argmax(spectra[:, near], axis=1)]]
-    expected = np.array([scene.elastic(float(f)).frequency[0] for f in level])
-    np.testing.assert_allclose(tops, expected, rtol=2e-3)
+    # the largest sample of a pulse is less than its peak, by up to a tenth: the joint slips the more
+    low, high = (np.array([scene.elastic(float(f)).frequency[0] for f in level * c]) for c in (1.1, 1.0))
+    assert (tops > (1 - 5e-4) * low).all()
+    assert (tops < (1 + 5e-4) * high).all()
+    assert np.ptp(high) > 2 * (high - low).max()
     assert np.corrcoef(level, tops)[0, 1] < -0.9
 
 

@@ -180,7 +180,8 @@ def test_right_answer_closes_the_gap() -> None:
 def test_solids_are_drawn_as_often_as_plates() -> None:
     rng = np.random.default_rng(3)
     kinds = Counter(
-        draw_setup(rng, plan=DrawRanges(kinds=("beam", "plate", "solid"))).kind for _ in range(60)
+        draw_setup(rng, plan=DrawRanges(kinds=("beam", "plate", "solid"), plates=0.15)).kind
+        for _ in range(60)
     )
     assert min(kinds["plate"], kinds["solid"]) > 2 and kinds["beam"] > 25
     kinds = Counter(draw_setup(rng, plan=DrawRanges(kinds=("plate", "solid"))).kind for _ in range(15))

@@ -18,6 +18,7 @@ from updating.thresholds import (
     CLOSE_FITS,
     CLOSES_NEARLY_ALL,
     CREDIBLE_SHARE,
+    DOUBTED_FIT,
     FAR_BETTER,
     FEWER_SAMPLES,
     HEAVIEST_SAMPLES,
@@ -96,14 +97,16 @@ def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
     """Return the fewest rows that hold the certainty asked for, and those that fit as well as the first.
 
     A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
-    widely they may range, and that is no measurement.
+    widely they may range, and that is no measurement. A part of the first that fits by itself stays, too: that there is
+    something beside it is the more probable, and not sure.
     """
     total = sum(row.probability for row in rows)
     sets: list[tuple[str, ...]] = []
     held = 0.0
     for row in rows:
         alike = _close(rows[0], row) and row.probability > RIVAL_SHARE * rows[0].probability
-        if held < CREDIBLE_SHARE or alike:
+        part = set(row.names) < set(rows[0].names) and row.p_value >= DOUBTED_FIT
+        if held < CREDIBLE_SHARE or alike or part:
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
     return tuple(sets)
