@@ -113,14 +113,14 @@ class Scales:
     scale: FloatArray
     root: FloatArray
 
-    def whiten(self, changes: FloatArray) -> FloatArray:
+    def standardised(self, changes: FloatArray) -> FloatArray:
         """Return changes of the data, one or one a column, in standard deviations [-]."""
         return np.asarray(scipy.linalg.solve_triangular(self.root, changes, lower=True))
 
     def change(self, scene: Scene, before: Scene) -> FloatArray:
         """Return the whitened change of the data from one scene to another [-]."""
         after, first = (read(s, like=self.modes).vector(self.scale) for s in (scene, before))
-        return self.whiten(after - first)
+        return self.standardised(after - first)
 
 
 def scales(setup: Setup) -> Scales:

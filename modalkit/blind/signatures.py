@@ -79,10 +79,10 @@ def signatures(of: Scales, without: Sequence[str] = ()) -> Iterator[Signature]:
             continue
         if name in measured:
             for columns in measured[name]:
-                yield Signature(of.whiten(np.column_stack(columns)), effect.graded)
+                yield Signature(of.standardised(np.column_stack(columns)), effect.graded)
         elif name == "shear":
             plain = read(of.nominal.with_body(shear=False)).vector(of.scale)
-            yield Signature(of.whiten((plain - of.base.vector(of.scale))[:, None]), graded=False)
+            yield Signature(of.standardised((plain - of.base.vector(of.scale))[:, None]), graded=False)
         elif name in _LOCAL:
             yield from _of_places(effect, of)
         else:
@@ -103,7 +103,7 @@ def _of_values(effect: HiddenEffect, of: Scales, forms: Sequence[Values]) -> Flo
     start = of.base.vector(of.scale)
     scenes = [effect.act(of.nominal, values) for values in forms]
     moved = [read(scene, like=of.modes).vector(of.scale) for scene in scenes]
-    return of.whiten(np.column_stack([vector - start for vector in moved]))
+    return of.standardised(np.column_stack([vector - start for vector in moved]))
 
 
 def _of_places(effect: HiddenEffect, of: Scales) -> Iterator[Signature]:

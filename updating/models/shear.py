@@ -9,8 +9,9 @@ prediction with both costs what one of the thin plate does.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -32,11 +33,48 @@ SHIFT = 1e-4
 of that mode; doubled, nothing that can be seen."""
 
 
-SHARED = ("sampled", "parts", "sums", "point_masses", "kept")
-"""What a model with shear has in common with the thin one, once it is computed."""
-
 POWERS = {"section": 1.0, "E": 1.0, "thickness": 5.0, "length": -2.0, "width": -2.0}
 """How the change of the stiffness grows with the factors [-]: that of waves inside; along free edges it is h^4."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheared(Reduced):
+    """A thin plate's model with what shear and rotary inertia change; it has all else in common with the thin one.
+
+    Parameters
+    ----------
+    structure, basis, ranks, changes
+        As of :class:`Reduced`.
+    thin : Reduced
+        The thin plate.
+    """
+
+    thin: Reduced = field(kw_only=True)
+
+    @property
+    def sampled(self) -> dict[str, FloatArray]:
+        """Fields of the basis at the quadrature points, each (n_points, r)."""
+        return self.thin.sampled
+
+    @property
+    def kept(self) -> dict[Hashable, Any]:
+        """What others computed from the structure alone."""
+        return self.thin.kept
+
+    @property
+    def parts(self) -> tuple[FloatArray, ...]:
+        """Matrix of every term and region, each term (n_regions + 1, r, r) [SI]; the last is no region."""
+        return self.thin.parts
+
+    @property
+    def sums(self) -> tuple[FloatArray, ...]:
+        """Matrix of every term over all regions, each (r, r) [SI]."""
+        return self.thin.sums
+
+    @property
+    def point_masses(self) -> FloatArray:
+        """Matrix of the masses the modeller knows of, shape (r, r) [kg in w]."""
+        return self.thin.point_masses
 
 
 def sheared(reduced: Reduced) -> Reduced:
@@ -49,9 +87,8 @@ def sheared(reduced: Reduced) -> Reduced:
     """
     if "thick plate" not in reduced.kept:
         reduced.kept["thick plate"] = _changes(reduced.fielded, reduced.basis)
-    found = replace(reduced, changes=reduced.kept["thick plate"])
-    found.__dict__.update({name: reduced.__dict__[name] for name in SHARED if name in reduced.__dict__})
-    return found
+    changes = reduced.kept["thick plate"]
+    return Sheared(reduced.structure, reduced.basis, reduced.ranks, changes, thin=reduced)
 
 
 def _changes(structure: FieldStructure, basis: FloatArray) -> tuple[Change, ...]:

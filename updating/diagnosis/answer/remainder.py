@@ -48,11 +48,11 @@ def remainder_of(
         significant,
         float(np.sqrt(beyond)),
         float(strength.max(initial=0.0)),
-        tuple(dict.fromkeys(_said(problem, titles, best, group.members(i)) for i in carried)),
+        tuple(dict.fromkeys(_name_of(problem, titles, best, group.members(i)) for i in carried)),
     )
 
 
-def _said(problem: DiagnosisProblem, titles: Sequence[str], best: Explanation, rows: BoolArray) -> str:
+def _name_of(problem: DiagnosisProblem, titles: Sequence[str], best: Explanation, rows: BoolArray) -> str:
     """Name a cell: a kind of data of one mode, or all constants of one measuring channel."""
     comparison = best.best.comparison
     first = int(np.flatnonzero(rows)[0])

@@ -1,4 +1,4 @@
-"""Which candidates are weighed: singles first, pairs when no single explains the data.
+"""Which candidates are weighed: singles first, pairs where no single explains the data well, then triples.
 
 An effect may come in several forms (which point, which sign); each is weighed by itself, with its share of the
 effect's prior, and their evidence is added up.
@@ -295,18 +295,18 @@ def _pairs(problem: DiagnosisProblem, found: list[Explanation], *, least: bool) 
     chosen: dict[frozenset[str], tuple[Explanation, Explanation]] = {}
     for _, first, second in evaluations:  # of every two effects, the most promising forms
         chosen.setdefault(frozenset(first.names + second.names), (first, second))
-    weighed: list[Explanation] = []
+    pairs: list[Explanation] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
     for first, second in list(chosen.values())[:PAIRS_WEIGHED]:
         pair_parts = [(e.candidate, e.best.coordinates) for e in (first, second)]
-        weighed.append(_pair(problem, pair_parts[0], pair_parts[1], bar))
-        bar = max(bar, weighed[-1].best.marginal.log_likelihood)
-    weighed.sort(key=lambda e: -e.log_evidence)
-    for i, pair in enumerate(weighed[:PAIRS_ANEW]):
+        pairs.append(_pair(problem, pair_parts[0], pair_parts[1], bar))
+        bar = max(bar, pairs[-1].best.marginal.log_likelihood)
+    pairs.sort(key=lambda e: -e.log_evidence)
+    for i, pair in enumerate(pairs[:PAIRS_ANEW]):
         again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True)
-        weighed[i] = max(pair, again, key=lambda e: e.log_evidence)
-        bar = max(bar, weighed[i].best.marginal.log_likelihood)
-    return weighed + _alike(problem, possible, weighed, bar)
+        pairs[i] = max(pair, again, key=lambda e: e.log_evidence)
+        bar = max(bar, pairs[i].best.marginal.log_likelihood)
+    return pairs + _alike(problem, possible, pairs, bar)
 
 
 def _triples(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
@@ -331,12 +331,12 @@ def _triples(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explan
     chosen: dict[tuple[str, ...], Explanation] = {}
     for i in np.argsort(-(reached + weight)):
         chosen.setdefault(others[i].names, others[i])
-    bar, weighed = best.best.marginal.log_likelihood, []
+    bar, triples = best.best.marginal.log_likelihood, []
     whole = (best.candidate, best.best.coordinates)
     for other in list(chosen.values())[:TRIPLES_WEIGHED]:
-        weighed.append(_pair(problem, whole, (other.candidate, other.best.coordinates), bar))
-        bar = max(bar, weighed[-1].best.marginal.log_likelihood)
-    return weighed
+        triples.append(_pair(problem, whole, (other.candidate, other.best.coordinates), bar))
+        bar = max(bar, triples[-1].best.marginal.log_likelihood)
+    return triples
 
 
 PairPart = tuple[Candidate, FloatArray]
