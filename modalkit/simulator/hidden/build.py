@@ -19,7 +19,7 @@ from modalkit.simulator.hidden.base import (
     log_uniform,
 )
 from modalkit.simulator.hidden.springs import at_x
-from modalkit.simulator.hidden.supports import buckling, held_apart
+from modalkit.simulator.hidden.supports import buckling, clamped_at_both_ends
 from modalkit.simulator.scene import Scene
 from modalkit.simulator.setup import Setup
 
@@ -123,7 +123,7 @@ BUILD = (
         "initial_curvature",
         _draw_rise,
         lambda scene, values: scene.with_body(rise=values["rise"]),
-        applies=held_apart,
+        applies=clamped_at_both_ends,
         share=0.15,
     ),
     HiddenEffect(
@@ -133,7 +133,7 @@ BUILD = (
             axial=values["force"],
             **{f"axial_{name}": values[name] for name in ("lean", "bow") if name in values},
         ),
-        applies=held_apart,
+        applies=clamped_at_both_ends,
         share=0.15,
     ),
     HiddenEffect(

@@ -56,10 +56,10 @@ def _draw_translation(rng: np.random.Generator, setup: Setup, strength: float) -
 def _draw_slope(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
     """Draw a joint that softens, or between two clamps now and then one that hardens."""
     size = min(strength * log_uniform(rng, 0.008, 0.05), 0.08) / setup.peak
-    return {"slope": size if held_apart(setup) and rng.random() < _HARDENS else -size}
+    return {"slope": size if clamped_at_both_ends(setup) and rng.random() < _HARDENS else -size}
 
 
-def held_apart(setup: Setup) -> bool:
+def clamped_at_both_ends(setup: Setup) -> bool:
     """Tell whether both ends along x are clamped, so that they cannot approach each other."""
     return {"x0", "x1"} <= set(setup.clamped)
 
@@ -103,7 +103,7 @@ def _hardening(scene: Scene, slope: float) -> Scene:
 
 def buckling(setup: Setup) -> float:
     """Return the load along x that buckles the structure as drawn [N]."""
-    return (4.0 if held_apart(setup) else 0.25) * setup.rigidity * (np.pi / setup.length) ** 2
+    return (4.0 if clamped_at_both_ends(setup) else 0.25) * setup.rigidity * (np.pi / setup.length) ** 2
 
 
 def _turning(body: Body, stiffness: float) -> Body:

@@ -233,7 +233,7 @@ def test_numbers_with_three_digits_of_exponent_and_fortran_ones(tmp_path, reread
 
 
 @pytest.mark.parametrize("character", [b"\v", b"\f"])
-def test_a_control_character_inside_a_number_is_said(tmp_path, reread, rng, character):
+def test_a_control_character_inside_a_number_is_refused_or_warned_of(tmp_path, reread, rng, character):
     """numpy takes it for a blank, and one number would be two."""
     write_uff(tmp_path / "a.uff", tests=some_test(rng), form="ascii", precision="single")
     data = (tmp_path / "a.uff").read_bytes()

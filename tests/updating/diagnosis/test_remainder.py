@@ -45,7 +45,7 @@ def test_a_true_cause_leaves_nothing_beyond_noise() -> None:
     assert left.sigma < 4
 
 
-def test_what_no_cause_explains_is_said_by_mode_and_kind() -> None:
+def test_the_remainder_names_mode_and_kind() -> None:
     found = answer("a mode misread")
     left = found.remainder
     assert left is not None

@@ -63,7 +63,7 @@ def test_a_cause_is_found_beside_what_shear_takes() -> None:
     assert estimates["lumped_mass.mass"].value == pytest.approx(0.03, rel=0.1)
 
 
-def test_a_plate_too_thin_for_shear_is_weighed_on_its_own_theory() -> None:
+def test_a_plate_too_thin_for_shear_is_compared_on_its_own_theory_alone() -> None:
     measured = replace(struck(1), repeatability=0.05, constants_sigma=1.0 + 0.0 * struck(1).constants)
     found = diagnosed(SPEC, measured)
     assert "with and without" not in " ".join(found.warnings)
