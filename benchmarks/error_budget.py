@@ -37,7 +37,8 @@ from modalkit.workflow.case import open_study
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import Explanation, explain, finish
 from updating.diagnosis.search.goodness import p_values
-from updating.diagnosis.search.search import Compared, Search, log_prior, search
+from updating.diagnosis.search.prior import log_prior
+from updating.diagnosis.search.search import Compared, Search, search
 from updating.effects import LIBRARY
 from updating.likelihood.comparison import CHANNELS
 from updating.problem.candidate import Candidate
@@ -119,7 +120,7 @@ def _cause(found: Search, leader: Compared, true: Explanation) -> tuple[str, flo
         return "search", searched
     if leads:
         return "rejection", searched
-    if Compared(true, 0.0, true.p_value).rejected:
+    if Compared(true, 0.0, true.p_value, true.p_value).rejected:
         return "sketch", searched
     behind = leader.explanation.best.marginal.log_likelihood - true.best.marginal.log_likelihood
     return ("prior" if 2 * behind < CLOSE_FITS else "information"), searched

@@ -189,6 +189,29 @@ COUNT_PRIOR = (0.3, 0.5, 0.15, 0.04)
 """Prior of so many causes at once, none first, each spread evenly over the sets of that number [-]. Judged: what is
 tested beside its model mostly has one cause that stands out. Doubled for two: pairs gain ln 2 in all odds."""
 
+OUTLIER_PRIOR = 0.005
+"""Prior of each group of data (a kind of data of a mode, a measuring channel, a tolerance) to be worse than stated [-].
+Judged: of some forty groups that is one test in five with one. Doubled: a datum counts as odd from 3.9 in place of
+4.1 sigma."""
+
+OUTLIER_SCALES = (3.0, 10.0, 30.0, 100.0)
+"""How many times worse such a group may be [-], each as likely: from a stated sigma that is too small to a frequency
+that belongs to another body. Doubled: an oddity of 4 sigma stays an argument."""
+
+MOST_OUTLIERS = 3
+"""So many groups at most are taken to be odd at once: with more of them a test says nothing."""
+
+MOST_ALONE = 1
+"""So many where there is no cause beside them, and shapes only: one odd shape is a slip, two are a gap, and so is a
+frequency."""
+
+SUSPECTS_TRIED = 3
+"""How many groups, those that the rest predicts worst, are tried for each of them. Doubled: twice the time of this
+step, and the second is rarely taken."""
+
+QUANTILE_SPREAD = 0.3
+"""Standard deviation of a parameter's prior quantile, even between nought and one [-]."""
+
 SET_MARGIN = 2.0
 """A set is weighed where a score test says that its logarithm of the probability would come this near to the best,
 or above [-]: the test errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
@@ -234,6 +257,13 @@ PAIRS_WEIGHED = 8
 PAIRS_ANEW = 3
 """How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take half as long
 again."""
+
+SHIFT_SPREAD = 3.0
+"""How many times the shift of a starting place may be asked for, 1 sigma [-]: an effect from slight to severe."""
+
+PLACES_TOGETHER = 5
+"""How many pairs of starting places, those that explain the most together, a pair of causes is searched from. Doubled:
+a third more time for these pairs."""
 
 TRIPLES_WEIGHED = 5
 """How many effects are tried beside the best pair where no pair explains the data. Doubled: twice the time of

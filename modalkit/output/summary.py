@@ -8,7 +8,7 @@ from itertools import combinations
 from acquisition.quantities import number, p_value, percent, place, probability
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
-from updating.effects import Lack, Twin, twin_of
+from updating.effects import Lack, Twin, in_a_set, twin_of
 from updating.thresholds import BELIEVED_DOUBT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
@@ -51,7 +51,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "named":
         names = diagnosis.sets[0]
-        summary = " ".join(LIBRARY[n].sentence(_stated(diagnosis, n)) for n in names if n in LIBRARY)
+        known = in_a_set([name for name in names if name in LIBRARY])
+        summary = " ".join(dict.fromkeys(effect.sentence(_stated(diagnosis, effect.key)) for effect in known))
         return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
     statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     twin = _twin(diagnosis)
@@ -87,7 +88,8 @@ def _values(diagnosis: Diagnosis) -> str:
         if estimate.aside or parameter in IN_THE_PLACE or (shape and "point" not in parameter):
             continue
         bare = parameter.replace("_", " ")
-        whose = f"{effect} " if parameter == "factor" and len(row.effects) > 1 else ""
+        several = len(row.effects) > 1 and (parameter == "factor" or len(set(row.effects)) < len(row.effects))
+        whose = f"{effect} " if several else ""
         stated.append(f"{whose}{bare} {estimate}" + (", the end of its range" if estimate.at_bound else ""))
     text = f"({'; '.join(stated[:SHOWN])}; 95 % in brackets)" if stated else ""
     return (

@@ -22,7 +22,7 @@ from updating.diagnosis.problem.doubtful import notes_on_doubtful
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.prior import holds
 from updating.diagnosis.search.search import Search, search
 from updating.effects import LIBRARY, Effect
 from updating.models.state import State
@@ -114,13 +114,13 @@ def _diagnose(
 ) -> Diagnosis:
     effects = list(LIBRARY.values()) if library is None else list(library)
     found = search(problem, [effect for effect in effects if effect.name not in accepted])
-    chance = p_value(found.nothing.best)
+    chance = found.empty.p_value
     significant = is_significant(found, chance)
     comparable = not any(one.mostly_alone for one in problem.specimens)
     draws = np.random.default_rng(1) if rng is None else rng
     shrink = _shrink(problem, found, draws, significant=significant)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
-    left = remainder_of(problem, titles, leader, shrink)
+    left = remainder_of(problem, titles, leader if significant else found.empty.explanation, shrink)
     verdict, sets = decide(
         found,
         significant=significant,
@@ -142,7 +142,7 @@ def _diagnose(
         tuple(dict.fromkeys((*warnings, *_notes(problem, found)))),
         found.not_examined,
         comparable,
-        None if verdict == "none" else left,
+        left if significant or found.empty.explanation.candidate.outliers else None,
         included(found),
     )
 
@@ -247,7 +247,7 @@ def _shrink(
     named = [row for row in found.compared if row.names]
     best = named[0].explanation if named else found.nothing
     # what holds the best set and more is no rival of it
-    rivals = [row.explanation for row in named[1:] if not set(best.names) <= set(row.names)]
+    rivals = [row.explanation for row in named[1:] if not holds(row.names, best.names)]
     runner_up = rivals[0] if rivals else None
     result = shrinkage(problem, found.nothing, best, runner_up, rng)
     return result if significant else replace(result, closed=None)

@@ -5,7 +5,7 @@ To add one, subclass :class:`Effect` in some thirty lines and :func:`register` a
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from acquisition.errors import StudyError
@@ -70,6 +70,15 @@ def register(effect: Effect) -> None:
     LIBRARY[effect.name] = effect
 
 
+def in_a_set(names: Sequence[str]) -> tuple[Effect, ...]:
+    """Return the effects of a set of causes by their names; one that is named twice is there twice."""
+    found: list[Effect] = []
+    for name in names:
+        before = [effect for effect in found if effect.name == name]
+        found.append(before[-1].again() if before else LIBRARY[name])
+    return tuple(found)
+
+
 def twin_of(names: Collection[str]) -> Twin | None:
     """Return what one of two effects says of the other where both make one and the same change."""
     twins = (LIBRARY[name].twin for name in names if name in LIBRARY)
@@ -120,6 +129,7 @@ __all__ = [
     "Variant",
     "accepted_state",
     "check_values",
+    "in_a_set",
     "labels_of",
     "register",
     "twin_of",

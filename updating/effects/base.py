@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -160,6 +161,21 @@ class Effect(ABC):
     """An effect that makes one and the same change; one of the two says so."""
     competes_with: ClassVar[str] = ""
     """The modeller's doubt of which it is more than that: a factor with a tolerance, or ``calibration``."""
+    repeats: ClassVar[bool] = False
+    """Whether it may occur twice in a set of causes, at two places."""
+    occurrence: int = 1
+    """Which of several in a set of causes this one is."""
+
+    @property
+    def key(self) -> str:
+        """What its parameters are listed under: its name, of a second one ``name#2``."""
+        return self.name if self.occurrence == 1 else f"{self.name}#{self.occurrence}"
+
+    def again(self) -> Self:
+        """Return the same effect as the next of its kind in a set."""
+        other = copy(self)
+        other.occurrence = self.occurrence + 1
+        return other
 
     @abstractmethod
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:

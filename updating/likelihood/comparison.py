@@ -74,6 +74,8 @@ class Comparison:
         Prior of each of ``SCALES`` on the noise of the shapes [-].
     doubts : (k,) int array
         Which nuisances are named doubts: tolerances, level of damping, calibration.
+    tolerances : (t,) int array
+        Which of them are tolerances of the model.
     """
 
     residual: FloatArray
@@ -85,6 +87,7 @@ class Comparison:
     predictions: tuple[Prediction, ...]
     scale_prior: tuple[float, ...]
     doubts: IntArray
+    tolerances: IntArray
 
     @property
     def prediction(self) -> Prediction:
@@ -146,6 +149,7 @@ def assemble(
         (prediction,),
         scale_prior,
         np.arange(named[-1]),
+        np.arange(count),
     )
 
 
@@ -175,4 +179,5 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         tuple(p for part in parts for p in part.predictions),
         max((part.scale_prior for part in parts), key=lambda prior: -prior[0]),
         np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),
+        np.concatenate([part.tolerances + first for part, first in zip(parts, starts, strict=False)]),
     )

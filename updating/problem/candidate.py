@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray
 from updating.effects import Effect, Parameter, Variant
 from updating.effects.base import Values
 from updating.likelihood.base import Doubt
+from updating.likelihood.outliers import Outlier, log_price
 from updating.models.spec import FULLER
 from updating.models.state import State, combine
 from updating.prediction.predict import Predictor
@@ -32,11 +33,14 @@ class Candidate:
         Whether the model is put on the fuller theory because the nominal one is known to fall short.
     chosen : tuple of Variant
         The form of each effect; empty is the plain form of all.
+    outliers : tuple of Outlier
+        Data taken to be worse than stated.
     """
 
     effects: tuple[Effect, ...] = ()
     fuller: bool = False
     chosen: tuple[Variant, ...] = ()
+    outliers: tuple[Outlier, ...] = ()
 
     @property
     def forms(self) -> tuple[Variant, ...]:
@@ -45,8 +49,9 @@ class Candidate:
 
     @property
     def log_weight(self) -> float:
-        """Logarithm of the prior share of these forms [-]."""
-        return float(np.sum(np.log([form.weight for form in self.forms]))) if self.effects else 0.0
+        """Logarithm of the prior share of these forms, and of these outliers [-]."""
+        forms = float(np.sum(np.log([form.weight for form in self.forms]))) if self.effects else 0.0
+        return forms + log_price(self.outliers)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -67,7 +72,7 @@ class Candidate:
     def parameters(self, predictor: Predictor) -> tuple[tuple[str, Parameter], ...]:
         """Return the parameters that are searched, as (effect.parameter, prior)."""
         return tuple(
-            (f"{effect.name}.{p.name}", p)
+            (f"{effect.key}.{p.name}", p)
             for effect, form in zip(self.effects, self.forms, strict=True)
             for p in _free(effect, form, predictor)
         )
@@ -75,7 +80,7 @@ class Candidate:
     def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
         """Take prior quantiles to values, by effect.parameter."""
         stage = self.stage(predictor)
-        return {f"{e.name}.{n}": v for e, part in self.split(stage, coordinates) for n, v in part.items()}
+        return {f"{e.key}.{n}": v for e, part in self.split(stage, coordinates) for n, v in part.items()}
 
     def split(self, stage: Predictor, coordinates: Sequence[float]) -> list[tuple[Effect, Values]]:
         """Return the values of each effect's parameters at prior quantiles, on the predictor they act on."""
@@ -112,7 +117,7 @@ class Candidate:
         """Return derived quantities by effect.name, as (value, unit)."""
         stage = self.stage(predictor)
         return {
-            f"{effect.name}.{n}": v
+            f"{effect.key}.{n}": v
             for effect, values in self.split(stage, coordinates)
             for n, v in effect.derived(stage, values).items()
         }

@@ -24,6 +24,7 @@ from updating.likelihood.constants import Constants, scatter_prior
 from updating.likelihood.damping import Dampings
 from updating.likelihood.frequency import Frequencies
 from updating.likelihood.level import Levels
+from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
 from updating.models.base import FACTORS
 from updating.models.state import State
@@ -126,7 +127,8 @@ class SpecimenProblem:
         """
         (state,) = self.place(candidate, coordinates)
         stated = None if shift is None else shift[: len(self.names)]
-        return self.compare(state, stated, doubt=candidate.doubt_on(self.predictor))
+        found = self.compare(state, stated, doubt=candidate.doubt_on(self.predictor))
+        return with_outliers(found, candidate.outliers)
 
     @cached_property
     def names(self) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from updating import LIBRARY, Case, Diagnosis, Predictor
 from updating.diagnosis.answer.result import ParameterEstimate
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.fit import Point, evaluate, highest
-from updating.effects import Variant
+from updating.effects import Variant, in_a_set
 from updating.models.state import State
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
@@ -72,10 +72,14 @@ def fitted(diagnosis: Diagnosis, case: Case, *, alone: bool = True) -> Fitted:
     found: list[tuple[Candidate, Point]] = []
     for fuller in (False, True)[: 1 + (problem.predictor.spec.fuller is not None)]:
         given = _stated(leader.parameters, case.title)
-        applying = [n for n in leader.effects if problem.applies(LIBRARY[n]) is None]
-        stated = dict(zip(leader.effects, leader.forms, strict=False))
-        forms = tuple(Variant(stated[n]) if n in stated else _form(n, given) for n in applying)
-        candidate = Candidate(tuple(LIBRARY[n] for n in applying), fuller, forms)
+        whole = in_a_set(leader.effects)
+        applying = [effect for effect in whole if problem.applies(effect) is None]
+        stated = dict(zip((effect.key for effect in whole), leader.forms, strict=False))
+        forms = tuple(
+            Variant(stated[effect.key]) if effect.key in stated else _form(effect.key, given)
+            for effect in applying
+        )
+        candidate = Candidate(tuple(applying), fuller, forms)
         start = _start(problem, candidate, given)
         point = highest(problem, candidate, start, rounds=6) if alone else evaluate(problem, candidate, start)
         found.append((candidate, point))

@@ -71,6 +71,7 @@ def test_bounds_do_not_touch_what_stays_within_them() -> None:
         (SimpleNamespace(),),
         (1.0,),
         np.arange(2),
+        np.arange(0),
     )
     ridge = np.linalg.solve(np.eye(2) + columns.T @ columns, columns.T @ residual)
     assert believed(one, 1.0) == pytest.approx(residual - columns @ ridge)
@@ -115,6 +116,7 @@ def test_a_turned_mode_is_off_by_its_angle_in_all_constants() -> None:
         np.full(6, -1),
         (SimpleNamespace(),),
         (1.0,),
+        np.arange(0),
         np.arange(0),
     )
     turned = squares(np.array([0.5, 0.0, 0.0, 0.0, 0.0, 0.02]), one, "frf")

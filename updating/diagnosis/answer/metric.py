@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.answer.result import Metric
 from updating.diagnosis.search.fit import Point
 from updating.likelihood.comparison import CHANNELS, Comparison
@@ -72,7 +72,9 @@ class Squares:
         return float(np.sqrt(self.mean))
 
 
-def squares(residual: FloatArray, nominal: Comparison, metric: Metric) -> Squares:
+def squares(
+    residual: FloatArray, nominal: Comparison, metric: Metric, *, odd: BoolArray | None = None
+) -> Squares:
     """Return the errors that residuals mean in a metric.
 
     Parameters
@@ -84,8 +86,11 @@ def squares(residual: FloatArray, nominal: Comparison, metric: Metric) -> Square
     metric : str
         ``frequency`` and ``damping``: relative error of the model; ``frf``: error of the complex modal constants
         over their r.m.s. in the mode; ``combined``: every datum over its standard deviation.
+    odd : (n,) bool array, optional
+        Data that count nowhere; left out, none.
     """
     count = int(nominal.mode.max()) + 1
+    kept = np.ones(len(residual), dtype=bool) if odd is None else ~odd
     if metric == "combined":
         error, counted = residual / np.sqrt(nominal.variance), np.ones(len(residual), dtype=bool)
     elif metric == "frf":
@@ -97,12 +102,18 @@ def squares(residual: FloatArray, nominal: Comparison, metric: Metric) -> Square
         counted = nominal.of(metric)
         error = np.where(counted, np.expm1(-np.where(counted, residual, 0.0)), 0.0)
     return Squares(
-        np.asarray(np.bincount(nominal.mode, error**2, minlength=count), dtype=float),
-        np.asarray(np.bincount(nominal.mode, counted.astype(float), minlength=count), dtype=float),
+        np.asarray(np.bincount(nominal.mode, kept * error**2, minlength=count), dtype=float),
+        np.asarray(np.bincount(nominal.mode, (kept & counted).astype(float), minlength=count), dtype=float),
     )
 
 
-def noise_squares(specimens: tuple[SpecimenProblem, ...], nominal: Comparison, metric: Metric) -> Squares:
+def noise_squares(
+    specimens: tuple[SpecimenProblem, ...],
+    nominal: Comparison,
+    metric: Metric,
+    *,
+    odd: BoolArray | None = None,
+) -> Squares:
     """Return the errors that repeating the test, and the baseline, alone would give.
 
     Parameters
@@ -111,17 +122,19 @@ def noise_squares(specimens: tuple[SpecimenProblem, ...], nominal: Comparison, m
         The specimens.
     nominal : Comparison
         The nominal model's.
-    metric : str
+    metric, odd
         As in :func:`squares`.
     """
     if metric == "combined":
-        return squares(np.sqrt(nominal.variance), nominal, metric)
+        return squares(np.sqrt(nominal.variance), nominal, metric, odd=odd)
     variance = np.array(nominal.variance)
     rows = nominal.of("frequency")
     variance[rows] = np.concatenate([_repeated(one) for one in specimens])
     rows = nominal.of("damping")
     variance[rows] = np.concatenate([_damped(one) for one in specimens])
-    return _small(np.sqrt(np.maximum(variance, 0.0)), nominal, metric)
+    small = np.sqrt(np.maximum(variance, 0.0))
+    # of small errors relative and logarithmic are the same
+    return squares(-np.log1p(small) if metric != "frf" else small, nominal, metric, odd=odd)
 
 
 def _damped(problem: SpecimenProblem) -> FloatArray:
@@ -129,11 +142,6 @@ def _damped(problem: SpecimenProblem) -> FloatArray:
     test, rows = problem.measured, problem.damping_known
     relative = np.nan_to_num(test.damping_sigma[rows] / test.damping[rows], nan=UNSTATED_DAMPING_NOISE)
     return np.asarray(relative**2 + DAMPING_REPEATABILITY**2)
-
-
-def _small(sigma: FloatArray, nominal: Comparison, metric: Metric) -> Squares:
-    """Return the squares of small errors, for which relative and logarithmic are the same."""
-    return squares(-np.log1p(sigma) if metric != "frf" else sigma, nominal, metric)
 
 
 def _repeated(problem: SpecimenProblem) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -34,14 +35,15 @@ def remainder_of(
     shrink : Shrink
         How far it closes the gap.
     """
-    point = best.best
+    point, outliers = best.best, best.candidate.outliers
     comparison = point.comparison
-    stated = comparison.noise(point.marginal.scale)
+    as_stated = problem.at(replace(best.candidate, outliers=()), point.coordinates, point.about)
+    stated = as_stated.noise(point.marginal.scale)
     off = np.abs(point.left_over) / np.sqrt(stated)
     group = cells(comparison)
     strength = np.sqrt(group.sums(off**2) / np.maximum(group.size, 1))
     order = [int(i) for i in np.argsort(strength)[::-1] if group.size[i]]
-    significant = best.p_value < DOUBTED_FIT
+    significant = best.p_value < DOUBTED_FIT or bool(outliers)
     carried = [i for i in order if strength[i] > NOTABLE_REMAINDER] if significant else []
     beyond = max(shrink.after**2 - shrink.floor**2, 0.0)
     return Remainder(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -359,8 +360,11 @@ class Diagnosis(Displayed):
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Union of the sets, in the order of their probability."""
-        return tuple(dict.fromkeys(name for names in self.sets for name in names))
+        """Union of the sets, in the order of their probability; what occurs twice in one of them is there twice."""
+        most: Counter[str] = Counter()
+        for names in self.sets:
+            most |= Counter(names)
+        return tuple(most.elements())
 
     def table(self) -> pd.DataFrame:
         """Return the ranking, one row per set of effects, with its probability [-] to four decimals.

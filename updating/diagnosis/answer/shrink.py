@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.metric import Squares, metric_of, noise_squares, squares
 from updating.diagnosis.answer.result import Closed, HeldPoints, Metric, Shrink
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.held_out import believed, modes_held_out, points_held_out
 from updating.likelihood.comparison import Comparison
+from updating.likelihood.outliers import with_outliers
 from updating.problem.candidate import Candidate
 from updating.thresholds import BOOTSTRAP_DRAWS, CLOSABLE_GAP
 
@@ -36,20 +40,26 @@ def shrinkage(
     rng : Generator
         For the bootstrap.
     """
-    metric = metric_of(nothing.best)
+    outliers = best.candidate.outliers  # what the best takes to be worse than stated counts nowhere
+    own = nothing.best.comparison
+    metric = metric_of(replace(nothing.best, comparison=with_outliers(own, outliers)))
     plain = problem.at(Candidate(), np.zeros(0))
+    odd = np.any([outlier.data(plain) for outlier in outliers], axis=0) if outliers else None
+
+    def counted(residual: FloatArray) -> Squares:
+        return squares(residual, plain, metric, odd=odd)
 
     def held(explanation: Explanation) -> Squares:
-        return squares(modes_held_out(problem, explanation), plain, metric)
+        return counted(modes_held_out(problem, explanation))
 
-    before, after = squares(plain.residual, plain, metric), held(best)
+    before, after = counted(plain.residual), held(best)
     alone = best.best.comparison if not best.names else None
     fitted = best.best.left_over if alone is None else believed(alone, best.best.marginal.scale)
-    floor = noise_squares(problem.specimens, plain, metric)
+    floor = noise_squares(problem.specimens, plain, metric, odd=odd)
     return Shrink(
         metric,
         100 * before.rms,
-        100 * squares(fitted, plain, metric).rms,
+        100 * counted(fitted).rms,
         100 * before.rms,
         100 * after.rms,
         None if runner_up is None else 100 * held(runner_up).rms,

@@ -11,6 +11,7 @@ from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.result import ParameterEstimate, Ranked, Verdict
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
+from updating.diagnosis.search.prior import holds
 from updating.diagnosis.search.search import Compared, Search
 from updating.thresholds import (
     BEYOND_NOTHING,
@@ -36,14 +37,15 @@ def is_significant(found: Search, p_value: float) -> bool:
     """
     fitting = [row for row in found.compared if row.names and not row.rejected]
     gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
-    gain -= found.nothing.log_evidence
+    gain -= found.empty.explanation.log_evidence
     return bool(p_value < SIGNIFICANT_GAP or gain > FAR_BETTER or _by_chance(found) < CHANCE_OF_A_FIT)
 
 
 def _by_chance(found: Search) -> float:
     """Return the chance that noise alone makes one of the single effects that fit so much more likely (Wilks 1938)."""
     singles = [row.explanation for row in found.compared if len(row.names) == 1 and not row.rejected]
-    least = found.nothing.best.marginal.log_likelihood
+    empty = found.empty.explanation
+    least = empty.best.marginal.log_likelihood + empty.candidate.log_weight
     chances = [
         chi2.sf(2 * (one.best.marginal.log_likelihood - least), one.samples.shape[1])
         * np.exp(-one.candidate.log_weight)
@@ -83,7 +85,7 @@ def decide(
         return "unknown", ()
     if left and closed is not None and closed < CLOSES_NEARLY_ALL:
         return "unknown", ()
-    least = found.nothing.log_evidence + BEYOND_NOTHING
+    least = found.empty.explanation.log_evidence + BEYOND_NOTHING
     better = [row for row in rows if not row.rejected and row.explanation.log_evidence > least]
     if not better:
         return "unknown", ()
@@ -105,7 +107,7 @@ def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
     held = 0.0
     for row in rows:
         alike = _close(rows[0], row) and row.probability > RIVAL_SHARE * rows[0].probability
-        part = set(row.names) < set(rows[0].names) and row.p_value >= DOUBTED_FIT
+        part = row is not rows[0] and holds(rows[0].names, row.names) and row.as_stated >= DOUBTED_FIT
         if held < CREDIBLE_SHARE or alike or part:
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
@@ -172,8 +174,8 @@ def estimates(
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
         aside = parameter.default is not None
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
-    labels = [f"{effect.name}.{label}" for effect in candidate.effects for label in effect.labels]
-    sensors = [f"{effect.name}.channel" for effect in candidate.effects if effect.of_sensor]
+    labels = [f"{effect.key}.{label}" for effect in candidate.effects for label in effect.labels]
+    sensors = [f"{effect.key}.channel" for effect in candidate.effects if effect.of_sensor]
     for name, unit in [*((label, "node") for label in labels), *((sensor, "channel") for sensor in sensors)]:
         if name in drawn[0]:
             result[name] = ParameterEstimate(drawn[0][name], unit, None, None, False)

@@ -139,7 +139,7 @@ def _spread(problem: SpecimenProblem, row: Compared, even: FloatArray) -> FloatA
     if any(
         name.endswith(".region") for name in values
     ):  # one form per region, of which only the best is kept
-        channel = next(e.channel for e in explanation.candidate.effects if f"{e.name}.region" in values)
+        channel = next(e.channel for e in explanation.candidate.effects if f"{e.key}.region" in values)
         return _by_regions(problem, channel)
     sampled = sampled_places(problem, explanation)
     if not sampled.weights.sum() > 0:

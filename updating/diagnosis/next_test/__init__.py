@@ -20,6 +20,7 @@ from updating.diagnosis.next_test.other_points import OtherPoints
 from updating.diagnosis.next_test.unknown import advise
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.problem.several import Several
+from updating.diagnosis.search.prior import holds
 from updating.diagnosis.search.search import Search
 from updating.thresholds import RIVALS_COMPARED, SEPARATED_SIGMA, TESTS_PROPOSED, WORTHWHILE_SIGMA
 
@@ -104,7 +105,7 @@ def _rivals(
     chosen = list(sets[:RIVALS_COMPARED])
     if verdict == "named" and sets:
         # what holds the named set and more can do all that it does
-        others = [names for names in rows if not set(sets[0]) <= set(names)]
+        others = [names for names in rows if not holds(names, sets[0])]
         chosen += others[: RIVALS_COMPARED - 2]
     return tuple(Rival(diagnosis_problem, rows[names]) for names in chosen if names in rows)
 

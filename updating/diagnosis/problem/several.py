@@ -14,6 +14,7 @@ from updating.diagnosis.problem.recent import Recent
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import Lack, Obstacle
 from updating.likelihood.comparison import Comparison, join
+from updating.likelihood.outliers import with_outliers
 from updating.models.state import State
 from updating.prediction.predict import Prediction, Predictor
 from updating.problem.candidate import Candidate
@@ -137,7 +138,7 @@ class Several:
         parts = []
         for effect, form, i, _ in self._blocks(candidate):
             own = Candidate((effect,), candidate.fuller, (form,)).starts(self.specimens[i].predictor)
-            parts.append((effect.name, own))
+            parts.append((effect.key, own))
         names = list(dict.fromkeys(name for name, _ in parts))
         counts = {name: min(len(own) for n, own in parts if n == name) for name in names}
         found = []
@@ -157,7 +158,7 @@ class Several:
             ((_, found),) = single.split(stage, coordinates[start:end].tolist())
             everywhere = self._kept[effect.name] if effect.name in self.shared else [i]
             for j in everywhere:
-                values[j][effect.name] = found
+                values[j][effect.key] = found
             start = end
         return values
 
@@ -165,10 +166,10 @@ class Several:
         """Return all values at prior quantiles, by effect.parameter."""
         split = self._split(candidate, coordinates)
         return {
-            self._name(f"{effect.name}.{n}", effect, i): v
+            self._name(f"{effect.key}.{n}", effect, i): v
             for effect in candidate.effects
             for i in self._specimens_of(effect)
-            for n, v in split[i][effect.name].items()
+            for n, v in split[i][effect.key].items()
         }
 
     def derived(self, candidate: Candidate, coordinates: FloatArray) -> dict[str, tuple[float, str]]:
@@ -178,8 +179,8 @@ class Several:
         for effect in candidate.effects:
             for i in self._specimens_of(effect):
                 stage = candidate.stage(self.specimens[i].predictor)
-                for n, v in effect.derived(stage, split[i][effect.name]).items():
-                    found[self._name(f"{effect.name}.{n}", effect, i)] = v
+                for n, v in effect.derived(stage, split[i][effect.key]).items():
+                    found[self._name(f"{effect.key}.{n}", effect, i)] = v
         return found
 
     def place(self, candidate: Candidate, coordinates: FloatArray) -> tuple[State, ...]:
@@ -192,13 +193,13 @@ class Several:
     def parts(self, candidate: Candidate, coordinates: FloatArray) -> tuple[list[tuple[Effect, Values]], ...]:
         """Return the effects on each specimen with their values at prior quantiles."""
         return tuple(
-            [(effect, own[effect.name]) for effect in candidate.effects if effect.name in own]
+            [(effect, own[effect.key]) for effect in candidate.effects if effect.key in own]
             for own in self._split(candidate, coordinates)
         )
 
     def _state(self, candidate: Candidate, problem: SpecimenProblem, own: Mapping[str, Values]) -> State:
         stage = candidate.stage(problem.predictor)
-        parts = [(effect, own[effect.name]) for effect in candidate.effects if effect.name in own]
+        parts = [(effect, own[effect.key]) for effect in candidate.effects if effect.key in own]
         return candidate.assemble(stage, parts)
 
     def at(
@@ -214,14 +215,14 @@ class Several:
             part = self._compared(candidate, i, own, stated)
             start += part.nuisance.shape[1]
             parts.append(part)
-        return join(parts)
+        return with_outliers(join(parts), candidate.outliers)
 
     def _compared(
         self, candidate: Candidate, i: int, own: Mapping[str, Values], shift: FloatArray | None
     ) -> Comparison:
         """Compare one specimen's data, unless that was done just before with the same values."""
         problem, doubt = self.specimens[i], candidate.doubt_on(self.specimens[i].predictor)
-        acting = tuple((e, tuple(own[e.name].items())) for e in candidate.effects if e.name in own)
+        acting = tuple((e, tuple(own[e.key].items())) for e in candidate.effects if e.key in own)
         stage = candidate.stage(problem.predictor)
         key = (i, candidate.fuller, stage, acting, doubt, None if shift is None else shift.tobytes())
         return self.recent.get(

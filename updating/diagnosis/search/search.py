@@ -8,35 +8,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
-from math import comb
 
 import numpy as np
 from scipy.special import logsumexp
 
-from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain, finish
-from updating.diagnosis.search.fit import sensitivities
+from updating.diagnosis.search.odd import with_odd_data
+from updating.diagnosis.search.prior import log_prior
+from updating.diagnosis.search.sets import pairs_of, triples_of
 from updating.effects import Effect, Lack, Obstacle, Variant
-from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
 from updating.problem.theory_error import theory_shows
 from updating.thresholds import (
-    CLIMBS,
-    COUNT_PRIOR,
     DOUBTED_FIT,
     FINISHING_ROUNDS,
     FORM_SHARE,
     HELD_NEAR_END,
     HELD_SHARE,
     NEGLIGIBLE_PROBABILITY,
-    PAIRS_ANEW,
-    PAIRS_WEIGHED,
     PROBABLE_BEHIND,
     REJECTED_FIT,
-    SET_MARGIN,
-    TRIPLES_WEIGHED,
     WELL_FITTED,
     WITHIN_REACH,
 )
@@ -57,6 +49,8 @@ class Compared:
         Its share [-].
     p_value : float
         How well it fits [-].
+    as_stated : float
+        How well it fits with no data taken to be worse than stated [-].
     extreme : tuple of str
         Parameters that the data push to an end of their range that is no natural one.
     """
@@ -64,6 +58,7 @@ class Compared:
     explanation: Explanation
     probability: float
     p_value: float
+    as_stated: float
     extreme: tuple[str, ...] = ()
 
     @property
@@ -100,6 +95,11 @@ class Search:
     not_examined: dict[str, Obstacle]
     both: bool = False
 
+    @property
+    def empty(self) -> Compared:
+        """The empty set, with all its outliers."""
+        return next(row for row in self.compared if not row.names)
+
 
 def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[Effect], dict[str, Obstacle]]:
     """Sort a library into what can be examined on this specimen and what cannot, with the reason."""
@@ -126,13 +126,28 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     both = _on_both(problem, effects, nothing)
     if both and _beneath(problem):
         nothing = _either(nothing, explain(problem, Candidate(fuller=True)))
-    drafts = _singles(problem, effects, nothing, both=both)
-    found = _finished(problem, [nothing, *drafts])
+    found = _with_odd(problem, [], [nothing, *_singles(problem, effects, nothing, both=both)])
     if not _explained(problem, found, well=True):
-        found = _finished(problem, found + _pairs(problem, found, least=not _explained(problem, found)))
+        plain = _as_stated(found)
+        pairs = pairs_of(problem, plain, least=not _explained(problem, plain))
+        found = _with_odd(problem, found, pairs)
     if not _explained(problem, found):
-        found = _finished(problem, found + _triples(problem, found))
+        found = _with_odd(problem, found, triples_of(problem, _as_stated(found)))
     return Search(nothing, _merged(problem, _compare(found)), obstacles, both)
+
+
+def _with_odd(
+    problem: DiagnosisProblem, found: list[Explanation], drafts: list[Explanation]
+) -> list[Explanation]:
+    """Add drafts, as the data are stated and with outliers, and finish what is within reach."""
+    together = _finished(problem, found + drafts)
+    new = together[len(found) :]
+    return _finished(problem, together + with_odd_data(problem, new)) if new else together
+
+
+def _as_stated(found: list[Explanation]) -> list[Explanation]:
+    """Return what takes no data to be worse than stated: only that shows whether more causes are needed."""
+    return [one for one in found if not one.candidate.outliers]
 
 
 def _explained(problem: DiagnosisProblem, found: list[Explanation], *, well: bool = False) -> bool:
@@ -141,7 +156,7 @@ def _explained(problem: DiagnosisProblem, found: list[Explanation], *, well: boo
     Where it has to fit well, its fit is no rarer than one in ten.
     """
     least = WELL_FITTED if well else DOUBTED_FIT
-    rows = _compare(found)
+    rows = _compare(_as_stated(found))
     top = max(row.probability for row in rows)
     near = [row for row in rows if row.probability > top * np.exp(-PROBABLE_BEHIND)]
     return any(row.p_value >= least and not _extreme(problem, row.explanation) for row in near)
@@ -164,9 +179,9 @@ def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Expla
 
 def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compared, ...]:
     """Add up the forms of each set of effects; the most probable form stands for them."""
-    forms: dict[frozenset[str], list[Compared]] = {}
+    forms: dict[tuple[str, ...], list[Compared]] = {}
     for row in rows:
-        forms.setdefault(frozenset(row.names), []).append(row)
+        forms.setdefault(tuple(sorted(row.names)), []).append(row)
     merged = []
     for own in forms.values():
         top = max(own, key=lambda row: row.probability)
@@ -174,7 +189,9 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
         fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
         probability = sum(row.probability for row in own)
         extreme = _extreme(problem, top.explanation) if probability > NEGLIGIBLE_PROBABILITY else ()
-        merged.append(Compared(replace(top.explanation, log_evidence=total), probability, fits, extreme))
+        stated = max(row.as_stated for row in own)
+        whole = replace(top.explanation, log_evidence=total)
+        merged.append(Compared(whole, probability, fits, stated, extreme))
     return tuple(sorted(merged, key=lambda row: -row.probability))
 
 
@@ -189,16 +206,12 @@ def _extreme(problem: DiagnosisProblem, explanation: Explanation) -> tuple[str, 
     return tuple(found)
 
 
-def log_prior(causes: int, examined: int) -> float:
-    """Return the logarithm of the prior of one set of so many causes, among so many effects examined [-]."""
-    return float(np.log(COUNT_PRIOR[causes] / comb(max(examined, causes), causes)))
-
-
 def _compare(found: list[Explanation]) -> list[Compared]:
     examined = len({name for e in found for name in e.names})
     score = np.array([e.log_evidence + log_prior(len(e.names), examined) for e in found])
     probability = np.exp(score - logsumexp(score))
-    return [Compared(e, float(p), e.p_value) for e, p in zip(found, probability, strict=True)]
+    stated = [0.0 if e.candidate.outliers else e.p_value for e in found]
+    return [Compared(e, float(p), e.p_value, s) for e, p, s in zip(found, probability, stated, strict=True)]
 
 
 def _beneath(problem: DiagnosisProblem) -> bool:
@@ -252,187 +265,3 @@ def _either(plain: Explanation, fuller: Explanation) -> Explanation:
     total = float(np.logaddexp(plain.log_evidence, fuller.log_evidence) - np.log(2))
     chosen = max(plain, fuller, key=lambda e: e.log_evidence)
     return replace(chosen, log_evidence=total, other=total - chosen.log_evidence)
-
-
-def _pairs(problem: DiagnosisProblem, found: list[Explanation], *, least: bool) -> list[Explanation]:
-    """Weigh the pairs that a score test at every pair finds the most promising.
-
-    Parameters
-    ----------
-    problem : SpecimenProblem or Several
-        Test and model.
-    found : list of Explanation
-        No effect, and every single one.
-    least : bool
-        Whether the most promising are weighed in any case: no single effect explains the data. Else only those are
-        whose score test comes near the best.
-    """
-    singles = [e for e in found if e.names]
-    possible = [e for e in singles if e.best.possible]
-    if len(possible) < 2:
-        return []
-    examined = len({e.names for e in singles})
-    best = max(e.log_evidence + log_prior(len(e.names), examined) for e in found)
-    volume = [e.best.marginal.log_likelihood - e.log_evidence for e in possible]  # what their parameters cost
-    reached = _score_tests(problem, possible)
-    data = len(problem.at(Candidate(), np.zeros(0)).residual)
-    evaluations = []
-    for i, j in combinations(range(len(possible)), 2):
-        first, second = possible[i], possible[j]
-        if first.names == second.names:
-            continue
-        if len(first.best.coordinates) + len(second.best.coordinates) >= data:
-            continue  # as many parameters as data explain anything
-        weight = first.candidate.log_weight + second.candidate.log_weight
-        likelihood = max(reached[i, j], reached[j, i])
-        expected = likelihood - volume[i] - volume[j] + log_prior(2, examined)
-        if least or expected > best - SET_MARGIN:
-            evaluations.append((likelihood + weight, first, second))
-    evaluations = [evaluation for evaluation in evaluations if np.isfinite(evaluation[0])]
-    if not evaluations:
-        return []
-    evaluations.sort(key=lambda evaluation: -evaluation[0])
-    chosen: dict[frozenset[str], tuple[Explanation, Explanation]] = {}
-    for _, first, second in evaluations:  # of every two effects, the most promising forms
-        chosen.setdefault(frozenset(first.names + second.names), (first, second))
-    pairs: list[Explanation] = []
-    bar = max(e.best.marginal.log_likelihood for e in possible)
-    for first, second in list(chosen.values())[:PAIRS_WEIGHED]:
-        pair_parts = [(e.candidate, e.best.coordinates) for e in (first, second)]
-        pairs.append(_pair(problem, pair_parts[0], pair_parts[1], bar))
-        bar = max(bar, pairs[-1].best.marginal.log_likelihood)
-    pairs.sort(key=lambda e: -e.log_evidence)
-    for i, pair in enumerate(pairs[:PAIRS_ANEW]):
-        again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True)
-        pairs[i] = max(pair, again, key=lambda e: e.log_evidence)
-        bar = max(bar, pairs[i].best.marginal.log_likelihood)
-    return pairs + _alike(problem, possible, pairs, bar)
-
-
-def _triples(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
-    """Add to the best pair, one at a time, the single effects that a score test finds the most promising."""
-    pairs = [e for e in found if len(e.names) == 2 and e.best.possible]
-    best = max(pairs, key=lambda e: e.log_evidence, default=None)
-    if best is None:
-        return []
-    data = len(best.best.comparison.residual)
-    others = [
-        e
-        for e in found
-        if len(e.names) == 1
-        and e.best.possible
-        and e.names[0] not in best.names
-        and len(best.best.coordinates) + len(e.best.coordinates) < data - 1
-    ]
-    if not others:
-        return []
-    reached = _score_tests(problem, [best, *others])[0, 1:]
-    weight = np.array([e.candidate.log_weight for e in others])
-    chosen: dict[tuple[str, ...], Explanation] = {}
-    for i in np.argsort(-(reached + weight)):
-        chosen.setdefault(others[i].names, others[i])
-    bar, triples = best.best.marginal.log_likelihood, []
-    whole = (best.candidate, best.best.coordinates)
-    for other in list(chosen.values())[:TRIPLES_WEIGHED]:
-        triples.append(_pair(problem, whole, (other.candidate, other.best.coordinates), bar))
-        bar = max(bar, triples[-1].best.marginal.log_likelihood)
-    return triples
-
-
-PairPart = tuple[Candidate, FloatArray]
-"""One of the two effects of a pair, and prior quantiles to start from."""
-
-
-def _pair(
-    problem: DiagnosisProblem, first: PairPart, second: PairPart, bar: float, *, anew: bool = False
-) -> Explanation:
-    """Draft a pair, from the best that each of the two has alone, and where asked from all its own starts anew.
-
-    An effect that explains as much as it can alone bends to what the other does, so that its place alone may be far
-    from that in the pair.
-    """
-    (one, a), (two, b) = first, second
-    middle = [np.full(len(u), 0.5) for u in (a, b)]
-    starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
-    if anew:
-        starts += [np.concatenate([a, own]) for own in problem.starts(two)]
-        starts += [np.concatenate([own, b]) for own in problem.starts(one)]
-    both = Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
-    unlike = list(
-        {tuple(u.tolist()): u for u in starts}.values()
-    )  # of an effect without parameters all are alike
-    return explain(
-        problem, both, starts=unlike, laplace_only=True, maximisations=CLIMBS if anew else 1, bar=bar
-    )
-
-
-def _alike(
-    problem: DiagnosisProblem, singles: list[Explanation], pairs: list[Explanation], bar: float
-) -> list[Explanation]:
-    """Draft what some data cannot tell from the best pair: one of the two in the place of an effect like it.
-
-    Such a rival may fit as well where it alone, at another place, fits too badly for the score test to choose it.
-    """
-    best = max(pairs, key=lambda e: e.log_evidence, default=None)
-    if best is None:
-        return []
-    known, found = {frozenset(e.names) for e in pairs}, []
-    data = len(best.best.comparison.residual)
-    pair_parts = _parts_of_pair(problem, best)
-    for (kept, place), (other, _) in (pair_parts, pair_parts[::-1]):
-        for rival in _like(other.effects[0], singles):
-            names = frozenset(kept.names + rival.names)
-            if len(names) == 2 and names not in known and len(place) + len(rival.best.coordinates) < data:
-                known.add(names)
-                found.append(
-                    _pair(problem, (kept, place), (rival.candidate, rival.best.coordinates), bar, anew=True)
-                )
-    return found
-
-
-def _parts_of_pair(problem: DiagnosisProblem, pair: Explanation) -> tuple[PairPart, PairPart]:
-    """Take a pair apart."""
-    whole = pair.candidate
-    first, second = (
-        Candidate((effect,), fuller=whole.fuller, chosen=(form,))
-        for effect, form in zip(whole.effects, whole.forms, strict=True)
-    )
-    count = len(problem.parameters(first))
-    return (first, pair.best.coordinates[:count]), (second, pair.best.coordinates[count:])
-
-
-def _like(effect: Effect, singles: list[Explanation]) -> list[Explanation]:
-    """Return the best form of every single that is declared to resemble an effect, or that the effect declares."""
-    best: dict[str, Explanation] = {}
-    for single in singles:
-        for other in single.candidate.effects:
-            alike = other.name in effect.equivalent_to or effect.name in other.equivalent_to
-            if alike and (other.name not in best or best[other.name].log_evidence < single.log_evidence):
-                best[other.name] = single
-    return list(best.values())
-
-
-def _score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> FloatArray:
-    """Return the log-likelihood that a linear step from each single's best, with each other, would reach.
-
-    Returns
-    -------
-    (n, n) array
-        Row: whose best is the start; column: whose whole shift, and its sensitivities there, are added [-].
-    """
-    nominal = problem.at(Candidate(), np.zeros(0)).residual
-    own = [np.nan_to_num(sensitivities(problem, e.candidate, e.best)) for e in singles]
-    shifts = [(nominal - e.best.comparison.residual)[:, None] for e in singles]
-    everything = np.nan_to_num(np.hstack([np.hstack(pair) for pair in zip(shifts, own, strict=True)]))
-    ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
-    reached = np.full((len(singles), len(singles)), -np.inf)
-    for i, leader in enumerate(singles):
-        normal, load = normal_equations(leader.best.comparison, everything, leader.best.marginal.scale)
-        start = leader.best.marginal.log_likelihood
-        mine = np.arange(ends[i] + 1, ends[i + 1])
-        for j in range(len(singles)):
-            if j != i:
-                columns = np.concatenate([mine, np.arange(ends[j], ends[j + 1])])
-                step = np.linalg.lstsq(normal[np.ix_(columns, columns)], load[columns], rcond=1e-10)[0]
-                reached[i, j] = start + 0.5 * float(load[columns] @ step)
-    return reached

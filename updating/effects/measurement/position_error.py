@@ -25,6 +25,7 @@ class PositionError(Effect):
     footprint = "One point's constants change as the shapes slope there; frequencies and damping unchanged."
     models = ("beam", "plate")
     equivalent_to = ("swapped_points",)
+    repeats = True
     separated_by = "measure the point's place and hit it again"
     labels = ("point",)
     phrase = "a misplaced test point"

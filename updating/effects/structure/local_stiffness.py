@@ -34,6 +34,7 @@ class LocalStiffness(Effect):
     footprint = "Frequencies fall in the modes that bend there, and hardly in those with no curvature there."
     models = ("beam", "plate", "matrices")
     equivalent_to = ("clamp_rotation",)
+    repeats = True
     separated_by = "more points around the place, or a visual and dye check there"
     phrase = "a soft spot"
     fidelity = 0.05  # some 0.03 of a sharp-edged place seen as one with soft edges, 0.02 of the condensation

@@ -121,6 +121,7 @@ class LumpedMass(Effect):
     phrase = "a mass left out of the model"
     models = ("beam", "plate", "matrices")
     equivalent_to = ("sensor_mass",)
+    repeats = True
     separated_by = "look for the body and take it off; or more points around the place"
     fidelity = 0.03
 

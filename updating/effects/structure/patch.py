@@ -26,6 +26,7 @@ class DampingPatch(Effect):
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("uniform_damping",)
+    repeats = True
     separated_by = "take the layer off, or more modes whose curvature differs along the structure"
     phrase = "a damping patch"
     fidelity = 0.05

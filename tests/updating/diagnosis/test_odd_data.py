@@ -1,0 +1,103 @@
+"""A true cause beside one datum that is worse than stated, and one cause that acts at two places."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from updating_cases import BEAM as FINE
+from updating_cases import case_of, specimen, struck
+
+from modalkit.output.documents import diagnosis_document
+from updating import LIBRARY, Diagnosis, diagnose
+
+BEAM = FINE.with_elements(20)
+SOME = tuple(
+    LIBRARY[name] for name in ("E", "density", "length", "sensor_mass", "clamp_rotation", "calibration_gain")
+)
+
+
+@cache
+def answer(seed: int, what: str) -> Diagnosis:
+    """A beam 10 % softer, of which one frequency, one damping or one point's constants were read wrong."""
+    rng = np.random.default_rng(seed)
+    beam = specimen(rng)
+    test = struck(replace(beam, E=0.9 * beam.E) if what != "one shape" else beam, rng)
+    first, third = np.arange(len(test.frequency)) == 0, np.arange(len(test.frequency)) == 2
+    if what == "one frequency":
+        test = replace(test, frequency=test.frequency * np.where(third, 1.02, 1.0))
+    elif what == "one damping":
+        test = replace(test, damping=test.damping * np.where(first, 10.0, 1.0))
+    elif what == "one point":
+        wrong = np.where(test.hit == 2, 0.8, 1.0)[:, None]
+        test = replace(test, constants=test.constants * wrong)
+    else:
+        scattered = 1 + 0.4 * rng.standard_normal(len(test.hit))[:, None] * third
+        test = replace(test, constants=test.constants * scattered)
+    return diagnose(case_of(test, BEAM), library=SOME)
+
+
+@pytest.mark.parametrize("what", ["one frequency", "one damping", "one point"])
+@pytest.mark.parametrize("seed", [3, 17])
+def test_one_bad_group_of_data_hides_no_cause(seed: int, what: str) -> None:
+    found = answer(seed, what)
+    assert ("E",) in found.sets
+    assert all(
+        {"E", "density"} & set(names) for names in found.sets
+    )  # five frequencies tell little between them
+    left = found.remainder
+    assert left is not None
+    assert left.significant
+    wanted = {
+        "one frequency": "mode 3 frequency",
+        "one damping": "mode 1 damping",
+        "one point": "point 3, all modes",
+    }
+    assert wanted[what] in left.carried_by
+    estimate = next(row for row in found.ranking if row.effects == ("E",)).parameters["E.factor"]
+    assert estimate.low95 is not None
+    assert estimate.high95 is not None
+    assert estimate.low95 < 0.95
+    assert estimate.high95 > 0.85
+
+
+@pytest.mark.parametrize("seed", [3, 17])
+def test_one_odd_shape_is_no_gap_and_is_said(seed: int) -> None:
+    found = answer(seed, "one shape")
+    assert found.verdict == "none"
+    assert found.remainder is not None
+    assert "mode 3 shape" in found.remainder.carried_by
+
+
+MASSES = ((0.12, 0.02), (0.30, 0.03))
+
+
+@cache
+def two_bodies() -> Diagnosis:
+    rng = np.random.default_rng(5)
+    test = struck(replace(specimen(rng), masses=MASSES), rng)
+    library = [LIBRARY[name] for name in ("E", "density", "lumped_mass", "sensor_mass", "local_stiffness")]
+    return diagnose(case_of(test, BEAM), library=library)
+
+
+def test_two_bodies_are_two_of_one_cause() -> None:
+    found = two_bodies()
+    assert found.ranking[0].effects == ("lumped_mass", "lumped_mass")
+    assert ("lumped_mass", "lumped_mass") in found.sets
+    row = found.ranking[0].parameters
+    places = sorted(
+        (row[f"{key}.x"].value, row[f"{key}.mass"].value) for key in ("lumped_mass", "lumped_mass#2")
+    )
+    for (x, mass), (true_x, true_mass) in zip(places, MASSES, strict=True):
+        assert x == pytest.approx(true_x, abs=0.02)
+        assert mass == pytest.approx(true_mass, rel=0.15)
+
+
+def test_what_occurs_twice_stands_twice_and_is_included_once() -> None:
+    found = two_bodies()
+    document = diagnosis_document(found)
+    assert document["cause"]["effects"].count("lumped_mass") == 2
+    assert list(document["included"]).count("lumped_mass") == 1
+    assert "lumped_mass#2.mass" in document["cause"]["ranking"][0]["parameters"]

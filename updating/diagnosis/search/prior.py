@@ -1,0 +1,21 @@
+"""The prior of a set of causes, and when one set holds another."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from math import comb
+
+import numpy as np
+
+from updating.thresholds import COUNT_PRIOR
+
+
+def holds(whole: Sequence[str], part: Sequence[str]) -> bool:
+    """Tell whether a set of causes has all of another, one that occurs twice as often."""
+    return not Counter(part) - Counter(whole)
+
+
+def log_prior(causes: int, examined: int) -> float:
+    """Return the logarithm of the prior of one set of so many causes, among so many effects examined [-]."""
+    return float(np.log(COUNT_PRIOR[causes] / comb(max(examined, causes), causes)))
