@@ -261,7 +261,7 @@ again."""
 SHIFT_SPREAD = 3.0
 """How many times the shift of a starting place may be asked for, 1 sigma [-]: an effect from slight to severe."""
 
-PLACES_TOGETHER = 5
+PLACES_TOGETHER = 3
 """How many pairs of starting places, those that explain the most together, a pair of causes is searched from. Doubled:
 a third more time for these pairs."""
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from itertools import combinations
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import chain, combinations_with_replacement, product, zip_longest
 
 import numpy as np
 
@@ -47,46 +48,90 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
     examined = len({e.names for e in singles})
     best = max(e.log_evidence + log_prior(len(e.names), examined) for e in found)
     volume = [e.best.marginal.log_likelihood - e.log_evidence for e in possible]  # what their parameters cost
+    nominal = next(e.best for e in found if not e.names)
+    allowed = _allowed(problem, possible)
     reached = _score_tests(problem, possible)
-    data = len(problem.at(Candidate(), np.zeros(0)).residual)
-    evaluations = []
-    for i, j in combinations(range(len(possible)), 2):
+    reaches = [_reaches(problem, nominal, e.candidate) for e in possible]
+    drafts = []
+    for (i, j), together in zip(allowed, _together(nominal, reaches, allowed), strict=True):
         first, second = possible[i], possible[j]
-        if first.names == second.names:
-            if not (first.candidate.effects[0].repeats and first.candidate.chosen != second.candidate.chosen):
-                continue
-            second = _next(second)
-        if len(first.best.coordinates) + len(second.best.coordinates) >= data:
-            continue  # as many parameters as data explain anything
+        second = _next(second) if first.names == second.names else second
         weight = first.candidate.log_weight + second.candidate.log_weight
-        likelihood = max(reached[i, j], reached[j, i])
-        expected = likelihood - volume[i] - volume[j] + log_prior(2, examined)
-        if least or expected > best - SET_MARGIN:
-            evaluations.append((likelihood + weight, first, second))
-    for likelihood, first, second in _twice(problem, possible):
-        cost = next(v for v, e in zip(volume, possible, strict=True) if e.candidate is first.candidate)
-        expected = likelihood - 2 * cost + log_prior(2, examined)
-        if len(first.best.coordinates) * 2 < data and (least or expected > best - SET_MARGIN):
-            evaluations.append((likelihood, first, second))
-    evaluations = [evaluation for evaluation in evaluations if np.isfinite(evaluation[0])]
-    if not evaluations:
-        return []
-    evaluations.sort(key=lambda evaluation: -evaluation[0])
-    chosen: dict[tuple[str, ...], tuple[Explanation, Explanation]] = {}
-    for _, first, second in evaluations:  # of every two effects, the most promising forms
-        chosen.setdefault(tuple(sorted(first.names + second.names)), (first, second))
+        cost = log_prior(2, examined) - volume[i] - volume[j]
+        near = max(reached[i, j], reached[j, i]) if i != j else -np.inf
+        far = together[0][0] if together else -np.inf
+        if least or max(near, far) + cost > best - SET_MARGIN:
+            drafts.append(_Draft(first, second, near + weight, far + weight, [u for _, u in together]))
     pairs: list[Explanation] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
-    for first, second in list(chosen.values())[:PAIRS_WEIGHED]:
-        pair_parts = [(e.candidate, e.best.coordinates) for e in (first, second)]
-        pairs.append(_pair(problem, pair_parts[0], pair_parts[1], bar))
+    chosen = _promising(drafts)
+    places = {draft.first.names + draft.second.names: draft.places for draft in chosen}
+    for draft in chosen:
+        parts = [(e.candidate, e.best.coordinates) for e in (draft.first, draft.second)]
+        pairs.append(_pair(problem, parts[0], parts[1], bar, places=draft.places))
         bar = max(bar, pairs[-1].best.marginal.log_likelihood)
     pairs.sort(key=lambda e: -e.log_evidence)
     for i, pair in enumerate(pairs[:PAIRS_ANEW]):
-        again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True)
+        again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True, places=places[pair.names])
         pairs[i] = max(pair, again, key=lambda e: e.log_evidence)
         bar = max(bar, pairs[i].best.marginal.log_likelihood)
     return pairs + _alike(problem, possible, pairs, bar)
+
+
+@dataclass(frozen=True, eq=False)
+class _Draft:
+    """A pair that may be weighed.
+
+    Parameters
+    ----------
+    first, second : Explanation
+        The two effects alone.
+    near, far : float
+        The log-likelihood that a linear step would reach, forms' shares in it: from the best of either alone, and from
+        no effect at all.
+    places : list of arrays
+        Prior quantiles of both to start from.
+    """
+
+    first: Explanation
+    second: Explanation
+    near: float
+    far: float
+    places: list[FloatArray]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the two effects."""
+        return tuple(sorted(self.first.names + self.second.names))
+
+
+def _promising(drafts: list[_Draft]) -> list[_Draft]:
+    """Return the pairs that promise the most, those from near and those from far in turn, of two effects one form."""
+    chosen: dict[tuple[str, ...], _Draft] = {}
+    near = sorted((d for d in drafts if np.isfinite(d.near)), key=lambda draft: -draft.near)
+    far = sorted((d for d in drafts if np.isfinite(d.far)), key=lambda draft: -draft.far)
+    for draft in chain.from_iterable(zip_longest(near, far)):
+        if draft is not None and len(chosen) < PAIRS_WEIGHED:
+            chosen.setdefault(draft.names, draft)
+    return list(chosen.values())
+
+
+def _allowed(problem: DiagnosisProblem, singles: list[Explanation]) -> list[tuple[int, int]]:
+    """Return which two may be causes together: not one effect twice but at two places, and fewer parameters than data.
+
+    As many parameters as data explain anything.
+    """
+    allowed = []
+    data = len(singles[0].best.comparison.residual)
+    for i, j in combinations_with_replacement(range(len(singles)), 2):
+        first, second = singles[i], singles[j]
+        if first.names == second.names:
+            placed = any(name.endswith(".x") for name, _ in problem.parameters(first.candidate))
+            if not first.candidate.effects[0].repeats or (i == j and not placed):
+                continue
+        if len(first.best.coordinates) + len(second.best.coordinates) < data:
+            allowed.append((i, j))
+    return allowed
 
 
 def _next(single: Explanation) -> Explanation:
@@ -95,74 +140,88 @@ def _next(single: Explanation) -> Explanation:
     return replace(single, candidate=again)
 
 
-def _twice(
-    problem: DiagnosisProblem, singles: list[Explanation]
-) -> list[tuple[float, Explanation, Explanation]]:
-    """Return, for every effect that may occur twice, the two starting places that promise the most together.
+@dataclass(frozen=True, eq=False)
+class _Reach:
+    """What an effect may do about one of its starting places.
 
-    Returns
-    -------
-    list of (float, Explanation, Explanation)
-        The log-likelihood that the two would reach, and the two at their starting places, not fitted.
+    Parameters
+    ----------
+    place : (k,) array
+        Prior quantiles [-].
+    columns : (n, 1 + k) array
+        Its whole shift, and what every parameter adds, as wide as they are believed to be needed [-].
     """
-    found = []
-    best = {single.names: single for single in sorted(singles, key=lambda one: one.log_evidence)}
-    for single in best.values():
-        if single.candidate.effects[0].repeats and not single.candidate.chosen[0].values:
-            second = _next(single)
-            reached, places = _places_together(problem, single.candidate, second.candidate)[0]
-            count = len(single.best.coordinates)
-            first = replace(single, best=evaluate(problem, single.candidate, places[:count]))
-            found.append(
-                (reached, first, replace(second, best=replace(first.best, coordinates=places[count:])))
-            )
-    return found
+
+    place: FloatArray
+    columns: FloatArray
 
 
-def _places_together(
-    problem: DiagnosisProblem, one: Candidate, two: Candidate
-) -> list[tuple[float, FloatArray]]:
-    """Return starting places of two effects that explain the most together, best first.
+def _reaches(problem: DiagnosisProblem, nominal: Point, candidate: Candidate) -> list[_Reach]:
+    """Return what an effect may do about each of its starting places, the impossible ones left out."""
+    points = [evaluate(problem, candidate, place) for place in problem.starts(candidate)]
+    return [
+        _Reach(
+            point.coordinates,
+            np.nan_to_num(
+                np.column_stack(
+                    [
+                        SHIFT_SPREAD * (nominal.comparison.residual - point.comparison.residual),
+                        QUANTILE_SPREAD * sensitivities(problem, candidate, point),
+                    ]
+                )
+            ),
+        )
+        for point in points
+        if point.possible
+    ]
 
-    What either does from each of its starts is taken once; the two are added up, each as large as the data ask for.
 
-    Returns
-    -------
-    list of (float, array)
-        The log-likelihood that would be reached, and the prior quantiles of both.
+INSIDE = (0.02, 0.98)
+"""Prior quantiles to which a first step is kept: at the very end some effects stand still [-]."""
+
+Together = list[tuple[float, FloatArray]]
+"""The log-likelihood that two effects would reach, and the prior quantiles of both to start from, best first."""
+
+
+def _together(nominal: Point, reaches: list[list[_Reach]], pairs: list[tuple[int, int]]) -> list[Together]:
+    """Return from where pairs of effects explain the most, each as much of it as the data ask for.
+
+    Parameters
+    ----------
+    nominal : Point
+        No effect.
+    reaches : list of lists
+        Of every effect.
+    pairs : list of (int, int)
+        Which of them are taken together; one with itself is at two of its places.
     """
-    nominal = evaluate(problem, Candidate(), np.zeros(0))
-    own = [problem.starts(one), problem.starts(two)]
-    first = [_reach(problem, one, place, nominal) for place in own[0]]
-    second = first if one.names == two.names else [_reach(problem, two, place, nominal) for place in own[1]]
-    widths = [part.shape[1] for part in (*first, *second)]
-    ends = np.cumsum([0, *widths])
-    normal, load = normal_equations(nominal.comparison, np.hstack([*first, *second]), nominal.marginal.scale)
+    flat = [reach for own in reaches for reach in own]
+    ends = np.cumsum([0, *(reach.columns.shape[1] for reach in flat)])
+    starts = np.cumsum([0, *(len(own) for own in reaches)])
+    whole = np.hstack([reach.columns for reach in flat]) if flat else np.zeros((0, 0))
+    normal, load = normal_equations(nominal.comparison, whole, nominal.marginal.scale)
     normal += np.eye(len(load))
+
+    def one_step(a: int, b: int) -> FloatArray:
+        """Return where a linear step leads from two places, both shifts whole."""
+        shifts, free = ends[[a, b]], np.r_[ends[a] + 1 : ends[a + 1], ends[b] + 1 : ends[b + 1]]
+        left = load[free] - normal[np.ix_(free, shifts)].sum(axis=1) / SHIFT_SPREAD
+        step = QUANTILE_SPREAD * np.linalg.solve(normal[np.ix_(free, free)], left)
+        return np.clip(np.concatenate([flat[a].place, flat[b].place]) + step, *INSIDE)
+
     found = []
-    for i in range(len(first)):
-        for j in range(i + 1 if second is first else 0, len(second)):
-            k = len(first) + j
-            columns = np.r_[ends[i] : ends[i + 1], ends[k] : ends[k + 1]]
-            gain = 0.5 * float(
-                load[columns] @ np.linalg.solve(normal[np.ix_(columns, columns)], load[columns])
-            )
-            found.append((nominal.marginal.log_likelihood + gain, np.concatenate([own[0][i], own[1][j]])))
-    found.sort(key=lambda pair: -pair[0])
-    return found[:PLACES_TOGETHER]
-
-
-def _reach(problem: DiagnosisProblem, candidate: Candidate, place: FloatArray, nominal: Point) -> FloatArray:
-    """Return what an effect does about a starting place, (n, 1 + k): its whole shift, and per parameter.
-
-    The columns are as wide as they are believed to be needed: some times the shift, the spread of a prior quantile.
-    """
-    point = evaluate(problem, candidate, place)
-    if not point.possible:
-        return np.zeros((len(nominal.comparison.residual), 1 + len(place)))
-    shift = nominal.comparison.residual - point.comparison.residual
-    own = sensitivities(problem, candidate, point)
-    return np.nan_to_num(np.column_stack([SHIFT_SPREAD * shift, QUANTILE_SPREAD * own]))
+    for i, j in pairs:
+        own: list[tuple[float, tuple[int, int]]] = []
+        for a, b in product(range(starts[i], starts[i + 1]), range(starts[j], starts[j + 1])):
+            if i == j and a >= b:
+                continue
+            columns = np.r_[ends[a] : ends[a + 1], ends[b] : ends[b + 1]]
+            step = np.linalg.solve(normal[np.ix_(columns, columns)], load[columns])
+            reached = nominal.marginal.log_likelihood + 0.5 * float(load[columns] @ step)
+            own.append((reached, (a, b)))
+        own.sort(key=lambda one: -one[0])
+        found.append([(reached, one_step(a, b)) for reached, (a, b) in own[:PLACES_TOGETHER]])
+    return found
 
 
 def triples_of(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
@@ -200,7 +259,13 @@ PairPart = tuple[Candidate, FloatArray]
 
 
 def _pair(
-    problem: DiagnosisProblem, first: PairPart, second: PairPart, bar: float, *, anew: bool = False
+    problem: DiagnosisProblem,
+    first: PairPart,
+    second: PairPart,
+    bar: float,
+    *,
+    anew: bool = False,
+    places: Sequence[FloatArray] = (),
 ) -> Explanation:
     """Draft a pair, from the best that each of the two has alone, and where asked from all its own starts anew.
 
@@ -213,14 +278,13 @@ def _pair(
     if anew:
         starts += [np.concatenate([a, own]) for own in problem.starts(two)]
         starts += [np.concatenate([own, b]) for own in problem.starts(one)]
-        starts += [places for _, places in _places_together(problem, one, two)]
+    starts += places
     both = Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
     unlike = list(
         {tuple(u.tolist()): u for u in starts}.values()
     )  # of an effect without parameters all are alike
-    return explain(
-        problem, both, starts=unlike, laplace_only=True, maximisations=CLIMBS if anew else 1, bar=bar
-    )
+    climbs = CLIMBS if anew else 1 + bool(places)
+    return explain(problem, both, starts=unlike, laplace_only=True, maximisations=climbs, bar=bar)
 
 
 def _alike(
