@@ -145,7 +145,12 @@ class Before:
             return missed, variance, known
         predicted = self.prediction.constants[there]
         error = self.baseline.constants[there] - predicted
-        level = np.linalg.norm(now.constants[here], axis=0)[:, None] / np.linalg.norm(predicted, axis=0)
+        # of a mode that was not predicted to be seen, its sensor on a node, what was missed is all there is
+        unseen = np.sum(self.baseline.constants[there] ** 2, axis=0)
+        level = np.sqrt(
+            (np.sum(now.constants[here] ** 2, axis=0)[:, None] + unseen)
+            / (np.sum(predicted**2, axis=0) + unseen)
+        )
         weights = self.shares(now) * level
         missed[here] = error @ weights.T
         variance[here] = (

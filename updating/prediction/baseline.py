@@ -22,6 +22,11 @@ from updating.test_data.measured import Measured
 COARSE = 0.2
 """A calibration worse than this says nothing of modal masses [-]."""
 
+LEAST_LEVEL = 0.1
+"""Modes whose predicted constants are smaller than this share of the strongest mode's say where the sensor sits beside
+a node, and nothing of modal masses [-]. Of equally heavy modes constants differ by two or three, near a node by any
+number. Doubled: a mode near a node is left out sooner; nothing, where four others are left."""
+
 
 def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     """Return what makes a model reproduce a baseline's frequencies and damping.
@@ -104,7 +109,9 @@ def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]
     """
     if not baseline.absolute or baseline.calibration > COARSE:
         return 1.0, np.inf
-    level = np.linalg.norm(predicted, axis=0) / np.linalg.norm(baseline.constants, axis=0)
+    size = np.linalg.norm(predicted, axis=0)
+    seen = size > LEAST_LEVEL * size.max()
+    level = size[seen] / np.linalg.norm(baseline.constants[:, seen], axis=0)
     level = level**2 if baseline.bare else level
     heavier = float(np.median(level))
     return heavier, float(np.hypot(baseline.calibration, np.std(level) / heavier / np.sqrt(len(level))))

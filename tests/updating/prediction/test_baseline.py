@@ -11,7 +11,7 @@ from updating_cases import BEAM, POINTS, blank, specimen, struck
 from acquisition.errors import EstimationError
 from updating import LIBRARY, Damping, Measured, Predictor
 from updating.models.state import State
-from updating.prediction.baseline import correct
+from updating.prediction.baseline import correct, modal_mass
 
 LOOK = Predictor(BEAM, blank(POINTS))
 SOUND = LOOK.predict(count=5)
@@ -102,3 +102,32 @@ def test_two_modes_for_one_of_the_models_are_refused() -> None:
     with pytest.raises(EstimationError, match="two measured modes"):
         correct(LOOK.for_test(test), test, np.array([0, 0]))
     assert isinstance(correct(LOOK.for_test(test), test, np.array([0, 1])), State)
+
+
+FREE = replace(BEAM, length=0.5, clamped=())
+
+
+def test_modes_with_the_sensor_on_a_node_say_nothing_of_the_mass() -> None:
+    """A free beam seen from its middle: half of its modes have a node there, and are seen because it sits beside it."""
+    places = np.linspace(0.0, 0.5, 9)
+    middle = Predictor(FREE, blank(places, sensor=4))
+    beside = Predictor(FREE, blank(places + np.where(np.arange(9) == 4, 0.001, 0.0), sensor=4))
+    true, model = beside.predict(count=6), middle.predict(count=6)
+    assert (
+        np.linalg.norm(model.constants, axis=0) < 1e-6 * np.linalg.norm(true.constants, axis=0)
+    ).sum() == 3
+    test = replace(
+        middle.measured,
+        frequency=true.frequency,
+        frequency_sigma=1e-4 * true.frequency,
+        damping=np.full(6, 0.01),
+        damping_sigma=np.full(6, 1e-4),
+        constants=true.constants,
+        constants_sigma=0.01 * np.abs(true.constants) + 1e-6,
+    )
+    heavier, doubt = modal_mass(test, model.constants)
+    assert heavier == pytest.approx(1.0, abs=0.01)
+    assert doubt < 0.1
+    state = correct(middle.for_test(test), test, np.arange(6))
+    found = middle.for_test(test, (lambda _: state,)).predict(count=8)
+    assert found.frequency == pytest.approx(middle.predict(count=8).frequency, rel=0.002)
