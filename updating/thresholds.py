@@ -181,6 +181,14 @@ RIVAL_SHARE = 0.02
 """A rival that fits as well as the first is kept from this share of its probability on [-]. Below, its prior alone,
 by how wide its parameters range, is odds of 50. Doubled: odds of 25 name an effect among equals."""
 
+DETERMINED_SPREAD = 0.1
+"""Standard deviation of a prior quantile below which the data determine a parameter [-]: a third of the prior's own,
+0.29. Doubled: a parameter counts as determined that the data halve."""
+
+USUAL_SHARE = 0.99
+"""A rival that has hardly any probability is kept only with its sizes in so much of their priors, about the middle
+[-]: the contract's rule. Doubling what is left out drops rivals in the outer two per cent."""
+
 CLOSE_FITS = 4.0
 """Twice the difference of log-likelihood below which two explanations are equivalent [-]: 2 sigma, as the contract
 has it."""

@@ -19,6 +19,7 @@ from updating.thresholds import (
     CLOSE_FITS,
     CLOSES_NEARLY_ALL,
     CREDIBLE_SHARE,
+    DETERMINED_SPREAD,
     DOUBTED_FIT,
     FAR_BETTER,
     FEWER_SAMPLES,
@@ -27,6 +28,7 @@ from updating.thresholds import (
     PLACES_PER_FORM,
     RIVAL_SHARE,
     SIGNIFICANT_GAP,
+    USUAL_SHARE,
 )
 
 
@@ -106,12 +108,32 @@ def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
     sets: list[tuple[str, ...]] = []
     held = 0.0
     for row in rows:
-        alike = _close(rows[0], row) and row.probability > RIVAL_SHARE * rows[0].probability
+        alike = _close(rows[0], row) and _as_good(rows[0], row)
         part = row is not rows[0] and holds(rows[0].names, row.names) and row.as_stated >= DOUBTED_FIT
         if held < CREDIBLE_SHARE or alike or part:
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
     return tuple(sets)
+
+
+def _as_good(first: Compared, row: Compared) -> bool:
+    """Tell whether a rival that fits as well stays, though it may be behind by its prior alone.
+
+    It does where it is not far behind, or where its fit is no greater an achievement: no more of its parameters are
+    determined by the data than of the first's, and none lies at the very end of what is believed.
+    """
+    if row.probability > RIVAL_SHARE * first.probability:
+        return True
+    apart = not holds(first.names, row.names) and not holds(row.names, first.names)
+    usual = np.abs(row.explanation.best.coordinates - 0.5) < 0.5 * USUAL_SHARE
+    return bool(apart and usual.all() and _determined(row) <= _determined(first))
+
+
+def _determined(row: Compared) -> int:
+    """Return how many parameters of a set the data determine: whose posterior is much narrower than their prior."""
+    samples, weights = row.explanation.samples, row.explanation.weights
+    mean = weights @ samples
+    return int((np.sqrt(weights @ (samples - mean) ** 2) < DETERMINED_SPREAD).sum())
 
 
 def included(found: Search) -> dict[str, float]:
