@@ -28,6 +28,7 @@ class AxialLoad(Effect):
     footprint = (
         "Frequencies rise with tension, the lowest most: in proportion to N over the wavelength's stiffness."
     )
+    equivalent_to = ("ground_spring",)
     separated_by = "loosen one end and retighten it, or repeat the test at another temperature"
     phrase = "an axial load"
     fidelity = 0.02

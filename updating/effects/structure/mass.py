@@ -128,7 +128,7 @@ class LumpedMass(Effect):
         """Return the mass and its place."""
         high = 0.5 * total_mass(predictor.spec)
         why = "from what repeated tests can see to half the structure's own mass"
-        places = _outline(predictor)
+        places = outline(predictor)
         return (Parameter("mass", "kg", 2e-3 * high, high, why, log=True), *places, _bulk(CUBE))
 
     def weight(self, predictor: Predictor, values: Values) -> float:
@@ -186,7 +186,7 @@ def _bulk(default: float) -> Parameter:
     return Parameter("bulk", "-", 0.0, LARGEST, why, default=default, natural=EDGES)
 
 
-def _outline(predictor: Predictor) -> tuple[Parameter, ...]:
+def outline(predictor: Predictor) -> tuple[Parameter, ...]:
     """Return the coordinates of a place with the structure's outline as their range."""
     spec: Spec = predictor.spec
     if spec.kind != "matrices":
