@@ -75,7 +75,7 @@ def signatures(of: Scales, without: Sequence[str] = ()) -> Iterator[Signature]:
     setup = of.nominal.setup
     measured = _of_the_measurement(of)
     for name, effect in HIDDEN_EFFECTS.items():
-        if not effect.in_library or not effect.fits(setup) or name in without:
+        if not effect.in_library or not effect.fits(setup) or effect.known_as in without:
             continue
         if name in measured:
             for columns in measured[name]:

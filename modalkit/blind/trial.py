@@ -193,12 +193,12 @@ def _truth(
     seen = shown(scene, _plain(before, hidden_effects))
     in_library = all(s.in_library for s in hidden_effects)
     named = list(zip(hidden_effects, values, strict=True))
-    without = tuple(s.name for s in hidden_effects if s.in_library) if plan.leave_out else ()
+    without = tuple(s.known_as for s in hidden_effects if s.known_as is not None) if plan.leave_out else ()
     return Truth(
         kind=setup.kind,
         effects=tuple(s.name for s in hidden_effects),
         parameters={
-            f"{s.name}.{key}": float(value) if isinstance(value, np.floating) else value
+            f"{s.known_as or s.name}.{key}": float(value) if isinstance(value, np.floating) else value
             for s, drawn in named
             for key, value in drawn.items()
             if not isinstance(value, str)

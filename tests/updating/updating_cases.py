@@ -34,6 +34,7 @@ class ExactBeam:
     translation: float = np.inf
     masses: tuple[tuple[float, float], ...] = ()
     soft: tuple[float, float, float] | None = None
+    beds: tuple[tuple[float, float, float], ...] = ()
 
     @property
     def area(self) -> float:
@@ -45,6 +46,7 @@ class ExactBeam:
 
     def _stations(self, count: int) -> np.ndarray:
         extra = [x for x, _ in self.masses] + list(self.soft[:2] if self.soft else ())
+        extra += [x for bed in self.beds for x in bed[:2]]
         return np.unique(np.concatenate([np.linspace(0, self.length, count + 1), extra]))
 
     def _steps(self, omega: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -62,6 +64,8 @@ class ExactBeam:
         rate[..., 2, 1] = -(omega[:, None] ** 2) * self.density * self.inertia * self.rotary
         rate[..., 2, 3] = -1.0
         rate[..., 3, 0] = -(omega[:, None] ** 2) * self.density * self.area
+        for low, high, stiffness in self.beds:
+            rate[..., 3, 0] += np.where((middle > low) & (middle < high), stiffness / (high - low), 0.0)
         steps = expm(rate * size[:, None, None])
         for place, mass in self.masses:
             jump = np.broadcast_to(np.eye(4), (len(omega), 4, 4)).copy()

@@ -30,6 +30,8 @@ from updating.effects.structure.mass import LumpedMass, SensorMass
 from updating.effects.structure.orthotropy import Orthotropy
 from updating.effects.structure.patch import DampingPatch
 from updating.effects.structure.shear import Shear
+from updating.effects.structure.spring import GroundSpring
+from updating.effects.structure.suspension import Suspension
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -46,6 +48,8 @@ LIBRARY: dict[str, Effect] = {
         SensorMass(),
         LumpedMass(),
         LocalStiffness(),
+        GroundSpring(),
+        Suspension(),
         Shear(),
         Orthotropy(),
         AxialLoad(),

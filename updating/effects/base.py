@@ -49,6 +49,8 @@ class Parameter:
         What is taken where an effect is put into a model and this is not told; left out, it has to be told.
     natural : tuple of {"low", "high"}
         Ends of the range that are nature's and no judgement: an edge of the structure, nothing, everything.
+    or_none : bool
+        Whether it may be zero beside this range, which is a form of its own.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Parameter:
     log: bool = False
     default: float | None = None
     natural: tuple[str, ...] = ()
+    or_none: bool = False
 
     def extreme(self, coordinate: float) -> bool:
         """Tell whether a prior quantile lies at an end of the range that is a judgement."""

@@ -19,6 +19,9 @@ ROUNDED = 1e-3
 NOT_NEGATIVE = frozenset({"mass", "stiffness", "bulk", "loss_factor"})
 """Parameters with a linear prior that are zero or more."""
 
+WITHIN = frozenset({"inset", "cords", "joint"})
+"""Parameters that make sense within their range alone."""
+
 WHOLE_LOSS = 1.0
 """A loss of stiffness that leaves none [-]."""
 
@@ -58,11 +61,13 @@ def _wrong(parameter: Parameter, value: float) -> str | None:
         slack = ROUNDED * (parameter.high - parameter.low)
         if not parameter.low - slack <= value <= parameter.high + slack:
             return f"is off the structure, which reaches from {parameter.low:g} to {parameter.high:g} m"
+    elif name in WITHIN and not parameter.low <= value <= parameter.high:
+        return f"must lie from {parameter.low:g} to {parameter.high:g}"
     elif name == "region" and not (value == int(value) and parameter.low <= value <= parameter.high):
         return f"is no region; they are counted from 0 to {parameter.high:g}"
     elif name == "loss" and value >= WHOLE_LOSS:
         return "takes away all stiffness or more; it is a share below 1"
-    elif parameter.log and not (value > 0 or (value == 0 and name in NOTHING)):
+    elif parameter.log and not (value > 0 or (value == 0 and (parameter.or_none or name in NOTHING))):
         return "must be positive"
     elif name in NOT_NEGATIVE and value < 0:
         return "must not be negative"

@@ -70,8 +70,10 @@ class HiddenEffect:
         ``equals(setup, values)``: other names that describe exactly the same change of the data.
     places : callable
         ``places(setup, values)``: where it sits, in model axes.
-    in_library : bool
-        Whether the diagnosis is expected to know it.
+    outside : bool
+        Whether it is drawn among what libraries do not know.
+    known_as : str or None
+        Its name in the library of the diagnosis, None where that is not expected to know it; left out, its own.
     graded : bool
         Whether it comes in different strengths.
     exclusive : str
@@ -90,12 +92,22 @@ class HiddenEffect:
     applies: Callable[[Setup], bool] = everywhere
     equals: Callable[[Setup, Values], tuple[str, ...]] = no_equals
     places: Callable[[Setup, Values], tuple[Place, ...]] = nowhere
-    in_library: bool = True
+    outside: bool = False
+    known_as: str | None = ""
     graded: bool = True
     exclusive: str = ""
     metric: str = "frequency"
     solid: bool = False
     share: float = 1.0
+
+    def __post_init__(self) -> None:
+        if self.known_as == "":
+            object.__setattr__(self, "known_as", self.name)
+
+    @property
+    def in_library(self) -> bool:
+        """Whether the diagnosis is expected to know it."""
+        return self.known_as is not None
 
     def fits(self, setup: Setup) -> bool:
         """Tell whether the specimen can have it, of what it is made of too."""

@@ -55,7 +55,7 @@ def choose_sort(rng: np.random.Generator, plan: DrawRanges) -> str:
         Among named effects, those inside and outside the library are singles alike.
     """
     named = [n for n in plan.effects if n != "none"]
-    inside = [n for n in named if HIDDEN_EFFECTS[n].in_library]
+    inside = [n for n in named if not HIDDEN_EFFECTS[n].outside]
     weights = {"none": plan.none, "pair": plan.pairs, "triple": plan.triples, "outside": plan.outside}
     if plan.effects:
         weights["none"] = (plan.none if named else 1.0) if "none" in plan.effects else 0.0
@@ -94,7 +94,7 @@ def choose_hidden_effects(
         return ()
     pool = [s for s in HIDDEN_EFFECTS.values() if not plan.effects or s.name in plan.effects]
     if not plan.effects or sort in ("pair", "triple"):
-        pool = [s for s in pool if s.in_library == (sort != "outside")]
+        pool = [s for s in pool if s.outside == (sort == "outside")]
     pool = [s for s in pool if s.fits(setup)]
     chosen: list[HiddenEffect] = []
     forced = [s for s in pool if s.name == "shear" and lacks_shear(setup)]
@@ -161,9 +161,15 @@ def right_answers(
     tuple of tuple of str
         Each sorted; empty where nothing is hidden, and where the right answer is ``unknown``.
     """
-    if not hidden_effects or not all(hidden_effect.in_library for hidden_effect in hidden_effects):
+    if not hidden_effects:
         return ()
-    names = [(s.name, *s.equals(setup, v)) for s, v in zip(hidden_effects, values, strict=True)]
+    names = [
+        (s.known_as, *s.equals(setup, v))
+        for s, v in zip(hidden_effects, values, strict=True)
+        if s.known_as is not None
+    ]
+    if len(names) < len(hidden_effects):
+        return ()
     sets = dict.fromkeys(tuple(sorted(set(chosen))) for chosen in product(*names))
     return tuple(
         chosen

@@ -1,4 +1,4 @@
-"""What no effect of the library describes: joints that open and close, and what else a measurement gets wrong."""
+"""What no library described when the rig was made: joints that open and close, and what else a test gets wrong."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from modalkit.simulator.hidden.base import (
 )
 from modalkit.simulator.hidden.build import BUILD
 from modalkit.simulator.hidden.chain import hit_points, point_places
+from modalkit.simulator.hidden.known import KNOWN_SINCE
 from modalkit.simulator.hidden.local import sensor_places
 from modalkit.simulator.hidden.springs import SPRINGS, at_x, cantilever, unit
 from modalkit.simulator.hidden.supports import can_show_levels
@@ -121,7 +122,7 @@ def _act_cross_axis(scene: Scene, values: Values) -> Scene:
 
 
 OUTSIDE = tuple(
-    replace(hidden_effect, in_library=False)
+    replace(hidden_effect, outside=True, known_as=KNOWN_SINCE.get(hidden_effect.name))
     for hidden_effect in (
         *SPRINGS,
         *BUILD,

@@ -147,6 +147,35 @@ def _box(structure: FieldStructure, values: dict[str, Any], edge: float) -> np.n
     return np.prod(0.5 + 0.5 * np.tanh((values["extent"] / 2 - abs(points - centre)) / steep), axis=1)
 
 
+def _sprung(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    """Springs side by side, a thousand along a stretch, on plates 60 x 60 over a square."""
+    sizes = (structure.spec.length, structure.spec.width)[: structure.fields.dim]
+    count = 1 if not values["extent"] else (1000, 60)[structure.fields.dim - 1]
+    lines = []
+    for name, size in zip("xy", sizes, strict=False):
+        half = min(values["extent"], size) / 2
+        middle = np.clip(values[name], half, size - half)
+        lines.append(middle + 2 * half * ((np.arange(count) + 0.5) / count - 0.5))
+    points = np.stack(np.meshgrid(*lines), axis=-1).reshape(-1, len(sizes))
+    rows = structure.fields.at(points)["w"]
+    return {"stiffness": values["stiffness"] / len(points) * (rows.T @ rows)}
+
+
+def _hung(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    """Two to four cords, on plates the first two across a diagonal."""
+    near, far, count = values["inset"], 1 - values["inset"], round(values["cords"])
+    beam = {
+        2: [near, far],
+        3: [near, 0.5, far],
+        4: [near, near + (far - near) / 3, far - (far - near) / 3, far],
+    }
+    corners = [[near, near], [far, far], [near, far], [far, near]]
+    shares = np.array(beam[count])[:, None] if structure.fields.dim == 1 else np.array(corners[:count])
+    sizes = np.array([structure.spec.length, structure.spec.width])[: structure.fields.dim]
+    rows = structure.fields.at(shares * sizes)["w"]
+    return {"stiffness": values["stiffness"] * (rows.T @ rows)}
+
+
 def _soft(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
     return {"stiffness": structure.matrix("stiffness", -values["loss"] * _box(structure, values, 0.125))}
 
@@ -195,6 +224,8 @@ CHANGES: dict[str, Callable[[FieldStructure, dict[str, Any]], dict[str, Any]]] =
     "sensor_mass": _sensor,
     "lumped_mass": _body,
     "local_stiffness": _soft,
+    "ground_spring": _sprung,
+    "suspension": _hung,
     "damping_patch": _layer,
     "axial_load": _tension,
     "orthotropy": _across,
@@ -224,9 +255,11 @@ CONTRACT = {
     "length": {"extension"},
     "clamp_rotation": {"stiffness"},
     "clamp_translation": {"stiffness"},
-    "sensor_mass": {"mass", "bulk"},
+    "sensor_mass": {"mass", "bulk", "dx", "dy"},
     "lumped_mass": {"mass", "x", "y", "bulk"},
     "local_stiffness": {"x", "y", "extent", "loss"},
+    "ground_spring": {"x", "y", "extent", "stiffness", "damping"},
+    "suspension": {"stiffness", "damping", "inset", "cords"},
     "shear": set(),
     "orthotropy": {"ratio"},
     "axial_load": {"force"},
@@ -234,7 +267,7 @@ CONTRACT = {
     "fluid_damping": {"viscosity"},
     "damping_patch": {"x", "y", "extent", "loss_factor", "mass", "stiffness"},
     "uniform_damping": {"alpha", "beta", "loss_factor"},
-    "joint_nonlinearity": {"slope"},
+    "joint_nonlinearity": {"slope", "joint"},
     "exponential_window": {"decay"},
     "calibration_gain": {"gain"},
     "time_delay": {"delay"},
@@ -255,6 +288,7 @@ VANISHING = {
     "sensor_mass": {"mass": 0.0},
     "lumped_mass": {"mass": 0.0},
     "local_stiffness": {"loss": 0.0},
+    "ground_spring": {"stiffness": 0.0, "damping": 0.0},
     "orthotropy": {"ratio": 1.0},
     "axial_load": {"force": 0.0},
     "fluid_added_mass": {"fluid_density": 0.0},

@@ -20,7 +20,8 @@ RISES = {"E": 1, "density": -1, "thickness": 1, "length": -1, "clamp_rotation": 
 RISES |= {"clamp_translation": 1, "lumped_mass": -1, "local_stiffness": -1, "axial_load": 1}
 RISES |= {"fluid_added_mass": -1, "exponential_window": 0, "calibration_gain": 0, "section_scale": 0}
 """Sign of the change of the first frequency with each effect's first size; 0 is none at all."""
-SIZE = {"local_stiffness": "loss", "lumped_mass": "mass"}
+RISES |= {"ground_spring": 1}
+SIZE = {"local_stiffness": "loss", "lumped_mass": "mass", "ground_spring": "stiffness"}
 HARMLESS = {"clamp_rotation": 1, "clamp_translation": 1, "sensor_mass": 0, "lumped_mass": 0}
 """End of the prior, 0 low or 1 high, at which nothing can be seen; a clamp is rigid at its high end."""
 HARMLESS |= {"local_stiffness": 0, "exponential_window": 0}
@@ -180,7 +181,8 @@ def test_the_order_of_the_points_does_not_matter(name: str, place: str) -> None:
 
 
 SCALING = sorted({"E", "thickness", "length", "clamp_rotation", "clamp_translation", "local_stiffness", "orthotropy"}
-                 | {"axial_load", "fluid_added_mass", "lumped_mass", "damping_patch", "shear"})  # fmt: skip
+                 | {"axial_load", "fluid_added_mass", "lumped_mass", "damping_patch", "shear"}
+                 | {"ground_spring"})  # fmt: skip
 
 
 @admitted(SCALING, ["beam", "plate"])

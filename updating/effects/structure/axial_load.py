@@ -28,6 +28,7 @@ class AxialLoad(Effect):
     footprint = (
         "Frequencies rise with tension, the lowest most: in proportion to N over the wavelength's stiffness."
     )
+    equivalent_to = ("ground_spring",)
     separated_by = "loosen one end and retighten it, or repeat the test at another temperature"
     phrase = "an axial load"
     fidelity = 0.02
@@ -51,7 +52,7 @@ class AxialLoad(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure under the force."""
         longer = predictor.base.factors.get("length", 1.0)
-        return State(stiffness=(values["force"] / longer * _unit(predictor),))
+        return State(stiffness=(values["force"] / longer * unit_tension(predictor),))
 
 
 def buckling_load(predictor: Predictor) -> float:
@@ -71,7 +72,8 @@ def _buckling(predictor: Predictor) -> float:
     )
 
 
-def _unit(predictor: Predictor) -> FloatArray:
+def unit_tension(predictor: Predictor) -> FloatArray:
+    """Return the stiffness of a tension of 1 N, (r, r) [1/m in w]."""
     reduced = predictor.reduced
 
     def build() -> FloatArray:

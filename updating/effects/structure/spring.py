@@ -1,0 +1,215 @@
+"""What holds the structure beside its clamps: a stop, a cable, a stinger, an elastic foundation, a dashpot."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness, total_mass
+from updating.effects.box import Place, mirror_images, place, starting_places
+from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
+from updating.effects.structure.mass import AXES, outline
+from updating.models.spec import Spec
+from updating.models.state import Loss, State
+from updating.prediction.predict import Predictor
+
+STIFFNESS = (0.1, 2e4)
+"""Range of a spring's stiffness over the structure's own E I / L^3: one that moves the lowest mode by a tenth of a per
+cent, and a stop [-]."""
+
+LOSSY = (1e-4, 3.0)
+"""Range of a dashpot over M omega of the lowest mode: at a cantilever's tip it damps that by 2 c / M omega, a hardly
+visible 0.02 %, and all but holds the tip at the upper end [-]."""
+
+SLIPS = 0.1
+"""How far what touches a structure leaves its damping in doubt: it rubs and slips, and is no dashpot, 1 sigma [-]."""
+
+SHORTEST = 0.03
+"""Shortest stretch that differs from a point, of the length [-]."""
+
+DENSE = {"beam": 24, "plate": 12}
+"""Gauss points along each side of a stretch: enough for the square of a shape of a dozen half waves [-]."""
+
+SAME = 1e-6
+"""So near to a test point, of the length, a place is that point [-]."""
+
+
+class GroundSpring(Effect):
+    """Springs and dashpots to the ground, at a point or evenly over a stretch, or over a square of a plate.
+
+    ``stiffness`` and ``damping`` are those of all together; a stretch stays on the structure. Of imported matrices a
+    spring acts at one of the test's points, in the directions in which that is measured.
+    """
+
+    name = "ground_spring"
+    channel = "stiffness"
+    summary = (
+        "Something holds the structure beside its clamps: a stop, a cable, a stinger, an elastic foundation."
+    )
+    footprint = (
+        "Frequencies rise, the lowest most, in the modes that move at the place; damping rises there, too."
+    )
+    phrase = "a spring to the ground"
+    models = ("beam", "plate", "matrices")
+    equivalent_to = ("axial_load", "suspension")
+    separated_by = (
+        "look for what touches the structure there and take it off; or more points around the place"
+    )
+    undone_by = frozenset({"unclamped"})
+    fidelity = 0.03
+    damping_doubt = SLIPS
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return place, extent, stiffness and damping."""
+        spec = predictor.spec
+        low, high = (share * own_stiffness(predictor) for share in STIFFNESS)
+        held = "from what repeated tests can see of a soft cable to a stop"
+        why = "a point is a form of its own; what is longer goes to the whole structure"
+        size = max(spec.length, spec.width) if spec.kind == "plate" else spec.length
+        lossy = "from hardly anything to be seen to a dashpot that all but holds the lowest mode"
+        extent = SHORTEST * spec.length, size
+        least, most = (share * total_mass(spec) * lowest(predictor) for share in LOSSY)
+        return (
+            *outline(predictor),
+            Parameter("extent", "m", *extent, why, log=True, default=0.0, natural=EDGES, or_none=True),
+            Parameter("stiffness", "N/m", low, high, held, log=True, or_none=True),
+            Parameter("damping", "N s/m", least, most, lossy, True, 0.0, ("low",), or_none=True),
+        )
+
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
+        """Need places: on imported matrices, the points of the test."""
+        if predictor.spec.kind != "matrices" or len(predictor.measured.points):
+            return None
+        what = "the test has no points on the imported matrices at which a spring might act"
+        return Obstacle(Lack.DATA, what)
+
+    def damps(self, parameter: str = "") -> bool:
+        """Tell that the dashpots do, and nothing else."""
+        return parameter == "damping"
+
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return a dashpot alone, a point, and a stretch; without any damping where none can be compared."""
+        point, still = {"extent": 0.0}, {"damping": 0.0}
+        shares: list[tuple[dict[str, float], float]] = [
+            (point | {"stiffness": 0.0}, 0.1),
+            (point, 0.55),
+            ({}, 0.35),
+        ]
+        if damping_obstacle(predictor) is not None:
+            shares = [(point | still, 0.6), (still, 0.4)]
+        if predictor.spec.kind != "matrices":
+            return tuple(Variant(fixed, share) for fixed, share in shares)
+        points = np.unique(predictor.measured.points, axis=0)
+        named = [dict(zip(AXES, map(float, at), strict=True)) for at in points]
+        alone = [(fixed, share) for fixed, share in shares if fixed.get("extent") == 0.0]
+        whole = sum(share for _, share in alone) * len(named)
+        return tuple(Variant({**at, **fixed}, share / whole) for fixed, share in alone for at in named)
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from a row of places and the ends, with a middling spring that hardly damps."""
+        spec = predictor.spec
+        if spec.kind == "matrices":
+            return tuple((0.5, 0.5, 0.5, 0.5, u, 0.4) for u in (0.4, 0.6))
+        ends = ((0.98,),) if spec.kind == "beam" else ((0.98, 0.02), (0.98, 0.98))
+        return tuple((*where, 0.6, 0.5, 0.5) for where in (*starting_places(spec), *ends))
+
+    def settled(self, predictor: Predictor, values: Values) -> Values:
+        """Return the values with the stretch moved, in proportion, to where all of it is on the structure."""
+        spec = predictor.spec
+        if not spec.outlined:
+            return values
+        settled = dict(values)
+        for name, size in _sides(spec):
+            half = min(values["extent"], size) / 2
+            settled[name] = half + values[name] / size * (size - 2 * half)
+        return settled
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the structure with springs and dashpots."""
+        unit = _unit(predictor, values)
+        stiffness, damping = values.get("stiffness", 0.0), values.get("damping", 0.0)
+        return State(
+            stiffness=(stiffness * unit,) if stiffness else (),
+            losses=(Loss(damping * unit),) if damping else (),
+        )
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
+        """Return the middle; where no shapes tell it from its mirror images, these too."""
+        at = (*place(values)[:2], float(values.get("z", 0.0)))
+        return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def own_stiffness(predictor: Predictor) -> float:
+    """Return the natural unit of springs across the structure, E I / L^3 [N/m].
+
+    Of imported matrices, whose section is not known, from the lowest mode as if it were a cantilever's: M omega^2 /
+    3.516^2.
+    """
+    spec = predictor.spec
+    if not spec.outlined:
+        return total_mass(spec) * lowest(predictor) ** 2 / 3.516**2
+    wide = spec.width if spec.kind == "plate" else 1.0
+    return bending_stiffness(spec) * wide / spec.length**3
+
+
+def lowest(predictor: Predictor) -> float:
+    """Return the angular frequency of the bare model's lowest elastic mode [rad/s]."""
+    found = predictor.once("lowest", lambda: predictor.bare.predict(count=1).frequency)
+    return 2 * np.pi * float(found[0])
+
+
+def springs(
+    predictor: Predictor, points: FloatArray, shares: FloatArray, directions: FloatArray | None = None
+) -> FloatArray:
+    """Return the stiffness of springs to the ground, 1 N/m each times its share, shape (r, r) [N/m].
+
+    Parameters
+    ----------
+    predictor : Predictor
+        The specimen.
+    points : (n, dim) array
+        Where they act [m].
+    shares : (n,) array
+        Their stiffness [N/m].
+    directions : (n, 3) array, optional
+        Along which; left out, z.
+    """
+    rows = predictor.reduced.rows(points, directions)["w"] * np.sqrt(shares)[:, None]
+    unit: FloatArray = rows.T @ rows
+    return unit
+
+
+def _unit(predictor: Predictor, values: Values) -> FloatArray:
+    """Return the stiffness of 1 N/m in all, shape (r, r) [N/m]."""
+    spec = predictor.spec
+    if not spec.outlined:
+        at = np.array([[values[name] for name in AXES]])
+        directions = _measured_directions(predictor, at)
+        return springs(
+            predictor, np.repeat(at, len(directions), axis=0), np.ones(len(directions)), directions
+        )
+    extent = values.get("extent", 0.0)
+    lines, shares = [], []
+    for name, size in _sides(spec):
+        nodes, weights = np.polynomial.legendre.leggauss(DENSE[spec.kind] if extent else 1)
+        low, high = (min(max(values[name] + side * extent / 2, 0.0), size) for side in (-1, 1))
+        lines.append((low + high) / 2 + nodes * (high - low) / 2)
+        shares.append(weights / 2)
+    points = np.array(list(product(*lines)))
+    return springs(predictor, points, np.prod(list(product(*shares)), axis=1))
+
+
+def _sides(spec: Spec) -> list[tuple[str, float]]:
+    """Return the axes along which there are places, and how far they reach [m]."""
+    return list(zip(AXES, (spec.length, spec.width)[: spec.dim], strict=False))
+
+
+def _measured_directions(predictor: Predictor, at: FloatArray) -> FloatArray:
+    """Return in which directions a place (1, 3) on imported matrices is measured, z where it is not, (n, 3) [-]."""
+    test = predictor.measured
+    here = np.linalg.norm(test.points - at, axis=1) <= SAME * predictor.spec.length
+    if test.directions is None or not here.any():
+        return np.array([[0.0, 0.0, 1.0]])
+    return np.unique(test.directions[here], axis=0)
