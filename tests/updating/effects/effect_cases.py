@@ -86,6 +86,15 @@ def full_modes(name: str, predictor: Predictor, values: dict[str, Any], count: i
     return np.sqrt(found) / (2 * np.pi)
 
 
+def bound(effect: Effect, predictor: Predictor, full: np.ndarray) -> float:
+    """How far the small model may be from the full one: 0.05 % of every frequency.
+
+    Of an effect that shifts them by a quarter and more, a fifth of what it says its idealisation is off by.
+    """
+    shift = np.abs(np.log(full / predictor.predict(count=len(full)).frequency)).max()
+    return max(5e-4, 0.2 * effect.fidelity * shift * (shift > 0.25))
+
+
 def _row(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Sparse]:
     return structure.fields.at(np.array([[values[n] for n in ("x", "y")[: structure.fields.dim]]]))
 
@@ -172,7 +181,8 @@ def _across(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]
     mixed = xx.T @ rigidity @ yy
     root = np.sqrt(ratio) - 1
     change = (ratio - 1) * (yy.T @ rigidity @ yy) + root * nu * (mixed + mixed.T)
-    return {"stiffness": change + root * 2 * (1 - nu) * (xy.T @ rigidity @ xy)}
+    twist = values.get("shear_ratio", 1.0) * np.sqrt(ratio) - 1
+    return {"stiffness": change + twist * 2 * (1 - nu) * (xy.T @ rigidity @ xy)}
 
 
 def _nothing(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
@@ -228,7 +238,7 @@ CONTRACT = {
     "lumped_mass": {"mass", "x", "y", "bulk"},
     "local_stiffness": {"x", "y", "extent", "loss"},
     "shear": set(),
-    "orthotropy": {"ratio"},
+    "orthotropy": {"ratio", "shear_ratio"},
     "axial_load": {"force"},
     "fluid_added_mass": {"fluid_density"},
     "fluid_damping": {"viscosity"},
@@ -255,7 +265,7 @@ VANISHING = {
     "sensor_mass": {"mass": 0.0},
     "lumped_mass": {"mass": 0.0},
     "local_stiffness": {"loss": 0.0},
-    "orthotropy": {"ratio": 1.0},
+    "orthotropy": {"ratio": 1.0, "shear_ratio": 1.0},
     "axial_load": {"force": 0.0},
     "fluid_added_mass": {"fluid_density": 0.0},
     "fluid_damping": {"viscosity": 0.0},
