@@ -5,10 +5,12 @@ from .operator import AddedMassOperator
 from .plate import added_mass, beam_added_mass, beam_matrix, beam_operator, quadrature_grid
 from .section import heave_coefficient, strip_theory
 from .stokes import edge_reach, layer_depth, slip_coefficient, slip_matrix
+from .tank import TankTable, unbounded
 
 __all__ = [
     "AddedMassOperator",
     "FluidDomain",
+    "TankTable",
     "added_mass",
     "beam_added_mass",
     "beam_matrix",
@@ -20,4 +22,5 @@ __all__ = [
     "slip_coefficient",
     "slip_matrix",
     "strip_theory",
+    "unbounded",
 ]

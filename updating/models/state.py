@@ -79,6 +79,9 @@ class State(Displayed):
         How far from its stated place, along the in-plane axes, a point was really hit or seen [m].
     slope : float
         Relative change of the frequencies per newton of the hammer's peak force [1/N].
+    fluid : mapping of str to float
+        The fluid whose inertia is among ``mass``: ``fluid_density`` [kg/m^3], ``free_surface`` and ``bottom`` [m],
+        infinite where there is none.
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -98,6 +101,7 @@ class State(Displayed):
     exchanged: tuple[tuple[str, int, int], ...] = ()
     moved: Mapping[Role, tuple[float, ...]] = field(default_factory=lambda: MappingProxyType({}))
     slope: float = 0.0
+    fluid: Mapping[str, float] = field(default_factory=_nothing)
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
@@ -119,6 +123,7 @@ class State(Displayed):
             self.exchanged + other.exchanged,
             MappingProxyType({**self.moved, **other.moved}),
             self.slope + other.slope,
+            MappingProxyType({**self.fluid, **other.fluid}),
         )
 
 

@@ -240,7 +240,7 @@ CONTRACT = {
     "shear": set(),
     "orthotropy": {"ratio", "shear_ratio"},
     "axial_load": {"force"},
-    "fluid_added_mass": {"fluid_density"},
+    "fluid_added_mass": {"fluid_density", "free_surface", "bottom"},
     "fluid_damping": {"viscosity"},
     "damping_patch": {"x", "y", "extent", "loss_factor", "mass", "stiffness"},
     "uniform_damping": {"alpha", "beta", "loss_factor"},

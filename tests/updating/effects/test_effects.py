@@ -268,7 +268,7 @@ def test_a_soft_spot_says_its_compliance() -> None:
 
 
 def test_a_fluid_that_is_told_is_not_searched_for() -> None:
-    stated = replace(LOOK["beam"], environment=Environment(fluid_density=998.0))
+    stated = replace(LOOK["beam"], environment=Environment(998.0, free_surface=0.2, bottom=0.1))
     (parameter,) = LIBRARY["fluid_added_mass"].parameters(stated)
     assert parameter.low == pytest.approx(0.97 * 998)
     assert parameter.high == pytest.approx(1.03 * 998)
