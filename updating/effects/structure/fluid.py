@@ -74,9 +74,11 @@ class FluidAddedMass(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the fluid's inertia."""
         around = surroundings(predictor, values)
-        told = {"free_surface": unbounded(around.free_surface), "bottom": unbounded(around.bottom)}
+        distances = {"free_surface": unbounded(around.free_surface), "bottom": unbounded(around.bottom)}
         density = values["fluid_density"]
-        return State(mass=(density * unit_mass(predictor, around),), fluid={"fluid_density": density, **told})
+        return State(
+            mass=(density * unit_mass(predictor, around),), fluid={"fluid_density": density, **distances}
+        )
 
 
 class FluidDamping(Effect):

@@ -33,8 +33,8 @@ def shorter_side(spec: Spec) -> float:
 
 def surroundings(predictor: Predictor, values: Values) -> Environment:
     """Return what bounds the fluid: as an effect's values say, and where they do not, the study."""
-    told = {name: values.get(name, math.inf) for name in DISTANCES}
-    around, far = predictor.environment, {n: value for n, value in told.items() if math.isfinite(value)}
+    around = predictor.environment
+    far = {name: values[name] for name in DISTANCES if math.isfinite(values.get(name, math.inf))}
     return replace(
         around,
         free_surface=far.get("free_surface", around.free_surface),
