@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky, inv
+from scipy.linalg import LinAlgError, cholesky, inv, solve_triangular
 
 from acquisition.arrays import FloatArray, IntArray, frozen_array
 from acquisition.errors import InputError
@@ -49,20 +49,56 @@ def energy_factor(along: JumpAxis, across: JumpAxis, domain: FluidDomain, thickn
     The Gram matrices are summed over the same wavenumbers as A: the stiffness is below 1/t at each of them,
     so the difference stays positive definite whatever the quadrature leaves out.
     """
-    half = _unbounded(along, across, thickness)
-    if domain.nearest is not None:
-        half = half + _assembled(along, across, domain, thickness)
-    p, q = np.tril_indices(along.terms), np.tril_indices(across.terms)
     try:
-        matrix = inv(_unfold(half, p, q), assume_a="pos")
+        matrix = inv(_flow(along, across, domain, thickness), assume_a="pos")
         if thickness > 0.0:
             matrix = matrix - _volume(along, across, thickness)
         return frozen_array(cholesky(0.5 * (matrix + matrix.T), lower=True))
     except LinAlgError as error:
-        raise InputError(
-            f"added mass: {along.terms} x {across.terms} functions cannot be told apart in this domain; "
-            "ask for fewer terms"
-        ) from error
+        raise _alike(along, across) from error
+
+
+def energy_matrix(
+    along: JumpAxis, across: JumpAxis, domain: FluidDomain, thickness: float, loads: FloatArray
+) -> FloatArray:
+    """Return the energy of the flows under some loads, at a third of the cost of the factor and without keeping it.
+
+    Parameters
+    ----------
+    along, across, domain, thickness
+        As for :func:`energy_factor`.
+    loads : FloatArray
+        Integrals of the functions times shapes, shape (r, n). [m^2]
+
+    Returns
+    -------
+    FloatArray
+        Added mass for unit density, shape (r, r). [m^3 shape^2]
+    """
+    try:
+        factor = cholesky(_flow(along, across, domain, thickness), lower=True)
+    except LinAlgError as error:
+        raise _alike(along, across) from error
+    white = solve_triangular(factor, loads.T, lower=True)
+    energy = white.T @ white
+    return np.asarray(
+        energy - loads @ _volume(along, across, thickness) @ loads.T if thickness > 0.0 else energy
+    )
+
+
+def _alike(along: JumpAxis, across: JumpAxis) -> InputError:
+    return InputError(
+        f"added mass: {along.terms} x {across.terms} functions cannot be told apart in this domain; "
+        "ask for fewer terms"
+    )
+
+
+def _flow(along: JumpAxis, across: JumpAxis, domain: FluidDomain, thickness: float) -> FloatArray:
+    """Return A, (n, n)."""
+    half = _unbounded(along, across, thickness)
+    if domain.nearest is not None:
+        half = half + _assembled(along, across, domain, thickness)
+    return _unfold(half, np.tril_indices(along.terms), np.tril_indices(across.terms))
 
 
 @lru_cache(maxsize=KEPT)

@@ -29,11 +29,12 @@ LIQUIDS = (600.0, 1500.0)
 1025, glycol 1113, glycerine 1261, saturated brines to 1400. Gases shift nothing that can be seen. With twice the range
 in the logarithm every other cause gains ln 2 in all odds against a fluid."""
 
-FARTHEST = 10.0
-"""Surface and bottom farther than this, over the shorter side, are as good as none [-]: 0.03 % of the added mass."""
+FARTHEST = 3.0
+"""Largest distance of surface and bottom, over the longer side [-]: of a tank that holds the structure; three sides are
+as good as none, 0.3 % of the added mass of a square plate. Doubled: deep water gains a seventh of the prior."""
 
 DEEP, NEAR = 0.8, 0.3
-"""Prior quantiles of distances to start a search from: 4 and 0.4 shorter sides [-]."""
+"""Prior quantiles of distances to start a search from: two and a third of a plate's shorter sides [-]."""
 
 
 class FluidAddedMass(Effect):
@@ -122,8 +123,9 @@ class FluidDamping(Effect):
 
 def _distance(predictor: Predictor, name: str) -> Parameter:
     """Return a distance and its prior [m]."""
-    low, high = (share * shorter_side(predictor.spec) for share in (NEAREST, FARTHEST))
-    why = "from a tenth of the shorter side, hardly under the surface or nearly aground, to as good as none"
+    low = NEAREST * shorter_side(predictor.spec)
+    high = FARTHEST * max(predictor.spec.length, predictor.spec.width)
+    why = "from a tenth of the shorter side, hardly under the surface or nearly aground, to three of the longer one"
     return Parameter(name, "m", low, high, why, log=True, default=math.inf, natural=("high",))
 
 

@@ -10,7 +10,14 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.effects.base import Values
 from updating.environment import Environment
-from updating.fluid import AddedMassOperator, FluidDomain, TankTable, quadrature_grid, unbounded
+from updating.fluid import (
+    AddedMassOperator,
+    FluidDomain,
+    TankTable,
+    energy_matrix,
+    quadrature_grid,
+    unbounded,
+)
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 
@@ -67,7 +74,8 @@ def _table(predictor: Predictor) -> TankTable:
     key = ("tank", stated.free_surface, stated.bottom, stated.walls, stretch)
     if key not in kept:
         wet, free = wetted(predictor, stated), unstated(stated)
-        loads = wet.operator(wet.thickness).loads(wet.shapes, wet.x, wet.y)
+        flow = wet.operator(wet.thickness)
+        loads = flow.loads(wet.shapes, wet.x, wet.y)
 
         def solve(surface: float | None, bottom: float | None) -> FloatArray:
             around = replace(
@@ -75,8 +83,7 @@ def _table(predictor: Predictor) -> TankTable:
                 free_surface=surface if "free_surface" in free else stated.free_surface,
                 bottom=bottom if "bottom" in free else stated.bottom,
             )
-            reduced = loads @ replace(wet, domain=around).operator(wet.thickness).factor
-            return np.asarray(reduced @ reduced.T)
+            return energy_matrix(flow.along, flow.across, around, wet.thickness, loads)
 
         variable = {"surface": "free_surface" in free, "bottom": "bottom" in free}
         kept[key] = TankTable.build(solve, shorter_side(predictor.spec), **variable)
