@@ -11,6 +11,7 @@ from typing import Any
 from acquisition.errors import StudyError
 from updating.effects.base import Channel, Effect, Parameter, Twin, Variant
 from updating.effects.limits import check_values
+from updating.effects.measurement.channel_gain import ChannelGain
 from updating.effects.measurement.delay import TimeDelay
 from updating.effects.measurement.gain import CalibrationGain
 from updating.effects.measurement.polarity import Polarity
@@ -60,6 +61,7 @@ LIBRARY: dict[str, Effect] = {
         UniformDamping(),
         ExponentialWindow(),
         CalibrationGain(),
+        ChannelGain(),
         TimeDelay(),
         Polarity(),
         SwappedPoints(),

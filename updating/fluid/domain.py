@@ -51,6 +51,12 @@ class FluidDomain:
         if not (x0 < x1 and y0 < y1):
             raise InputError(f"fluid domain: walls {self.walls} are not in the order x0 < x1, y0 < y1")
 
+    @property
+    def nearest(self) -> float | None:
+        """Distance of the nearer of free surface and bottom; None where there is neither. [m]"""
+        there = [far for far in (self.free_surface, self.bottom) if far is not None and math.isfinite(far)]
+        return min(there, default=None)
+
     def shifted(self, dy: float, *, dx: float = 0.0) -> FluidDomain:
         """Return the same domain seen from axes whose x and y are larger by ``dx`` and ``dy``. [m]"""
         if self.walls is None:

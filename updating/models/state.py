@@ -81,6 +81,9 @@ class State(Displayed):
         Relative change of the frequencies per newton of the hammer's peak force [1/N].
     per_newton : tuple of (r, r) arrays
         What the stiffness, which is that at the level of the test, gains per newton of that force [SI/N].
+    fluid : mapping of str to float
+        The fluid whose inertia is among ``mass``: ``fluid_density`` [kg/m^3], ``free_surface`` and ``bottom`` [m],
+        infinite where there is none.
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -101,6 +104,7 @@ class State(Displayed):
     moved: Mapping[Role, tuple[float, ...]] = field(default_factory=lambda: MappingProxyType({}))
     slope: float = 0.0
     per_newton: tuple[FloatArray, ...] = ()
+    fluid: Mapping[str, float] = field(default_factory=_nothing)
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
@@ -123,6 +127,7 @@ class State(Displayed):
             MappingProxyType({**self.moved, **other.moved}),
             self.slope + other.slope,
             self.per_newton + other.per_newton,
+            MappingProxyType({**self.fluid, **other.fluid}),
         )
 
 

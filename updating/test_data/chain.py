@@ -74,8 +74,3 @@ def roving(measured: Measured) -> Literal["seen", "hit"]:
     """Return the end that was moved from point to point: the hammer, or the sensor."""
     seen, hit = np.unique(measured.seen), np.unique(measured.hit[measured.hit >= 0])
     return "seen" if len(seen) > len(hit) else "hit"
-
-
-def fixed_sensors(measured: Measured) -> IntArray:
-    """Return the points whose sensors stayed while the hammer went round."""
-    return np.unique(measured.seen) if roving(measured) == "hit" else np.zeros(0, dtype=np.int64)

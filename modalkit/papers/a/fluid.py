@@ -19,7 +19,7 @@ from modalkit.papers.render import PaperTable
 from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from updating import Case
-from updating.effects.structure.fluid import mass_within
+from updating.effects.structure.wetted import mass_within
 from updating.environment import Environment
 from updating.models.state import State
 from updating.nominal import accepted_additions, predictor_of

@@ -79,8 +79,8 @@ def test_a_sensor_is_named_in_the_sentence_on_the_cause() -> None:
     gain = ParameterEstimate(0.9, "-", 0.89, 0.91, False)
     row = replace(
         SENSOR,
-        effects=("calibration_gain",),
-        parameters={"calibration_gain.gain": gain, "calibration_gain.channel": channel},
+        effects=("channel_gain",),
+        parameters={"channel_gain.gain": gain, "channel_gain.channel": channel},
     )
     message = lines(replace(NAMED, sets=(row.effects,), ranking=(row, E)))["Cause"]
     assert "The calibration of the sensor 5+Z is off: its FRFs" in message

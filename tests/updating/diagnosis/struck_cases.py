@@ -76,6 +76,8 @@ class Faults:
         How far from its place a node of the roving end was hit, or mounted [m].
     upside_down : tuple of int
         Nodes of the fixed end whose signs are reversed.
+    louder, louder_still : mappings of int to float
+        Factors of the level at nodes of the roving end, and of the fixed one [-].
     """
 
     gain: float = 1.0
@@ -85,6 +87,8 @@ class Faults:
     exchanged: tuple[int, ...] = ()
     moved: Mapping[int, tuple[float, ...]] = field(default_factory=dict)
     upside_down: tuple[int, ...] = ()
+    louder: Mapping[int, float] = field(default_factory=dict)
+    louder_still: Mapping[int, float] = field(default_factory=dict)
 
 
 Roving = Literal["hammer", "accelerometer"]
@@ -169,7 +173,10 @@ def hits_to_frfs(
     moving = whole.references if roving == "hammer" else whole.responses
     still = whole.responses if roving == "hammer" else whole.references
     signs = [
-        (-1.0 if m.node in faults.turned else 1.0) * (-1.0 if s.node in faults.upside_down else 1.0)
+        (-1.0 if m.node in faults.turned else 1.0)
+        * (-1.0 if s.node in faults.upside_down else 1.0)
+        * faults.louder.get(m.node, 1.0)
+        * faults.louder_still.get(s.node, 1.0)
         for m, s in zip(moving, still, strict=True)
     ]
     return replace(whole, values=whole.values * np.array(signs)[:, None])

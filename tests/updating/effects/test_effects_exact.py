@@ -10,8 +10,9 @@ from effect_cases import CHANGES, CORNERS, LOOK, THIN, form, imported
 from imported_cases import DEPTH as THICKNESS
 from imported_cases import LENGTH, WIDTH, beam_matrices, clamp
 from scipy import linalg, optimize
-from updating_cases import BEAM, PLATE, POINTS, ExactBeam, blank
+from updating_cases import BEAM, PLATE, POINTS, STEEL, ExactBeam, blank
 
+from modalkit.simulator.bodies.plate.plate import Plate
 from updating import LIBRARY, Material, Predictor, Spec
 from updating.effects.box import SOFT, mirror_images, shares
 from updating.effects.structure.axial_load import buckling_load
@@ -133,6 +134,38 @@ def test_huber_is_a_change_of_scale_across(ratio: float) -> None:
     values = build_structure(narrower).eigen(5)[0]
     found = predicted("orthotropy", "plate", ratio=ratio)
     assert found == pytest.approx(np.sqrt(values) / (2 * np.pi), rel=5e-4)
+
+
+@pytest.mark.parametrize(("ratio", "shear_ratio"), [(0.5, 0.3), (1.8, 2.0), (4.0, 0.15)])
+def test_a_hinged_plate_of_three_constants(ratio: float, shear_ratio: float) -> None:
+    """Lekhnitskii, Anisotropic Plates, 1968: the shapes are sines, the frequencies a sum of D_1, D_2 and D_3."""
+    around = replace(PLATE, clamped=("x0", "x1", "y0", "y1"), elements=(14, 10), regions=(), masses=())
+    inside = np.array([(x, y) for x in np.linspace(0.05, 0.35, 4) for y in (0.02, 0.1, 0.17)])
+    predictor = Predictor(around, blank(inside))
+    hinges = LIBRARY["clamp_rotation"].state(predictor, {"stiffness": 1e-3})
+    values = {"ratio": ratio, "shear_ratio": shear_ratio}
+    found = predictor.predict(LIBRARY["orthotropy"].state(predictor, values).plus(hinges), count=8).frequency
+    nu = STEEL.poisson
+    along = STEEL.E * PLATE.thickness**3 / 12 / (1 - nu**2)
+    mixed = np.sqrt(ratio) * (nu + (1 - nu) * shear_ratio)
+    m, n = np.meshgrid(np.arange(1, 12) / PLATE.length, np.arange(1, 8) / PLATE.width)
+    energy = along * (m**4 + 2 * mixed * (m * n) ** 2 + ratio * n**4)
+    exact = np.pi / 2 * np.sort(np.sqrt(energy / STEEL.density / PLATE.thickness), axis=None)[:8]
+    assert found == pytest.approx(exact, rel=1e-3)
+
+
+@pytest.mark.parametrize("clamped", [("x0",), (), ("x0", "x1")])
+def test_a_sheet_that_shears_in_its_plane_as_it_likes_beside_the_rig(clamped: tuple[str, ...]) -> None:
+    """Quintic elements that shear across the thickness too: twist and coupling each by itself, not their sum."""
+    spec = replace(PLATE, theory="mindlin", clamped=clamped, elements=(16, 10), regions=(), masses=())
+    predictor = Predictor(spec, blank(CORNERS))
+    values = {"ratio": 0.7, "shear_ratio": 0.75}
+    found = predictor.predict(LIBRARY["orthotropy"].state(predictor, values), count=8).frequency
+    body = Plate(
+        0.0, spec.length, spec.width, spec.thickness, STEEL.E, STEEL.density, clamped=clamped, **values
+    )
+    omega, _ = body.real_modes(8 + body.rigid_modes)
+    assert found == pytest.approx(omega[body.rigid_modes :] / (2 * np.pi), rel=1e-3)
 
 
 @pytest.mark.parametrize("place", ["beam", "plate", "matrices"])

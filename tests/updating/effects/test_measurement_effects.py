@@ -13,8 +13,8 @@ from updating.effects.measurement.points import indices
 from updating.test_data.measured import turn
 
 NAMES = (
-    "E", "section_scale", "uniform_damping", "exponential_window", "calibration_gain", "time_delay", "polarity",
-    "swapped_points", "position_error",
+    "E", "section_scale", "uniform_damping", "exponential_window", "calibration_gain", "channel_gain", "time_delay",
+    "polarity", "swapped_points", "position_error",
 )  # fmt: skip
 OFFERED = [LIBRARY[name] for name in NAMES]
 SAMPLE = 1 / ROD.rate
@@ -121,6 +121,34 @@ def test_a_sensor_upside_down_is_named() -> None:
     found = diagnose(case, library=OFFERED)
     assert (found.verdict, found.sets) == ("named", (("polarity",),))
     assert found.where.points == (3,)
+
+
+def test_the_only_sensor_upside_down_is_named() -> None:
+    """Or the hammer's sign: every FRF is reversed, whichever point is hit."""
+    found = diagnose(struck_case(ROD, Faults(upside_down=(5,)), seed=3), library=OFFERED)
+    assert (found.verdict, found.sets) == ("named", (("polarity",),))
+    assert found.where.points == (5,)
+    assert found.ranking[0].parameters["polarity.channel"].value.startswith("5")
+
+
+@pytest.mark.parametrize("roving", ["hammer", "accelerometer"])
+def test_a_point_of_wrong_level_is_named(roving: Roving) -> None:
+    found = diagnose(struck_case(ROD, Faults(louder={3: 0.8}), seed=3, roving=roving), library=OFFERED)
+    assert (found.verdict, found.sets) == ("named", (("channel_gain",),))
+    assert found.where.points == (3,)
+    gain = found.ranking[0].parameters["channel_gain.gain"]
+    assert gain.value == pytest.approx(0.8, rel=0.02)
+    assert 0.005 < gain.high95 - gain.low95 < 0.05
+
+
+def test_a_sensor_of_wrong_level_among_two_is_named() -> None:
+    case = struck_case(ROD, Faults(louder_still={3: 1.3}), seed=3, sensors=(3, 5))
+    found = diagnose(case, library=OFFERED)
+    assert (found.verdict, found.sets) == ("named", (("channel_gain",),))
+    assert found.where.points == (3,)
+    row = found.ranking[0].parameters
+    assert row["channel_gain.channel"].value.startswith("3")
+    assert row["channel_gain.gain"].value == pytest.approx(1.3, rel=0.03)
 
 
 def test_the_level_alone_is_the_calibration_or_the_section() -> None:

@@ -39,7 +39,7 @@ def test_a_sensor_and_the_hits_beside_it_are_two_things(name: str) -> None:
 def test_the_forms_of_an_effect_can_be_stated_as_they_are_reported() -> None:
     evaluation = predictor_of_sensors()
     evaluation = evaluation.for_test(replace(evaluation.measured, constants=np.ones((14, 2))))
-    for name, more in (("polarity", {}), ("calibration_gain", {"gain": 0.9})):
+    for name, more in (("polarity", {}), ("channel_gain", {"gain": 0.9})):
         forms = [form.values for form in LIBRARY[name].variants(evaluation)]
         assert {"5+Z", "1+Z"} <= {values.get("channel") for values in forms}
         for values in forms:
@@ -61,5 +61,17 @@ def test_the_error_names_what_is_wrong() -> None:
 def test_the_sentence_names_the_sensor() -> None:
     assert "sensor 5+Z" in LIBRARY["polarity"].sentence({"channel": "5+Z"})
     assert "hit from the other side" in LIBRARY["polarity"].sentence({"points": (5,)})
-    assert "sensor 5+Z" in LIBRARY["calibration_gain"].sentence({"channel": "5+Z", "gain": 0.9})
-    assert LIBRARY["calibration_gain"].sentence({"gain": 0.9}) == LIBRARY["calibration_gain"].summary
+    gain = LIBRARY["channel_gain"]
+    assert "sensor 5+Z" in gain.sentence({"channel": "5+Z", "gain": 0.9})
+    assert gain.sentence({"points": (5,), "gain": 0.9}) == gain.summary
+
+
+def test_the_whole_chain_and_its_channels_are_two_effects() -> None:
+    evaluation = predictor_of_sensors()
+    assert accepted_state(evaluation, "calibration_gain", {"gain": 0.9}).gain == 0.9
+    with pytest.raises(StudyError, match="takes gain, found channel, gain"):
+        accepted_state(evaluation, "calibration_gain", {"gain": 0.9, "channel": "5+Z"})
+    one = accepted_state(evaluation, "channel_gain", {"gain": 0.9, "channel": "5+Z"})
+    assert (one.gain, dict(one.point_gains)) == (1.0, {("seen", 4): 0.9})
+    two = accepted_state(evaluation, "channel_gain", {"gain": 1.2, "points": (3, 7)})
+    assert dict(two.point_gains) == {("hit", 2): 1.2, ("hit", 6): 1.2}

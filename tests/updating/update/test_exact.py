@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from effect_cases import CHANGES, LOOK, admitted, form, full_modes
+from effect_cases import CHANGES, LOOK, admitted, bound, form, full_modes
 
 from updating import LIBRARY, Parameter, Predictor
 from updating.effects.base import Effect, Values
@@ -44,7 +44,7 @@ def test_every_parameter_moves_the_full_model_as_the_reduced_one(name: str, plac
     start = form(effect, predictor, 0.35)
     before, lower = exact(effect, predictor, start), reduced(effect, predictor, start)
     assert before is not None
-    np.testing.assert_allclose(before, lower, rtol=5e-4)
+    np.testing.assert_allclose(before, lower, rtol=bound(effect, predictor, before))
     for parameter in effect.parameters(predictor):
         if parameter.name == "region":
             continue

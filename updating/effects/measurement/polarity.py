@@ -20,7 +20,7 @@ FEWER = 0.5
 """Prior probability that no more points are reversed than so far [-]."""
 
 OTHER_END = 0.2
-"""Prior probability that it is one of several points at the end that stayed [-]."""
+"""Prior probability that it is one of the points at the end that stayed [-]."""
 
 
 class Polarity(Effect):
@@ -66,10 +66,10 @@ class Polarity(Effect):
         return (*variants, *self._fixed(predictor, "seen" if role == "hit" else "hit"))
 
     def _fixed(self, predictor: Predictor, role: str) -> list[Variant]:
-        """Return each of several points of the end that stayed."""
+        """Return each of the points of the end that stayed; of a shape without forces the sign is free."""
         test = predictor.measured
         points = points_of(test, role)
-        if len(points) < 2:
+        if test.bare:
             return []
         return [Variant({"channel": channel_of(test, p)}, OTHER_END / len(points)) for p in points]
 
@@ -95,6 +95,6 @@ class Polarity(Effect):
         if "channel" in values:
             return (
                 f"The sensor {values['channel']} is reversed in sign, whichever point is hit: mounted upside down, or "
-                "its sign set wrongly."
+                "its sign, or where it is the only one that of the hammer, set wrongly."
             )
         return "Some points are reversed in sign: hit from the other side, or where the sensor roved, upside down."

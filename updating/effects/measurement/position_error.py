@@ -24,7 +24,7 @@ class PositionError(Effect):
     summary = "One point was hit (or its sensor mounted) elsewhere than stated."
     footprint = "One point's constants change as the shapes slope there; frequencies and damping unchanged."
     models = ("beam", "plate")
-    equivalent_to = ("swapped_points",)
+    equivalent_to = ("swapped_points", "channel_gain")
     repeats = True
     separated_by = "measure the point's place and hit it again"
     labels = ("point",)

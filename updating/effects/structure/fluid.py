@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values
 from updating.effects.obstacles import Obstacle, damping_obstacle
-from updating.environment import Environment
-from updating.fluid import (
-    AddedMassOperator,
-    FluidDomain,
-    edge_reach,
-    layer_depth,
-    quadrature_grid,
-    slip_matrix,
-)
-from updating.models.spec import Spec
+from updating.effects.structure.wetted import shorter_side, surroundings, unit_mass, unstated, wetted
+from updating.fluid import edge_reach, layer_depth, slip_matrix, unbounded
+from updating.fluid.tank import NEAREST
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
 
@@ -32,15 +24,28 @@ TYPICAL = 4
 USUAL = 1e-3
 """Viscosity of water, for the depth of the layer at edges, on which hardly anything depends [Pa s]."""
 
+LIQUIDS = (600.0, 1500.0)
+"""Densities of what is no gas [kg/m^3]: pentane 626, petrol 740, alcohols 790, oils 800 to 930, water 998, sea water
+1025, glycol 1113, glycerine 1261, saturated brines to 1400. Gases shift nothing that can be seen. With twice the range
+in the logarithm every other cause gains ln 2 in all odds against a fluid."""
+
+FARTHEST = 3.0
+"""Largest distance of surface and bottom, over the longer side [-]: of a tank that holds the structure; three sides are
+as good as none, 0.3 % of the added mass of a square plate. Doubled: deep water gains a seventh of the prior."""
+
+DEEP, NEAR = 0.8, 0.3
+"""Prior quantiles of distances to start a search from: two and a third of a plate's shorter sides [-]."""
+
 
 class FluidAddedMass(Effect):
-    """Inertia of a still, heavy fluid on both faces: potential flow, no fitted factor."""
+    """Inertia of a still, heavy fluid on both faces, under a surface, above a bottom: potential flow, no factor."""
 
     name = "fluid_added_mass"
     channel = "mass"
     summary = "The surrounding fluid moves with the structure and adds its inertia."
     footprint = (
-        "Frequencies fall strongly, modes of long waves more than modes of short waves and of torsion."
+        "Frequencies fall strongly, modes of long waves more than modes of short waves and of torsion, and the level "
+        "falls with them; less under a near surface, more above a near bottom, which long waves feel from farther off."
     )
     equivalent_to = ("density",)
     separated_by = "the same test dry; or a second depth of immersion"
@@ -53,18 +58,28 @@ class FluidAddedMass(Effect):
     of paper A's structures, a tenth to all of what light steel has dry; eddies and waves come on top."""
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return the density of the fluid."""
+        """Return the density of the fluid, and the distances of surface and bottom that the study does not state."""
         stated = predictor.environment.fluid_density
-        if stated is not None:
-            return (
-                Parameter("fluid_density", "kg/m^3", 0.97 * stated, 1.03 * stated, "the study states it"),
-            )
-        why = "liquids from light oils to brines; gases shift nothing that can be seen"
-        return (Parameter("fluid_density", "kg/m^3", 100.0, 2000.0, why, log=True),)
+        low, high = (0.97 * stated, 1.03 * stated) if stated is not None else LIQUIDS
+        why = "liquids from pentane over oils, alcohols and water to brines; gases shift nothing that can be seen"
+        why = why if stated is None else "the study states it"
+        density = Parameter("fluid_density", "kg/m^3", low, high, why, log=stated is None)
+        return (density, *(_distance(predictor, name) for name in unstated(predictor.environment)))
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from deep water, and from a near surface or bottom where nothing is stated of these."""
+        count = len(unstated(predictor.environment))
+        near = [tuple(NEAR if k == which else DEEP for k in range(count)) for which in range(count)]
+        return tuple((0.5, *start) for start in ((DEEP,) * count, *near))
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the fluid's inertia."""
-        return State(mass=(values["fluid_density"] * unit_mass(predictor),))
+        around = surroundings(predictor, values)
+        distances = {"free_surface": unbounded(around.free_surface), "bottom": unbounded(around.bottom)}
+        density = values["fluid_density"]
+        return State(
+            mass=(density * unit_mass(predictor, around),), fluid={"fluid_density": density, **distances}
+        )
 
 
 class FluidDamping(Effect):
@@ -106,108 +121,26 @@ class FluidDamping(Effect):
         return {"density_viscosity": (fluid_density(predictor) * values["viscosity"], "kg^2/(m^4 s)")}
 
 
+def _distance(predictor: Predictor, name: str) -> Parameter:
+    """Return a distance and its prior [m]."""
+    low = NEAREST * shorter_side(predictor.spec)
+    high = FARTHEST * max(predictor.spec.length, predictor.spec.width)
+    why = "from a tenth of the shorter side, hardly under the surface or nearly aground, to three of the longer one"
+    return Parameter(name, "m", low, high, why, log=True, default=math.inf, natural=("high",))
+
+
 def fluid_density(predictor: Predictor) -> float:
     """Return the density of the fluid [kg/m^3]: of an accepted added mass, of the environment, or water's."""
     stated = predictor.environment.fluid_density
-    if predictor.base.mass:
-        unit = unit_mass(predictor)
-        for mass in predictor.base.mass:
-            density = float(np.vdot(mass, unit) / np.vdot(unit, unit))
-            if density > 0.0 and np.allclose(mass, density * unit, rtol=1e-9, atol=1e-9 * np.abs(mass).max()):
-                return density
-    return WATER if stated is None else stated
-
-
-def unit_mass(predictor: Predictor) -> FloatArray:
-    """Return the added mass of a fluid of unit density in the reduced basis, (r, r) [m^3 in w]."""
-    return predictor.once("fluid", lambda: mass_within(predictor, predictor.environment))
-
-
-def mass_within(predictor: Predictor, around: Environment, *, thickness: float | None = None) -> FloatArray:
-    """Return the same for given surroundings.
-
-    Parameters
-    ----------
-    predictor : Predictor
-        The structure.
-    around : Environment
-        Free surface, bottom and walls.
-    thickness : float, optional
-        Thickness that the fluid meets, in place of the structure's; zero is a thin plate [m].
-
-    Returns
-    -------
-    (r, r) array [m^3 in w]
-    """
-    wet = _wetted(predictor, around)
-    operator = wet.operator(wet.thickness if thickness is None else thickness)
-    return operator.matrix(wet.shapes, wet.x, wet.y)
+    return predictor.base.fluid.get("fluid_density") or (WATER if stated is None else stated)
 
 
 def _unit_slip(predictor: Predictor) -> FloatArray:
     """Return the slip of both faces in the reduced basis, (r, r) [m^2 in w]."""
-    wet = _wetted(predictor, predictor.environment)
+    wet = wetted(predictor, surroundings(predictor, predictor.base.fluid))
     known = predictor.measured.frequency
     known = known if len(known) else predictor.predict(count=TYPICAL).frequency
     typical = math.exp(float(np.mean(np.log(known))))
     layer = layer_depth(USUAL, fluid_density(predictor), typical)
     reach = edge_reach(min(wet.length, wet.width), wet.thickness, layer)
     return slip_matrix(wet.operator(0.0), wet.shapes, wet.x, wet.y, reach=reach)
-
-
-@dataclass(frozen=True, eq=False)
-class _Wetted:
-    """The part of the structure that the fluid touches, in axes that begin at its edges."""
-
-    length: float
-    width: float
-    thickness: float
-    domain: FluidDomain
-    x: FloatArray
-    y: FloatArray
-    shapes: FloatArray
-
-    def operator(self, thickness: float) -> AddedMassOperator:
-        return AddedMassOperator.build(
-            length=self.length, width=self.width, thickness=thickness, domain=self.domain
-        )
-
-
-def _domain(spec: Spec, around: Environment) -> FluidDomain:
-    """Return what bounds the fluid. Where no walls are told, the one clamped edge stands at a wall of its own.
-
-    A clamp is a body through which nothing flows. Of several clamped edges nothing of the kind is assumed.
-    """
-    walls, free = around.walls, float("inf")
-    if walls is None and len(spec.clamped) == 1:
-        low, high = {"x": (0.0, spec.length), "y": (0.0, spec.width)}[spec.clamped[0][0]]
-        sides = [(-free, free), (-free, free)]
-        sides["xy".index(spec.clamped[0][0])] = (low, free) if spec.clamped[0][1] == "0" else (-free, high)
-        walls = (*sides[0], *sides[1])
-    return FluidDomain(around.free_surface, around.bottom, walls)
-
-
-def _wetted(predictor: Predictor, around: Environment) -> _Wetted:
-    """Return what is wet, and the shapes of the reduced basis there, (r, nx, ny).
-
-    A structure that an accepted ``length`` makes longer bends inside its clamps, where no fluid is; a shorter
-    one ends where it ends.
-    """
-    predictor.reduced.refuse_whole("a fluid's pressure, which couples every point to every other")
-    spec = predictor.spec
-    stretch = predictor.base.factors.get("length", 1.0)
-    start = -predictor.growth * (stretch - 1.0)
-    end = start + spec.length * stretch
-    low = max(start, 0.0) if "x0" in spec.clamped else start
-    high = min(end, spec.length) if "x1" in spec.clamped else end
-    x, y = quadrature_grid(high - low, spec.width, 24)
-    aside = 0.5 * spec.width if spec.kind == "beam" else 0.0
-    walls = _domain(spec, around).shifted(aside, dx=-low)
-    along = (x + low - start) / stretch
-    if spec.kind == "beam":
-        y = np.array([0.0, spec.width])
-        shapes = np.repeat(predictor.reduced.rows(along[:, None])["w"].T[:, :, None], 2, axis=2)
-    else:
-        points = np.stack(np.meshgrid(along, y, indexing="ij"), axis=-1).reshape(-1, 2)
-        shapes = predictor.reduced.rows(points)["w"].T.reshape(-1, len(x), len(y))
-    return _Wetted(high - low, spec.width, spec.thickness, walls, x, y, shapes)

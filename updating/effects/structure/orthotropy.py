@@ -1,7 +1,8 @@
-"""A plate that is stiffer along one axis than along the other."""
+"""A plate that is stiffer along one axis than along the other, and shears in its plane as it likes."""
 
 from __future__ import annotations
 
+import math
 from types import MappingProxyType
 
 from updating.effects.base import Effect, Parameter, Values
@@ -18,39 +19,69 @@ SHARES = {("wyy", "wyy"): 1.0, ("wxx", "wyy"): 0.5, ("wxy", "wxy"): 0.5} | {
 }
 """Power of D_y / D_x in each term of the energy of a thin plate (Huber 1923) and of a thick one (G as the twist)."""
 
+TWIST = frozenset({("wxy", "wxy"), ("rt", "rt")})
+"""Terms that grow with the modulus of shear in the plane; those across the plate's thickness are others."""
+
+HUBER = 1.0
+"""The shear modulus where none is told, over that of Huber [-]."""
+
 
 class Orthotropy(Effect):
-    """Rolled sheet, laminates, ribs: the bending stiffness across differs from that along.
+    """Rolled sheet, wood, laminates, ribs: stiffness across, and in twist, differs from that along.
 
-    ``ratio`` is D_y / D_x = E_y / E_x; D_x stays the model's. The coupling and the twisting stiffness follow the
-    geometric mean (Huber 1923; Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, section 86):
-    D_1 = nu D_x sqrt(ratio), 2 D_xy = (1 - nu) D_x sqrt(ratio).
+    ``ratio`` is D_y / D_x = E_y / E_x; D_x stays the model's. The coupling follows the geometric mean,
+    D_1 = nu D_x sqrt(ratio), and so does the twist but for a factor of its own: 2 D_xy = (1 - nu) D_x sqrt(ratio)
+    shear_ratio (Huber 1923 with shear_ratio 1; Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells,
+    section 86; of three independent constants Lekhnitskii, Anisotropic Plates, 1968).
     """
 
     name = "orthotropy"
     channel = "stiffness"
-    summary = "The plate is stiffer along one axis than along the other (rolled sheet, laminate, ribs)."
+    summary = (
+        "The plate's stiffness across, or in twist, is not that along (rolled sheet, wood, laminate, ribs)."
+    )
     footprint = (
-        "Modes that bend across shift, modes of torsion half as far, modes that bend along hardly at all."
+        "Modes that bend across shift with the ratio, modes of torsion half as far, modes that bend along hardly at "
+        "all; the ratio of shear moves modes of torsion alone."
     )
     models = ("plate",)
-    separated_by = "strips cut along and across, or the data sheet of the sheet"
+    separated_by = "strips cut along, across and at 45 degrees, or the data sheet of the sheet"
     elsewhere = MappingProxyType({"beam": "a beam bends along one axis only"})
     fidelity = 0.03
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return the ratio."""
+        """Return both ratios."""
         why = "from unidirectional laminates and ribbed sheet along x to the same along y; rolled sheet 0.9 to 1.1"
-        return (Parameter("ratio", "-", 0.25, 4.0, why, log=True),)
+        shear = (
+            "from woven carbon (0.15), open ribs and unidirectional laminates (0.3 to 0.5), wood (0.5 to 0.7) over "
+            "rolled sheet (0.85 to 1.15) to layers at 45 degrees (2.4)"
+        )
+        return (
+            Parameter("ratio", "-", 0.25, 4.0, why, log=True),
+            Parameter("shear_ratio", "-", 0.15, 2.5, shear, log=True, default=HUBER),
+        )
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from either side of an isotropic plate, twist as Huber has it."""
+        _, shear = self.parameters(predictor)
+        return tuple((u, shear.coordinate(HUBER)) for u in (0.3, 0.7))
 
     def state(self, predictor: Predictor, values: Values) -> State:
-        """Return the plate with its terms across scaled."""
+        """Return the plate with its terms across and in twist scaled."""
         reduced = predictor.reduced
         sums = reduced.sums
         change = 0.0 * sums[0]
         for term, whole in zip(reduced.structure.terms, sums, strict=True):
             assert isinstance(term, FieldTerm)
-            power = SHARES.get((term.left, term.right), 0.0)
-            if term.kind == "stiffness" and power:
-                change = change + (values["ratio"] ** power - 1) * term.scale(predictor.base.factors) * whole
+            fields = term.left, term.right
+            if term.kind == "stiffness" and fields in SHARES:
+                grown = values["ratio"] ** SHARES[fields]
+                grown *= values.get("shear_ratio", HUBER) if fields in TWIST else 1.0
+                change = change + (grown - 1) * term.scale(predictor.base.factors) * whole
         return State(stiffness=(change,))
+
+    def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
+        """Return the modulus of shear in the plane over E_x, which is what the twist determines."""
+        isotropic = 1 / (2 * (1 + predictor.spec.material.poisson))
+        twist = isotropic * math.sqrt(values["ratio"]) * values.get("shear_ratio", HUBER)
+        return {"shear_over_E": (twist, "-")}
