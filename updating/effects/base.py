@@ -48,6 +48,8 @@ class Parameter:
         What is taken where an effect is put into a model and this is not told; left out, it has to be told.
     natural : tuple of {"low", "high"}
         Ends of the range that are nature's and no judgement: an edge of the structure, nothing, everything.
+    signed : bool
+        Whether less than nothing may be, too: then the range is that of the size, or what :meth:`Effect.values` says.
     like : str
         Parameter whose value it takes where it is put into a model and not told; empty for none.
     """
@@ -61,6 +63,7 @@ class Parameter:
     default: float | None = None
     natural: tuple[str, ...] = ()
     like: str = ""
+    signed: bool = False
 
     @property
     def needed(self) -> bool:

@@ -12,6 +12,7 @@ from imported_cases import LENGTH, WIDTH, beam_matrices, clamp
 from scipy import linalg, optimize
 from updating_cases import BEAM, PLATE, POINTS, ExactBeam, blank
 
+from acquisition.errors import StudyError
 from updating import LIBRARY, Material, Predictor, Spec
 from updating.effects.box import SOFT, mirror_images, shares
 from updating.effects.structure.axial_load import buckling_load
@@ -19,6 +20,7 @@ from updating.effects.structure.mass import sensor_places
 from updating.models import FieldStructure, PointMass, Region, build_structure
 from updating.models.fields import Sparse
 from updating.models.state import State
+from updating.problem.candidate import Candidate
 
 EI = 210e9 * BEAM.width * BEAM.thickness**3 / 12
 LINE = 7850.0 * BEAM.width * BEAM.thickness
@@ -147,6 +149,26 @@ def test_uniform_damping_has_a_closed_form(place: str) -> None:
     alone = LIBRARY["uniform_damping"].state(predictor, {"alpha": 8.0, "beta": 0.0, "loss_factor": 0.0})
     both = [predictor.predict(s, count=4).damping for s in (window, alone)]
     assert both[0] == pytest.approx(both[1], rel=1e-9)
+
+
+@pytest.mark.parametrize("place", ["beam", "plate", "matrices"])
+def test_less_damping_than_expected_leaves_the_same_share_of_every_mode(place: str) -> None:
+    """Of Rayleigh damping alpha M + beta K a share less of both is that share less of every ratio."""
+    predictor, effect = LOOK[place], LIBRARY["uniform_damping"]
+    less = Candidate((effect,), chosen=(effect.variants(predictor)[-1],))
+    plain = predictor.predict(count=4).damping
+    for left in (0.0, 0.3, 0.9):
+        found = predictor.predict(less.state(predictor, [left]), count=4).damping
+        assert found == pytest.approx(left * plain, rel=1e-6, abs=1e-9)
+    ((_, values),) = less.split(predictor, [0.3])
+    stated = predictor.spec.damping
+    assert values["alpha"] == pytest.approx(-0.7 * (stated.alpha or 0.0), rel=1e-6)
+    assert values["beta"] == pytest.approx(-0.7 * (stated.beta or 0.0), rel=1e-6)
+    assert "less" in effect.sentence(values)
+    named = {"alpha", "beta"} - {name.split(".")[1] for name, _ in less.parameters(predictor)}
+    assert set(effect.derived(predictor, values)) == {n for n in named if values[n]}
+    with pytest.raises(StudyError, match="takes more from mode"):
+        effect.state(predictor, {"alpha": 0.0, "beta": 0.0, "loss_factor": -2.5 * float(plain.max())})
 
 
 def complex_beam(
