@@ -106,7 +106,7 @@ def check_effect(
         raise StudyError(f"{where} {name}: {obstacle}")
     takes = {p.name: p for p in effect.parameters(tested)}
     labels = labels_of(effect, values)
-    needed = {*labels, *(p.name for p in takes.values() if p.default is None)}
+    needed = {*labels, *(p.name for p in takes.values() if p.needed)}
     if not needed <= set(values) <= {*takes, *labels}:
         stated = [f"{label} (node numbers)" for label in effect.labels]
         wanted = ", ".join([*stated, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"

@@ -112,7 +112,7 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
     parameters = effect.parameters(predictor)
     takes = {parameter.name for parameter in parameters} | labels_of(effect, values)
-    optional = {parameter.name for parameter in parameters if parameter.default is not None}
+    optional = {parameter.name for parameter in parameters if not parameter.needed}
     if not takes - optional <= set(values) <= takes:
         wanted = ", ".join(sorted({p.name for p in parameters} | set(effect.labels))) or "no parameters"
         instead = f' (or channel = "5+Z", a sensor that stayed{", in place of points" * bool(effect.labels)})'

@@ -51,6 +51,10 @@ class Parameter:
         Ends of the range that are nature's and no judgement: an edge of the structure, nothing, everything.
     or_none : bool
         Whether it may be zero beside this range, which is a form of its own.
+    signed : bool
+        Whether less than nothing may be, too: then the range is that of the size, or what :meth:`Effect.values` says.
+    like : str
+        Parameter whose value it takes where it is put into a model and not told; empty for none.
     """
 
     name: str
@@ -62,6 +66,13 @@ class Parameter:
     default: float | None = None
     natural: tuple[str, ...] = ()
     or_none: bool = False
+    like: str = ""
+    signed: bool = False
+
+    @property
+    def needed(self) -> bool:
+        """Whether it has to be told where the effect is put into a model."""
+        return self.default is None and not self.like
 
     def extreme(self, coordinate: float) -> bool:
         """Tell whether a prior quantile lies at an end of the range that is a judgement."""
@@ -97,10 +108,23 @@ class Variant:
         What this form fixes; parameters named here are not searched.
     weight : float
         Prior probability of this form among all forms of the effect, those not listed included [-].
+    within : mapping of str to (low, high)
+        Part of a parameter's prior, in quantiles, to which this form keeps: losses but no gains, for instance [-].
     """
 
     values: Values = field(default_factory=lambda: MappingProxyType({}))
     weight: float = 1.0
+    within: Mapping[str, tuple[float, float]] = field(default_factory=lambda: MappingProxyType({}))
+
+    def quantile(self, name: str, coordinate: float) -> float:
+        """Take a coordinate of this form, in [0, 1], to the parameter's prior quantile [-]."""
+        low, high = self.within.get(name, (0.0, 1.0))
+        return low + (high - low) * coordinate
+
+    def coordinate(self, name: str, quantile: float) -> float:
+        """Take a prior quantile to the coordinate of this form; outside [0, 1] where the form does not go there."""
+        low, high = self.within.get(name, (0.0, 1.0))
+        return (quantile - low) / (high - low)
 
 
 @dataclass(frozen=True)
@@ -192,6 +216,13 @@ class Effect(ABC):
         """Take prior quantiles, one per parameter, to values of the parameters."""
         parameters = self.parameters(predictor)
         return {p.name: p.value(u) for p, u in zip(parameters, coordinates, strict=True)}
+
+    def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
+        """Take values, half the range where one is not given, to prior quantiles: the inverse of :meth:`values`."""
+        return [
+            p.coordinate(float(values[p.name])) if p.name in values else 0.5
+            for p in self.parameters(predictor)
+        ]
 
     def sentence(self, values: Values) -> str:
         """Return the summary of the form with these values."""

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.effects.base import Values
+from updating.effects.base import Parameter, Values
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 
@@ -17,8 +17,9 @@ Place = tuple[float, float, float]
 CELLS = 200
 """So many cells a plate is divided into at most, by elements, where boxes are summed up from cells."""
 
-SOFT = 1 / 8
-"""Width of the edges of a damaged place relative to its extent [-]."""
+SOFT = 1 / 16
+"""Width of the edges of a place softer or stiffer, relative to its extents [-]: at its best a sharp one is off by 0.006
+of the shift, a smooth one by 0.013; doubled, by 0.017 and 0.010."""
 
 SHARP = 1 / 3
 """Width of the edges of anything relative to an element: what the quadrature still resolves [-]."""
@@ -35,17 +36,48 @@ def shares(predictor: Predictor, values: Values, *, soft: float = 0.0) -> FloatA
     predictor : Predictor
         The specimen.
     values : mapping
-        ``x``, for plates ``y``, and ``extent``: the length of the stretch, or the side of the square [m].
+        ``x``, for plates ``y``, and ``extent``: the length of the stretch, or of the rectangle along x; along y that
+        is ``extent_y``, or as long [m].
     soft : float
-        Width of the edges relative to the extent, at least what the mesh resolves [-].
+        Width of the edges relative to the extents, at least what the mesh resolves [-].
     """
     points, spec = predictor.reduced.fields.points, predictor.spec
     dim = points.shape[1]
     centre = np.array([values[name] for name in ("x", "y")[:dim]])
     spacing = np.array([spec.length, spec.width])[:dim] / np.array(spec.elements)
-    edge = np.maximum(values["extent"] * soft, SHARP * spacing)
-    inside = np.prod(0.5 * (1 + np.tanh((values["extent"] / 2 - np.abs(points - centre)) / edge)), axis=1)
+    size = np.array(extents(values)[:dim])
+    edge = np.maximum(size * soft, SHARP * spacing)
+    inside = np.prod(0.5 * (1 + np.tanh((size / 2 - np.abs(points - centre)) / edge)), axis=1)
     return np.where(inside > 1e-4, inside, 0.0)
+
+
+def extents(values: Values) -> tuple[float, float]:
+    """Return how far a box reaches along x and along y, as far where that is not told [m]."""
+    along = float(values["extent"])
+    return along, float(values.get("extent_y", along))
+
+
+def extent_parameters(
+    spec: Spec, low: float, high: float, why: str, *, natural: tuple[str, ...] = ()
+) -> list[Parameter]:
+    """Return the extents of a box, each between two shares of its side of the structure.
+
+    Parameters
+    ----------
+    spec : Spec
+        Of a beam or a plate.
+    low, high : float
+        Shares [-].
+    why : str
+        Why these.
+    natural : tuple of {"low", "high"}
+        Ends that are no judgement.
+    """
+    found = [Parameter("extent", "m", low * spec.length, high * spec.length, why, log=True, natural=natural)]
+    if spec.kind == "plate":
+        across = (low * spec.width, high * spec.width)
+        found.append(Parameter("extent_y", "m", *across, why, log=True, natural=natural, like="extent"))
+    return found
 
 
 def covered(predictor: Predictor, kind: str, inside: FloatArray) -> FloatArray:
@@ -96,12 +128,11 @@ def place(values: Values) -> Place:
     return (float(values["x"]), float(values.get("y", 0.0)), 0.0)
 
 
-def starting_places(spec: Spec) -> tuple[tuple[float, ...], ...]:
-    """Return prior quantiles of the place from which a search starts: a row of eight, a grid of 4 x 2 on plates."""
-    along = (np.arange(8) + 0.5) / 8
+def starting_places(spec: Spec, *, along: int = 8) -> tuple[tuple[float, ...], ...]:
+    """Return prior quantiles of the place from which a search starts: a row of beams, a grid of 4 x 2 on plates."""
     if spec.kind == "beam":
-        return tuple((float(u),) for u in along)
-    return tuple((float(u), v) for u in along[::2] for v in (0.2, 0.8))
+        return tuple((float(u),) for u in (np.arange(along) + 0.5) / along)
+    return tuple((float(u), v) for u in (np.arange(8)[::2] + 0.5) / 8 for v in (0.2, 0.8))
 
 
 def mirror_images(spec: Spec, at: Place) -> tuple[Place, ...]:

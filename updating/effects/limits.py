@@ -67,7 +67,11 @@ def _wrong(parameter: Parameter, value: float) -> str | None:
         return f"is no region; they are counted from 0 to {parameter.high:g}"
     elif name == "loss" and value >= WHOLE_LOSS:
         return "takes away all stiffness or more; it is a share below 1"
-    elif parameter.log and not (value > 0 or (value == 0 and (parameter.or_none or name in NOTHING))):
+    elif (
+        parameter.log
+        and not parameter.signed
+        and not (value > 0 or (value == 0 and (parameter.or_none or name in NOTHING)))
+    ):
         return "must be positive"
     elif name in NOT_NEGATIVE and value < 0:
         return "must not be negative"

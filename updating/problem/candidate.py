@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -90,10 +90,21 @@ class Candidate:
             quantiles = []
             for parameter in effect.parameters(stage):
                 fixed = parameter.name in form.values
-                quantiles.append(MIDDLE if fixed else coordinates[start])
+                quantiles.append(MIDDLE if fixed else form.quantile(parameter.name, coordinates[start]))
                 start += not fixed
             parts.append((effect, effect.settled(stage, {**effect.values(stage, quantiles), **form.values})))
         return parts
+
+    def coordinates(self, predictor: Predictor, values: Mapping[str, float]) -> FloatArray:
+        """Take values by effect.parameter to prior quantiles (k,), half the range where one is not given."""
+        stage = self.stage(predictor)
+        found = []
+        for effect, form in zip(self.effects, self.forms, strict=True):
+            head = f"{effect.name}."
+            own = {n.removeprefix(head): v for n, v in values.items() if n.startswith(head)}
+            known = zip(effect.parameters(stage), effect.quantiles(stage, own), strict=True)
+            found += [form.coordinate(p.name, u) for p, u in known if p.name not in form.values]
+        return np.asarray(np.clip(np.array(found, dtype=float), 0.0, 1.0))
 
     def state(self, predictor: Predictor, coordinates: Sequence[float]) -> State:
         """Return the state of the model at prior quantiles."""
@@ -134,6 +145,9 @@ def _free(effect: Effect, form: Variant, predictor: Predictor) -> list[Parameter
 
 
 def _starts(effect: Effect, form: Variant, stage: Predictor) -> list[tuple[float, ...]]:
-    free = [p.name not in form.values for p in effect.parameters(stage)]
-    own = [tuple(u for u, is_free in zip(s, free, strict=True) if is_free) for s in effect.starts(stage)]
-    return list(dict.fromkeys(own))
+    names = [p.name for p in effect.parameters(stage)]
+    own = [
+        tuple(form.coordinate(n, u) for n, u in zip(names, start, strict=True) if n not in form.values)
+        for start in effect.starts(stage)
+    ]
+    return list(dict.fromkeys(start for start in own if all(0 <= u <= 1 for u in start)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -103,8 +103,6 @@ def _form(name: str, given: Mapping[str, ParameterEstimate]) -> Variant:
 def _start(
     problem: SpecimenProblem, candidate: Candidate, given: Mapping[str, ParameterEstimate]
 ) -> FloatArray:
-    quantiles: Sequence[float] = [
-        p.coordinate(float(given[n].value)) if n in given else 0.5  # type: ignore[arg-type]
-        for n, p in problem.parameters(candidate)
-    ]
-    return np.array(quantiles, dtype=float)
+    names = {name for name, _ in problem.parameters(candidate)}
+    values = {n: float(e.value) for n, e in given.items() if n in names}  # type: ignore[arg-type]
+    return candidate.coordinates(problem.predictor, values)

@@ -152,8 +152,9 @@ def _box(structure: FieldStructure, values: dict[str, Any], edge: float) -> np.n
     points, spec = structure.fields.points, structure.spec
     least = np.array([spec.length, spec.width][: points.shape[1]]) / np.array(spec.elements) / 3
     centre = np.array([values[n] for n in ("x", "y")[: points.shape[1]]])
-    steep = np.maximum(edge * values["extent"], least)
-    return np.prod(0.5 + 0.5 * np.tanh((values["extent"] / 2 - abs(points - centre)) / steep), axis=1)
+    size = np.array([values["extent"], values.get("extent_y", values["extent"])][: points.shape[1]])
+    steep = np.maximum(edge * size, least)
+    return np.prod(0.5 + 0.5 * np.tanh((size / 2 - abs(points - centre)) / steep), axis=1)
 
 
 def _sprung(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
@@ -186,7 +187,7 @@ def _hung(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _soft(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
-    return {"stiffness": structure.matrix("stiffness", -values["loss"] * _box(structure, values, 0.125))}
+    return {"stiffness": structure.matrix("stiffness", -values["loss"] * _box(structure, values, 1 / 16))}
 
 
 def _layer(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
@@ -268,7 +269,7 @@ CONTRACT = {
     "clamp_translation": {"stiffness"},
     "sensor_mass": {"mass", "bulk", "dx", "dy"},
     "lumped_mass": {"mass", "x", "y", "bulk"},
-    "local_stiffness": {"x", "y", "extent", "loss"},
+    "local_stiffness": {"x", "y", "extent", "extent_y", "loss"},
     "ground_spring": {"x", "y", "extent", "stiffness", "damping"},
     "suspension": {"stiffness", "damping", "inset", "cords"},
     "shear": set(),

@@ -27,6 +27,7 @@ from modalkit.output.library import effects_document
 from updating import LIBRARY, Environment, Predictor
 from updating.effects import accepted_state
 from updating.models import PointMass
+from updating.problem.candidate import Candidate
 
 RISES = {"E": 1, "density": -1, "thickness": 1, "length": -1, "clamp_rotation": 1, "sensor_mass": -1}
 RISES |= {"clamp_translation": 1, "lumped_mass": -1, "local_stiffness": -1, "axial_load": 1}
@@ -35,8 +36,8 @@ RISES |= {"fluid_added_mass": -1, "exponential_window": 0, "calibration_gain": 0
 RISES |= {"ground_spring": 1}
 SIZE = {"local_stiffness": "loss", "lumped_mass": "mass", "ground_spring": "stiffness"}
 HARMLESS = {"clamp_rotation": 1, "clamp_translation": 1, "sensor_mass": 0, "lumped_mass": 0}
-"""End of the prior, 0 low or 1 high, at which nothing can be seen; a clamp is rigid at its high end."""
-HARMLESS |= {"local_stiffness": 0, "exponential_window": 0}
+"""Prior quantile at which nothing can be seen; a clamp is rigid at its high end."""
+HARMLESS |= {"local_stiffness": 0.5, "exponential_window": 0}
 
 every = pytest.mark.parametrize("name", list(LIBRARY))
 places = pytest.mark.parametrize("place", list(LOOK))
@@ -69,7 +70,7 @@ def test_the_contract_is_in_the_library() -> None:
 def test_names_and_parameters_are_those_of_the_contract(name: str, place: str) -> None:
     names = {p.name for p in LIBRARY[name].parameters(LOOK[place])} | set(LIBRARY[name].labels)
     assert names <= CONTRACT[name]
-    assert names >= CONTRACT[name] - ({"y", "dy"} if place == "beam" else set())
+    assert names >= CONTRACT[name] - ({"y", "dy", "extent_y"} if place == "beam" else set())
 
 
 @every
@@ -92,7 +93,24 @@ def test_forms_have_shares_and_fix_what_is_known(name: str, place: str) -> None:
     assert 0 < sum(f.weight for f in forms) <= 1 + 1e-9
     known = {p.name for p in effect.parameters(predictor)} | {*effect.labels}
     known |= {"channel"} if effect.of_sensor else set()
-    assert all(set(f.values) <= known and f.weight > 0 for f in forms)
+    assert all({*f.values, *f.within} <= known and f.weight > 0 for f in forms)
+    assert all(0 <= low < high <= 1 for f in forms for low, high in f.within.values())
+
+
+@admitted(["local_stiffness", "uniform_damping"], ["beam", "plate", "matrices"])
+@settings(max_examples=15, deadline=None)
+@given(u=st.floats(0.01, 0.99))
+def test_values_go_back_to_the_quantiles_they_came_from(name: str, place: str, u: float) -> None:
+    effect, predictor = LIBRARY[name], LOOK[place]
+    count = len(effect.parameters(predictor))
+    values = effect.values(predictor, [u] * count)
+    assert effect.values(predictor, effect.quantiles(predictor, values)) == pytest.approx(values)
+    for chosen in effect.variants(predictor):
+        candidate = Candidate((effect,), chosen=(chosen,))
+        here = np.full(len(candidate.parameters(predictor)), u)
+        assert candidate.starts(predictor)
+        stated = candidate.values(predictor, here.tolist())
+        assert candidate.coordinates(predictor, stated) == pytest.approx(here, abs=1e-9)
 
 
 def test_what_cannot_be_examined_is_said() -> None:
@@ -267,6 +285,36 @@ def test_a_soft_spot_says_its_compliance() -> None:
     compliance, unit = LIBRARY["local_stiffness"].derived(LOOK["beam"], values)["compliance"]
     assert unit == "m"
     assert compliance == pytest.approx(0.05, rel=0.15)
+
+
+def test_a_stiffer_place_has_a_compliance_below_nothing() -> None:
+    """A box of extent d at four times the stiffness has -3 d / 4; soft edges of what is stiff are wide."""
+    values = {"x": 0.2, "extent": 0.1, "loss": -3.0}
+    effect = LIBRARY["local_stiffness"]
+    assert effect.derived(LOOK["beam"], values)["compliance"][0] == pytest.approx(-0.075, rel=0.2)
+    assert "stiffer" in effect.sentence(values)
+    assert "softer" in effect.sentence({**values, "loss": 0.3})
+
+
+def test_a_place_of_a_plate_is_as_wide_as_long_where_its_width_is_not_told() -> None:
+    square = {"x": 0.2, "y": 0.1, "extent": 0.05, "loss": 0.5}
+    states = [
+        accepted_state(LOOK["plate"], "local_stiffness", v) for v in (square, {**square, "extent_y": 0.05})
+    ]
+    assert states[0].stiffness[0] == pytest.approx(states[1].stiffness[0])
+
+
+def test_softer_and_stiffer_are_two_forms_each_uniform_in_log_compliance() -> None:
+    effect, predictor = LIBRARY["local_stiffness"], LOOK["beam"]
+    for chosen, sign in zip(effect.variants(predictor), (1, -1), strict=True):
+        losses = []
+        for u in np.linspace(0.05, 0.95, 7):
+            q = chosen.quantile("loss", u if sign > 0 else 1 - u)
+            losses.append(effect.values(predictor, [0.5, 0.5, q])["loss"])
+        compliance = np.array(losses) / (1 - np.array(losses))
+        assert (sign * compliance > 0).all()
+        assert np.diff(np.log(sign * compliance)) == pytest.approx(np.diff(np.log(sign * compliance))[0])
+        assert chosen.quantile("x", 0.3) == 0.3
 
 
 def test_a_fluid_that_is_told_is_not_searched_for() -> None:

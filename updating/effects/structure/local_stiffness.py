@@ -1,4 +1,4 @@
-"""A place that is softer than modelled: a crack, a notch, a loose rivet row."""
+"""A place softer or stiffer than modelled: a crack, a notch, a loose rivet row; a rib, a weld, a repair."""
 
 from __future__ import annotations
 
@@ -8,7 +8,16 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
-from updating.effects.box import SOFT, Place, mirror_images, place, shares, starting_places
+from updating.effects.box import (
+    SOFT,
+    Place,
+    extent_parameters,
+    extents,
+    mirror_images,
+    place,
+    shares,
+    starting_places,
+)
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import region_centre, region_parameter, stiff_regions
 from updating.models.softening import softening
@@ -16,40 +25,56 @@ from updating.models.state import State
 from updating.prediction.predict import Predictor
 
 COMPLIANCE = (5e-4, 0.6)
-"""Range of the compliance, the integral of EI0/EI - 1, relative to the length [-]."""
+"""Range of the compliance, the integral of EI0/EI - 1, relative to the length; negative of a stiffer place [-]."""
 
 REGIONAL = (5e-3, 20.0)
-"""Range of E0/E - 1 of a region of imported matrices [-]."""
+"""Range of E0/E - 1 of a region of imported matrices; negative of a stiffer one [-]."""
 
-MOST = 0.98
-"""Largest loss of stiffness [-]."""
+LOSSES = (-9.0, 0.98)
+"""Share of the stiffness lost: from ten times as stiff to nearly severed [-]."""
+
+RIGID = -LOSSES[0] / (1 - LOSSES[0])
+"""Largest 1 - EI0/EI of a stiffer place, however little it still gives [-]."""
+
+EXTENTS = (0.02, 0.4)
+"""Extents relative to the side: what is shorter makes no other change than this; a third with some room [-]."""
+
+SOFTER, STIFFER = (0.5, 1.0), (0.0, 0.5)
+"""The two forms, each half of the quantiles of the loss, nothing in the middle."""
+
+SIZES = (0.3, 0.65)
+"""Quantiles, within a form, of the sizes from which a search starts [-]."""
+
+SHORT = 1 / 3
+"""Quantile of the extents from which it starts, a twentieth of the side [-]: what is long is found from there, what is
+short hardly from what is long."""
+
+SHARE_SOFTER = 0.7
+"""Prior of the softer form [-]: what breaks or comes loose is commoner than what was added and not modelled. Judged;
+doubled for the stiffer one it gains ln 2."""
 
 
 class LocalStiffness(Effect):
-    """Bending stiffness lost over a stretch of a beam, a square of a plate, or in a region of imported matrices."""
+    """Bending stiffness lost or gained over a stretch of a beam, a rectangle of a plate, or a region of matrices."""
 
     name = "local_stiffness"
     channel = "stiffness"
-    summary = "One place is softer than modelled (crack, notch, loose joint)."
-    footprint = "Frequencies fall in the modes that bend there, and hardly in those with no curvature there."
+    summary = "One place is softer (crack, notch, loose joint) or stiffer (rib, weld, repair) than modelled."
+    footprint = (
+        "Frequencies fall, or rise, in the modes that bend there; those with no curvature there hardly move."
+    )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("clamp_rotation",)
     repeats = True
     separated_by = "more points around the place, or a visual and dye check there"
-    phrase = "a soft spot"
+    phrase = "a soft or stiff spot"
     fidelity = 0.05  # some 0.03 of a sharp-edged place seen as one with soft edges, 0.02 of the condensation
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return place, extent and loss; of imported matrices the region and its loss."""
+        """Return place, extents and loss; of imported matrices the region and its loss."""
         spec = predictor.spec
-        lost = Parameter(
-            "loss",
-            "-",
-            0.0,
-            MOST,
-            "from invisible to nearly severed; uniform in log compliance",
-            natural=EDGES,
-        )
+        why = "from ten times as stiff, over nothing, to nearly severed; uniform in log compliance on either side"
+        lost = Parameter("loss", "-", *LOSSES, why, natural=EDGES)
         if spec.kind == "matrices":
             return (region_parameter(predictor), lost)
         middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
@@ -57,42 +82,67 @@ class LocalStiffness(Effect):
             middle.append(
                 Parameter("y", "m", 0.0, spec.width, "anywhere across the structure", natural=EDGES)
             )
-        low, high = 0.02 * spec.length, 0.15 * spec.length
         why = "what is longer is a region, not a place; what is shorter makes no other change than this"
-        return (*middle, Parameter("extent", "m", low, high, why, log=True, natural=("low",)), lost)
+        return (*middle, *extent_parameters(spec, *EXTENTS, why, natural=("low",)), lost)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need regions where there are matrices."""
         if predictor.spec.kind != "matrices" or len(stiff_regions(predictor)) > 1:
             return None
-        what = "the matrices have no stiffness_parts: nothing can soften at a place; give one per region"
+        what = "the matrices have no stiffness_parts: nothing can soften or stiffen at a place; give one per region"
         return Obstacle(Lack.MODEL, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return one form for each region of imported matrices."""
-        if predictor.spec.kind != "matrices":
-            return (Variant(),)
-        regions = stiff_regions(predictor)
-        return tuple(Variant({"region": i}, 1 / len(regions)) for i in regions)
+        """Return softer and stiffer, of imported matrices for each region."""
+        known = (
+            [{"region": i} for i in stiff_regions(predictor)] if predictor.spec.kind == "matrices" else [{}]
+        )
+        halves = ((SHARE_SOFTER, SOFTER), (1 - SHARE_SOFTER, STIFFER))
+        return tuple(
+            Variant(own, share / len(known), {"loss": half}) for share, half in halves for own in known
+        )
 
     def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
         """Take prior quantiles to values: the last one is that of the compliance, which the data determine."""
         values = super().values(predictor, coordinates)
-        if predictor.spec.kind == "matrices":
-            softer = REGIONAL[0] * (REGIONAL[1] / REGIONAL[0]) ** coordinates[-1]
-            return values | {"region": round(values["region"]), "loss": min(softer / (1 + softer), MOST)}
-        low, high = (share * predictor.spec.length for share in COMPLIANCE)
-        compliance = low * (high / low) ** coordinates[-1]
-        return values | {"loss": min(compliance / (compliance + values["extent"]), MOST)}
+        u = coordinates[-1]
+        low, high = self._compliances(predictor, values, softer=u >= 0.5)
+        size = float(low * (high / low) ** abs(2 * u - 1))
+        values["loss"] = size / (1 + size) if u >= 0.5 else -size / (1 - size)
+        return values | {"region": round(values["region"])} if "region" in values else values
+
+    def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
+        """Take values to prior quantiles; of the loss that of its compliance."""
+        found = super().quantiles(predictor, values)
+        if "loss" in values and ("extent" in values or predictor.spec.kind == "matrices"):
+            softer, size = values["loss"] >= 0, abs(values["loss"] / (1 - values["loss"]))
+            low, high = self._compliances(predictor, values, softer=softer)
+            half = float(np.clip(np.log(max(size, low) / low) / np.log(high / low), 0.0, 1.0)) / 2
+            found[-1] = 0.5 + half if softer else 0.5 - half
+        return found
+
+    def _compliances(self, predictor: Predictor, values: Values, *, softer: bool) -> tuple[float, float]:
+        """Return the range of the size of EI0/EI - 1 [-]."""
+        whole = 1.0 if predictor.spec.kind == "matrices" else predictor.spec.length / values["extent"]
+        low, high = REGIONAL if predictor.spec.kind == "matrices" else COMPLIANCE
+        return low * whole, high * whole if softer else RIGID
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
-        """Start from a row of places, with a middling loss."""
+        """Start from a row of places, with two losses and two gains at each."""
+        losses = [0.5 + side * size / 2 for side in (1, -1) for size in SIZES]
         if predictor.spec.kind == "matrices":
-            return ((0.5, 0.3), (0.5, 0.7))
-        return tuple((*where, 0.5, 0.45) for where in starting_places(predictor.spec))
+            return tuple((0.5, loss) for loss in losses)
+        where, short = starting_places(predictor.spec, along=16), (SHORT,) * predictor.spec.dim
+        return tuple((*at, *short, loss) for loss in losses for at in where)
+
+    def sentence(self, values: Values) -> str:
+        """Return whether it is softer or stiffer."""
+        if values.get("loss", 0.0) < 0:
+            return "One place is stiffer than modelled (rib, weld, repair)."
+        return "One place is softer than modelled (crack, notch, loose joint)."
 
     def state(self, predictor: Predictor, values: Values) -> State:
-        """Return the structure with its stiffness reduced there."""
+        """Return the structure with its stiffness changed there."""
         if predictor.spec.kind == "matrices":
             return State(regional={(int(values["region"]), "E"): 1 - values["loss"]})
         factors = predictor.base.factors
@@ -114,13 +164,13 @@ class LocalStiffness(Effect):
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
-        """Return the compliance, the integral of EI0/EI - 1 along x: what the data determine."""
+        """Return the compliance, the integral of EI0/EI - 1 along x, of plates its mean across: what data determine."""
         if predictor.spec.kind == "matrices":
             return {"compliance": (values["loss"] / (1 - values["loss"]), "-")}
         lost = self._softening(predictor, values)
         across = 1.0
         if predictor.spec.kind == "plate":
-            low, high = (values["y"] + side * values["extent"] / 2 for side in (-1, 1))
+            low, high = (values["y"] + side * extents(values)[1] / 2 for side in (-1, 1))
             across = min(high, predictor.spec.width) - max(low, 0.0)
         compliance = float(predictor.reduced.fields.weights @ (1 / (1 - lost) - 1)) / across
         return {"compliance": (compliance, "m")}

@@ -224,7 +224,7 @@ def build_parameter_set(
 def _check_complete(parameter_set: ParameterSet, predictor: Predictor) -> None:
     """See that every effect with a parameter has all its parameters."""
     for name, given in parameter_set.effects([k.start for k in parameter_set.model_parameters]).items():
-        missing = {p.name for p in LIBRARY[name].parameters(predictor) if p.default is None} - set(given)
+        missing = {p.name for p in LIBRARY[name].parameters(predictor) if p.needed} - set(given)
         if missing:
             raise StudyError(
                 f"update: {name} also needs {', '.join(sorted(missing))}; update them too or give their values in "
@@ -341,9 +341,7 @@ def _effect(
     if obstacle is not None:
         raise StudyError(f"update: {effect.name} cannot be updated: {obstacle}")
     parameters = effect.parameters(predictor)
-    stated = [
-        p for p in parameters if p.default is None
-    ]  # what has a default is updated only where it is named
+    stated = [p for p in parameters if p.needed]  # what has a default is updated only where it is named
     chosen = [p for p in parameters if p.name == tail] if tail else stated
     if not chosen:
         own = ", ".join(p.name for p in parameters) or "none"
