@@ -37,6 +37,7 @@ class ChannelGain(Effect):
     equivalent_to = ("position_error",)
     labels = ("points",)
     of_sensor = True
+    repeats = True
     separated_by = "hit the points again; a calibration of each channel with a known free mass"
     phrase = "a channel of wrong level"
 

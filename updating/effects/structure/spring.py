@@ -54,6 +54,7 @@ class GroundSpring(Effect):
     phrase = "a spring to the ground"
     models = ("beam", "plate", "matrices")
     equivalent_to = ("axial_load", "suspension")
+    repeats = True
     separated_by = (
         "look for what touches the structure there and take it off; or more points around the place"
     )
