@@ -200,3 +200,15 @@ def test_a_fluid_in_the_model_says_its_density_wherever_its_surface_is() -> None
     assert (near.predict(count=3).frequency > 1.005 * deep.predict(count=3).frequency).all()
     lost = [FluidDamping().state(p, {"viscosity": 1e-3}).losses[0].matrix for p in (near, deep)]
     assert np.trace(lost[0]) < 0.99 * np.trace(lost[1])
+
+
+@pytest.mark.parametrize("spec", [BEAM, PLATE], ids=["beam", "plate"])
+def test_what_the_fluid_adds_in_the_first_mode_is_what_its_frequency_tells(spec) -> None:
+    """Rayleigh's quotient: (f dry / f wet)^2 - 1 but for the change of the shape."""
+    points = POINTS if spec is BEAM else np.column_stack([POINTS, POINTS / 2])
+    predictor, fluid = Predictor(spec, blank(points)), FluidAddedMass()
+    values = {"fluid_density": 900.0, "free_surface": 0.02}
+    dry, wet = (predictor.predict(s, count=1).frequency[0] for s in (State(), fluid.state(predictor, values)))
+    ratio, unit = fluid.derived(predictor, values)["added_mass_ratio"]
+    assert unit == "-"
+    assert ratio == pytest.approx((dry / wet) ** 2 - 1, rel=0.02)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import Effect, Parameter, Values
+from updating.effects.base import EDGES, Effect, Parameter, Values
 from updating.effects.obstacles import Obstacle, damping_obstacle
 from updating.effects.structure.wetted import shorter_side, surroundings, unit_mass, unstated, wetted
 from updating.fluid import edge_reach, layer_depth, slip_matrix, unbounded
@@ -81,6 +81,15 @@ class FluidAddedMass(Effect):
             mass=(density * unit_mass(predictor, around),), fluid={"fluid_density": density, **distances}
         )
 
+    def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
+        """Return the fluid's share in the first mode's mass over the structure's own: what frequencies determine.
+
+        A denser fluid under a nearer surface adds as much; of a slender beam no mode tells the two apart.
+        """
+        first = predictor.once("first mode", lambda: _first_mode(predictor))
+        added = unit_mass(predictor, surroundings(predictor, values))[: len(first), : len(first)]
+        return {"added_mass_ratio": (values["fluid_density"] * float(first @ added @ first), "-")}
+
 
 class FluidDamping(Effect):
     """Stokes' boundary layer of a viscous fluid at rest on both faces, along which the potential flow slides."""
@@ -126,7 +135,13 @@ def _distance(predictor: Predictor, name: str) -> Parameter:
     low = NEAREST * shorter_side(predictor.spec)
     high = FARTHEST * max(predictor.spec.length, predictor.spec.width)
     why = "from a tenth of the shorter side, hardly under the surface or nearly aground, to three of the longer one"
-    return Parameter(name, "m", low, high, why, log=True, default=math.inf, natural=("high",))
+    return Parameter(name, "m", low, high, why, log=True, default=math.inf, natural=EDGES)
+
+
+def _first_mode(predictor: Predictor) -> FloatArray:
+    """Return the lowest elastic mode in the reduced basis, (r,), of unit modal mass [kg^-1/2]."""
+    _, vectors = predictor.reduced.eigen(predictor.base)
+    return np.asarray(vectors[:, predictor.reduced.structure.rigid_modes])
 
 
 def fluid_density(predictor: Predictor) -> float:
