@@ -19,7 +19,7 @@ ROUNDED = 1e-3
 NOT_NEGATIVE = frozenset({"mass", "stiffness", "bulk", "loss_factor"})
 """Parameters with a linear prior that are zero or more."""
 
-WITHIN = frozenset({"inset", "cords"})
+WITHIN = frozenset({"inset", "cords", "joint"})
 """Parameters that make sense within their range alone."""
 
 WHOLE_LOSS = 1.0

@@ -22,7 +22,7 @@ class Levels(Quantity):
 
     def block(self, view: View) -> Block:
         """Return by how much more than predicted frequencies depend on the force, times its mean."""
-        test, slope = self.setting.measured, view.state.slope
+        test, slope = self.setting.measured, view.now.slope
         assert test.slope is not None
         assert test.slope_sigma is not None
         level = test.level or 1.0

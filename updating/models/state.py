@@ -79,6 +79,8 @@ class State(Displayed):
         How far from its stated place, along the in-plane axes, a point was really hit or seen [m].
     slope : float
         Relative change of the frequencies per newton of the hammer's peak force [1/N].
+    per_newton : tuple of (r, r) arrays
+        What the stiffness, which is that at the level of the test, gains per newton of that force [SI/N].
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -98,6 +100,7 @@ class State(Displayed):
     exchanged: tuple[tuple[str, int, int], ...] = ()
     moved: Mapping[Role, tuple[float, ...]] = field(default_factory=lambda: MappingProxyType({}))
     slope: float = 0.0
+    per_newton: tuple[FloatArray, ...] = ()
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
@@ -119,6 +122,7 @@ class State(Displayed):
             self.exchanged + other.exchanged,
             MappingProxyType({**self.moved, **other.moved}),
             self.slope + other.slope,
+            self.per_newton + other.per_newton,
         )
 
 

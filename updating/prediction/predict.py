@@ -49,6 +49,8 @@ class Prediction(Displayed):
         Derivatives of the constants by the same [1/kg].
     vectors : (r, n_modes) array
         Mode shapes in the coordinates of the reduced basis [kg^-1/2].
+    slope : (n_modes,) array
+        Relative change of each frequency per newton of the hits' peak force [1/N].
     """
 
     frequency: FloatArray
@@ -59,6 +61,7 @@ class Prediction(Displayed):
     log_frequency_by: FloatArray
     constants_by: FloatArray
     vectors: FloatArray
+    slope: FloatArray
 
     def select(self, modes: IntArray) -> Prediction:
         """Return some of the modes, in the order given."""
@@ -71,6 +74,7 @@ class Prediction(Displayed):
             self.log_frequency_by[modes],
             self.constants_by[:, modes],
             self.vectors[:, modes],
+            self.slope[modes],
         )
 
 
@@ -236,6 +240,7 @@ class Predictor(Displayed):
             if by
             else np.zeros((len(self.measured.seen), len(chosen), 0)),
             vectors[:, chosen],
+            total.slope + _gained(total, values[chosen], vectors[:, chosen]),
         )
 
     @cached_property
@@ -416,6 +421,15 @@ class Predictor(Displayed):
             return self.under(total.theory).receptance(laplace, replace(state, theory=None))
         seen, hit = self.frf_rows(state)
         return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
+
+
+def _gained(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return d ln f per newton of modes (r, n_modes), by the strain energy in what stiffens with the force [1/N]."""
+    total = np.zeros(len(values))
+    for matrix in state.per_newton:
+        size = len(vectors)
+        total += np.sum(vectors * (matrix[:size, :size] @ vectors), axis=0)
+    return np.asarray(total / (2 * np.maximum(values, 1e-12)))
 
 
 def _change(shape: FloatArray, change: FloatArray, read: MeasurementChain) -> FloatArray:

@@ -97,7 +97,7 @@ def test_every_effect_comes_up_about_as_often(draws: list[tuple[Setup, str]]) ->
     inside = [
         name
         for name, hidden_effect in HIDDEN_EFFECTS.items()
-        if hidden_effect.in_library and hidden_effect.applies(draws[0][0])
+        if not hidden_effect.outside and hidden_effect.applies(draws[0][0])
     ]
     assert set(inside) <= set(counts)
     mean = len(draws) / len(counts)

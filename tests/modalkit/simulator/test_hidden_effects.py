@@ -22,20 +22,22 @@ from modalkit.simulator.bodies.complex_modes import ComplexModes, complex_modes
 from modalkit.simulator.bodies.parts import Absorber, Attached, Stretch
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.hidden import HIDDEN_EFFECTS
+from modalkit.simulator.hidden.known import KNOWN_SINCE
 from modalkit.simulator.hidden.outside import gap_share
 from modalkit.simulator.scene import Scene, nominal_scene
 from modalkit.simulator.setup import Setup
+from updating import LIBRARY
 
 BEAM = Beam(0.0, 0.6, 0.03, 0.003, 210e9, 7850.0, alpha=2.0, beta=1e-6)
 INSIDE = [
     name
     for name, hidden_effect in HIDDEN_EFFECTS.items()
-    if hidden_effect.in_library and name != "orthotropy"  # of plates alone
+    if not hidden_effect.outside and name != "orthotropy"  # of plates alone
 ]
 OUTSIDE = [
     name
     for name, hidden_effect in HIDDEN_EFFECTS.items()
-    if not hidden_effect.in_library and name not in ("skew_clamp", "cavity")  # of plates alone
+    if hidden_effect.outside and name not in ("skew_clamp", "cavity")  # of plates alone
 ]
 LAMBDA = np.array([1.87510407, 4.69409113, 7.85475744, 10.99554073])
 CLEAR = DrawRanges(kinds=("beam",), mild=0.0, strong=0.0, pairs=0.0)
@@ -74,13 +76,19 @@ def test_the_rig_has_the_library_and_eighteen_more() -> None:
     assert all(HIDDEN_EFFECTS[name].exclusive != "" for name in ("section_scale", "calibration_gain"))
 
 
+def test_what_the_rig_takes_for_known_is_in_the_library() -> None:
+    assert {effect.known_as for effect in HIDDEN_EFFECTS.values()} - {None} <= set(LIBRARY)
+    assert set(KNOWN_SINCE) <= {name for name, effect in HIDDEN_EFFECTS.items() if effect.outside}
+
+
 @pytest.mark.parametrize("name", INSIDE + OUTSIDE)
 def test_every_clear_effect_stands_in_the_data(name: str) -> None:
     seen = [hide(name, index).truth for index in range(4)]
     assert all(t.effects == (name,) and t.level == "clear" for t in seen)
     assert np.median([t.visibility for t in seen]) > 3
-    assert all(t.in_library == (name in INSIDE) for t in seen)
-    assert all((name,) in t.accepted if name in INSIDE else not t.accepted for t in seen)
+    known = name if name in INSIDE else KNOWN_SINCE.get(name)
+    assert all(t.in_library == (known is not None) for t in seen)
+    assert all((known,) in t.accepted if known else not t.accepted for t in seen)
     assert all(len(place) == 1 and -1e-9 <= place[0] <= t.size[0] + 1e-9 for t in seen for place in t.places)
 
 

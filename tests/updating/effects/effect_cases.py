@@ -267,7 +267,7 @@ CONTRACT = {
     "fluid_damping": {"viscosity"},
     "damping_patch": {"x", "y", "extent", "loss_factor", "mass", "stiffness"},
     "uniform_damping": {"alpha", "beta", "loss_factor"},
-    "joint_nonlinearity": {"slope"},
+    "joint_nonlinearity": {"slope", "joint"},
     "exponential_window": {"decay"},
     "calibration_gain": {"gain"},
     "time_delay": {"delay"},

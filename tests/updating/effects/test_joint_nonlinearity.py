@@ -41,7 +41,7 @@ def test_it_needs_hits_of_different_levels() -> None:
 
 @given(st.floats(0, 1))
 def test_the_prior_has_both_signs_in_equal_parts(u: float) -> None:
-    (slope,) = EFFECT.parameters(evaluate())
+    slope, _ = EFFECT.parameters(evaluate())
     value = slope.value(u)
     assert slope.low <= value <= slope.high
     assert 1e-4 / LEVEL * (1 - 1e-9) <= abs(value) <= 0.2 / LEVEL * (1 + 1e-9)

@@ -94,7 +94,9 @@ class Levels(Trial):
         sigma = 1 / np.sqrt(np.sum(known**-2.0)) / LEVEL_SPAN_GAIN
 
         def slope(coordinates: FloatArray) -> float:
-            return float(site.diagnosis_problem.place(candidate, coordinates)[site.index].slope / sigma)
+            state = site.diagnosis_problem.place(candidate, coordinates)[site.index]
+            expected = site.problem.predictor.predict(state, count=len(test.frequency)).slope
+            return float(expected.mean() / sigma)
 
         here = slope(best)
         step = 1e-3 * np.eye(len(best)) * np.where(best < 0.5, 1.0, -1.0)

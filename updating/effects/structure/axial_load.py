@@ -52,7 +52,7 @@ class AxialLoad(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure under the force."""
         longer = predictor.base.factors.get("length", 1.0)
-        return State(stiffness=(values["force"] / longer * _unit(predictor),))
+        return State(stiffness=(values["force"] / longer * unit_tension(predictor),))
 
 
 def buckling_load(predictor: Predictor) -> float:
@@ -72,7 +72,8 @@ def _buckling(predictor: Predictor) -> float:
     )
 
 
-def _unit(predictor: Predictor) -> FloatArray:
+def unit_tension(predictor: Predictor) -> FloatArray:
+    """Return the stiffness of a tension of 1 N, (r, r) [1/m in w]."""
     reduced = predictor.reduced
 
     def build() -> FloatArray:

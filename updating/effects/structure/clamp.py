@@ -48,7 +48,7 @@ class Clamp(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure on the spring."""
-        unit = predictor.once(f"edge {self.freed}", lambda: _edges(predictor, self.freed))
+        unit = unit_edges(predictor, self.freed)
         return State(stiffness=(values["stiffness"] * unit,), released=frozenset({self.freed}))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
@@ -90,11 +90,15 @@ class ClampTranslation(Clamp):
     why = "from nearly as soft as the structure, 5 E I / L^3, to ten million E I / L^3, where nothing can see it"
 
 
-def _edges(predictor: Predictor, freed: Literal["rotation", "translation"]) -> FloatArray:
+def unit_edges(predictor: Predictor, freed: Literal["rotation", "translation"]) -> FloatArray:
     """Integrate the square of the slope, or of the displacement, across every clamped edge, as (r, r) [m in w]."""
     reduced = predictor.reduced
-    full = edge_slopes(reduced.structure) if freed == "rotation" else edge_shifts(reduced.structure)
-    return reduced.project(full)
+
+    def build() -> FloatArray:
+        full = edge_slopes(reduced.structure) if freed == "rotation" else edge_shifts(reduced.structure)
+        return reduced.project(full)
+
+    return predictor.once(f"edge {freed}", build)
 
 
 def edge_slopes(structure: Structure) -> Sparse:

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
 
 import numpy as np
 
-from updating.effects.base import Effect, Parameter, Values
+from acquisition.arrays import FloatArray
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness
+from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle
-from updating.models.state import State
+from updating.effects.structure.axial_load import buckling_load, unit_tension
+from updating.effects.structure.clamp import unit_edges
+from updating.effects.structure.length import clamped_places
+from updating.models.state import NOMINAL, State
 from updating.prediction.predict import Predictor
 
 LARGEST, SMALLEST = 0.2, 1e-4
@@ -41,38 +49,66 @@ class EitherSign(Parameter):
         return float(np.clip(0.5 + 0.5 * np.copysign(size, value), 0.0, 1.0))
 
 
+ANYWHERE, TURNING, SHIFTING, STRETCHING = 0, 1, 2, 3
+"""Which joint: one that nobody knows, a clamp in rotation or in translation, or two clamps that hold an end each."""
+
+FREED: Mapping[int, Literal["rotation", "translation"]] = MappingProxyType(
+    {TURNING: "rotation", SHIFTING: "translation"}
+)
+"""What a clamp gives way in."""
+
+PROBE: Mapping[int, float] = MappingProxyType({TURNING: 1e3, SHIFTING: 1e6})
+"""Stiffness of a clamp that hardly gives way, over E I / L and E I / L^3: shifts go with its inverse there [-]."""
+
+TIGHT = 0.01
+"""Tension that moves frequencies in proportion, over the load that buckles the model [-]."""
+
+SPREAD, OWN = 0.15, 0.05
+"""How far modes differ in a joint that nobody knows, and in one whose strain energy is computed, relative [-]."""
+
+
 class JointNonlinearity(Effect):
     """A joint that softens (it slips) or stiffens (it closes) the harder the structure is hit.
 
-    To first order a soft clamp shifts all modes of a uniform cantilever by one factor, as E does, and so does its
-    change with the level; how far the modes of other structures differ is in ``fidelity``.
+    A clamp that softens holds as modelled at rest, and its compliance grows in proportion to the force; one that
+    stiffens closes under the force, to which its stiffness is proportional. Between two clamps whose ends cannot
+    approach each other a tension grows with the force. Each mode's slope then follows from the joint's share of its
+    own strain energy, d ln f / dF = phi^T (dK/dF) phi / 2 lambda. In a joint that nobody knows all slopes are alike.
+
+    ``slope`` is the mean over as many of the lowest modes as were measured, to first order in the force.
     """
 
     name = "joint_nonlinearity"
     channel = "stiffness"
     summary = "A joint softens or stiffens with the force: frequencies follow the level of the hits."
     footprint = (
-        "Frequencies of single hits change in proportion to their peak force, much alike in all modes."
+        "Frequencies of single hits change in proportion to their peak force, each by the joint's share of its strain"
+        " energy. Its slope is the mean over the measured modes; joint is 1 for a clamp that turns, 2 for one that"
+        " shifts, 3 for a stretch between two clamps, 0 for one not known, in which all modes change alike."
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ()
     separated_by = "hits at each point over a wider range of levels, softest and hardest some 1 : 5"
     phrase = "a joint that is not linear"
     undone_by = frozenset({"unclamped"})
-    fidelity = 0.15
+    fidelity = SPREAD
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return the slope."""
+        """Return the slope, and which joint."""
         level = predictor.measured.level or COMMON_LEVEL
         why = (
             f"from {100 * SMALLEST:g} to {100 * LARGEST:g} % over the level of the test, either sign; uniform in "
             "the logarithm of the size"
         )
-        return (EitherSign("slope", "1/N", -LARGEST / level, LARGEST / level, why, least=SMALLEST / level),)
+        which = "not known, a clamp that turns or shifts, a stretch between clamps: a form each"
+        return (
+            EitherSign("slope", "1/N", -LARGEST / level, LARGEST / level, why, least=SMALLEST / level),
+            Parameter("joint", "-", ANYWHERE, STRETCHING, which, default=float(ANYWHERE), natural=EDGES),
+        )
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from both signs, faint and plain."""
-        return tuple((u,) for u in (0.1, 0.3, 0.7, 0.9))
+        return tuple((u, 0.5) for u in (0.1, 0.3, 0.7, 0.9))
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need hits of different levels."""
@@ -82,6 +118,67 @@ class JointNonlinearity(Effect):
         what = "no points were hit several times with levels that span 2 : 1, or there are no raw hits"
         return Obstacle(Lack.DATA, what)
 
+    def fidelity_on(self, predictor: Predictor) -> float:
+        """Return how far modes differ from what is predicted; less where there are clamps to give way [-]."""
+        return OWN if predictor.spec.clamped else SPREAD
+
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return each joint that the structure has, and one that is not known."""
+        clamped = set(predictor.spec.clamped)
+        if not clamped:
+            return (Variant({"joint": float(ANYWHERE)}),)
+        shares = {ANYWHERE: 0.25, TURNING: 0.45, SHIFTING: 0.3}
+        if {"x0", "x1"} <= clamped or {"y0", "y1"} == clamped:
+            shares = {ANYWHERE: 0.2, TURNING: 0.3, SHIFTING: 0.2, STRETCHING: 0.3}
+        return tuple(Variant({"joint": float(joint)}, share) for joint, share in shares.items())
+
     def state(self, predictor: Predictor, values: Values) -> State:
-        """Return the dependence on the level."""
-        return State(slope=values["slope"])
+        """Return the structure at the level of the test, and its dependence on that."""
+        joint, slope = round(values.get("joint", ANYWHERE)), values["slope"]
+        level = predictor.measured.level or COMMON_LEVEL
+        if joint == ANYWHERE or not slope or not predictor.spec.clamped:
+            return State(slope=slope)
+        if joint == STRETCHING:
+            tension = slope / _tension_share(predictor) * unit_tension(predictor)
+            return State(stiffness=(level * tension,), per_newton=(tension,))
+        freed = FREED[joint]
+        held = _compliance_share(predictor, joint) / (abs(slope) * level) * unit_edges(predictor, freed)
+        return State(
+            stiffness=(held,), released=frozenset({freed}), per_newton=(np.sign(slope) / level * held,)
+        )
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
+        """Return the clamps where they are the joint."""
+        return clamped_places(predictor) if round(values.get("joint", ANYWHERE)) in FREED else ()
+
+
+def _compliance_share(predictor: Predictor, joint: int) -> float:
+    """Return by how much a clamp's compliance lowers frequencies, the mean over modes, per its inverse [SI]."""
+
+    def build() -> FloatArray:
+        spec = predictor.spec
+        power = 1 if joint == TURNING else 3
+        stiffness = PROBE[joint] * bending_stiffness(spec) / spec.length**power
+        loose = State(
+            stiffness=(stiffness * unit_edges(predictor, FREED[joint]),), released=frozenset({FREED[joint]})
+        )
+        return np.array(-stiffness * _mean_shift(predictor, loose))
+
+    return float(predictor.once(f"gives way {joint}", build))
+
+
+def _tension_share(predictor: Predictor) -> float:
+    """Return by how much a tension raises frequencies, the mean over modes [1/N]."""
+
+    def build() -> FloatArray:
+        force = TIGHT * buckling_load(predictor)
+        return np.array(_mean_shift(predictor, State(stiffness=(force * unit_tension(predictor),))) / force)
+
+    return float(predictor.once("tightens", build))
+
+
+def _mean_shift(predictor: Predictor, state: State) -> float:
+    """Return the mean change of ln f over as many of the lowest modes as were measured [-]."""
+    count = len(predictor.measured.frequency)
+    moved, plain = (predictor.predict(s, count=count).frequency for s in (state, NOMINAL))
+    return float(np.mean(np.log(moved / plain)))
