@@ -255,7 +255,7 @@ CONTRACT = {
     "length": {"extension"},
     "clamp_rotation": {"stiffness"},
     "clamp_translation": {"stiffness"},
-    "sensor_mass": {"mass", "bulk"},
+    "sensor_mass": {"mass", "bulk", "dx", "dy"},
     "lumped_mass": {"mass", "x", "y", "bulk"},
     "local_stiffness": {"x", "y", "extent", "loss"},
     "ground_spring": {"x", "y", "extent", "stiffness", "damping"},

@@ -52,7 +52,7 @@ def test_a_clamp_that_gives_way_or_closes(
 ) -> None:
     """The rig's clamp at the level of the test and beside it: frequencies, and each mode's slope by differences."""
     predictor, bench = look(clamped), body(clamped)
-    probe = 2e3 * EI / BEAM.length**power * (1.0 if power == 1 else 500.0)
+    probe = {1: 300, 3: 2e4}[power] * EI / BEAM.length**power
     rest = hertz(bench)
     share = float(np.mean(1 - hertz(replace(bench, **{name: probe})) / rest))
 
@@ -64,7 +64,7 @@ def test_a_clamp_that_gives_way_or_closes(
     assert found.frequency == pytest.approx(at(LEVEL), rel=6e-4)
     by_levels = np.log(at(1.001 * LEVEL) / at(0.999 * LEVEL)) / (0.002 * LEVEL)
     assert found.slope == pytest.approx(by_levels, rel=0.02)
-    assert np.mean(found.slope) == pytest.approx(slope, rel=0.25 + 2e3 * abs(slope) * (joint == 2.0))
+    assert np.mean(found.slope) == pytest.approx(slope, rel=0.3)
 
 
 def test_between_two_clamps_a_tension_grows_with_the_force() -> None:

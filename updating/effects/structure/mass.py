@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
+from scipy.special import ndtr, ndtri
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
@@ -15,6 +18,7 @@ from updating.models.fields import Sparse
 from updating.models.imported.structure import ImportedStructure
 from updating.models.spec import Spec
 from updating.models.state import State
+from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 
 STEEL = 7850.0
@@ -24,6 +28,20 @@ ROVING = 0.5
 """How far the mean over a roving sensor's places may be off: loud FRFs, and split peaks, have more weight [-]."""
 
 AXES = ("x", "y", "z")
+AXES_AWAY = ("dx", "dy", "dz")
+
+FARTHEST = 3.0
+"""No sensor is believed to sit further beside its stated place [standard deviations]."""
+
+SHARES = {"anywhere": 0.5, "ends": 0.25, "points": 0.25}
+"""Shares of the prior of a body's place: what is fixed to a structure mostly is so at its ends, on plates at corners,
+or where a test has its points, whose places are marked and were thought of; each half of the rest [-]."""
+
+COMMON = 2.0
+"""How much more readily a change that all modes have in common is taken for tolerances than one of their own [-]."""
+
+PROMISING = 3
+"""At how many of the test's points a body is weighed: those at which one comes nearest to the frequencies."""
 
 STILL, CUBE = 0.0, 1.0
 """Rotary inertia of a sensor and of a body where none is told, as a multiple of a steel cube's [-]."""
@@ -50,8 +68,28 @@ def unit_inertia(structure: Structure, points: FloatArray) -> Sparse:
     return total
 
 
+@dataclass(frozen=True)
+class Astray(Parameter):
+    """A distance from a stated place: normal about zero, cut off where nobody believes it any more.
+
+    The range is `FARTHEST` standard deviations to either side.
+    """
+
+    def value(self, coordinate: float) -> float:
+        """Take a prior quantile in [0, 1] to the parameter's value [unit]."""
+        kept = ndtr(FARTHEST) - ndtr(-FARTHEST)
+        return float(self.high / FARTHEST * ndtri(ndtr(-FARTHEST) + kept * coordinate))
+
+    def coordinate(self, value: float) -> float:
+        """Take a value to its prior quantile, clipped to [0, 1]."""
+        kept = ndtr(FARTHEST) - ndtr(-FARTHEST)
+        return float(np.clip((ndtr(value / self.high * FARTHEST) - ndtr(-FARTHEST)) / kept, 0.0, 1.0))
+
+
 class SensorMass(Effect):
     """Each mounted sensor loads the structure with its mass; one that roves, with the mean over its places.
+
+    A single one that stays sits ``dx`` and ``dy`` beside its stated place, as far as the places of points are in doubt.
 
     A sensor that roves shifts each measurement by another amount. The frequency found from all of them is about the
     mean of these shifts; where the structure moves most the FRFs are the loudest and the shift the largest, so that
@@ -77,7 +115,34 @@ class SensorMass(Effect):
         why = (
             "from the lightest accelerometer with its wax to an impedance head as heavy as half the structure"
         )
-        return (Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True), _bulk(STILL))
+        mass = Parameter("mass", "kg", min(2e-4, 1e-3 * high), high, why, log=True)
+        return (mass, _bulk(STILL), *self._astray(predictor))
+
+    def _astray(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return how far a single sensor that stays may sit beside its place."""
+        sigma = predictor.measured.position_sigma
+        single = len(sensor_places(predictor)) == 1 and predictor.spec.outlined
+        if not single or not sigma > 0:
+            return ()
+        far, why = (
+            FARTHEST * sigma,
+            "as well as the places of points are known, three standard deviations at most",
+        )
+        names = AXES_AWAY[: predictor.spec.dim]
+        return tuple(Astray(name, "m", -far, far, why, default=0.0, natural=EDGES) for name in names)
+
+    def _places(self, predictor: Predictor, values: Values) -> FloatArray:
+        """Return where sensors sit beside their stated places, (n, dim) [m]."""
+        points, spec = sensor_places(predictor), predictor.spec
+        away = [values.get(name, 0.0) for name in AXES_AWAY[: points.shape[1]]]
+        if not any(away):
+            return points
+        return np.asarray(np.clip(points + away, 0.0, [spec.length, spec.width][: points.shape[1]]))
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start at the stated place, with a light sensor and a heavy one."""
+        more = len(self.parameters(predictor)) - 2
+        return tuple((u, 0.2, *[0.5] * more) for u in (0.3, 0.7))
 
     def fidelity_on(self, predictor: Predictor) -> float:
         """Return the doubt in the mean over the places where the sensor roves [-]."""
@@ -96,6 +161,9 @@ class SensorMass(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the mass at every sensor, or spread over the places of one that roves."""
         reduced, points = predictor.reduced, sensor_places(predictor)
+        if any(values.get(name) for name in AXES_AWAY):
+            inertia = values.get("bulk", STILL) * cube_inertia(values["mass"])
+            return State(mass=(_body(predictor, self._places(predictor, values), values["mass"], inertia),))
         mass = values["mass"] * predictor.once("sensors", lambda: reduced.unit_mass(points))
         turning = predictor.once("sensors turning", lambda: _reduced_inertia(predictor, points))
         mass = mass + values.get("bulk", STILL) * cube_inertia(values["mass"]) * turning
@@ -103,7 +171,7 @@ class SensorMass(Effect):
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the sensors."""
-        points = sensor_places(predictor)
+        points = self._places(predictor, values)
         padded = np.hstack([points, np.zeros((len(points), 3 - points.shape[1]))])
         return tuple((float(x), float(y), float(z)) for x, y, z in padded)
 
@@ -143,12 +211,24 @@ class LumpedMass(Effect):
         return Obstacle(Lack.DATA, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return one form for each test point of imported matrices, which have no surface in between."""
-        if predictor.spec.kind != "matrices":
-            return (Variant(),)
+        """Return a body at an end, at a test point and anywhere; at imported matrices' test points alone.
+
+        Of the test points those are listed at which a body comes nearest to the frequencies.
+        """
         points = np.unique(predictor.measured.points, axis=0)
-        named = [dict(zip(AXES, map(float, point), strict=True)) for point in points]
-        return tuple(Variant(place, 1 / len(named)) for place in named)
+        if predictor.spec.kind == "matrices":
+            return tuple(Variant(_named(point), 1 / len(points)) for point in points)
+        ends = free_ends(predictor.spec)
+        there = SHARES["anywhere"] + SHARES["ends"] * bool(len(ends)) + SHARES["points"] * bool(len(points))
+        at_end, at_point = (
+            SHARES[name] / there / max(len(places), 1)
+            for name, places in (("ends", ends), ("points", points))
+        )
+        return (
+            *(Variant(_named(end), at_end) for end in ends),
+            *(Variant(_named(point), at_point) for point in promising_points(predictor)),
+            Variant(weight=SHARES["anywhere"] / there),
+        )
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a row of places and the ends, with a middling mass."""
@@ -167,17 +247,61 @@ class LumpedMass(Effect):
         if predictor.spec.kind == "matrices":
             mass = predictor.reduced.unit_mass(point) * values["mass"]
             return State(mass=(mass + inertia * _reduced_inertia(predictor, point),))
-        rows = predictor.reduced.rows(point)
-        body = values["mass"] * (rows["w"].T @ rows["w"])
-        for name in ("wx", "wy"):
-            if name in rows:
-                body = body + inertia * (rows[name].T @ rows[name])
-        return State(mass=(body,))
+        return State(mass=(_body(predictor, point, values["mass"], inertia),))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the place; where no shapes tell it from its mirror images, these too."""
         at = (float(values["x"]), float(values.get("y", 0.0)), float(values.get("z", 0.0)))
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def _body(predictor: Predictor, point: FloatArray, mass: float, inertia: float) -> FloatArray:
+    """Return the mass matrix of a body at a place (1, dim) [m], of a mass [kg] and a rotary inertia [kg m^2]."""
+    rows = predictor.reduced.rows(point)
+    body = mass * (rows["w"].T @ rows["w"])
+    for name in ("wx", "wy"):
+        if name in rows:
+            body = body + inertia * (rows[name].T @ rows[name])
+    return body
+
+
+def free_ends(spec: Spec) -> FloatArray:
+    """Return the free ends of a beam, the corners of a plate off its clamped edges, (n, dim) [m]."""
+    sides = [
+        [place for edge, place in ((f"{axis}0", 0.0), (f"{axis}1", size)) if edge not in spec.clamped]
+        for axis, size in zip("xy", (spec.length, spec.width)[: spec.dim], strict=False)
+    ]
+    return np.array(list(product(*sides))).reshape(-1, spec.dim)
+
+
+def promising_points(predictor: Predictor) -> FloatArray:
+    """Return the few test points at which a body comes nearest to the frequencies, (n, dim) [m].
+
+    To first order a mass m lowers ln f of a mode by m phi^2 / 2 at its place; what all modes have in common beyond that
+    is taken for tolerances, twice as readily as what each has of its own.
+    """
+
+    def build() -> FloatArray:
+        test = predictor.measured
+        points, first = np.unique(test.points, axis=0, return_index=True)
+        if len(points) <= PROMISING:
+            return points
+        count = len(test.frequency)
+        nominal = predictor.predict(at_least=count + test.below + PROMISING)
+        chosen = match(test, nominal, np.arange(count) + test.below)
+        off = np.log(test.frequency / nominal.frequency[chosen])
+        shapes = predictor.point_rows()[first] @ nominal.vectors[:, chosen]
+        falls = -0.5 * shapes**2
+        metric = np.eye(count) - 1 / (count + 1 / COMMON**2)
+        along = np.maximum(falls @ metric @ off, 0.0)
+        gained = along**2 / np.maximum(np.einsum("ij,jk,ik->i", falls, metric, falls), 1e-300)
+        return np.asarray(points[np.argsort(-gained, kind="stable")[:PROMISING]])
+
+    return predictor.once("points for a body", build)
+
+
+def _named(point: FloatArray) -> dict[str, float]:
+    return dict(zip(AXES, map(float, point), strict=False))
 
 
 def _bulk(default: float) -> Parameter:

@@ -10,7 +10,6 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness, total_mass
 from updating.effects.box import Place, mirror_images, place, starting_places
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
-from updating.effects.structure.damping import DECAYS
 from updating.effects.structure.mass import AXES, outline
 from updating.models.spec import Spec
 from updating.models.state import Loss, State
@@ -19,6 +18,10 @@ from updating.prediction.predict import Predictor
 STIFFNESS = (0.1, 2e4)
 """Range of a spring's stiffness over the structure's own E I / L^3: one that moves the lowest mode by a tenth of a per
 cent, and a stop [-]."""
+
+LOSSY = (1e-4, 3.0)
+"""Range of a dashpot over M omega of the lowest mode: at a cantilever's tip it damps that by 2 c / M omega, a hardly
+visible 0.02 %, and all but holds the tip at the upper end [-]."""
 
 SHORTEST = 0.03
 """Shortest stretch that differs from a point, of the length [-]."""
@@ -61,15 +64,14 @@ class GroundSpring(Effect):
         held = "from what repeated tests can see of a soft cable to a stop"
         why = "a point is a form of its own; what is longer goes to the whole structure"
         size = max(spec.length, spec.width) if spec.kind == "plate" else spec.length
-        mass = total_mass(spec)
-        lossy = "from nothing to be seen to a dashpot that adds decay rates as long windows do"
+        lossy = "from hardly anything to be seen to a dashpot that all but holds the lowest mode"
         extent = SHORTEST * spec.length, size
-        decays = DECAYS[0] * mass / 10, DECAYS[1] * mass
+        least, most = (share * total_mass(spec) * lowest(predictor) for share in LOSSY)
         return (
             *outline(predictor),
             Parameter("extent", "m", *extent, why, log=True, default=0.0, natural=EDGES, or_none=True),
             Parameter("stiffness", "N/m", low, high, held, log=True, or_none=True),
-            Parameter("damping", "N s/m", *decays, lossy, True, 0.0, ("low",), or_none=True),
+            Parameter("damping", "N s/m", least, most, lossy, True, 0.0, ("low",), or_none=True),
         )
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
@@ -143,10 +145,15 @@ def own_stiffness(predictor: Predictor) -> float:
     """
     spec = predictor.spec
     if not spec.outlined:
-        lowest = predictor.once("lowest", lambda: predictor.bare.predict(count=1).frequency)
-        return total_mass(spec) * float(2 * np.pi * lowest[0]) ** 2 / 3.516**2
+        return total_mass(spec) * lowest(predictor) ** 2 / 3.516**2
     wide = spec.width if spec.kind == "plate" else 1.0
     return bending_stiffness(spec) * wide / spec.length**3
+
+
+def lowest(predictor: Predictor) -> float:
+    """Return the angular frequency of the bare model's lowest elastic mode [rad/s]."""
+    found = predictor.once("lowest", lambda: predictor.bare.predict(count=1).frequency)
+    return 2 * np.pi * float(found[0])
 
 
 def springs(

@@ -10,8 +10,7 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
-from updating.effects.structure.damping import DECAYS
-from updating.effects.structure.spring import springs
+from updating.effects.structure.spring import LOSSY, lowest, springs
 from updating.models.spec import Spec
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
@@ -52,17 +51,15 @@ class Suspension(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return stiffness and damping of a cord, and where they are."""
         mass = total_mass(predictor.spec)
-        first = (
-            2 * np.pi * float(predictor.once("lowest", lambda: predictor.bare.predict(count=1).frequency)[0])
-        )
+        first = lowest(predictor)
         low, high = (mass * (share * first) ** 2 / n for share, n in zip(BOUNCE, (4, 2), strict=True))
-        decays = DECAYS[0] * mass / 40, DECAYS[1] * mass / 2
+        least, most = (share * mass * first / n for share, n in zip(LOSSY, (4, 2), strict=True))
         usual = float(CORDS["plate" if predictor.spec.kind == "plate" else "beam"][0][0])
         held = f"from a bounce at {BOUNCE[0]:g} of the first elastic frequency to one at {BOUNCE[1]:g}"
-        lossy = "from nothing to be seen to decay rates as long windows have them"
+        lossy = "from hardly anything to be seen to cords on which nothing bounces twice"
         return (
             Parameter("stiffness", "N/m", low, high, held, log=True),
-            Parameter("damping", "N s/m", *decays, lossy, True, 0.0, ("low",), or_none=True),
+            Parameter("damping", "N s/m", least, most, lossy, True, 0.0, ("low",), or_none=True),
             Parameter(
                 "inset", "-", 0.0, FARTHEST_IN, "from the ends to beyond the first nodes", False, 0.1, EDGES
             ),
