@@ -12,7 +12,8 @@ from updating_cases import BEAM, ExactBeam, case_of, specimen, struck
 
 from updating import LIBRARY, diagnose
 from updating.effects.base import total_mass
-from updating.models.state import NOMINAL
+from updating.effects.structure.axial_load import buckling_load
+from updating.models.state import NOMINAL, State
 
 EFFECT = LIBRARY["ground_spring"]
 EI = 210e9 * BEAM.width * BEAM.thickness**3 / 12
@@ -68,6 +69,40 @@ def test_a_foundation_under_a_stretch(place: str, low: float, high: float, ratio
     values = {"x": (low + high) / 2, "extent": high - low, "stiffness": ratio * UNIT}
     found = predictor.predict(EFFECT.state(predictor, values), count=5).frequency
     assert found == pytest.approx(exact, rel=2e-4)
+
+
+def left_by_axial_load(x: float, extent: float) -> float:
+    """R.m.s. over modes of what the best load and a common factor leave of a spring's shifts [5e-4 of frequency]."""
+    beam, load = LOOK["beam"], LIBRARY["axial_load"]
+    values = {"x": x * BEAM.length, "extent": extent * BEAM.length, "stiffness": 3 * UNIT}
+
+    def shift(state: State) -> np.ndarray:
+        return np.log(beam.predict(state, count=4).frequency / beam.predict(count=4).frequency)
+
+    held, critical = shift(EFFECT.state(beam, values)), buckling_load(beam)
+
+    def misfit(p: np.ndarray) -> np.ndarray:
+        found = shift(load.state(beam, {"force": p[0] * critical}))
+        return np.append((found + p[1] - held) / 5e-4, p[1] / 5e-3)
+
+    best = optimize.least_squares(misfit, [0.1, 0.0], bounds=([-0.7, -0.05], [5.0, 0.05]))
+    return float(np.sqrt(2 * best.cost / 4))
+
+
+def test_an_axial_load_does_what_a_spring_near_the_clamp_does_and_nothing_like_one_near_the_end() -> None:
+    assert left_by_axial_load(0.35, 0.3) < 1.5
+    assert left_by_axial_load(0.6, 0.3) > 6
+    assert left_by_axial_load(0.85, 0.0) > 20
+
+
+def test_two_cords_do_what_one_spring_does_to_the_frequencies_of_a_symmetric_structure() -> None:
+    """To first order: k of either at mirrored places, or 2 k at one of them."""
+    free = LOOK["free"]
+    cords = {"stiffness": 0.5 * UNIT, "inset": 0.1, "cords": 2.0}
+    hung = free.predict(LIBRARY["suspension"].state(free, cords), count=4).frequency
+    one = free.predict(EFFECT.state(free, {"x": 0.1 * BEAM.length, "stiffness": UNIT}), count=4).frequency
+    plain = free.predict(count=4).frequency
+    assert np.log(one / plain) == pytest.approx(np.log(hung / plain), rel=0.02)
 
 
 def test_a_stretch_stays_on_the_structure() -> None:

@@ -23,6 +23,9 @@ LOSSY = (1e-4, 3.0)
 """Range of a dashpot over M omega of the lowest mode: at a cantilever's tip it damps that by 2 c / M omega, a hardly
 visible 0.02 %, and all but holds the tip at the upper end [-]."""
 
+SLIPS = 0.1
+"""How far what touches a structure leaves its damping in doubt: it rubs and slips, and is no dashpot, 1 sigma [-]."""
+
 SHORTEST = 0.03
 """Shortest stretch that differs from a point, of the length [-]."""
 
@@ -56,6 +59,7 @@ class GroundSpring(Effect):
     )
     undone_by = frozenset({"unclamped"})
     fidelity = 0.03
+    damping_doubt = SLIPS
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return place, extent, stiffness and damping."""

@@ -10,7 +10,7 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
-from updating.effects.structure.spring import LOSSY, lowest, springs
+from updating.effects.structure.spring import LOSSY, SLIPS, lowest, springs
 from updating.models.spec import Spec
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
@@ -44,6 +44,7 @@ class Suspension(Effect):
     equivalent_to = ("ground_spring",)
     separated_by = "the same test on softer cords, or with the cords at other places"
     fidelity = 0.03
+    damping_doubt = SLIPS
     elsewhere = MappingProxyType(
         {"matrices": "imported matrices do not say where cords may be; ground_spring is tried at the points"}
     )
