@@ -29,7 +29,7 @@ _CHANNELS: Mapping[str, tuple[str, ...]] = {
             "clamp_translation",
             "local_stiffness",
         ),
-        *("shear", "orthotropy", "axial_load", "joint_nonlinearity"),
+        *("shear", "orthotropy", "axial_load", "joint_nonlinearity", "ground_spring", "suspension"),
     ),
     "mass": ("density", "sensor_mass", "lumped_mass", "fluid_added_mass"),
     "damping": ("fluid_damping", "damping_patch", "uniform_damping"),

@@ -88,6 +88,12 @@ def test_a_joint_that_nobody_knows_changes_all_modes_alike() -> None:
         assert found.slope == pytest.approx(np.full(4, 1e-4))
 
 
+def test_it_says_which_joint() -> None:
+    assert "turns" in EFFECT.sentence({"slope": 1e-4, "joint": 1.0})
+    assert EFFECT.sentence({"slope": 1e-4}) == EFFECT.summary
+    assert EFFECT.derived(look(("x0",)), {"slope": 1e-4, "joint": 2.0}) == {"joint": (2.0, "-")}
+
+
 def test_only_joints_that_are_there_are_tried() -> None:
     joints = [
         {form.values["joint"] for form in EFFECT.variants(look(c))} for c in ((), ("x0",), ("x0", "x1"))

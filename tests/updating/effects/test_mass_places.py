@@ -16,10 +16,11 @@ BODY, SENSOR = LIBRARY["lumped_mass"], LIBRARY["sensor_mass"]
 
 
 def test_bodies_are_sought_at_ends_at_points_and_anywhere() -> None:
-    forms = BODY.variants(LOOK["beam"])
+    free = LOOK["free"]  # its sensor is at x1
+    forms = BODY.variants(free)
     assert sum(form.weight for form in forms) <= 1 + 1e-12
-    assert forms[0].values == {"x": BEAM.length}  # x0 is clamped
-    assert forms[0].weight == pytest.approx(0.25)
+    assert (dict(forms[0].values), forms[0].weight) == ({"x": 0.0}, pytest.approx(0.125))
+    assert all(form.values.get("x") != BEAM.length for form in (*forms, *BODY.variants(LOOK["beam"])))
     assert all(form.values["x"] in POINTS and form.weight == pytest.approx(0.05) for form in forms[1:-1])
     assert (dict(forms[-1].values), forms[-1].weight) == ({}, pytest.approx(0.5))
     assert len(free_ends(LOOK["free"].spec)) == 2

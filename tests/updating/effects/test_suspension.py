@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from effect_cases import LOOK, THIN
+from effect_cases import LOOK
 from updating_cases import BEAM, ExactBeam
 
 from updating import LIBRARY, Predictor
@@ -74,7 +74,5 @@ def test_cords_at_the_ends_of_the_prior_are_soft_and_firm(place: str) -> None:
 
 
 def test_it_says_how_many_cords() -> None:
-    assert "three" not in EFFECT.sentence({})
-    assert EFFECT.sentence({"cords": 3.0}).startswith("The 3 cords")
+    assert EFFECT.derived(LOOK["free"], {"cords": 3.0, "inset": 0.1}) == {"number": (3.0, "-")}
     assert len(EFFECT.locations(LOOK["free"], {"cords": 3.0, "inset": 0.1})) == 3
-    assert THIN.clamped

@@ -61,6 +61,15 @@ PROBE: Mapping[int, float] = MappingProxyType({TURNING: 300.0, SHIFTING: 2e4})
 """Stiffness of a clamp by which the slope is defined, over E I / L and E I / L^3: it gives way by some per cent of
 frequency, as tests show it; where it gives way by less, shifts are a few per cent of themselves larger [-]."""
 
+WORDS: Mapping[int, str] = MappingProxyType(
+    {
+        TURNING: " It is the clamp, which turns.",
+        SHIFTING: " It is the clamp, which shifts.",
+        STRETCHING: " It is the two clamps, between which bending stretches it.",
+    }
+)
+"""Which joint it is, in a sentence."""
+
 TIGHT = 0.01
 """Tension that moves frequencies in proportion, over the load that buckles the model [-]."""
 
@@ -148,6 +157,14 @@ class JointNonlinearity(Effect):
         return State(
             stiffness=(held,), released=frozenset({freed}), per_newton=(np.sign(slope) / level * held,)
         )
+
+    def sentence(self, values: Values) -> str:
+        """Return the summary, and which joint it is where that is known."""
+        return self.summary + WORDS.get(round(values.get("joint", ANYWHERE)), "")
+
+    def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
+        """Return which joint it is."""
+        return {"joint": (float(round(values.get("joint", ANYWHERE))), "-")}
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the clamps where they are the joint."""

@@ -11,7 +11,7 @@ from scipy.special import ndtr, ndtri
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
-from updating.effects.box import Place, mirror_images, starting_places
+from updating.effects.box import LIKE, Place, mirror_images, starting_places
 from updating.effects.obstacles import Lack, Obstacle
 from updating.models.base import Structure
 from updating.models.fields import Sparse
@@ -213,7 +213,8 @@ class LumpedMass(Effect):
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return a body at an end, at a test point and anywhere; at imported matrices' test points alone.
 
-        Of the test points those are listed at which a body comes nearest to the frequencies.
+        Of the test points those are listed at which a body comes nearest to the frequencies. Where a sensor stayed it
+        leaves no room for another body.
         """
         points = np.unique(predictor.measured.points, axis=0)
         if predictor.spec.kind == "matrices":
@@ -225,8 +226,8 @@ class LumpedMass(Effect):
             for name, places in (("ends", ends), ("points", points))
         )
         return (
-            *(Variant(_named(end), at_end) for end in ends),
-            *(Variant(_named(point), at_point) for point in promising_points(predictor)),
+            *(Variant(_named(end), at_end) for end in ends if _vacant(predictor, end)),
+            *(Variant(_named(at), at_point) for at in promising_points(predictor) if _vacant(predictor, at)),
             Variant(weight=SHARES["anywhere"] / there),
         )
 
@@ -298,6 +299,12 @@ def promising_points(predictor: Predictor) -> FloatArray:
         return np.asarray(points[np.argsort(-gained, kind="stable")[:PROMISING]])
 
     return predictor.once("points for a body", build)
+
+
+def _vacant(predictor: Predictor, place: FloatArray) -> bool:
+    """Tell whether no sensor stays at a place (dim,)."""
+    away = np.linalg.norm(sensor_places(predictor) - place, axis=1)
+    return sensor_roves(predictor) or bool((away > LIKE * predictor.spec.length).all())
 
 
 def _named(point: FloatArray) -> dict[str, float]:

@@ -75,13 +75,9 @@ class Suspension(Effect):
             Lack.MODEL, "the model is clamped: it hangs on no cords; ground_spring holds it beside clamps"
         )
 
-    def sentence(self, values: Values) -> str:
-        """Return the summary with the number of cords."""
-        return (
-            self.summary.replace("The cords", f"The {round(values['cords'])} cords")
-            if "cords" in values
-            else self.summary
-        )
+    def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
+        """Return how many cords there are."""
+        return {"number": (float(round(values.get("cords", 2))), "-")}
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return each number of cords; without damping where none can be compared."""
