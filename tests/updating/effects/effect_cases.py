@@ -112,7 +112,9 @@ def _body(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
 
 def _sensor(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
     end = (POINTS[-1],) if structure.fields.dim == 1 else CORNERS[-1]
-    rows = structure.fields.at(np.atleast_2d(end))
+    sizes = (structure.spec.length, structure.spec.width)
+    place = [np.clip(x + values.get(d, 0.0), 0, s) for x, d, s in zip(end, ("dx", "dy"), sizes, strict=False)]
+    rows = structure.fields.at(np.atleast_2d(place))
     total = values["mass"] * (rows["w"].T @ rows["w"])
     side = (values["mass"] / 7850.0) ** (1 / 3)
     for name in ("wx", "wy"):
