@@ -33,7 +33,7 @@ SHARE_LESS = 0.2
 what damps. Judged; doubled, less gains ln 2."""
 
 NOTHING_LEFT = 1e-3
-"""Share of a mode's damping that rounding may take beyond all of it [-]."""
+"""Share of a mode's damping that is none [-]: of a mechanism with less in every mode, and taken beyond all of it."""
 
 
 class UniformDamping(Effect):
@@ -174,6 +174,7 @@ def _expected(predictor: Predictor) -> FloatArray:
         relative = adds / rates[:, None]
         size = np.linalg.norm(relative, axis=0)
         found = nnls(relative / size, np.ones(len(rates)))[0] / size
+        found[(relative * found).max(axis=0) < NOTHING_LEFT] = 0.0
         # what fits on average must not take more than there is from any mode
         return np.asarray(found / max(float((relative @ found).max()), 1.0))
 
