@@ -158,7 +158,8 @@ class UniformDamping(Effect):
 
 def _decays(predictor: Predictor) -> tuple[FloatArray, FloatArray]:
     """Return decay rates 2 zeta omega of the modes expected, and what each coefficient adds to them, (n, 3) [1/s]."""
-    known = predictor.predict(count=max(len(predictor.measured.frequency), 1))
+    small = predictor.on(predictor.reduced.small) if predictor.reduced.whole else predictor
+    known = small.predict(count=max(len(predictor.measured.frequency), 1))
     omega = 2 * np.pi * known.frequency
     adds = np.stack([np.ones_like(omega), omega**2, omega], axis=1)
     return 2 * known.damping * omega, adds
