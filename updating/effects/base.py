@@ -54,7 +54,8 @@ class Parameter:
     signed : bool
         Whether less than nothing may be, too: then the range is that of the size, or what :meth:`Effect.values` says.
     like : str
-        Parameter whose value it takes where it is put into a model and not told; empty for none.
+        Parameter whose value it takes where it is put into a model and not told, or ``nothing``; empty where it has
+        to be told.
     """
 
     name: str

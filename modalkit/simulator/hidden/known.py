@@ -11,6 +11,7 @@ KNOWN_SINCE: Mapping[str, str] = MappingProxyType(
         "tip_spring": "ground_spring",
         "dashpot": "ground_spring",
         "suspension": "suspension",
+        "channel_gain": "channel_gain",
     }
 )
 """Effects that were drawn as what no library knows, and that the library has learnt since: its name for each.

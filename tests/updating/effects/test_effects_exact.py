@@ -235,6 +235,52 @@ def test_a_patch_beside_the_complex_eigen_solution(*, clamped: bool, layer: tupl
         assert found.damping == pytest.approx(damping, rel=0.015)
 
 
+@pytest.mark.parametrize("law", [{"alpha": 40.0}, {"beta": 1e-5}])
+def test_a_viscous_patch_beside_the_complex_eigen_solution(law: dict[str, float]) -> None:
+    """C = alpha M + beta K of the covered part with its layer, by 100 textbook elements."""
+    spec = Spec("beam", LENGTH, WIDTH, THICKNESS, (40,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0))
+    spec = replace(spec, damping=replace(BEAM.damping, alpha=0.0, beta=0.0))
+    predictor = Predictor(spec, blank(np.linspace(0.05, 0.5, 6)))
+    (k, m), (kp, mp) = (
+        [clamp(a).toarray() for a in pair] for pair in (beam_matrices(100), beam_matrices(100, 20, 55))
+    )
+    k, m = k + 0.05 * kp, m + 0.12 * mp
+    c = law.get("alpha", 0.0) * 1.12 * mp + law.get("beta", 0.0) * 1.05 * kp
+    squares, shapes = linalg.eigh(k, m)
+    shapes = shapes[:, :30]  # modes of some kHz more change nothing below
+    below = np.hstack([-np.diag(squares[:30]), -shapes.T @ c @ shapes])
+    poles = linalg.eigvals(np.vstack([np.hstack([np.zeros((30, 30)), np.eye(30)]), below]))
+    poles = sorted(poles[poles.imag > 0], key=lambda p: p.imag)[:5]
+    values = {
+        "x": 0.375 * LENGTH,
+        "extent": 0.35 * LENGTH,
+        "loss_factor": 0.0,
+        "mass": 0.12,
+        "stiffness": 0.05,
+    }
+    found = predictor.predict(LIBRARY["damping_patch"].state(predictor, values | law), count=5)
+    assert found.frequency == pytest.approx(np.abs(poles) / (2 * np.pi), rel=5e-4)
+    assert found.damping == pytest.approx(-np.real(poles) / np.abs(poles), rel=0.015)
+
+
+def test_two_halves_of_a_layer_are_the_whole() -> None:
+    predictor, effect = LOOK["plate"], LIBRARY["damping_patch"]
+    width = predictor.spec.width
+    at = {"x": 0.2, "extent": 0.1, "loss_factor": 0.05, "mass": 0.0, "stiffness": 0.0}
+
+    def damping(*layers: tuple[float, float]) -> np.ndarray:
+        state = State()
+        for middle, across in layers:
+            state = state.plus(
+                effect.state(predictor, {**at, "y": middle * width, "extent_y": across * width})
+            )
+        return predictor.predict(state, count=6).damping
+
+    halves = damping((0.25, 0.5), (0.75, 0.5))
+    assert halves == pytest.approx(damping((0.5, 1.0)), rel=0.02)
+    assert (damping((0.5, 0.5)) < halves).all()
+
+
 @pytest.mark.parametrize(
     ("extent", "loss"), [(0.03, 0.3), (0.03, 0.7), (0.03, -1.5), (0.1, 0.6), (0.1, -0.5), (0.1, -9.0)]
 )

@@ -68,7 +68,9 @@ def test_the_full_model_is_the_one_put_together_by_hand(name: str, place: str) -
     varied = [{**start, p.name: p.value(0.6)} for p in effect.parameters(predictor)]
     for values in (start, *varied):
         by_hand = full_modes(name, predictor, values, COUNT)
-        assert exact(effect, predictor, values) == pytest.approx(by_hand, rel=1e-6)
+        # the tails of a place's edges are cut off at 1e-4, which a gain makes more of
+        close = 2e-5 if values.get("loss", 0.0) < 0 else 1e-6
+        assert exact(effect, predictor, values) == pytest.approx(by_hand, rel=close)
 
 
 @pytest.mark.parametrize("place", ["beam", "plate"])
@@ -86,7 +88,7 @@ def test_a_bulky_sensor_weighs_as_one_in_the_full_model(place: str) -> None:
 @admitted(["lumped_mass", "axial_load", "clamp_rotation", "local_stiffness", "orthotropy"], PLACES)
 def test_an_effect_in_the_model_beforehand_acts_on_the_full_one(name: str, place: str) -> None:
     effect, plain = LIBRARY[name], LOOK[place]
-    values = form(effect, plain, 0.6)
+    values = form(effect, plain, 0.6, loss=0.85)
     predictor = replace(plain, additions=(lambda on: effect.state(on, values),))
     found = exact_modes(predictor, lambda on: State(factors={"E": 1.1}), COUNT)
     assert found is not None

@@ -33,7 +33,7 @@ SHARE_LESS = 0.2
 what damps. Judged; doubled, less gains ln 2."""
 
 NOTHING_LEFT = 1e-3
-"""Share of a mode's damping that rounding may take beyond all of it [-]."""
+"""Share of a mode's damping that is none [-]: of a mechanism with less in every mode, and taken beyond all of it."""
 
 
 class UniformDamping(Effect):
@@ -158,7 +158,8 @@ class UniformDamping(Effect):
 
 def _decays(predictor: Predictor) -> tuple[FloatArray, FloatArray]:
     """Return decay rates 2 zeta omega of the modes expected, and what each coefficient adds to them, (n, 3) [1/s]."""
-    known = predictor.predict(count=max(len(predictor.measured.frequency), 1))
+    small = predictor.on(predictor.reduced.small) if predictor.reduced.whole else predictor
+    known = small.predict(count=max(len(predictor.measured.frequency), 1))
     omega = 2 * np.pi * known.frequency
     adds = np.stack([np.ones_like(omega), omega**2, omega], axis=1)
     return 2 * known.damping * omega, adds
@@ -174,6 +175,7 @@ def _expected(predictor: Predictor) -> FloatArray:
         relative = adds / rates[:, None]
         size = np.linalg.norm(relative, axis=0)
         found = nnls(relative / size, np.ones(len(rates)))[0] / size
+        found[(relative * found).max(axis=0) < NOTHING_LEFT] = 0.0
         # what fits on average must not take more than there is from any mode
         return np.asarray(found / max(float((relative @ found).max()), 1.0))
 

@@ -2,20 +2,44 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
-from updating.effects.box import Place, covered, mirror_images, place, shares, starting_places
+from updating.effects.box import (
+    Place,
+    covered,
+    extent_parameters,
+    mirror_images,
+    place,
+    shares,
+    starting_places,
+)
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import region_centre, region_parameter, stiff_regions
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
 
+LAWS = {"loss_factor": 0.6, "alpha": 0.2, "beta": 0.2}
+"""By what a layer loses, and the prior of each [-]: most by a loss factor; loose ones by a force in proportion to mass,
+viscous ones to stiffness. Judged; doubled, one gains ln 2."""
+
+BARE = 0.6
+"""Prior of a layer that adds neither mass nor stiffness that data show [-]."""
+
+EXTENTS = (0.05, 0.6)
+"""Extents relative to the side [-]."""
+
+LOSSES = (5e-3, 0.5)
+"""Range of the loss factor; of the other laws, what they make of one in the middle of the measured band [-]."""
+
 
 class DampingPatch(Effect):
-    """A layer on a stretch of a beam, on a square of a plate, or on a region of imported matrices.
+    """A layer on a stretch of a beam, on a rectangle of a plate, or on a region of imported matrices.
 
-    The covered part has a structural ``loss_factor`` eta: K (1 + i eta) there. ``mass`` and ``stiffness`` are what
-    the layer adds, relative to the bare structure's own mass per area and bending stiffness [-].
+    The covered part loses by a structural ``loss_factor`` eta, K (1 + i eta) there, or by ``alpha`` and ``beta``,
+    C = alpha M + beta K there. ``mass`` and ``stiffness`` are what the layer adds, relative to the bare structure's own
+    mass per area and bending stiffness [-].
     """
 
     name = "damping_patch"
@@ -32,29 +56,35 @@ class DampingPatch(Effect):
     fidelity = 0.05
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return place, extent, loss factor, and what the layer adds of mass and stiffness."""
+        """Return place, extents, losses, and what the layer adds of mass and stiffness."""
         lossy = "from tape, which must damp to be one, to a constrained layer that covers the part well"
         heavy = "share of the bare structure's mass there: a layer, no body"
         stiff = "share of the bare structure's stiffness there: a layer, no rib"
+        hertz = predictor.measured.frequency
+        middle = 2 * np.pi * float(np.sqrt(hertz.min() * hertz.max()))
+        low, high = LOSSES
+        same = "loss in proportion to {}; in the middle of the band that of the loss factors"
         layer = (
-            Parameter("loss_factor", "-", 5e-3, 0.5, lossy, log=True),
+            Parameter("loss_factor", "-", low, high, lossy, log=True),
+            Parameter(
+                "alpha", "1/s", low * middle, high * middle, same.format("mass"), log=True, like="nothing"
+            ),
+            Parameter(
+                "beta", "s", low / middle, high / middle, same.format("stiffness"), log=True, like="nothing"
+            ),
             Parameter("mass", "-", 0.0, 0.12, heavy, natural=("low",)),
             Parameter("stiffness", "-", 0.0, 0.12, stiff, natural=("low",)),
         )
         spec = predictor.spec
         if spec.kind == "matrices":
             return (region_parameter(predictor), *layer)
-        middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
+        place_of = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
         if spec.kind == "plate":
-            middle.append(
+            place_of.append(
                 Parameter("y", "m", 0.0, spec.width, "anywhere across the structure", natural=EDGES)
             )
         why = "what is shorter hardly damps, what covers more is all over"
-        return (
-            *middle,
-            Parameter("extent", "m", 0.05 * spec.length, 0.6 * spec.length, why, log=True),
-            *layer,
-        )
+        return (*place_of, *extent_parameters(spec, *EXTENTS, why), *layer)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need an expectation of the damping, and regions where there are matrices."""
@@ -64,31 +94,48 @@ class DampingPatch(Effect):
         return damping_obstacle(predictor)
 
     def damps(self, parameter: str = "") -> bool:
-        """Tell that the loss factor does, and nothing else."""
-        return parameter == "loss_factor"
+        """Tell that what loses does, and nothing else."""
+        return parameter in LAWS
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return the damping alone, and with mass and stiffness; of imported matrices for each region."""
+        """Return the damping alone and with mass and stiffness, by each law; of imported matrices for each region.
+
+        By alpha and beta with mass and stiffness only, of regions alone only: the two hold what the other would.
+        """
+        regional = predictor.spec.kind == "matrices"
+        known = [{"region": i} for i in stiff_regions(predictor)] if regional else [{}]
         bare = {"mass": 0.0, "stiffness": 0.0}
-        if predictor.spec.kind != "matrices":
-            return (Variant(bare, 0.6), Variant(weight=0.4))
-        regions = stiff_regions(predictor)
-        alone = tuple(Variant({"region": i, **bare}, 0.6 / len(regions)) for i in regions)
-        return (*alone, *(Variant({"region": i}, 0.4 / len(regions)) for i in regions))
+        found = []
+        for law, share in LAWS.items():
+            others = {other: 0.0 for other in LAWS if other != law}
+            forms = [(BARE, others | bare), (1 - BARE, others)]
+            if law != "loss_factor":
+                forms = [(1.0, forms[0 if regional else 1][1])]
+            found += [
+                Variant({**own, **form}, part * share / len(known)) for part, form in forms for own in known
+            ]
+        return tuple(found)
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a row of places, a fifth of the length long."""
         if predictor.spec.kind == "matrices":
-            return tuple((0.5, u, 0.1, 0.1) for u in (0.3, 0.7))
-        return tuple((*where, 0.6, 0.55, 0.1, 0.1) for where in starting_places(predictor.spec))
+            return tuple((0.5, u, u, u, 0.1, 0.1) for u in (0.3, 0.7))
+        layer = (*(0.6,) * predictor.spec.dim, 0.55, 0.55, 0.55, 0.1, 0.1)
+        return tuple((*where, *layer) for where in starting_places(predictor.spec))
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the layer."""
-        stiffness, mass = self._covered(predictor, values)
+        alpha, beta = (float(values.get(name, 0.0)) for name in ("alpha", "beta"))
+        stiffness, mass = self._covered(predictor, values, mass=bool(values["mass"] or alpha))
+        losses = [Loss(values["loss_factor"] * (1 + values["stiffness"]) * stiffness, -1.0)]
+        if alpha:
+            losses.append(Loss(alpha * (1 + values["mass"]) * mass, 0.0))
+        if beta:
+            losses.append(Loss(beta * (1 + values["stiffness"]) * stiffness, 0.0))
         return State(
             stiffness=(values["stiffness"] * stiffness,) if values["stiffness"] else (),
             mass=(values["mass"] * mass,) if values["mass"] else (),
-            losses=(Loss(values["loss_factor"] * (1 + values["stiffness"]) * stiffness, -1.0),),
+            losses=tuple(losses),
         )
 
     def weight(self, predictor: Predictor, values: Values) -> float:
@@ -99,7 +146,7 @@ class DampingPatch(Effect):
         under = float(sizes @ shares(predictor, values) / sizes.sum())
         return float(values["mass"]) * under * total_mass(predictor.spec)
 
-    def _covered(self, predictor: Predictor, values: Values) -> tuple[FloatArray, FloatArray]:
+    def _covered(self, predictor: Predictor, values: Values, *, mass: bool) -> tuple[FloatArray, FloatArray]:
         """Return stiffness and mass of the bare structure under the layer, each (r, r) [SI]."""
         reduced, factors = predictor.reduced, predictor.base.factors
         if predictor.spec.kind == "matrices":
@@ -109,7 +156,7 @@ class DampingPatch(Effect):
             return parts["stiffness"], parts["mass"]
         inside = shares(predictor, values)
         stiffness = covered(predictor, "stiffness", inside)
-        return stiffness, covered(predictor, "mass", inside) if values["mass"] else stiffness
+        return stiffness, covered(predictor, "mass", inside) if mass else stiffness
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the place, and its mirror images where nothing but damping could tell them apart."""
@@ -120,6 +167,6 @@ class DampingPatch(Effect):
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return loss factor times length covered, which data determine better than either."""
-        if predictor.spec.kind == "matrices":
+        if predictor.spec.kind == "matrices" or not values["loss_factor"]:
             return {}
         return {"cover": (values["loss_factor"] * values["extent"], "m")}
