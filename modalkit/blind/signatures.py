@@ -144,6 +144,7 @@ def _of_the_measurement(of: Scales) -> dict[str, list[list[FloatArray]]]:
     window[n : 2 * n] = 1.0 / base.decay
     return {
         "calibration_gain": [[shapes(base.constants)]],
+        "channel_gain": [[shapes(only(p, base.constants[p]))] for p in hit],
         "time_delay": [[shapes(-1j * base.frequency * base.constants)]],
         "exponential_window": [[window]],
         "polarity": [[shapes(only(p, -2 * base.constants[p]))] for p in hit],

@@ -37,6 +37,7 @@ _CHANNELS: Mapping[str, tuple[str, ...]] = {
         *(
             "exponential_window",
             "calibration_gain",
+            "channel_gain",
             "time_delay",
             "polarity",
             "swapped_points",
