@@ -18,9 +18,6 @@ from acquisition.arrays import BoolArray
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.thresholds import OUTLIER_PRIOR, OUTLIER_SCALES
 
-EVERY = -1
-"""All channels of a mode, or no mode in particular."""
-
 SHAPE = (CHANNELS.index("frf"), CHANNELS.index("phase"))
 """Channels of a mode's shape."""
 
@@ -31,30 +28,30 @@ class Outlier:
 
     Parameters
     ----------
-    mode, channel : int
-        Data of one mode, those of one of ``CHANNELS`` or, at ``EVERY``, all of them; a mode of ``EVERY`` is none.
-    source : int
-        The modal constants of one measuring channel; ``EVERY`` is none.
-    tolerance : int
-        Which of a comparison's tolerances of the model; ``EVERY`` is none.
+    mode, channel : int, optional
+        Data of one mode, those of one of ``CHANNELS``, or all of them.
+    source : int, optional
+        The modal constants of one measuring channel.
+    tolerance : int, optional
+        One of a comparison's tolerances of the model.
     scale : float
         How many times worse [-].
     """
 
-    mode: int = EVERY
-    channel: int = EVERY
-    source: int = EVERY
-    tolerance: int = EVERY
+    mode: int | None = None
+    channel: int | None = None
+    source: int | None = None
+    tolerance: int | None = None
     scale: float = OUTLIER_SCALES[0]
 
     def data(self, comparison: Comparison) -> BoolArray:
         """Return which data (n,) it is about."""
-        if self.source != EVERY:
+        if self.source is not None:
             return np.asarray(comparison.source == self.source)
-        if self.mode == EVERY:
+        if self.mode is None:
             return np.zeros(len(comparison.mode), dtype=bool)
         own = comparison.mode == self.mode
-        return np.asarray(own if self.channel == EVERY else own & (comparison.channel == self.channel))
+        return np.asarray(own if self.channel is None else own & (comparison.channel == self.channel))
 
     @property
     def of_shape(self) -> bool:
@@ -63,7 +60,7 @@ class Outlier:
 
     def scaled(self) -> list[Outlier]:
         """Return it at every scale; a tolerance that is off by more than the least of them is no longer that."""
-        scales = OUTLIER_SCALES if self.tolerance == EVERY else OUTLIER_SCALES[:1]
+        scales = OUTLIER_SCALES if self.tolerance is None else OUTLIER_SCALES[:1]
         return [replace(self, scale=scale) for scale in scales]
 
 
@@ -79,7 +76,7 @@ def with_outliers(comparison: Comparison, outliers: Sequence[Outlier]) -> Compar
     variance, nuisance = comparison.variance.copy(), comparison.nuisance.copy()
     for outlier in outliers:
         variance[outlier.data(comparison)] *= outlier.scale**2
-        if outlier.tolerance != EVERY:
+        if outlier.tolerance is not None:
             nuisance[:, comparison.tolerances[outlier.tolerance]] *= outlier.scale
     return replace(comparison, variance=variance, nuisance=nuisance)
 

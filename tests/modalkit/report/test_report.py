@@ -238,7 +238,13 @@ def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
     session = open_study(read_study(ROOT / "sample_data" / "beam_wet" / "study.toml"))
     made = diagnosis_with("beam", "named")
     water = ParameterEstimate(1000.0, "kg/m^3", 950.0, 1050.0, False)
-    row = Ranked(("fluid_added_mass",), 0.99, (), {"fluid_added_mass.fluid_density": water}, True, 0.4)
+    far = ParameterEstimate(1.0, "m", 0.5, 1.1, False)
+    estimates = {
+        "fluid_added_mass.fluid_density": water,
+        "fluid_added_mass.free_surface": far,
+        "fluid_added_mass.bottom": far,
+    }
+    row = Ranked(("fluid_added_mass",), 0.99, (), estimates, True, 0.4)
     stated = complete(replace(made, ranking=(row,), sets=(row.effects,)), session.case.title)
     page = diagnosis_report(stated, [session], when=NOON)
     found = re.search(r"median FRAC ([0-9.]+) before, ([0-9.]+) after", page)

@@ -326,6 +326,7 @@ EVERYTHING = {
         + [
             f"{p.name}={p.value(0.3 if effect.channel == 'damping' else 0.6):.9g}"
             for p in effect.parameters(MODEL)
+            if p.like != "nothing"  # a law beside the one that acts
         ]
     )
     for name, effect in LIBRARY.items()

@@ -220,11 +220,11 @@ def test_a_pair_has_the_parameters_of_both() -> None:
     problem = diagnosis_problem(trial())
     both = candidate("E", "sensor_mass")
     prior = LIBRARY["E"].parameters(problem.predictor)[0]
-    values = both.values(problem.predictor, [0.25, 0.75, 0.2])
-    assert list(values) == ["E.factor", "sensor_mass.mass", "sensor_mass.bulk"]
+    values = both.values(problem.predictor, [0.25, 0.75, 0.2, 0.5])
+    assert list(values) == ["E.factor", "sensor_mass.mass", "sensor_mass.bulk", "sensor_mass.dx"]
     assert values["E.factor"] == pytest.approx(prior.low * (prior.high / prior.low) ** 0.25)
-    state = both.state(problem.predictor, [0.25, 0.75, 0.2])
+    state = both.state(problem.predictor, [0.25, 0.75, 0.2, 0.5])
     assert dict(state.factors) == {"E": values["E.factor"]}
     assert len(state.mass) == 1
-    assert both.locations(problem.predictor, [0.25, 0.75, 0.2]) == ((0.376, 0.0, 0.0),)
+    assert both.locations(problem.predictor, [0.25, 0.75, 0.2, 0.5]) == ((0.376, 0.0, 0.0),)
     assert Case("x", COARSE, trial()).accepted == ()

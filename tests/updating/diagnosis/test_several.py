@@ -92,8 +92,9 @@ def test_shared_parameters_have_one_value_and_others_one_on_each() -> None:
         "E.factor (sheet)",
         "sensor_mass.mass",
         "sensor_mass.bulk",
+        "sensor_mass.dx",
     ]
-    coordinates = np.array([0.6, 0.3, 0.8, 0.5, 0.2])
+    coordinates = np.array([0.6, 0.3, 0.8, 0.5, 0.2, 0.5])
     values = problem.values(candidate, coordinates)
     assert list(values) == names
     states = problem.place(candidate, coordinates)

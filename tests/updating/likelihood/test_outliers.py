@@ -85,7 +85,7 @@ def test_a_bad_channel_is_suspected_first(seed: int, row: int) -> None:
 def test_the_order_is_that_of_leaving_each_frequency_out(seed: int) -> None:
     """Each residual over its deviation, from a fit to all other data, by brute force."""
     plain = comparison(seed)
-    found = [one.mode for one in suspects(plain, 1.0, 100) if one.channel == 0 and one.source < 0]
+    found = [one.mode for one in suspects(plain, 1.0, 100) if one.channel == 0 and one.source is None]
     size = []
     for m in range(MODES):
         keep = np.arange(len(plain.residual)) != m

@@ -283,8 +283,8 @@ def _pair(
     unlike = list(
         {tuple(u.tolist()): u for u in starts}.values()
     )  # of an effect without parameters all are alike
-    climbs = CLIMBS if anew else 1 + bool(places)
-    return explain(problem, both, starts=unlike, laplace_only=True, maximisations=climbs, bar=bar)
+    count = CLIMBS if anew else 1 + bool(places)
+    return explain(problem, both, starts=unlike, laplace_only=True, maximisations=count, bar=bar)
 
 
 def _alike(
