@@ -259,7 +259,7 @@ evidence errs by one or two. Doubled: twice the predictions for the same answer.
 FINISHING_ROUNDS = 3
 """How often what is within reach is sought: finishing one moves the bar for the others."""
 
-PAIRS_WEIGHED = 8
+PAIRS_WEIGHED = 10
 """How many pairs are weighed, those that a score test finds the most promising. Doubled: twice the time of pairs."""
 
 PAIRS_ANEW = 3

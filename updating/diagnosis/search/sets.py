@@ -56,12 +56,11 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
     for (i, j), together in zip(allowed, _together(nominal, reaches, allowed), strict=True):
         first, second = possible[i], possible[j]
         second = _next(second) if first.names == second.names else second
-        weight = first.candidate.log_weight + second.candidate.log_weight
         cost = log_prior(2, examined) - volume[i] - volume[j]
         near = max(reached[i, j], reached[j, i]) if i != j else -np.inf
         far = together[0][0] if together else -np.inf
         if least or max(near, far) + cost > best - SET_MARGIN:
-            drafts.append(_Draft(first, second, near + weight, far + weight, [u for _, u in together]))
+            drafts.append(_Draft(first, second, near + cost, far + cost, [u for _, u in together]))
     pairs: list[Explanation] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
     chosen = _promising(drafts)
@@ -87,8 +86,8 @@ class _Draft:
     first, second : Explanation
         The two effects alone.
     near, far : float
-        The log-likelihood that a linear step would reach, forms' shares in it: from the best of either alone, and from
-        no effect at all.
+        The log evidence that a linear step would reach, with what either's parameters cost alone: from the best of
+        either alone, and from no effect at all.
     places : list of arrays
         Prior quantiles of both to start from.
     """
