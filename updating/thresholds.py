@@ -269,6 +269,10 @@ again."""
 SHIFT_SPREAD = 3.0
 """How many times the shift of a starting place may be asked for, 1 sigma [-]: an effect from slight to severe."""
 
+STEP_INSIDE = (0.02, 0.98)
+"""Prior quantiles to which the first step from a pair of starting places is kept [-]: at the very end of their range
+some effects stand still. Doubled: a start a little further from the end."""
+
 PLACES_TOGETHER = 3
 """How many pairs of starting places, those that explain the most together, a pair of causes is searched from. Doubled:
 a third more time for these pairs."""

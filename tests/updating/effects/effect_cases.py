@@ -160,9 +160,9 @@ def _box(structure: FieldStructure, values: dict[str, Any], edge: float) -> np.n
 
 
 def _sprung(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
-    """Springs side by side, a thousand along a stretch, on plates 60 x 60 over a square."""
+    """Springs side by side, a thousand along a stretch, on plates 120 x 120 over a square."""
     sizes = (structure.spec.length, structure.spec.width)[: structure.fields.dim]
-    count = 1 if not values["extent"] else (1000, 60)[structure.fields.dim - 1]
+    count = 1 if not values["extent"] else (1000, 120)[structure.fields.dim - 1]
     lines = []
     for name, size in zip("xy", sizes, strict=False):
         half = min(values["extent"], size) / 2

@@ -24,6 +24,7 @@ from updating.thresholds import (
     QUANTILE_SPREAD,
     SET_MARGIN,
     SHIFT_SPREAD,
+    STEP_INSIDE,
     TRIPLES_WEIGHED,
 )
 
@@ -61,20 +62,20 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
         far = together[0][0] if together else -np.inf
         if least or max(near, far) + cost > best - SET_MARGIN:
             drafts.append(_Draft(first, second, near + cost, far + cost, [u for _, u in together]))
-    pairs: list[Explanation] = []
+    pairs: list[tuple[Explanation, list[FloatArray]]] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
-    chosen = _promising(drafts)
-    places = {draft.first.names + draft.second.names: draft.places for draft in chosen}
-    for draft in chosen:
+    for draft in _promising(drafts):
         parts = [(e.candidate, e.best.coordinates) for e in (draft.first, draft.second)]
-        pairs.append(_pair(problem, parts[0], parts[1], bar, places=draft.places))
-        bar = max(bar, pairs[-1].best.marginal.log_likelihood)
-    pairs.sort(key=lambda e: -e.log_evidence)
-    for i, pair in enumerate(pairs[:PAIRS_ANEW]):
-        again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True, places=places[pair.names])
-        pairs[i] = max(pair, again, key=lambda e: e.log_evidence)
-        bar = max(bar, pairs[i].best.marginal.log_likelihood)
-    return pairs + _alike(problem, possible, pairs, bar)
+        pair = _pair(problem, parts[0], parts[1], bar, places=draft.places)
+        pairs.append((pair, draft.places))
+        bar = max(bar, pair.best.marginal.log_likelihood)
+    pairs.sort(key=lambda own: -own[0].log_evidence)
+    best_of = [pair for pair, _ in pairs]
+    for i, (pair, places) in enumerate(pairs[:PAIRS_ANEW]):
+        again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True, places=places)
+        best_of[i] = max(pair, again, key=lambda e: e.log_evidence)
+        bar = max(bar, best_of[i].best.marginal.log_likelihood)
+    return best_of + _alike(problem, possible, best_of, bar)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,14 +106,15 @@ class _Draft:
 
 
 def _promising(drafts: list[_Draft]) -> list[_Draft]:
-    """Return the pairs that promise the most, those from near and those from far in turn, of two effects one form."""
-    chosen: dict[tuple[str, ...], _Draft] = {}
-    near = sorted((d for d in drafts if np.isfinite(d.near)), key=lambda draft: -draft.near)
-    far = sorted((d for d in drafts if np.isfinite(d.far)), key=lambda draft: -draft.far)
-    for draft in chain.from_iterable(zip_longest(near, far)):
-        if draft is not None and len(chosen) < PAIRS_WEIGHED:
-            chosen.setdefault(draft.names, draft)
-    return list(chosen.values())
+    """Return the pairs that promise the most, from near and from far in turn, of two effects the best form of each."""
+    near: dict[tuple[str, ...], _Draft] = {}
+    far: dict[tuple[str, ...], _Draft] = {}
+    for draft in sorted((d for d in drafts if np.isfinite(d.near)), key=lambda draft: -draft.near):
+        near.setdefault(draft.names, draft)
+    for draft in sorted((d for d in drafts if np.isfinite(d.far)), key=lambda draft: -draft.far):
+        far.setdefault(draft.names, draft)
+    in_turn = chain.from_iterable(zip_longest(near.values(), far.values()))
+    return list(dict.fromkeys(draft for draft in in_turn if draft is not None))[:PAIRS_WEIGHED]
 
 
 def _allowed(problem: DiagnosisProblem, singles: list[Explanation]) -> list[tuple[int, int]]:
@@ -175,9 +177,6 @@ def _reaches(problem: DiagnosisProblem, nominal: Point, candidate: Candidate) ->
     ]
 
 
-INSIDE = (0.02, 0.98)
-"""Prior quantiles to which a first step is kept: at the very end some effects stand still [-]."""
-
 Together = list[tuple[float, FloatArray]]
 """The log-likelihood that two effects would reach, and the prior quantiles of both to start from, best first."""
 
@@ -206,7 +205,7 @@ def _together(nominal: Point, reaches: list[list[_Reach]], pairs: list[tuple[int
         shifts, free = ends[[a, b]], np.r_[ends[a] + 1 : ends[a + 1], ends[b] + 1 : ends[b + 1]]
         left = load[free] - normal[np.ix_(free, shifts)].sum(axis=1) / SHIFT_SPREAD
         step = QUANTILE_SPREAD * np.linalg.solve(normal[np.ix_(free, free)], left)
-        return np.clip(np.concatenate([flat[a].place, flat[b].place]) + step, *INSIDE)
+        return np.clip(np.concatenate([flat[a].place, flat[b].place]) + step, *STEP_INSIDE)
 
     found = []
     for i, j in pairs:
