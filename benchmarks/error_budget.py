@@ -148,8 +148,10 @@ def _from_truth(problem: SpecimenProblem, trial: Trial, names: tuple[str, ...]) 
         candidate = Candidate(effects, chosen=chosen)
         known = trial.truth.parameters
         parameters = problem.parameters(candidate)
+        stated = {name: float(known[name]) for name, _ in parameters if name in known}
+        there = candidate.coordinates(problem.predictor, stated)
         starts = [
-            np.array([p.coordinate(float(known[name])) if name in known else other for name, p in parameters])
+            np.array([u if name in stated else other for (name, _), u in zip(parameters, there, strict=True)])
             for other in MIDDLES
         ]
         own = problem.starts(candidate) if len(effects) == 1 else []

@@ -100,7 +100,7 @@ class Candidate:
         stage = self.stage(predictor)
         found = []
         for effect, form in zip(self.effects, self.forms, strict=True):
-            head = f"{effect.name}."
+            head = f"{effect.key}."
             own = {n.removeprefix(head): v for n, v in values.items() if n.startswith(head)}
             known = zip(effect.parameters(stage), effect.quantiles(stage, own), strict=True)
             found += [form.coordinate(p.name, u) for p, u in known if p.name not in form.values]

@@ -12,6 +12,8 @@ from updating_cases import case_of, specimen, struck
 
 from modalkit.output.documents import diagnosis_document
 from updating import LIBRARY, Diagnosis, diagnose
+from updating.nominal import predictor_of
+from updating.problem.candidate import Candidate
 
 BEAM = FINE.with_elements(20)
 SOME = tuple(
@@ -101,3 +103,15 @@ def test_what_occurs_twice_stands_twice_and_is_included_once() -> None:
     assert document["cause"]["effects"].count("lumped_mass") == 2
     assert list(document["included"]).count("lumped_mass") == 1
     assert "lumped_mass#2.mass" in document["cause"]["ranking"][0]["parameters"]
+
+
+def test_values_of_two_of_one_cause_go_back_to_their_quantiles() -> None:
+    body = LIBRARY["lumped_mass"]
+    both = Candidate((body, body.again()))
+    predictor = predictor_of(
+        case_of(struck(specimen(np.random.default_rng(1)), np.random.default_rng(2)), BEAM)
+    )
+    quantiles = np.array([0.3, 0.2, 0.4, 0.6, 0.8, 0.5])
+    values = both.values(predictor, quantiles.tolist())
+    assert values["lumped_mass.x"] < values["lumped_mass#2.x"]
+    assert both.coordinates(predictor, values) == pytest.approx(quantiles)
