@@ -66,7 +66,7 @@ def test_one_bad_group_of_data_hides_no_cause(seed: int, what: str) -> None:
 
 
 @pytest.mark.parametrize("seed", [3, 17])
-def test_one_odd_shape_is_no_gap_and_is_said(seed: int) -> None:
+def test_one_odd_shape_is_no_gap_and_is_the_remainder(seed: int) -> None:
     found = answer(seed, "one shape")
     assert found.verdict == "none"
     assert found.remainder is not None

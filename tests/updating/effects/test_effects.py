@@ -296,7 +296,7 @@ def test_a_stiffer_place_has_a_compliance_below_nothing() -> None:
     assert "softer" in effect.sentence({**values, "loss": 0.3})
 
 
-def test_a_place_of_a_plate_is_as_wide_as_long_where_its_width_is_not_told() -> None:
+def test_a_place_of_a_plate_is_as_wide_as_long_where_its_width_is_not_stated() -> None:
     square = {"x": 0.2, "y": 0.1, "extent": 0.05, "loss": 0.5}
     states = [
         accepted_state(LOOK["plate"], "local_stiffness", v) for v in (square, {**square, "extent_y": 0.05})

@@ -18,7 +18,7 @@ LEVEL = 80.0
 MODES = 5
 
 
-def look(clamped: tuple[str, ...]) -> Predictor:
+def predictor_of_beam(clamped: tuple[str, ...]) -> Predictor:
     """The beam struck at a level, as many modes measured as are compared."""
     test = blank(POINTS)
     ones = np.ones(MODES)
@@ -51,7 +51,7 @@ def test_a_clamp_that_gives_way_or_closes(
     clamped: tuple[str, ...], slope: float, joint: float, name: str, power: int
 ) -> None:
     """The rig's clamp at the level of the test and beside it: frequencies, and each mode's slope by differences."""
-    predictor, bench = look(clamped), body(clamped)
+    predictor, bench = predictor_of_beam(clamped), body(clamped)
     probe = {1: 300, 3: 2e4}[power] * EI / BEAM.length**power
     rest = hertz(bench)
     share = float(np.mean(1 - hertz(replace(bench, **{name: probe})) / rest))
@@ -69,7 +69,7 @@ def test_a_clamp_that_gives_way_or_closes(
 
 def test_between_two_clamps_a_tension_grows_with_the_force() -> None:
     """The rig's tension in proportion to the force, the slope again the mean over the modes."""
-    predictor, bench, slope = look(("x0", "x1")), body(("x0", "x1")), 2e-4
+    predictor, bench, slope = predictor_of_beam(("x0", "x1")), body(("x0", "x1")), 2e-4
     rest, probe = hertz(bench), 20.0
     share = float(np.mean(hertz(replace(bench, axial=probe)) / rest - 1))
 
@@ -83,7 +83,7 @@ def test_between_two_clamps_a_tension_grows_with_the_force() -> None:
 
 
 def test_a_joint_that_nobody_knows_changes_all_modes_alike() -> None:
-    for predictor in (look(("x0",)), LOOK["matrices"]):
+    for predictor in (predictor_of_beam(("x0",)), LOOK["matrices"]):
         found = predictor.predict(EFFECT.state(predictor, {"slope": 1e-4}), count=4)
         assert found.slope == pytest.approx(np.full(4, 1e-4))
 
@@ -91,11 +91,12 @@ def test_a_joint_that_nobody_knows_changes_all_modes_alike() -> None:
 def test_it_says_which_joint() -> None:
     assert "turns" in EFFECT.sentence({"slope": 1e-4, "joint": 1.0})
     assert EFFECT.sentence({"slope": 1e-4}) == EFFECT.summary
-    assert EFFECT.derived(look(("x0",)), {"slope": 1e-4, "joint": 2.0}) == {"joint": (2.0, "-")}
+    assert EFFECT.derived(predictor_of_beam(("x0",)), {"slope": 1e-4, "joint": 2.0}) == {"joint": (2.0, "-")}
 
 
 def test_only_joints_that_are_there_are_tried() -> None:
     joints = [
-        {form.values["joint"] for form in EFFECT.variants(look(c))} for c in ((), ("x0",), ("x0", "x1"))
+        {form.values["joint"] for form in EFFECT.variants(predictor_of_beam(c))}
+        for c in ((), ("x0",), ("x0", "x1"))
     ]
     assert joints == [{0.0}, {0.0, 1.0, 2.0}, {0.0, 1.0, 2.0, 3.0}]
