@@ -30,7 +30,7 @@ from updating.thresholds import (
 
 
 def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool) -> list[Explanation]:
-    """Weigh the pairs that a score test at every pair finds the most promising.
+    """Weigh the pairs that promise the most, from the best of either effect alone and from no effect at all.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
         No effect, and every single one.
     least : bool
         Whether the most promising are weighed in any case: no single effect explains the data. Else only those are
-        whose score test comes near the best.
+        that promise to come near the best.
     """
     singles = [e for e in found if e.names]
     possible = [e for e in singles if e.best.possible]

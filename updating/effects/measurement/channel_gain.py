@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from updating.effects.base import Effect, Parameter, Values, Variant
-from updating.effects.measurement.points import channel_of, channel_point, indices, places, points_of
+from updating.effects.measurement.points import channel_of, concerned, concerned_places, points_of
 from updating.effects.measurement.shape_screening import PROMISING, ShapeScreening, screen
 from updating.effects.obstacles import Obstacle, shape_obstacle
 from updating.models.state import Role, State
@@ -70,17 +70,11 @@ class ChannelGain(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the points of the end that roved with their level off, or the sensor that stayed."""
         gain = float(values["gain"])
-        return State(point_gains=dict.fromkeys(self._concerned(predictor.measured, values), gain))
-
-    def _concerned(self, test: Measured, values: Values) -> list[Role]:
-        if "channel" in values:
-            return [channel_point(test, values["channel"])]
-        return [(roving(test), p) for p in indices(test, values["points"])]
+        return State(point_gains=dict.fromkeys(concerned(predictor.measured, values), gain))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return the points, or where the sensor sits."""
-        test = predictor.measured
-        return places(test, tuple(test.nodes[p] for _, p in self._concerned(test, values)))
+        return concerned_places(predictor.measured, values)
 
     def sentence(self, values: Values) -> str:
         """Say whether it is a fixed sensor or points of the end that roved."""

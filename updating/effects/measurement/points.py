@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import Any, Literal
 
 import numpy as np
 
 from acquisition.errors import StudyError
+from updating.models.state import Role
 from updating.test_data.chain import roving
 from updating.test_data.measured import Measured
 
@@ -67,3 +69,15 @@ def channel_point(measured: Measured, channel: str) -> tuple[Literal["seen", "hi
         there = ", ".join(channel_of(measured, p) for p in fixed[:12]) or "none"
         raise StudyError(f"channel = {channel!r} is no {what} that stayed; the test has {there}")
     return role, found[0]
+
+
+def concerned(measured: Measured, values: Mapping[str, Any]) -> list[Role]:
+    """Return the role and index of what an effect means: the sensor in ``channel``, or the roving ``points``."""
+    if "channel" in values:
+        return [channel_point(measured, values["channel"])]
+    return [(roving(measured), p) for p in indices(measured, values["points"])]
+
+
+def concerned_places(measured: Measured, values: Mapping[str, Any]) -> tuple[tuple[float, float, float], ...]:
+    """Return where what an effect means lies [m]."""
+    return places(measured, tuple(measured.nodes[p] for _, p in concerned(measured, values)))
