@@ -14,6 +14,7 @@ from modalkit.simulator.setup import Setup
 _SOFTEST_CLAMP, _SOFT_CLAMP = 1.5, 20.0
 _SOFTEST_SLIDE, _SOFT_SLIDE = 60.0, 2000.0
 _CLEAR_LOAD, _MOST_LOAD = 0.25, 0.7
+_STEEPEST = 0.8
 _MIDDLE = 1
 
 _NEAR = 0.3
@@ -50,6 +51,19 @@ def _length(setup: Setup) -> Family | None:
         0.03 * setup.length,
         "a free length off by more than",
         lambda q: f"{severity(1e3 * abs(q))} mm",
+        always=True,
+    )
+
+
+def _taper(setup: Setup) -> Family:
+    return Family(
+        "taper",
+        lambda q, _: {"slope": q},
+        -_STEEPEST,
+        _STEEPEST,
+        0.1,
+        "a thickness that changes along the beam by more than",
+        lambda q: f"{severity(100 * abs(q))} %",
         always=True,
     )
 
@@ -193,6 +207,7 @@ WHOLE: tuple[Maker, ...] = (
     _factor("thickness", "a thickness", most=1.6, clear=0.05),
     _factor("section_scale", "a width", most=2.5, clear=0.15),
     _length,
+    _taper,
     _clamp,
     _slide,
     _load,
