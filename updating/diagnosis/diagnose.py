@@ -113,7 +113,7 @@ def _diagnose(
     warnings: list[str],
 ) -> Diagnosis:
     effects = list(LIBRARY.values()) if library is None else list(library)
-    found = search(problem, [effect for effect in effects if effect.name not in accepted])
+    found = search(problem, [e for e in effects if e.several or e.name not in accepted])
     chance = found.empty.p_value
     significant = is_significant(found, chance)
     comparable = not any(one.mostly_alone for one in problem.specimens)
