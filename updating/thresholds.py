@@ -109,6 +109,10 @@ test."""
 
 # ---------------------------------------------------------------------------------------- gates and warnings
 
+FEWEST_DATA = 6
+"""With fewer data beyond the parameters of the first set of causes a warning says so: what is left of five scatters by
+a third, so that it says little of the noise. Doubled: most tests of a few frequencies get the warning."""
+
 FEWEST_MODES = 3
 """With fewer modes paired a warning says that little can be told apart: an effect and the tolerances are as many."""
 
