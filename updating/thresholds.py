@@ -293,6 +293,10 @@ SETS_ENLARGED = 3
 """Beside how many of the best sets a further cause is sought. Doubled: twice the score tests; the one more cause is
 found where the best set of fewer was none of its parts."""
 
+MISSED_MAXIMUM = 1.0
+"""By how much a part of the best set has to fit better from its place in that than it did before, for the search to
+have missed its maximum, in log-likelihood [-]. Doubled: misses of a little go unmended."""
+
 SAME_PEAK = 0.02
 """Peaks nearer to each other than this in every prior quantile are one [-]: narrower than samples are drawn."""
 

@@ -15,6 +15,7 @@ from scipy.special import logsumexp
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain, finish
+from updating.diagnosis.search.fewer import with_parts
 from updating.diagnosis.search.larger import one_more
 from updating.diagnosis.search.odd import with_odd_data
 from updating.diagnosis.search.prior import log_prior
@@ -137,6 +138,7 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     for causes in range(3, len(COUNT_PRIOR)):
         if not _explained(problem, found):
             found = _with_odd(problem, found, one_more(problem, _as_stated(found), causes))
+    found = _finished(problem, with_parts(problem, found))
     return Search(nothing, _merged(problem, _compare(found)), obstacles, both)
 
 

@@ -62,9 +62,10 @@ class Orthotropy(Effect):
         )
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
-        """Start from either side of an isotropic plate, twist as Huber has it."""
+        """Start from a grid: where modes change places the likelihood has maxima of its own."""
         _, shear = self.parameters(predictor)
-        return tuple((u, shear.coordinate(HUBER)) for u in (0.3, 0.7))
+        middle = shear.coordinate(HUBER)
+        return tuple((u, v) for v in (middle - 0.25, middle, middle + 0.15) for u in (0.2, 0.4, 0.6, 0.8))
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the plate with its terms across and in twist scaled."""
