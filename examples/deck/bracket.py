@@ -96,9 +96,10 @@ def hit(path: Path, folder: Path, rng: np.random.Generator) -> None:
     """Hit a specimen five times at each point, and write the hits as `bracket.uff`."""
     frequency, shapes = modes_of(path, 16)
     dofs = [Dof(node, code) for node, (_, code) in POINTS.items()]
+    own = slice(SENSOR, SENSOR + 1)
     system = modal_system(
-        frequency=frequency, damping=np.full(len(frequency), 0.003),
-        response_shapes=shapes[SENSOR : SENSOR + 1], point_shapes=shapes, responses=dofs[SENSOR : SENSOR + 1], points=dofs,
+        frequency=frequency, damping=np.full(len(frequency), 0.003), response_shapes=shapes[own],
+        point_shapes=shapes, responses=dofs[own], points=dofs,
     )  # fmt: skip
     plan = HammerPlan(
         rate=25600.0, samples=16384, hits=5, peak=200.0, width=1e-4, pre_trigger=0.005, force_noise=0.02,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from itertools import product
+from itertools import pairwise, product
 
 Lines = tuple[Sequence[float], Sequence[float], Sequence[float]]
 Corner = tuple[int, int, int]
@@ -36,7 +36,7 @@ def brick_deck(
         C3D20R or C3D20 (20 nodes), C3D8I or C3D8 (8 nodes).
     """
     steps = CORNERS + (MIDDLES if "20" in kind else ())
-    halves = [[a[0], *(c for lo, hi in zip(a, a[1:], strict=False) for c in ((lo + hi) / 2, hi))] for a in lines]
+    halves = [[a[0], *(c for lo, hi in pairwise(a) for c in ((lo + hi) / 2, hi))] for a in lines]
     number: dict[Corner, int] = {}
     elements: dict[str, list[list[int]]] = {}
     for i, j, k in product(*(range(len(a) - 1) for a in lines)):

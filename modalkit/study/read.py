@@ -122,7 +122,9 @@ class Study(Strict):
                 f"[model] of type {model.type} takes no {', '.join(given)}; they are of type matrices"
             )
         if model.deck or any(region.set for region in model.region):
-            raise StudyError(f"[model] of type {model.type} takes no deck and no region.set; they are of type calculix")
+            raise StudyError(
+                f"[model] of type {model.type} takes no deck and no region.set; they are of type calculix"
+            )
         if unplaced := [region.name for region in model.region if region.x is None]:
             raise StudyError(f"[[model.region]] {unplaced[0]!r} needs x")
         for key in ("length", "width", "thickness", "material"):

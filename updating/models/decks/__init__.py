@@ -1,4 +1,4 @@
-"""Decks as models: CalculiX makes the matrices, of the whole, of each element set, and for other numbers in the deck."""
+"""Decks as models: CalculiX makes the matrices, of all, of each element set, and for other numbers in it."""
 
 from updating.models.decks.model import (
     KNOWN,

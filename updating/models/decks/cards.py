@@ -52,9 +52,7 @@ class Card:
         """Return the card with another number in a line and column, both from 0."""
         words = self.lines[line].split(",")
         words[column] = number_word(value)
-        return replace(
-            self, lines=(*self.lines[:line], ",".join(words), *self.lines[line + 1 :])
-        )
+        return replace(self, lines=(*self.lines[:line], ",".join(words), *self.lines[line + 1 :]))
 
     def number(self, line: int, column: int) -> float:
         """Return the number in a line and column, both from 0.

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-
 from acquisition.errors import StudyError
 from updating.models.decks.cards import Cards, read_cards, text_of
 from updating.models.decks.mesh import Mesh
@@ -134,9 +133,7 @@ class DeckModel:
         )
 
 
-def read_deck_model(
-    path: Path, regions: Sequence[tuple[str, str]] = (), *, units: str = SI
-) -> DeckModel:
+def read_deck_model(path: Path, regions: Sequence[tuple[str, str]] = (), *, units: str = SI) -> DeckModel:
     """Read a deck; CalculiX runs when matrices are asked for.
 
     Parameters
@@ -170,8 +167,8 @@ def deck_matrices(path: Path, like: DeckModel) -> tuple[Sparse, Sparse]:
     other = read_deck_model(path, units=like.units)
     if not other.base.same_rows(like.base):
         raise StudyError(
-            f"{path}: its matrices have {len(other.base.node)} rows, those of {like.path} {len(like.base.node)}, or the "
-            "same of other nodes; give a deck on the same mesh and supports"
+            f"{path}: its matrices have {len(other.base.node)} rows, those of {like.path} {len(like.base.node)}, or as "
+            "many of other nodes; give a deck on the same mesh and supports"
         )
     return other._in_si(other.base)
 

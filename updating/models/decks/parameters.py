@@ -151,7 +151,17 @@ def _thickness(mesh: Mesh, name: str, kind: str, elements: frozenset[int], lengt
         )  # fmt: skip
 
     return DeckParameter(
-        name, kind, "m", nominal * length, True, GAUGES[0], GAUGES[-1], GAUGES, (-1, 0, 1, 2, 3), changed, elements
+        name,
+        kind,
+        "m",
+        nominal * length,
+        True,
+        GAUGES[0],
+        GAUGES[-1],
+        GAUGES,
+        (-1, 0, 1, 2, 3),
+        changed,
+        elements,
     )
 
 
@@ -189,9 +199,13 @@ def _moved(mesh: Mesh, deck: Deck, name: str, head: str, axis: str, length: floa
     moved = _with_middles(mesh, dict.fromkeys(deck.members(head, name), 1.0))
     rest = np.array([at for node, at in deck.nodes.items() if node not in moved]).reshape(-1, 3)
     if not len(rest) or not moved:
-        raise StudyError(f"{name}: the set holds {'every' if moved else 'no'} node; nothing changes its shape")
-    near, _ = KDTree(rest).query(np.array([deck.nodes[node] for node, share in moved.items() if share == 1.0]))
-    ends = SHARE * float(near.min()) * length
+        raise StudyError(
+            f"{name}: the set holds {'every' if moved else 'no'} node; nothing changes its shape"
+        )
+    near, _ = KDTree(rest).query(
+        np.array([deck.nodes[node] for node, share in moved.items() if share == 1.0])
+    )
+    ends = SHARE * float(np.min(near)) * length
     column = AXES.index(axis)
 
     def changed(cards: Cards, value: float) -> Cards:
@@ -206,7 +220,7 @@ def _moved(mesh: Mesh, deck: Deck, name: str, head: str, axis: str, length: floa
 
 
 def _with_middles(mesh: Mesh, moved: dict[int, float]) -> dict[int, float]:
-    """Let the nodes in the middle of elements' edges follow the ends: shares of the shift by node, 1 of the set's own."""
+    """Let nodes in the middle of elements' edges follow the ends: shares of the shift by node."""
     shares = dict(moved)
     for kind, nodes in mesh.elements.values():
         for middle, one, other in edges_of(kind, nodes):

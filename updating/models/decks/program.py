@@ -138,7 +138,6 @@ def _of_order(matrix: Sparse, order: int, source: str) -> Sparse:
     """Return a matrix with the empty rows at its end, which its list of entries does not show."""
     if matrix.shape[0] > order:
         raise StudyError(f"{source}: ccx wrote {matrix.shape[0]} rows and named {order} of them")
-    if matrix.shape[0] == order:
-        return matrix
-    matrix.resize((order, order))
-    return matrix
+    empty = np.full(order - matrix.shape[0], matrix.nnz, dtype=matrix.indptr.dtype)
+    rows = np.concatenate([matrix.indptr, empty])
+    return Sparse((matrix.data, matrix.indices, rows), shape=(order, order))

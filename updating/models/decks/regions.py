@@ -1,4 +1,4 @@
-"""Regions of a deck: element sets of one material each, and the deck in which one of them alone has stiffness and mass."""
+"""Regions of a deck, element sets, and the deck in which one of them alone has stiffness and mass."""
 
 from __future__ import annotations
 
@@ -62,8 +62,8 @@ class Division:
         mixed = [self.regions[i] for i in own if len(self.regions[i].materials) > 1]
         if mixed:
             raise StudyError(
-                f"{material}: region {mixed[0].name!r} is made of {' and '.join(mixed[0].materials)}; turn its material "
-                "alone with regions of one material each"
+                f"{material}: region {mixed[0].name!r} is made of {' and '.join(mixed[0].materials)}; for one alone, "
+                "make regions of one each"
             )
         return own
 
@@ -81,9 +81,7 @@ class Division:
         return cells_of((*cards, *others), self.mesh, rest, lessened)
 
 
-def cells_of(
-    cards: Cards, mesh: Mesh, elements: frozenset[int], change: Callable[[Card], Card]
-) -> Cards:
+def cells_of(cards: Cards, mesh: Mesh, elements: frozenset[int], change: Callable[[Card], Card]) -> Cards:
     """Return a deck in which the sections of some elements are changed, those of all others as they are.
 
     Parameters
@@ -152,7 +150,9 @@ def divide(mesh: Mesh, stated: Sequence[tuple[str, str]]) -> Division:
     for name, wanted in stated:
         elements = _wanted(mesh, name, wanted) & made
         if not elements:
-            raise StudyError(f"[[model.region]] {name!r}: no element of {wanted} has a section in {mesh.source}")
+            raise StudyError(
+                f"[[model.region]] {name!r}: no element of {wanted} has a section in {mesh.source}"
+            )
         if twice := sorted(elements & taken.keys()):
             raise StudyError(
                 f"[[model.region]] {name!r} and {taken[twice[0]]!r} share element {twice[0]} ({len(twice)} in all); "
@@ -214,7 +214,9 @@ def scaled(cards: Cards, stiffness: float, mass: float) -> list[Card]:
         elif one.name == "*ELASTIC":
             kind = one.options.get("TYPE", "ISO")
             if kind not in MODULI:
-                raise StudyError(f"{one.where}: *ELASTIC, TYPE={kind} is not followed; known: {', '.join(MODULI)}")
+                raise StudyError(
+                    f"{one.where}: *ELASTIC, TYPE={kind} is not followed; known: {', '.join(MODULI)}"
+                )
             found.append(_multiplied(one, *MODULI[kind], stiffness))
         elif one.name not in OF_MATERIAL:
             found.append(one)

@@ -10,6 +10,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.decks.model import DeckModel
 from updating.models.decks.parameters import DeckParameter
+from updating.models.fields import Sparse
 from updating.models.imported.structure import ImportedStructure
 from updating.models.reduced import Reduced
 from updating.models.state import NOMINAL, State
@@ -54,10 +55,7 @@ def deck_state(reduced: Reduced, values: Mapping[DeckParameter, float], beside: 
         return NOMINAL
     deck = deck_of(reduced)
     if reduced.whole:
-        stiffness, mass = deck.change(turned)
-        scale = [_factors(deck, p, beside) for p in turned]
-        both = scale[0] if all(s == scale[0] for s in scale) else (1.0, 1.0)
-        return State(stiffness=(reduced.project(both[0] * stiffness),), mass=(reduced.project(both[1] * mass),))
+        return _on_all(reduced, turned, beside)
     stiff, heavy = [], []
     for parameter, value in turned.items():
         k, m = _sampled(reduced, parameter)
@@ -65,6 +63,20 @@ def deck_state(reduced: Reduced, values: Mapping[DeckParameter, float], beside: 
         factors = _factors(deck, parameter, beside)
         stiff.append(factors[0] * np.tensordot(shares, k, axes=1))
         heavy.append(factors[1] * np.tensordot(shares, m, axes=1))
+    return State(stiffness=tuple(stiff), mass=tuple(heavy))
+
+
+def _on_all(reduced: Reduced, turned: Mapping[DeckParameter, float], beside: State) -> State:
+    """Run the deck with all numbers whose elements have the same factors on modulus and density at once."""
+    deck = deck_of(reduced)
+    together: dict[tuple[float, float], dict[DeckParameter, float]] = {}
+    for parameter, value in turned.items():
+        together.setdefault(_factors(deck, parameter, beside), {})[parameter] = value
+    stiff, heavy = [], []
+    for (modulus, density), values in together.items():
+        stiffness, mass = deck.change(values)
+        stiff.append(reduced.project(Sparse(modulus * stiffness)))
+        heavy.append(reduced.project(Sparse(density * mass)))
     return State(stiffness=tuple(stiff), mass=tuple(heavy))
 
 

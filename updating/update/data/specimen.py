@@ -202,8 +202,9 @@ class Specimen:
         """Return the same specimen with modes of the full model (n_dofs, n) in its basis, or None if it has no own."""
         structure, numbers = self.predictor.reduced.structure, self.parameter_set.model_parameters
         of_deck = all(not k.effect for k in numbers) and any(k.of_deck is not None for k in numbers)
-        rank = self.predictor.reduced.basis.shape[1] if of_deck else 0 if self.affine is None else self.affine.rank
-        if not rank or rank >= structure.unknowns:
+        if (self.affine is None and not of_deck) or self.predictor.reduced.basis.shape[
+            1
+        ] >= structure.unknowns:
             return None
         return self._on(extended(self.predictor.reduced, modes))
 
