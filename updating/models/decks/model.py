@@ -107,7 +107,8 @@ class DeckModel:
         found = stored(text_of(cards), f"{self.path} ({what})" if what else str(self.path))
         if not found.same_rows(self.base):
             raise StudyError(
-                f"{self.path}: with {what}, ccx eliminates other degrees of freedom; this cannot be turned"
+                f"{self.path}: with {what}, ccx eliminates other degrees of freedom; shells of one thickness join "
+                "otherwise than shells of two: let the deck's own thicknesses differ by a thousandth"
             )
         return found
 
@@ -121,13 +122,19 @@ class DeckModel:
     def imported(self) -> Imported:
         """The deck as matrices with a part of each region."""
         parts = [self.part(i) for i in range(len(self.division.regions))]
-        stiffness, mass = self._in_si(self.base)
+        return self._matrices(tuple(k for k, _ in parts), tuple(m for _, m in parts))
+
+    @cached_property
+    def undivided(self) -> Imported:
+        """The deck as matrices without parts."""
+        return self._matrices((), ())
+
+    def _matrices(self, stiffness: tuple[Sparse, ...], mass: tuple[Sparse, ...]) -> Imported:
         return Imported(
+            *self._in_si(self.base),
+            places_in_si(self.table, self.units),
             stiffness,
             mass,
-            places_in_si(self.table, self.units),
-            tuple(k for k, _ in parts),
-            tuple(m for _, m in parts),
             str(self.path),
             self,
         )
