@@ -168,11 +168,18 @@ OF_MATERIAL = {
 """Cards that belong to the ``*MATERIAL`` before them."""
 
 
+def family_of(kind: str) -> str:
+    """Return ``C3D`` for solids, ``S`` for shells and membranes, ``B`` for beams and trusses, else nothing."""
+    if kind in ("MASS", "GAPUNI", "DCOUP3D") or kind.startswith(("SPRING", "DASHPOT")):
+        return ""
+    return "C3D" if kind.startswith("C3D") else "B" if kind[0] in "BT" else "S"
+
+
 def edges_of(kind: str, nodes: tuple[int, ...]) -> list[tuple[int, int, int]]:
     """Return the edges of an element that have a node in their middle: that node, and both ends."""
-    if len(nodes) == 3 and kind[0] in "BT":
+    family = family_of(kind)
+    if family == "B" and len(nodes) == 3:
         return [(nodes[1], nodes[0], nodes[2])]
-    family = "C3D" if kind.startswith("C3D") else "S"
     ends = EDGES.get(f"{family}{len(nodes)}", ())
     corners = len(nodes) - len(ends)
     return [(nodes[corners + i], nodes[a - 1], nodes[b - 1]) for i, (a, b) in enumerate(ends)]

@@ -9,13 +9,14 @@ from pathlib import Path
 
 from acquisition.errors import StudyError
 from updating.models.decks.cards import Cards, read_cards, text_of
-from updating.models.decks.mesh import Mesh
+from updating.models.decks.mesh import Mesh, family_of
 from updating.models.decks.parameters import DeckParameter, parameter_of
 from updating.models.decks.program import Stored, stored
 from updating.models.decks.regions import Division, divide
 from updating.models.fields import Sparse
 from updating.models.imported.checks import symmetric
 from updating.models.imported.deck import Deck, read_deck
+from updating.models.imported.elements import Elements
 from updating.models.imported.matrices import Imported
 from updating.models.imported.nodes import NodeTable, deck_table
 from updating.models.imported.units import SI, matrix_in_si, places_in_si, units_of
@@ -61,6 +62,14 @@ class DeckModel:
     def table(self) -> NodeTable:
         """Where the rows are, in the deck's units."""
         return deck_table(self.nodes, self.base.node, self.base.direction, str(self.path))
+
+    @cached_property
+    def elements(self) -> Elements:
+        """The elements between the nodes [m]."""
+        length, _ = units_of(self.units)
+        members = [(family_of(kind), nodes) for kind, nodes in self.mesh.elements.values()]
+        known = [(family, nodes) for family, nodes in members if family]
+        return Elements({n: length * at for n, at in self.nodes.nodes.items()}, tuple(known))
 
     def part(self, region: int) -> tuple[Sparse, Sparse]:
         """Return stiffness and mass of a region alone [SI]."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -93,7 +93,8 @@ class Imported:
     @cached_property
     def places(self) -> Places:
         """The nodes, as places at which the structure's motion is known."""
-        return Places.of(self.nodes, self.order)
+        places = Places.of(self.nodes, self.order)
+        return places if self.deck is None else replace(places, elements=self.deck.elements)
 
     @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray]:
