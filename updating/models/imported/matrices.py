@@ -83,12 +83,20 @@ class Imported:
             left = self.rest["mass"]
             self.rest["mass"] = Sparse(self.mass - bare if left is None else left + self.mass - bare)
         if self.deck is None:  # a deck's is a sum of elements', each of positive mass
-            check_mass(self.mass, self.source)
+            check_mass(self.mass, self.source, self.row_places)
 
     @property
     def order(self) -> int:
         """Number of degrees of freedom."""
         return int(self.stiffness.shape[0])
+
+    @cached_property
+    def row_places(self) -> FloatArray:
+        """Where the rows are, (n, 3), not a number where that is not known [m]."""
+        found = np.full((self.order, 3), np.nan)
+        there = self.nodes.row >= 0
+        found[self.nodes.row[there]] = self.nodes.places[there]
+        return found
 
     @cached_property
     def places(self) -> Places:

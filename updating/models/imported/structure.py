@@ -87,7 +87,7 @@ class ImportedStructure(Structure):
 
     def _shifted(self, stiffness: Sparse, mass: Sparse) -> Shifted:
         massless = self.imported.massless or self.unknowns < self.n_dofs
-        return Shifted(stiffness, mass, self.imported.source, massless)
+        return Shifted(stiffness, mass, self.imported.source, massless, self.imported.row_places)
 
     @cached_property
     def _nominal(self) -> Shifted:
