@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -428,3 +429,25 @@ def test_a_body_is_factored_by_its_places(rng: np.random.Generator) -> None:
     held = matrix.tolil()
     held[row, row] = -1.0
     assert negative_pivots(factored(Sparse(held.tocsr()), places)) == (1, row + 1)
+
+
+def test_a_reduced_basis_knows_regions_that_change(rng: np.random.Generator) -> None:
+    """Ten modes of a beam in four parts, two of them changed: within 0.02 % of the full model."""
+    ends = [0, 20, 40, 60, 80]
+    parts = [beam_matrices(80, a, b) for a, b in itertools.pairwise(ends)]
+    held = np.arange(2, 162)
+    stiff, heavy = ([Sparse(part[kind][held][:, held]) for part in parts] for kind in (0, 1))
+    node = np.arange(1, 81)
+    table = NodeTable(
+        node, np.column_stack([LENGTH * node / 80, 0 * node, 0 * node]), np.full(80, 3), 2 * (node - 1)
+    )
+    imported = Imported(sum(stiff[1:], stiff[0]), sum(heavy[1:], heavy[0]), table, tuple(stiff), tuple(heavy))
+    regions = tuple(Region(f"r{i}", (0.0, 1.0)) for i in range(4))
+    spec = Spec("matrices", LENGTH, 0.1, 0.1, (), (), "imported", Material(1, 1), regions, imported=imported)
+    structure = build_structure(spec)
+    reduced = reduce_structure(structure, table.places[[20, 79]], modes=14)
+    assert reduced.basis.shape[1] < 80
+    for state in (State(regional={(1, "E"): 0.7, (2, "E"): 1.2}), State(regional={(3, "density"): 1.3})):
+        stiffness, mass = structure.matrices(state)
+        exact = np.sqrt(structure.eigen(10, stiffness=stiffness, mass=mass)[0])
+        assert np.sqrt(reduced.eigen(state)[0][:10]) == pytest.approx(exact, rel=2e-4)

@@ -100,11 +100,11 @@ class DeckModel:
         StudyError
             If CalculiX does not solve it.
         """
-        cards, said = self.cards, []
+        cards, words = self.cards, list[str]()
         for parameter, value in values.items():
             cards = parameter.changed(cards, value)
-            said.append(f"{parameter.name} = {parameter.nominal * value:.4g} {parameter.unit}")
-        return self._in_si(self._same_rows(cards, ", ".join(said)))
+            words.append(f"{parameter.name} = {parameter.nominal * value:.4g} {parameter.unit}")
+        return self._in_si(self._same_rows(cards, ", ".join(words)))
 
     def change(self, values: Mapping[DeckParameter, float]) -> tuple[Sparse, Sparse]:
         """Return what other numbers add to stiffness and mass [SI]."""

@@ -130,8 +130,8 @@ def run(path: str, text: str, source: str) -> Stored:
 def _complaint(output: str) -> str:
     """Return what CalculiX says of an error, in one line."""
     found = re.search(r"\*ERROR[^\n]*(?:\n(?!\s*\n|\s*\*)[^\n]*){0,3}", output)
-    said = found.group() if found else " ".join(output.split()[-30:])
-    return " ".join(said.split())[:300] or "it stopped without a word"
+    statement = found.group() if found else " ".join(output.split()[-30:])
+    return " ".join(statement.split())[:300] or "it stopped without a word"
 
 
 def _of_order(matrix: Sparse, order: int, source: str) -> Sparse:

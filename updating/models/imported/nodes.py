@@ -207,7 +207,7 @@ def deck_table(deck: Deck, node: IntArray, direction: IntArray, source: str) -> 
     unknown = sorted({n for n in node.tolist() if n not in deck.nodes and n <= last})
     if unknown:
         raise StudyError(
-            f"{source}: a row of node {unknown[0]}, which stands in no *NODE card; give the deck that was run"
+            f"{source}: node {unknown[0]} stands in no *NODE card, but has a row; give the deck that was run"
         )
     rows = [
         (n, d, row)
