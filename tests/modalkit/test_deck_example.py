@@ -57,7 +57,10 @@ REFUSED = {
     "set": ('[[model.region]]\nname = "rib"\n', "'rib': no element set or material rib"),
     "place": ('[[model.region]]\nname = "WEB"\nx = [0.0, 0.1]\n', "'WEB' takes no x on a deck"),
     "material": ("[model.material]\nE = 210e9\ndensity = 7850\n", "takes no material: the deck says it"),
-    "parameter": ('[update]\nparameters = ["WEB.colour"]\n', r"no parameter 'WEB.colour'"),
+    "parameter": (
+        '[update]\nparameters = ["WEB.colour"]\n',
+        "WEB.colour: a region has no 'colour' to update",
+    ),
     "thickness": ('[update]\nparameters = ["WEB.thickness"]\n', "it has no thickness to turn"),
     "node set": ('[update]\nparameters = ["EDGE.y"]\n', "no node set EDGE; there are: ALL, CLAMP, WEBFACE"),
 }
@@ -71,7 +74,7 @@ def test_what_a_study_may_not_say_is_one_line(case: str, bracket: Path, run: Run
     (bracket.parent / "wrong.toml").write_text(text[: text.index("[tolerances]")] + added)
     code, out, error = run("update", bracket.parent / "wrong.toml")
     assert (code, out) == (2, "")
-    assert message.replace("\\", "") in " ".join(error.split())
+    assert message in " ".join(error.split())
 
 
 @needs_ccx

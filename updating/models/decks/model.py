@@ -130,6 +130,7 @@ class DeckModel:
     @cached_property
     def imported(self) -> Imported:
         """The deck as matrices with a part of each region."""
+        _ = self.base  # first: what is wrong with the deck is no fault of a part
         parts = [self.part(i) for i in range(len(self.division.regions))]
         return self._matrices(tuple(k for k, _ in parts), tuple(m for _, m in parts))
 

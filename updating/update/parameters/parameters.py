@@ -286,8 +286,10 @@ def _whole(name: str, spec: Spec, tolerances: Tolerances) -> ModelParameter:
         "thickness": spec.thickness,
         "width": spec.width,
     }[name]
+    of_deck = spec.imported is not None and spec.imported.deck is not None
+    every = tuple(range(len(spec.regions))) if of_deck else ()  # a deck's springs have no modulus
     return _factor(
-        name, _unit(UNITS[name], nominal, spec), nominal, tolerances.factors.get(name, 0.0), name, ()
+        name, _unit(UNITS[name], nominal, spec), nominal, tolerances.factors.get(name, 0.0), name, every
     )
 
 
