@@ -61,6 +61,7 @@ def measure(n: int) -> dict[str, float]:
     def step(name: str) -> None:
         nonlocal started
         found[name] = spent() - started
+        print(f"{name} {found[name]:.1f}", end=" ", file=sys.stderr, flush=True)
         started = spent()
 
     with tempfile.TemporaryDirectory() as folder:
@@ -109,10 +110,11 @@ def main(sizes: list[int]) -> None:
     rows = []
     for n in sizes:
         run = subprocess.run(
-            [sys.executable, __file__, "--one", str(n)], check=True, capture_output=True, text=True,
+            [sys.executable, __file__, "--one", str(n)], check=True, stdout=subprocess.PIPE, text=True,
             env={**os.environ, "MODALKIT_CACHE": "", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
         )  # fmt: skip
         rows.append(json.loads(run.stdout.splitlines()[-1]))
+        print(file=sys.stderr)
         print(" ".join(form.format(rows[-1][name]) for name, _, form in COLUMNS), flush=True)
     if len(rows) > 1:
         size = np.log([row["dofs"] for row in rows[-2:]])

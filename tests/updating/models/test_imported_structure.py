@@ -27,6 +27,7 @@ from scipy.optimize import brentq
 
 from acquisition.errors import StudyError
 from updating import LIBRARY, Material, PointMass, Predictor, Region, Spec, build_structure
+from updating.models.accuracy import reduction_error
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
 from updating.models.imported.checks import negative_pivots
@@ -450,4 +451,8 @@ def test_a_reduced_basis_knows_regions_that_change(rng: np.random.Generator) -> 
     for state in (State(regional={(1, "E"): 0.7, (2, "E"): 1.2}), State(regional={(3, "density"): 1.3})):
         stiffness, mass = structure.matrices(state)
         exact = np.sqrt(structure.eigen(10, stiffness=stiffness, mass=mass)[0])
-        assert np.sqrt(reduced.eigen(state)[0][:10]) == pytest.approx(exact, rel=2e-4)
+        found = np.sqrt(reduced.eigen(state)[0][:10])
+        assert found == pytest.approx(exact, rel=2e-4)
+        worst = int(np.argmax(found / exact))
+        off = reduction_error(reduced, state, 10)
+        assert off[worst] == pytest.approx(found[worst] / exact[worst] - 1, rel=0.5)
