@@ -62,6 +62,10 @@ REFUSED = {
         "WEB.colour: a region has no 'colour' to update",
     ),
     "thickness": ('[update]\nparameters = ["WEB.thickness"]\n', "it has no thickness to turn"),
+    "frf": (
+        '[update]\nmethod = "frf"\nparameters = ["WEBFACE.y"]\n',
+        "WEBFACE.y is a number of a deck, which only",
+    ),
     "node set": ('[update]\nparameters = ["EDGE.y"]\n', "no node set EDGE; there are: ALL, CLAMP, WEBFACE"),
 }
 

@@ -63,6 +63,12 @@ def build_specimen(
         raise StudyError(
             f'update: {dampers[0]} is a coefficient of damping, of which frequencies say nothing; use method = "frf"'
         )
+    numbers = [p.name for p in parameter_set.model_parameters if p.of_deck is not None]
+    if numbers and not lean:
+        raise StudyError(
+            f"update: {numbers[0]} is a number of a deck, which only frequencies and shapes update; use "
+            'method = "eigenvalue"'
+        )
     predictor = _on_own_basis(predictor, parameter_set) if lean else predictor
     paired = pair_modes(case.measured, predictor.predict())
     number = 1 + _rows_of(paired.measured.frequency, case.measured.frequency)
