@@ -109,6 +109,10 @@ test."""
 
 # ---------------------------------------------------------------------------------------- gates and warnings
 
+FEWEST_DATA = 6
+"""With fewer data beyond the parameters of the first set of causes a warning says so: what is left of five scatters by
+a third, so that it says little of the noise. Doubled: most tests of a few frequencies get the warning."""
+
 FEWEST_MODES = 3
 """With fewer modes paired a warning says that little can be told apart: an effect and the tolerances are as many."""
 
@@ -189,11 +193,15 @@ USUAL_SHARE = 0.99
 """A rival that has hardly any probability is kept only with its sizes in so much of their priors, about the middle
 [-]: the contract's rule. Doubling what is left out drops rivals in the outer two per cent."""
 
+SPLIT_SIGMA = 3.0
+"""A cause whose size in one half of the data is further from that in the other names nothing [standard deviations]: by
+chance 1 in 400 for each of its parameters. Doubled: only a cause that is wrong by far is found out."""
+
 CLOSE_FITS = 4.0
 """Twice the difference of log-likelihood below which two explanations are equivalent [-]: 2 sigma, as the contract
 has it."""
 
-COUNT_PRIOR = (0.3, 0.5, 0.15, 0.04)
+COUNT_PRIOR = (0.3, 0.5, 0.15, 0.04, 0.01)
 """Prior of so many causes at once, none first, each spread evenly over the sets of that number [-]. Judged: what is
 tested beside its model mostly has one cause that stands out. Doubled for two: pairs gain ln 2 in all odds."""
 
@@ -277,9 +285,13 @@ PLACES_TOGETHER = 3
 """How many pairs of starting places, those that explain the most together, a pair of causes is searched from. Doubled:
 a third more time for these pairs."""
 
-TRIPLES_WEIGHED = 5
-"""How many effects are tried beside the best pair where no pair explains the data. Doubled: twice the time of
-these."""
+LARGER_SETS = 6
+"""How many sets of three causes, and of four, are searched where those of fewer do not explain the data: those that
+score tests find the most promising. Doubled: twice the time of these."""
+
+SETS_ENLARGED = 3
+"""Beside how many of the best sets a further cause is sought. Doubled: twice the score tests; the one more cause is
+found where the best set of fewer was none of its parts."""
 
 SAME_PEAK = 0.02
 """Peaks nearer to each other than this in every prior quantile are one [-]: narrower than samples are drawn."""

@@ -378,7 +378,7 @@ CAUSES: dict[str, Cause] = {
             lambda scene, v: scene.fault(exchanged=(tuple(p - 1 for p in v["points"]),)), "shape",
         ),
         Cause("position_error", _draw_position, _act_position, "shape"),
-        Cause("ground_spring", _draw_spring, _act_spring, inside=False),
+        Cause("ground_spring", _draw_spring, _act_spring, equals=("axial_load",)),
         Cause(
             "taper",
             lambda rng, s, k: {"taper": float(_signed(rng) * k * rng.uniform(0.04, 0.2))},

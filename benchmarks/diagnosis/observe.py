@@ -219,7 +219,7 @@ def measure(
         title="simulated",
         phase=turned.phase,
         phase_sigma=turned.phase_sigma,
-        chain=turned.chain,
+        channel_group=turned.channel_group,
         slope=slope + slope_sigma * rng.standard_normal(n) if rig.span >= 2 else None,
         slope_sigma=slope_sigma if rig.span >= 2 else None,
         level=rig.level,
@@ -242,5 +242,5 @@ def _shapes_only(found: Measured) -> Measured:
         repeated=True,
         phase=None,
         phase_sigma=None,
-        chain=None,
+        channel_group=None,
     )

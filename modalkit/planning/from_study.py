@@ -160,7 +160,7 @@ def _setup(
     alpha, beta, damping = _rayleigh(spec, test, about)
     known = [m for m in spec.masses if abs(m.at[0] - layout.points[layout.sensor]) < 0.02 * spec.length]
     hits = _hits(processed)
-    environment = study.surroundings().fluid_density
+    around = study.surroundings()
     setup = Setup(
         kind="beam",
         title=study.name,
@@ -200,14 +200,28 @@ def _setup(
         position_sigma=table.position_sigma,
         window=table.exponential_window,
         baseline=study.baseline is not None,
-        environment=None if _in_gas(study) else environment,
+        environment=None if _in_gas(study) else around.fluid_density,
+        free_surface=around.free_surface,
+        bottom=around.bottom,
     )
     return setup, (
         f"{modes} modes in {band[0]:g} to {band[1]:g} Hz",
         damping,
         *([f"{hits} hits a point"] if hits else []),
         *(["with the baseline, what changed since is asked about"] if setup.baseline else []),
+        *_tank(study),
     )
+
+
+def _tank(study: Study) -> list[str]:
+    """Return what of a liquid's borders is stated, and what is left open; nothing of a gas."""
+    around = study.surroundings()
+    if _in_gas(study):
+        return []
+    borders = {"free surface": around.free_surface, "bottom": around.bottom}
+    stated = [f"{name} at {1e3 * place:.0f} mm" for name, place in borders.items() if place is not None]
+    unstated = " and ".join(name for name, place in borders.items() if place is None)
+    return [*stated, *([f"{unstated} of a fluid not stated: near or far off"] if unstated else [])]
 
 
 def _band(study: Study, spec: Spec, test: Measured | None) -> tuple[int, tuple[float, float], FloatArray]:
@@ -314,8 +328,8 @@ def _left_out(study: Study, spec: Spec, case: Case | None) -> list[str]:
     if spec.theory == "euler-bernoulli":
         found.append("euler-bernoulli theory: the rig has shear and rotary inertia, which such a model lacks")
     around = study.surroundings()
-    if any(value is not None for value in (around.free_surface, around.bottom, around.walls)):
-        found.append("free surface, bottom and walls: the rig's fluid is unbounded")
+    if around.walls is not None:
+        found.append("the walls of the tank: the rig's fluid has none at its sides")
     if case is not None and case.accepted:
         found.append(f"effects put into the model: {', '.join(name for name, _ in case.accepted)}")
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import inf
 
 import numpy as np
@@ -13,7 +14,12 @@ from modalkit.simulator.setup import Setup
 _SOFTEST_CLAMP, _SOFT_CLAMP = 1.5, 20.0
 _SOFTEST_SLIDE, _SOFT_SLIDE = 60.0, 2000.0
 _CLEAR_LOAD, _MOST_LOAD = 0.25, 0.7
+_STEEPEST = 0.8
 _MIDDLE = 1
+
+_NEAR = 0.3
+"""A near surface or bottom of a fluid over the shorter side [-]: of a slender beam the one takes an eighth of the added
+mass, the other adds a sixth; nearer than a tenth none is believed, beyond three none is felt."""
 
 
 def _per_cent(q: float) -> str:
@@ -45,6 +51,19 @@ def _length(setup: Setup) -> Family | None:
         0.03 * setup.length,
         "a free length off by more than",
         lambda q: f"{severity(1e3 * abs(q))} mm",
+        always=True,
+    )
+
+
+def _taper(setup: Setup) -> Family:
+    return Family(
+        "taper",
+        lambda q, _: {"slope": q},
+        -_STEEPEST,
+        _STEEPEST,
+        0.1,
+        "a thickness that changes along the beam by more than",
+        lambda q: f"{severity(100 * abs(q))} %",
         always=True,
     )
 
@@ -108,15 +127,23 @@ def _gain(setup: Setup) -> Family:
 
 
 def _fluid(setup: Setup) -> Family:
+    """Of its surface and bottom those that the study does not state are far off or near: forms of the effect."""
     known_test = setup.environment
+    unstated = [name for name in ("free_surface", "bottom") if getattr(setup, name) is None]
+    near = _NEAR * min(setup.length, setup.width)
+    tanks = [
+        dict(zip(unstated, places, strict=True)) for places in product((inf, near), repeat=len(unstated))
+    ]
     return Family(
         "fluid_added_mass",
-        lambda q, _: {"fluid_density": q},
+        lambda q, form: {"fluid_density": q, **tanks[int(form)]},
         0.0,
         2000.0 if known_test is None else known_test,
         known_test or 998.0,
         "a fluid denser than",
         lambda q: f"{severity(q)} kg/m3",
+        np.arange(float(len(tanks))),
+        separately=True,
     )
 
 
@@ -180,6 +207,7 @@ WHOLE: tuple[Maker, ...] = (
     _factor("thickness", "a thickness", most=1.6, clear=0.05),
     _factor("section_scale", "a width", most=2.5, clear=0.15),
     _length,
+    _taper,
     _clamp,
     _slide,
     _load,

@@ -15,7 +15,7 @@ from modalkit.study.decks import deck_of, deck_spec
 from modalkit.study.errors import explain, known_keys
 from modalkit.study.matrices import matrices_of, matrices_spec
 from modalkit.study.probable_units import check_units
-from modalkit.study.stated_effects import accepted_values
+from modalkit.study.stated_effects import accepted_values, check_repeated
 from modalkit.study.tables import (
     MATRICES_ONLY,
     EnvironmentTable,
@@ -188,12 +188,15 @@ class Study(Strict):
         Raises
         ------
         StudyError
-            If one is unknown, or a value is neither a number nor, where points are meant, node numbers.
+            If one is unknown, or a value is neither a number nor, where points are meant, node numbers; or if one
+            stands twice that can be there but once.
         """
         if self.model is None:
             return ()
         try:
-            return tuple(accepted_values(entry, kind_of(self.model)) for entry in self.model.effect)
+            found = tuple(accepted_values(entry, kind_of(self.model)) for entry in self.model.effect)
+            check_repeated([name for name, _ in found])
+            return found
         except StudyError as error:
             raise StudyError(f"{self.path}: {error}") from error
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from acquisition.errors import StudyError
@@ -43,6 +43,21 @@ def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str,
         return name, {k: _value(name, k, v, kind) for k, v in values.items()}
     except StudyError as error:
         raise StudyError(f"[[model.effect]] {name}: {error}") from error
+
+
+def check_repeated(names: Sequence[str]) -> None:
+    """See that no effect stands twice that a structure or a test has but once.
+
+    Raises
+    ------
+    StudyError
+        If one does.
+    """
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1 and not LIBRARY[name].several]
+    if twice:
+        raise StudyError(
+            f"[[model.effect]] {twice[0]} stands twice, and there is but one of it; put both into one"
+        )
 
 
 def _value(effect: str, name: str, value: Any, kind: Kind) -> Any:

@@ -12,6 +12,7 @@ from threadpoolctl import threadpool_limits
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from updating.case import Case
+from updating.diagnosis.answer.consistency import Split, splits
 from updating.diagnosis.answer.remainder import remainder_of
 from updating.diagnosis.answer.result import Diagnosis, Gap, Shrink, Where
 from updating.diagnosis.answer.shrink import shrinkage
@@ -33,6 +34,7 @@ from updating.prediction.predict import Predictor
 from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction, theory_error
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.same_places import unmatched
+from updating.thresholds import FEWEST_DATA
 
 
 def diagnose(
@@ -113,7 +115,7 @@ def _diagnose(
     warnings: list[str],
 ) -> Diagnosis:
     effects = list(LIBRARY.values()) if library is None else list(library)
-    found = search(problem, [effect for effect in effects if effect.name not in accepted])
+    found = search(problem, [e for e in effects if e.several or e.name not in accepted])
     chance = found.empty.p_value
     significant = is_significant(found, chance)
     comparable = not any(one.mostly_alone for one in problem.specimens)
@@ -128,6 +130,9 @@ def _diagnose(
         closed=None if shrink.closed is None else shrink.closed.value,
         left=left.significant,
     )
+    apart = splits(problem, leader) if verdict == "named" else ()
+    if apart:
+        verdict, sets = "unknown", ()
     return Diagnosis(
         " and ".join(titles),
         significant,
@@ -139,7 +144,7 @@ def _diagnose(
         sets,
         rank(problem, found),
         propose(problem, found, sets, verdict),
-        tuple(dict.fromkeys((*warnings, *_notes(problem, found)))),
+        tuple(dict.fromkeys((*warnings, *_notes(problem, found), *_on_fit(leader, apart)))),
         found.not_examined,
         comparable,
         left if significant or found.empty.explanation.candidate.outliers else None,
@@ -251,6 +256,18 @@ def _shrink(
     runner_up = rivals[0] if rivals else None
     result = shrinkage(problem, found.nothing, best, runner_up, rng)
     return result if significant else replace(result, closed=None)
+
+
+def _on_fit(leader: Explanation, apart: Sequence[Split]) -> list[str]:
+    """Return what the reader ought to know about how far the data bear the first set of causes."""
+    notes = [f"{' + '.join(leader.names)}: {split}: it is not named" for split in apart[:1]]
+    beyond = len(leader.best.comparison.residual) - len(leader.best.coordinates)
+    if leader.names and beyond < FEWEST_DATA:
+        notes.append(
+            f"only {beyond} data beyond the parameters of {' + '.join(leader.names)}: how well it fits rests on "
+            "the stated noise; measure more modes, or shapes"
+        )
+    return notes
 
 
 def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:

@@ -33,6 +33,7 @@ from updating.effects.structure.patch import DampingPatch
 from updating.effects.structure.shear import Shear
 from updating.effects.structure.spring import GroundSpring
 from updating.effects.structure.suspension import Suspension
+from updating.effects.structure.taper import Taper
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -43,6 +44,7 @@ LIBRARY: dict[str, Effect] = {
         Density(),
         Thickness(),
         SectionScale(),
+        Taper(),
         Length(),
         ClampRotation(),
         ClampTranslation(),

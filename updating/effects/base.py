@@ -199,6 +199,11 @@ class Effect(ABC):
         """What its parameters are listed under: its name, of a second one ``name#2``."""
         return self.name if self.occurrence == 1 else f"{self.name}#{self.occurrence}"
 
+    @property
+    def several(self) -> bool:
+        """Whether a model may hold several of it: at other places, or of other points."""
+        return self.repeats or bool(self.labels)
+
     def again(self) -> Self:
         """Return the same effect as the next of its kind in a set."""
         other = copy(self)

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from scipy import linalg
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, IntArray
 from updating.models.reduced import Reduced
 from updating.models.spec import Damping
 from updating.models.state import State
@@ -184,6 +184,35 @@ def layer_slowing(state: State, values: FloatArray, vectors: FloatArray) -> Floa
     """
     omega = np.sqrt(np.maximum(values, 1e-12))
     return np.asarray(1 / np.sqrt(1.0 + modal_losses(state, values, vectors) / omega))
+
+
+def coupled(state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray) -> FloatArray:
+    """Return the factors on frequencies where dampers of effects couple the modes, to second order in the dampers.
+
+    Eliminating all modes but r from s^2 + s C + diag(omega^2) near s = i omega_r leaves |s|^2 = omega_r^2 (1 + sum of
+    C_kr^2 / (omega_k^2 - omega_r^2)); to first order nothing changes (Rayleigh, Theory of Sound, section 102). Modes
+    nearer to each other than their coupling differ in damping and keep their frequency, so that the sum is bounded.
+
+    Parameters
+    ----------
+    state, values, vectors
+        As of :func:`modal_losses`, of all modes of the basis.
+    chosen : (n_modes,) array
+        Modes that are asked for.
+
+    Returns
+    -------
+    (n_modes,) array [-]
+    """
+    dampers = [loss.matrix for loss in state.losses if loss.power == VISCOUS]
+    if not dampers:
+        return np.ones(len(chosen))
+    n = len(vectors)
+    squares = (vectors.T @ (sum(damper[:n, :n] for damper in dampers) @ vectors[:, chosen])) ** 2
+    gap = values[:, None] - values[chosen]
+    near = np.abs(values[chosen]) * squares
+    far = np.maximum(gap**2 + near, 1e-300)
+    return np.asarray(np.exp(0.5 * np.sum(squares * gap / far, axis=0)))
 
 
 def region_matrices(reduced: Reduced, state: State) -> tuple[FloatArray, FloatArray]:

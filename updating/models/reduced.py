@@ -7,7 +7,7 @@ are sums of small precomputed ones, so a prediction costs one dense eigenproblem
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -32,6 +32,11 @@ ROUNDING = 1e-10
 
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
+
+
+def _all(_: Term) -> float:
+    """All of a term."""
+    return 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +135,12 @@ class Reduced:
         return self.structure.region_products(self.basis)
 
     def weighted(
-        self, kind: str, weights: FloatArray, factors: Mapping[str, float] | None = None
+        self,
+        kind: str,
+        weights: FloatArray,
+        factors: Mapping[str, float] | None = None,
+        *,
+        share: Callable[[Term], float] = _all,
     ) -> FloatArray:
         """Return the stiffness or mass matrix of the structure under weights at the quadrature points.
 
@@ -142,6 +152,8 @@ class Reduced:
             Factor at every quadrature point; only where it is not zero is anything computed [-].
         factors : mapping, optional
             Factors of the state on top of which it comes [-].
+        share : callable
+            Tells how much of a term counts [-].
 
         Returns
         -------
@@ -151,7 +163,8 @@ class Reduced:
         total = np.zeros((self.basis.shape[1],) * 2)
         for term in self.fielded.terms:
             if term.kind == kind:
-                total += product(term, self.sampled, rows, weights[rows]) * term.scale(factors or {})
+                part = product(term, self.sampled, rows, weights[rows])
+                total += part * term.scale(factors or {}) * share(term)
         return total
 
     @cached_property

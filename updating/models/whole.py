@@ -6,7 +6,7 @@ matrices, so that no effect needs an exact form beside its own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from itertools import chain, combinations
 from typing import Any, cast
@@ -16,7 +16,7 @@ from scipy import sparse
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import ModalkitError
-from updating.models.base import Structure
+from updating.models.base import Structure, Term
 from updating.models.fields import Fields, Sparse
 from updating.models.imported.structure import ImportedStructure
 from updating.models.reduced import Reduced
@@ -77,7 +77,12 @@ class Whole(Reduced):
         return cast(FloatArray, full)
 
     def weighted(
-        self, kind: str, weights: FloatArray, factors: Mapping[str, float] | None = None
+        self,
+        kind: str,
+        weights: FloatArray,
+        factors: Mapping[str, float] | None = None,
+        *,
+        share: Callable[[Term], float] = lambda _: 1.0,
     ) -> FloatArray:
         """Return the stiffness or mass matrix under weights (n_points,) at the quadrature points [SI]."""
         total = Sparse((self.structure.n_dofs,) * 2)
@@ -85,7 +90,7 @@ class Whole(Reduced):
         for term in self.fielded.terms:
             if term.kind == kind:
                 left, right = fields.sampled[term.left], fields.sampled[term.right]
-                weight = term.coefficient * weights * term.scale(factors or {})
+                weight = term.coefficient * weights * (term.scale(factors or {}) * share(term))
                 part = left.T @ sparse.diags_array(weight) @ right
                 total = total + (part if term.left == term.right else (part + part.T) / 2)
         return cast(FloatArray, Sparse(total))

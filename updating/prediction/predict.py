@@ -18,7 +18,7 @@ from acquisition.display import Displayed
 from updating.environment import Environment
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
-from updating.models.damping import Matrices, damping_matrices, layer_slowing, modal_losses
+from updating.models.damping import Matrices, coupled, damping_matrices, layer_slowing, modal_losses
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.shear import sheared
@@ -224,9 +224,8 @@ class Predictor(Displayed):
         by = self._by_factors(total, values, vectors, chosen, factors, rows, read.points) if factors else []
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
-        frequency = (
-            shift * slowing * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
-        )
+        moved = shift * slowing * coupled(total, values, vectors, chosen)
+        frequency = moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         # what a layer carries along is modal mass
         level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
         return Prediction(

@@ -73,6 +73,12 @@ def build_specimen(
     paired = pair_modes(case.measured, predictor.predict())
     number = 1 + _rows_of(paired.measured.frequency, case.measured.frequency)
     updated = {model_parameter.effect for model_parameter in parameter_set.model_parameters}
+    names = [name for name, _ in case.accepted]
+    if twice := sorted(name for name in updated if names.count(name) > 1):
+        raise StudyError(
+            f"update: {twice[0]} stands {names.count(twice[0])} times in [[model.effect]], and which of them is meant "
+            "is not said; leave one there"
+        )
     if updated & set(accepted):
         kept = tuple((n, v) for n, v in case.accepted if n not in updated)
         predictor = predictor_of(replace(case, accepted=kept))

@@ -13,8 +13,9 @@ from modalkit.blind.outcome import Outcome
 from modalkit.blind.scoring.intervals import bootstrap, share
 from modalkit.blind.scoring.judge import accepted, holds, label
 
-NOT_SCORED = ("local_stiffness.extent", "local_stiffness.loss")
-"""What data do not determine one by one; the compliance stands for both."""
+NOT_SCORED = ("local_stiffness.extent", "local_stiffness.extent_y", "local_stiffness.loss")
+"""What data do not determine one by one, and what a box, a cosine and a slot mean differently; the compliance stands
+for all of them."""
 
 PLACES = ("x", "y")
 """Coordinates are errors of place."""

@@ -12,6 +12,7 @@ KNOWN_SINCE: Mapping[str, str] = MappingProxyType(
         "dashpot": "ground_spring",
         "suspension": "suspension",
         "channel_gain": "channel_gain",
+        "taper": "taper",
     }
 )
 """Effects that were drawn as what no library knows, and that the library has learnt since: its name for each.

@@ -196,6 +196,15 @@ def test_severity_comes_from_the_row_of_the_hidden_effect() -> None:
     assert table["covered"].tolist() == [True]
 
 
+def test_of_a_soft_place_the_compliance_counts_and_not_what_makes_it() -> None:
+    names = ("extent", "extent_y", "loss", "compliance")
+    message = diagnosis("named", ("local_stiffness",))
+    stated = {f"local_stiffness.{name}": interval(0.1, 0.05, 0.2) for name in names}
+    message["cause"]["ranking"][0]["parameters"] = stated
+    hidden = truth("local_stiffness", kind="plate", **dict.fromkeys(names, 0.1))
+    assert score(run_of((hidden, message))).severity["parameter"].tolist() == ["local_stiffness.compliance"]
+
+
 def test_points_are_right_only_together() -> None:
     message = diagnosis(
         "named", ("polarity",), parameters={"polarity.points": {"value": [3, 2], "unit": "node"}}

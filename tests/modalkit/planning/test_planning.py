@@ -24,6 +24,7 @@ from modalkit.planning.forecast import DesignForecast, Forecast
 from modalkit.planning.from_study import known_test_of
 from modalkit.planning.responses import Stations
 from modalkit.planning.separability import EQUAL, SEEN, distances, nearest_in
+from modalkit.simulator.scene import nominal_scene
 from modalkit.simulator.setup import Setup, Tolerances
 from modalkit.study.read import read_study
 
@@ -259,6 +260,28 @@ def test_modes_alone_are_taken_as_frequencies_alone() -> None:
     # the test was made in air: what a liquid would do is not asked
     names = {family.name for family in families(known)}
     assert not names & {"fluid_added_mass", "fluid_damping", "calibration_gain", "position_error"}
+
+
+def test_what_a_study_does_not_state_of_a_fluid_is_left_open(tmp_path: Path) -> None:
+    """Near and far surface and bottom are forms of the fluid; the stated ones are where they are."""
+    path = tmp_path / "study.toml"
+    text, wanted = STUDY.format(test="band = [5.0, 300.0]"), "of a fluid not stated: near or far off"
+    for more, forms, words in (
+        ("", 4, f"free surface and bottom {wanted}"),
+        ("[environment]\nfree_surface = 0.02\n", 2, f"bottom {wanted}"),
+        ("[environment]\nfree_surface = 0.02\nbottom = 0.05\n", 1, "bottom at 50 mm"),
+    ):
+        path.write_text(text + more)
+        known = known_test_of(read_study(path))
+        fluid = next(family for family in families(known) if family.name == "fluid_added_mass")
+        assert (len(fluid.sites), words in known.statement) == (forms, True)
+        assert not any("fluid" in word for word in known.left_out)
+        base = nominal_scene(known.setup)
+        lowest = [fluid.act(base, 998.0, form).elastic().frequency[0] for form in fluid.sites]
+        assert len(np.unique(np.round(lowest, 6))) == forms
+        assert all(omega < base.elastic().frequency[0] for omega in lowest)
+    path.write_text(text + "[environment]\nfluid_density = 1.2\n")
+    assert not any("fluid" in word for word in known_test_of(read_study(path)).statement)
 
 
 STUDY = """

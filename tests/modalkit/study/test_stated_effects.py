@@ -68,3 +68,15 @@ def test_a_study_says_where_the_nonsense_stands(tmp_path: Path) -> None:
     path.write_text(text + '\n[[model.effect]]\nname = "polarity"\npoints = "3"\n')
     with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] polarity: points"):
         read_study(path).accepted()
+
+
+def test_several_of_one_name_stand_where_there_may_be_several(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    text = (SAMPLES / "beam_dry" / "study.toml").read_text()
+    body = '\n[[model.effect]]\nname = "lumped_mass"\nmass = "5 g"\nx = {x}\n'
+    path.write_text(text + body.format(x=0.1) + body.format(x=0.2))
+    assert read_study(path).accepted() == tuple(("lumped_mass", {"mass": 0.005, "x": x}) for x in (0.1, 0.2))
+    modulus = '\n[[model.effect]]\nname = "E"\nfactor = 0.9\n'
+    path.write_text(text + modulus + modulus)
+    with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] E stands twice"):
+        read_study(path).accepted()

@@ -91,3 +91,19 @@ def test_few_pairs_of_many_modes_name_no_cause() -> None:
     assert found.significant and found.verdict in ("unknown", "class")
     assert not found.comparable
     assert any("most measured modes have no partner" in w for w in found.warnings)
+
+
+def test_what_may_be_there_again_stays_in_the_library_when_one_is_accepted() -> None:
+    """Two bodies are there, one of them known: the other is found where it is, and both accepted leave nothing."""
+    bodies = ((0.15, 0.02), (0.31, 0.03))
+    test = struck(replace(specimen(rng := np.random.default_rng(5)), masses=bodies), rng)
+    library = some("lumped_mass", "local_stiffness", "E", "density")
+    known, other = (("lumped_mass", {"x": x, "mass": mass}) for x, mass in bodies)
+    case = case_of(test, BEAM.with_elements(20))
+    found = diagnose(replace(case, accepted=(known,)), library=library)
+    assert (found.verdict, found.sets) == ("named", (("lumped_mass",),))
+    assert found.ranking[0].parameters["lumped_mass.x"].value == pytest.approx(0.31, abs=0.01)
+    assert found.ranking[0].parameters["lumped_mass.mass"].value == pytest.approx(0.03, rel=0.05)
+    assert diagnose(replace(case, accepted=(known, other)), library=library).verdict == "none"
+    modulus = diagnose(replace(case, accepted=(("E", {"factor": 0.9}),)), library=library)
+    assert all("E" not in row.effects for row in modulus.ranking)

@@ -217,6 +217,18 @@ def _across(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]
     return {"stiffness": change + twist * 2 * (1 - nu) * (xy.T @ rigidity @ xy)}
 
 
+def _wedge(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    """Every term under the thickness that each quadrature point has, to the power of the term."""
+    thicker = 1 + values["slope"] * (structure.fields.points[:, 0] / structure.spec.length - 0.5)
+    found: dict[str, Any] = {}
+    for term in structure.terms:
+        left, right = (structure.fields.sampled[name] for name in (term.left, term.right))
+        weight = term.coefficient * (thicker ** term.powers.get("thickness", 0.0) - 1)
+        part = left.T @ sparse.diags_array(weight) @ right
+        found[term.kind] = found.get(term.kind, 0) + (part + part.T) / 2
+    return found
+
+
 def _nothing(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
     return {}
 
@@ -241,6 +253,7 @@ CHANGES: dict[str, Callable[[FieldStructure, dict[str, Any]], dict[str, Any]]] =
     "suspension": _hung,
     "damping_patch": _layer,
     "axial_load": _tension,
+    "taper": _wedge,
     "orthotropy": _across,
     "uniform_damping": _nothing,
     "exponential_window": _nothing,
@@ -266,6 +279,7 @@ CONTRACT = {
     "density": {"factor"},
     "thickness": {"factor"},
     "section_scale": {"factor"},
+    "taper": {"slope"},
     "length": {"extension"},
     "clamp_rotation": {"stiffness"},
     "clamp_translation": {"stiffness"},
@@ -297,6 +311,7 @@ VANISHING = {
     "density": {"factor": 1.0},
     "thickness": {"factor": 1.0},
     "section_scale": {"factor": 1.0},
+    "taper": {"slope": 0.0},
     "length": {"extension": 0.0},
     "clamp_rotation": {},
     "clamp_translation": {},

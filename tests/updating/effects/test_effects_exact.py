@@ -9,7 +9,7 @@ import pytest
 from effect_cases import CHANGES, CORNERS, LOOK, THIN, form, imported
 from imported_cases import DEPTH as THICKNESS
 from imported_cases import LENGTH, WIDTH, beam_matrices, clamp
-from scipy import linalg, optimize
+from scipy import linalg, optimize, special
 from updating_cases import BEAM, PLATE, POINTS, STEEL, ExactBeam, blank
 
 from acquisition.errors import StudyError
@@ -60,6 +60,34 @@ def test_a_body_at_the_tip(share: float) -> None:
 
     found = predicted("lumped_mass", "beam", mass=mass, x=BEAM.length)
     assert found == pytest.approx(hertz(roots_of(rayleigh, 5)), rel=5e-5)
+
+
+@pytest.mark.parametrize("slope", [-1.2, -0.1, 0.1, 0.8])
+def test_a_wedge_clamped_at_one_end(slope: float) -> None:
+    """Kirchhoff's wedge (1879): w = C(z) / z, C Bessel functions of order 1 of z = 2 p sqrt(xi), xi the thickness.
+
+    EI is EI1 xi^3 and the mass of a length m1 xi, p^4 = m1 omega^2 / EI1; each derivative by xi raises the order by one
+    and divides by z once more. At the free end the second and the third are nothing.
+    """
+    ends = 1 - slope / 2, 1 + slope / 2
+
+    def rows(p: float, xi: float, order: int) -> list[float]:
+        z = 2 * p * np.sqrt(xi)
+        n, grown = 1 + order, np.exp(z - 2 * p)
+        kinds = special.jv(n, z), special.yv(n, z), special.ive(n, z) * grown, special.kve(n, z) / grown
+        return [
+            sign**order * (p / z) ** n * value for value, sign in zip(kinds, (-1, -1, 1, -1), strict=True)
+        ]
+
+    def free_wedge(u: float) -> float:
+        p = u / abs(slope)  # lengths in units in which the thickness changes by one
+        matrix = np.array(
+            [rows(p, ends[0], 0), rows(p, ends[0], 1), rows(p, ends[1], 2), rows(p, ends[1], 3)]
+        )
+        return float(np.linalg.det(matrix / np.linalg.norm(matrix, axis=0)))
+
+    found = predicted("taper", "beam", slope=slope)
+    assert found == pytest.approx(hertz(roots_of(free_wedge, 5)), rel=5e-5)
 
 
 @pytest.mark.parametrize("place", ["beam", "timoshenko"])

@@ -125,3 +125,11 @@ def test_accepted_effects_are_in_the_model_before_and_after() -> None:
     ratio = result.pairs["after_hz"] / longer
     assert ratio.to_numpy() == pytest.approx(np.sqrt(factor_of(result)), rel=1e-9)
     assert factor_of(result) > factor_of(update(case_of(), weights="relative"))
+
+
+def test_one_of_two_accepted_effects_of_a_name_is_not_updated_blindly() -> None:
+    bodies = tuple(("lumped_mass", {"mass": 0.005, "x": x}) for x in (0.2, 0.3))
+    both = replace(case_of(), accepted=bodies)
+    assert update(both, parameters=["E"]).converged
+    with pytest.raises(StudyError, match=r"lumped_mass stands 2 times in \[\[model.effect\]\]"):
+        update(both, parameters=["lumped_mass.mass"])

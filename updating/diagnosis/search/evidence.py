@@ -154,7 +154,7 @@ def _sampled(problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak],
     count = min(density * 2 ** len(peaks[0].gradient), MOST_SAMPLES)
     for _ in range(SAMPLING_ROUNDS):
         samples, proposal = _draw(peaks, count)
-        points = [evaluate(problem, candidate, u) for u in samples]
+        points = [evaluate(problem, candidate, u, near=peaks[0].point) for u in samples]
         log_weight = np.array([p.marginal.log_likelihood for p in points]) - proposal
         weights = np.exp(log_weight - logsumexp(log_weight))
         if 1 / np.sum(weights**2) >= ENOUGH_SAMPLES:

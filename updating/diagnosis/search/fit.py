@@ -77,25 +77,38 @@ class Peak:
 
 
 def evaluate(
-    problem: DiagnosisProblem, candidate: Candidate, coordinates: FloatArray, *, keep: BoolArray | None = None
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    coordinates: FloatArray,
+    *,
+    keep: BoolArray | None = None,
+    near: Point | None = None,
 ) -> Point:
     """Compare a candidate with the data, re-linearised about the most probable tolerances if these are wide.
 
-    Where the linearisation swings, the one whose most probable tolerances lie nearest to where it was made stands.
+    The first linearisation is where that of a point ``near`` by came to rest: mostly none is needed after it. Where
+    the linearisation swings, the one whose most probable tolerances lie nearest to where it was made stands.
     """
-    point = _linearised(problem, candidate, coordinates, None, keep)
+    about = None if near is None else near.about
+    point = _linearised(problem, candidate, coordinates, about, keep)
     if not problem.wide:
         return point
-    best, left = point, problem.strain(_wanted(point))
+    best, left = point, problem.strain(_wanted(point) - _about(point))
+    whole = True
     for _ in range(RELINEARISATIONS):
         if left < STRAINED_LINEARISATION or not np.isfinite(left):
             break
-        about = _wanted(point) if point.about is None else 0.5 * (point.about + _wanted(point))
+        about = _wanted(point) if whole else 0.5 * (_about(point) + _wanted(point))
         point = _linearised(problem, candidate, coordinates, about, keep)
         away = problem.strain(_wanted(point) - about)
+        whole = away < 0.5 * left
         if away < left:
             best, left = point, away
     return best
+
+
+def _about(point: Point) -> FloatArray:
+    return np.zeros(len(point.marginal.shift)) if point.about is None else point.about
 
 
 def _wanted(point: Point) -> FloatArray:
@@ -238,7 +251,7 @@ def _ascend(
         if not np.isfinite(step).all():
             break
         there = np.clip(point.coordinates + step, 0.0, 1.0)
-        trial = evaluate(problem, candidate, there, keep=keep)
+        trial = evaluate(problem, candidate, there, keep=keep, near=point)
         gain = trial.marginal.log_likelihood - point.marginal.log_likelihood
         promised = float(step @ gradient - 0.5 * step @ slope.normal @ step)
         stretch = 2 * stretch if gain > UNDERSTEPPED * promised > 0 else 1.0

@@ -1,4 +1,4 @@
-"""Which candidates are weighed: singles first, pairs where no single explains the data well, then triples.
+"""Which candidates are weighed: singles first, pairs where no single explains the data well, then one cause more.
 
 An effect may come in several forms (which point, which sign); each is weighed by itself, with its share of the
 effect's prior, and their evidence is added up.
@@ -12,15 +12,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp
 
+from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain, finish
+from updating.diagnosis.search.larger import one_more
 from updating.diagnosis.search.odd import with_odd_data
 from updating.diagnosis.search.prior import log_prior
-from updating.diagnosis.search.sets import pairs_of, triples_of
+from updating.diagnosis.search.sets import pairs_of
 from updating.effects import Effect, Lack, Obstacle, Variant
 from updating.problem.candidate import Candidate
 from updating.problem.theory_error import theory_shows
 from updating.thresholds import (
+    COUNT_PRIOR,
     DOUBTED_FIT,
     FINISHING_ROUNDS,
     FORM_SHARE,
@@ -112,7 +115,7 @@ def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[
 
 
 def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
-    """Weigh nothing, every single effect, and pairs if no single one fits.
+    """Weigh nothing, every single effect, and sets of more where those of fewer do not explain the data.
 
     Parameters
     ----------
@@ -131,8 +134,9 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
         plain = _as_stated(found)
         pairs = pairs_of(problem, plain, least=not _explained(problem, plain))
         found = _with_odd(problem, found, pairs)
-    if not _explained(problem, found):
-        found = _with_odd(problem, found, triples_of(problem, _as_stated(found)))
+    for causes in range(3, len(COUNT_PRIOR)):
+        if not _explained(problem, found):
+            found = _with_odd(problem, found, one_more(problem, _as_stated(found), causes))
     return Search(nothing, _merged(problem, _compare(found)), obstacles, both)
 
 
@@ -257,7 +261,12 @@ def _single(
     if not both or effect.fuller:
         return plain
     fuller = Candidate((effect,), fuller=True, chosen=(form,))
-    return _either(plain, explain(problem, fuller, laplace_only=True, bar=bar))
+    return _either(plain, explain(problem, fuller, starts=_tops(plain), laplace_only=True, bar=bar))
+
+
+def _tops(plain: Explanation) -> list[FloatArray]:
+    """Return where the search on the other theory starts: what that moves is small, so that the maxima stay near."""
+    return [peak.point.coordinates for peak in plain.peaks] or [plain.best.coordinates]
 
 
 def _either(plain: Explanation, fuller: Explanation) -> Explanation:

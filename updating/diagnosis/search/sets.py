@@ -1,23 +1,22 @@
-"""Sets of several causes: the pairs that score tests find promising, one cause twice, and a third beside a pair."""
+"""Pairs of causes: those that score tests find promising, from near and from far, and one cause twice."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import chain, combinations_with_replacement, product, zip_longest
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.diagnosis.search.evidence import Explanation, explain
+from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import Point, evaluate, sensitivities
 from updating.diagnosis.search.prior import log_prior
+from updating.diagnosis.search.together import Part, join, once_more, score_tests
 from updating.effects import Effect
 from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
 from updating.thresholds import (
-    CLIMBS,
     PAIRS_ANEW,
     PAIRS_WEIGHED,
     PLACES_TOGETHER,
@@ -25,7 +24,6 @@ from updating.thresholds import (
     SET_MARGIN,
     SHIFT_SPREAD,
     STEP_INSIDE,
-    TRIPLES_WEIGHED,
 )
 
 
@@ -51,12 +49,12 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
     volume = [e.best.marginal.log_likelihood - e.log_evidence for e in possible]  # what their parameters cost
     nominal = next(e.best for e in found if not e.names)
     allowed = _allowed(problem, possible)
-    reached = _score_tests(problem, possible)
+    reached = score_tests(problem, possible)
     reaches = [_reaches(problem, nominal, e.candidate) for e in possible]
     drafts = []
     for (i, j), together in zip(allowed, _together(nominal, reaches, allowed), strict=True):
         first, second = possible[i], possible[j]
-        second = _next(second) if first.names == second.names else second
+        second = once_more(second) if first.names == second.names else second
         cost = log_prior(2, examined) - volume[i] - volume[j]
         near = max(reached[i, j], reached[j, i]) if i != j else -np.inf
         far = together[0][0] if together else -np.inf
@@ -66,13 +64,13 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
     bar = max(e.best.marginal.log_likelihood for e in possible)
     for draft in _promising(drafts):
         parts = [(e.candidate, e.best.coordinates) for e in (draft.first, draft.second)]
-        pair = _pair(problem, parts[0], parts[1], bar, places=draft.places)
+        pair = join(problem, parts[0], parts[1], bar, places=draft.places)
         pairs.append((pair, draft.places))
         bar = max(bar, pair.best.marginal.log_likelihood)
     pairs.sort(key=lambda own: -own[0].log_evidence)
     best_of = [pair for pair, _ in pairs]
     for i, (pair, places) in enumerate(pairs[:PAIRS_ANEW]):
-        again = _pair(problem, *_parts_of_pair(problem, pair), bar, anew=True, places=places)
+        again = join(problem, *_parts_of_pair(problem, pair), bar, anew=True, places=places)
         best_of[i] = max(pair, again, key=lambda e: e.log_evidence)
         bar = max(bar, best_of[i].best.marginal.log_likelihood)
     return best_of + _alike(problem, possible, best_of, bar)
@@ -133,12 +131,6 @@ def _allowed(problem: DiagnosisProblem, singles: list[Explanation]) -> list[tupl
         if len(first.best.coordinates) + len(second.best.coordinates) < data:
             allowed.append((i, j))
     return allowed
-
-
-def _next(single: Explanation) -> Explanation:
-    """Return a single effect as the second of its kind."""
-    again = replace(single.candidate, effects=tuple(effect.again() for effect in single.candidate.effects))
-    return replace(single, candidate=again)
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,69 +214,6 @@ def _together(nominal: Point, reaches: list[list[_Reach]], pairs: list[tuple[int
     return found
 
 
-def triples_of(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:
-    """Add to the best pair, one at a time, the single effects that a score test finds the most promising."""
-    pairs = [e for e in found if len(e.names) == 2 and e.best.possible]
-    best = max(pairs, key=lambda e: e.log_evidence, default=None)
-    if best is None:
-        return []
-    data = len(best.best.comparison.residual)
-    others = [
-        e
-        for e in found
-        if len(e.names) == 1
-        and e.best.possible
-        and e.names[0] not in best.names
-        and len(best.best.coordinates) + len(e.best.coordinates) < data - 1
-    ]
-    if not others:
-        return []
-    reached = _score_tests(problem, [best, *others])[0, 1:]
-    weight = np.array([e.candidate.log_weight for e in others])
-    chosen: dict[tuple[str, ...], Explanation] = {}
-    for i in np.argsort(-(reached + weight)):
-        chosen.setdefault(others[i].names, others[i])
-    bar, triples = best.best.marginal.log_likelihood, []
-    whole = (best.candidate, best.best.coordinates)
-    for other in list(chosen.values())[:TRIPLES_WEIGHED]:
-        triples.append(_pair(problem, whole, (other.candidate, other.best.coordinates), bar))
-        bar = max(bar, triples[-1].best.marginal.log_likelihood)
-    return triples
-
-
-PairPart = tuple[Candidate, FloatArray]
-"""One of the two effects of a pair, and prior quantiles to start from."""
-
-
-def _pair(
-    problem: DiagnosisProblem,
-    first: PairPart,
-    second: PairPart,
-    bar: float,
-    *,
-    anew: bool = False,
-    places: Sequence[FloatArray] = (),
-) -> Explanation:
-    """Draft a pair, from the best that each of the two has alone, and where asked from all its own starts anew.
-
-    An effect that explains as much as it can alone bends to what the other does, so that its place alone may be far
-    from that in the pair.
-    """
-    (one, a), (two, b) = first, second
-    middle = [np.full(len(u), 0.5) for u in (a, b)]
-    starts = [np.concatenate(s) for s in ((a, middle[1]), (middle[0], b), (a, b))]
-    if anew:
-        starts += [np.concatenate([a, own]) for own in problem.starts(two)]
-        starts += [np.concatenate([own, b]) for own in problem.starts(one)]
-    starts += places
-    both = Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
-    unlike = list(
-        {tuple(u.tolist()): u for u in starts}.values()
-    )  # of an effect without parameters all are alike
-    count = CLIMBS if anew else 1 + bool(places)
-    return explain(problem, both, starts=unlike, laplace_only=True, maximisations=count, bar=bar)
-
-
 def _alike(
     problem: DiagnosisProblem, singles: list[Explanation], pairs: list[Explanation], bar: float
 ) -> list[Explanation]:
@@ -308,12 +237,12 @@ def _alike(
             ):
                 known.add(names)
                 found.append(
-                    _pair(problem, (kept, place), (rival.candidate, rival.best.coordinates), bar, anew=True)
+                    join(problem, (kept, place), (rival.candidate, rival.best.coordinates), bar, anew=True)
                 )
     return found
 
 
-def _parts_of_pair(problem: DiagnosisProblem, pair: Explanation) -> tuple[PairPart, PairPart]:
+def _parts_of_pair(problem: DiagnosisProblem, pair: Explanation) -> tuple[Part, Part]:
     """Take a pair apart."""
     whole = pair.candidate
     first, second = (
@@ -333,29 +262,3 @@ def _like(effect: Effect, singles: list[Explanation]) -> list[Explanation]:
             if alike and (other.name not in best or best[other.name].log_evidence < single.log_evidence):
                 best[other.name] = single
     return list(best.values())
-
-
-def _score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> FloatArray:
-    """Return the log-likelihood that a linear step from each single's best, with each other, would reach.
-
-    Returns
-    -------
-    (n, n) array
-        Row: whose best is the start; column: whose whole shift, and its sensitivities there, are added [-].
-    """
-    nominal = problem.at(Candidate(), np.zeros(0)).residual
-    own = [np.nan_to_num(sensitivities(problem, e.candidate, e.best)) for e in singles]
-    shifts = [(nominal - e.best.comparison.residual)[:, None] for e in singles]
-    everything = np.nan_to_num(np.hstack([np.hstack(pair) for pair in zip(shifts, own, strict=True)]))
-    ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
-    reached = np.full((len(singles), len(singles)), -np.inf)
-    for i, leader in enumerate(singles):
-        normal, load = normal_equations(leader.best.comparison, everything, leader.best.marginal.scale)
-        start = leader.best.marginal.log_likelihood
-        mine = np.arange(ends[i] + 1, ends[i + 1])
-        for j in range(len(singles)):
-            if j != i:
-                columns = np.concatenate([mine, np.arange(ends[j], ends[j + 1])])
-                step = np.linalg.lstsq(normal[np.ix_(columns, columns)], load[columns], rcond=1e-10)[0]
-                reached[i, j] = start + 0.5 * float(load[columns] @ step)
-    return reached

@@ -1,0 +1,56 @@
+"""One size of a cause in both halves of the modes and of the points, or none that is named."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from updating_cases import BEAM as FINE
+from updating_cases import case_of, specimen, struck
+
+from updating import LIBRARY, Measured, diagnose
+from updating.diagnosis.answer.consistency import Split, splits
+from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search.evidence import explain
+from updating.problem.candidate import Candidate
+
+BEAM = FINE.with_elements(20)
+SOFTER = Candidate((LIBRARY["E"],))
+
+
+def softer(seed: int) -> Measured:
+    """The test of a beam whose modulus is a tenth lower."""
+    rng = np.random.default_rng(seed)
+    beam = specimen(rng)
+    return struck(replace(beam, E=0.9 * beam.E), rng)
+
+
+def found_apart(test: Measured) -> tuple[Split, ...]:
+    problem, _ = pose(case_of(test, BEAM))
+    return splits(problem, explain(problem, SOFTER))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_true_cause_has_one_size_in_all_data(seed: int) -> None:
+    assert found_apart(softer(seed)) == ()
+
+
+def test_a_size_that_differs_from_the_low_to_the_high_modes_is_found() -> None:
+    test = softer(3)
+    count = len(test.frequency)
+    upper = np.arange(count) >= (count + 1) // 2
+    apart = found_apart(replace(test, frequency=test.frequency * np.where(upper, 1.05, 1.0)))
+    assert apart[0].parameter == "E.factor"
+    assert "the lower and the upper modes" in str(apart[0])
+    assert apart[0].sigma > 3
+
+
+def test_few_data_are_a_warning() -> None:
+    test = softer(3)
+    few = replace(test.modes(np.arange(2)), seen=test.seen[:1], hit=test.hit[:1])
+    few = replace(few, constants=few.constants[:1], constants_sigma=few.constants_sigma[:1], phase=None)
+    warnings = diagnose(case_of(few, BEAM), library=[LIBRARY["E"], LIBRARY["length"]]).warnings
+    assert any("data beyond the parameters" in warning for warning in warnings)
+    many = diagnose(case_of(test, BEAM), library=[LIBRARY["E"], LIBRARY["length"]]).warnings
+    assert not any("data beyond the parameters" in warning for warning in many)
