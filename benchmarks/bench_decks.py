@@ -1,7 +1,7 @@
 """A deck as a model, as its size grows: what CalculiX, the factor, the modes and the reduced basis take.
 
-python benchmarks/bench_decks.py                 1 500 to 26 000 degrees of freedom: three minutes
-python benchmarks/bench_decks.py 2 4 6 10        up to 105 000: half an hour, 8 GB
+python benchmarks/bench_decks.py                 1 200 to 25 000 degrees of freedom: two minutes
+python benchmarks/bench_decks.py 2 4 6 10        up to 107 000: ten minutes more, 9 GB
 
 A block of 4 n x 2 n x n bricks (C3D20R) in four regions, twelve test points; each size in a process of its own, nothing
 kept from earlier runs. Seconds are CPU time, of CalculiX and modalkit, one thread; memory is the larger of the two.
