@@ -15,7 +15,7 @@ from modalkit.output.destinations import check_outputs, uff_of
 from modalkit.simulation.setup import Options
 from modalkit.simulation.simulate import SimulatedTest, simulate_test
 from modalkit.study.named_effects import parse_effect
-from modalkit.study.read import read_study
+from modalkit.study.read import kind_of, read_study
 from updating import LIBRARY
 
 
@@ -56,7 +56,7 @@ def simulate(
     check_outputs((output, uff_of("simulated")), reads=read_by([study]))
     check_folder(figures)
     asked = read_study(study)
-    kind = "beam" if asked.model is None else asked.model.type
+    kind = "beam" if asked.model is None else kind_of(asked.model)
     effects = [parse_effect(text, kind) for text in effect or ()]
     with working("hitting the model"):
         made = simulate_test(asked, effects, seed=seed, options=options)

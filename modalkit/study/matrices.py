@@ -83,14 +83,24 @@ def matrices_spec(model: ModelTable, imported: Imported, damping: Damping) -> Sp
     StudyError
         If a region has no place.
     """
-    low, high = imported.extents
-    size = np.maximum(high - low, 1e-6 * max(float((high - low).max()), 1e-9))
     material = model.material
     if material is not None and material.density < LIGHTEST:
         raise StudyError(
             f"[model.material] density = {material.density:g}: no solid weighs so little; it is in kg/m3, and E in Pa, "
             "whatever the units of the matrices"
         )
+    if named := [region.name for region in model.region if region.set]:
+        raise StudyError(f"[[model.region]] {named[0]!r} has a set; those are of decks, type calculix")
+    made = FACTORS_ALONE if material is None else Material(material.E, material.density, material.poisson)
+    return spec_of(model, imported, made, _regions(model, imported), damping)
+
+
+def spec_of(
+    model: ModelTable, imported: Imported, material: Material, regions: tuple[Region, ...], damping: Damping
+) -> Spec:
+    """Return the specification of matrices that have been read, on regions that have been placed."""
+    low, high = imported.extents
+    size = np.maximum(high - low, 1e-6 * max(float((high - low).max()), 1e-9))
     return Spec(
         "matrices",
         float(size[0]),
@@ -99,8 +109,8 @@ def matrices_spec(model: ModelTable, imported: Imported, damping: Damping) -> Sp
         (),
         (),
         "imported",
-        FACTORS_ALONE if material is None else Material(material.E, material.density, material.poisson),
-        _regions(model, imported),
+        material,
+        regions,
         tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
         damping,
         imported,
@@ -110,17 +120,17 @@ def matrices_spec(model: ModelTable, imported: Imported, damping: Damping) -> Sp
 def _regions(model: ModelTable, imported: Imported) -> tuple[Region, ...]:
     """Return the regions, placed where the study says, else where their parts are; one of all if there is none."""
     if not model.region:
-        return (Region("all", *_sides(imported, imported.extents)),)
+        return (Region("all", *sides_of(imported, imported.extents)),)
     found = []
     for i, table in enumerate(model.region):
-        stated = table.model_dump()
+        stated = table.model_dump(exclude={"set"})
         if table.x is None:
             box = imported.box(i)
             if box is None:
                 raise StudyError(
                     f"[[model.region]] {table.name!r} needs x, or a part of the stiffness or mass of its own"
                 )
-            along, across = _sides(imported, box)
+            along, across = sides_of(imported, box)
             stated["x"], stated["y"] = along, stated["y"] or across
         if given := [key for key in ("thickness", "area", "inertia") if stated[key] is not None]:
             raise StudyError(f"[[model.region]] {table.name!r}: imported matrices know no {', '.join(given)}")
@@ -128,7 +138,7 @@ def _regions(model: ModelTable, imported: Imported) -> tuple[Region, ...]:
     return tuple(found)
 
 
-def _sides(
+def sides_of(
     imported: Imported, box: tuple[FloatArray, FloatArray]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the limits of a box along x and y, never without area [m]."""

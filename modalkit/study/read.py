@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from acquisition.encoding import not_utf8
 from acquisition.errors import StudyError
+from modalkit.study.decks import deck_of, deck_spec
 from modalkit.study.errors import explain, known_keys
 from modalkit.study.matrices import matrices_of, matrices_spec
 from modalkit.study.probable_units import check_units
@@ -26,7 +27,9 @@ from modalkit.study.tables import (
 )
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
+from updating.models.decks import DeckModel
 from updating.models.imported import Imported
+from updating.models.spec import Kind
 from updating.models.spec_checks import check_places
 from updating.test_data.axes import Axes
 from updating.tolerances import Tolerances
@@ -73,6 +76,7 @@ class Study(Strict):
             names += [] if table is None else [*table.files, table.modes, table.layout]
         if (model := self.model) is not None:
             names += [
+                model.deck,
                 model.stiffness,
                 model.mass_matrix,
                 model.nodes,
@@ -111,9 +115,15 @@ class Study(Strict):
         )
         if model.type == "matrices":
             return matrices_spec(model, self._imported, damping)
+        if model.type == "calculix":
+            return deck_spec(model, self._deck, damping)
         if given := [key for key in MATRICES_ONLY if getattr(model, key)]:
             raise StudyError(
                 f"[model] of type {model.type} takes no {', '.join(given)}; they are of type matrices"
+            )
+        if model.deck or any(region.set for region in model.region):
+            raise StudyError(
+                f"[model] of type {model.type} takes no deck and no region.set; they are of type calculix"
             )
         if unplaced := [region.name for region in model.region if region.x is None]:
             raise StudyError(f"[[model.region]] {unplaced[0]!r} needs x")
@@ -134,7 +144,7 @@ class Study(Strict):
             tuple(model.clamped),
             model.theory or ("euler-bernoulli" if model.type == "beam" else "kirchhoff"),  # type: ignore[arg-type]
             Material(model.material.E, model.material.density, model.material.poisson),
-            tuple(Region(**region.model_dump()) for region in model.region),
+            tuple(Region(**region.model_dump(exclude={"set"})) for region in model.region),
             tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
             damping,
         )
@@ -146,6 +156,12 @@ class Study(Strict):
         """The matrices of the model, read once."""
         assert self.model is not None
         return matrices_of(self.model, self.file)
+
+    @cached_property
+    def _deck(self) -> DeckModel:
+        """The deck of the model, read once."""
+        assert self.model is not None
+        return deck_of(self.model, self.file)
 
     def _elements(self, model: ModelTable) -> tuple[int, ...]:
         if model.elements is None:
@@ -178,7 +194,7 @@ class Study(Strict):
         if self.model is None:
             return ()
         try:
-            found = tuple(accepted_values(entry, self.model.type) for entry in self.model.effect)
+            found = tuple(accepted_values(entry, kind_of(self.model)) for entry in self.model.effect)
             check_repeated([name for name, _ in found])
             return found
         except StudyError as error:
@@ -187,6 +203,11 @@ class Study(Strict):
     def surroundings(self) -> Environment:
         """Return the environment."""
         return Environment(**self.environment.model_dump())
+
+
+def kind_of(model: ModelTable) -> Kind:
+    """Return the kind of model that a table describes: a deck becomes matrices."""
+    return "matrices" if model.type == "calculix" else model.type
 
 
 def read_study(path: Path | str) -> Study:

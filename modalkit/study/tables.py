@@ -169,6 +169,7 @@ class RegionTable(Strict):
     """``[[model.region]]``."""
 
     name: str = Field(min_length=1)
+    set: str | None = None
     x: Span | None = None
     y: Span | None = None
     E: Modulus | None = None
@@ -191,7 +192,7 @@ class RegionTable(Strict):
 class ModelTable(Strict):
     """``[model]``."""
 
-    type: Literal["beam", "plate", "matrices"]
+    type: Literal["beam", "plate", "matrices", "calculix"]
     units: Literal["m-kg-s", "mm-t-s", "in-lbf-s"] | None = None
     length: Length | None = None
     width: Length | None = None
@@ -199,6 +200,7 @@ class ModelTable(Strict):
     elements: int | list[int] | None = None
     clamped: list[str] = []
     theory: str | None = None
+    deck: str | None = None
     stiffness: str | None = None
     mass_matrix: str | None = None
     stiffness_parts: list[str] = []

@@ -31,7 +31,7 @@ from updating.nominal import predictor_of
 from updating.prediction.baseline import correct, doubt_in_mass
 from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
-from updating.problem.gates import notes_on, on_levels, on_modes, theory_error
+from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction, theory_error
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.same_places import unmatched
 from updating.thresholds import FEWEST_DATA
@@ -282,6 +282,7 @@ def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:
         notes += notes_on_doubtful(one)
         if one.theory_error is not None:
             notes += notes_on(one.theory_error, one.measured, one.predictor.spec)
+        notes += on_reduction(one.predictor, len(one.measured.frequency))
         notes += on_modes(one.measured, one.predictor.predict(at_least=one.reach).frequency, one.order)
         wet = one.predictor.environment.fluid_density is not None
         acting = [effect for row in found.compared[:1] for effect in row.explanation.candidate.effects]

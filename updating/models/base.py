@@ -110,6 +110,22 @@ class Structure(ABC):
     def softenings(self, elastic: FloatArray) -> FloatArray:
         """Return the loads (n_dofs, n) that a softened place feels when the structure moves in its lowest modes."""
 
+    def static_answers(
+        self, loads: FloatArray, values: FloatArray, vectors: FloatArray, shift: float
+    ) -> FloatArray:
+        """Return the static answers (n_dofs, k) to loads, and to what a softened place feels in the lowest modes.
+
+        Parameters
+        ----------
+        loads : (n_dofs, n) array
+            Loads [N].
+        values, vectors : (m,) and (n_dofs, m) arrays
+            All modes of the basis, rigid-body modes included [rad^2/s^2, kg^-1/2].
+        shift : float
+            What holds a structure that is free, see :meth:`solve` [rad^2/s^2].
+        """
+        return self.solve(np.hstack([loads, self.softenings(vectors[:, self.rigid_modes :])]), shift)
+
     @property
     def unknowns(self) -> int:
         """Number of degrees of freedom that are free and carry mass."""

@@ -328,9 +328,8 @@ def _static_answers(
     structure: Structure, mass: Sparse, values: FloatArray, vectors: FloatArray, loads: FloatArray
 ) -> FloatArray:
     """Solve for the static answers to softening each region in the low modes and to loads (n_dofs, n)."""
-    elastic = vectors[:, structure.rigid_modes :]
     shift = 1e-3 * float(values[structure.rigid_modes]) if structure.rigid_modes else 0.0
-    answer = structure.solve(np.hstack([loads, structure.softenings(elastic)]), shift)
+    answer = structure.static_answers(loads, values, vectors, shift)
     lengths = np.sqrt(np.einsum("ij,ij->j", answer, mass @ answer))
     moves = lengths > 0  # a force on a clamped edge moves nothing
     answer, lengths = answer[:, moves], lengths[moves]

@@ -10,7 +10,9 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.quantities import hertz, percent, quantity
+from updating.models.accuracy import CHANGED, every_second, reduction_error
 from updating.models.spec import Spec
+from updating.prediction.predict import Predictor
 from updating.problem.theory_error import TheoryError, discrepancy, theory_error
 from updating.test_data.measured import Measured
 from updating.thresholds import FEWEST_MODES, SKIPPED_MODE_GAIN, UNLIKE_RATIOS
@@ -22,6 +24,7 @@ __all__ = [
     "notes_on",
     "on_levels",
     "on_modes",
+    "on_reduction",
     "theory_error",
 ]
 
@@ -55,6 +58,19 @@ def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
             f'{worst + 1}, more than the noise of {_percent(noise[worst])}; theory = "{spec.fuller}" has them'
         )
     return notes
+
+
+def on_reduction(predictor: Predictor, count: int) -> list[str]:
+    """Return a remark on how far the reduced basis of imported matrices is off in the lowest ``count`` modes."""
+    reduced, imported = predictor.reduced, predictor.spec.imported
+    size = reduced.basis.shape[1]
+    if imported is None or not imported.stiffness_parts or size >= reduced.structure.unknowns:
+        return []
+    worst = float(reduction_error(reduced, every_second(reduced), count).max())
+    return [
+        f"{size} shapes stand for {reduced.structure.n_dofs} degrees of freedom: frequencies are at most "
+        f"{_percent(worst)} off where every second region has {CHANGED:g} of its stiffness"
+    ]
 
 
 def _percent(share: float) -> str:

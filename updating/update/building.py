@@ -11,6 +11,7 @@ from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.models import build_structure
+from updating.models.decks.states import deck_answers
 from updating.models.structure import FieldStructure
 from updating.nominal import predictor_of
 from updating.prediction.matching import pair_modes
@@ -19,7 +20,7 @@ from updating.update.data.nominal import Nominal, UpdatedModel
 from updating.update.data.specimen import Specimen
 from updating.update.data.system import Quantity, System, Weights
 from updating.update.parameters.affine import eligible
-from updating.update.parameters.basis import update_basis
+from updating.update.parameters.basis import extended, update_basis
 from updating.update.parameters.parameters import ModelParameter, ParameterSet, build_parameter_set
 
 BEYOND = ("shapes", "constants")
@@ -62,6 +63,12 @@ def build_specimen(
         raise StudyError(
             f'update: {dampers[0]} is a coefficient of damping, of which frequencies say nothing; use method = "frf"'
         )
+    numbers = [p.name for p in parameter_set.model_parameters if p.of_deck is not None]
+    if numbers and not lean:
+        raise StudyError(
+            f"update: {numbers[0]} is a number of a deck, which only frequencies and shapes update; use "
+            'method = "eigenvalue"'
+        )
     predictor = _on_own_basis(predictor, parameter_set) if lean else predictor
     paired = pair_modes(case.measured, predictor.predict())
     number = 1 + _rows_of(paired.measured.frequency, case.measured.frequency)
@@ -98,7 +105,14 @@ def _rows_of(kept: FloatArray, every: FloatArray) -> IntArray:
 
 
 def _on_own_basis(predictor: Predictor, parameter_set: ParameterSet) -> Predictor:
-    """Give a plain model whose parameters are factors a basis made for these; others keep theirs."""
+    """Give a plain model whose parameters are factors a basis made for these; others keep theirs.
+
+    The basis of a deck gets what it becomes where its numbers are turned.
+    """
+    numbers = [p.of_deck for p in parameter_set.model_parameters if p.of_deck is not None]
+    if numbers and predictor.reduced.basis.shape[1] < predictor.reduced.structure.n_dofs:
+        answers = np.hstack([deck_answers(predictor.reduced, number) for number in numbers])
+        return predictor.on(extended(predictor.reduced, answers))
     if (
         predictor.additions
         or not eligible(parameter_set.model_parameters)

@@ -163,10 +163,10 @@ def _controlled(
 
 
 def _scan(system: System) -> FloatArray:
-    """Start factors at 1 and every other parameter at the best of a few values, one after the other."""
+    """Start factors and numbers of a deck as they are, the others, one by one, at the best of a few values."""
     theta = system.start.copy()
     for i, model_parameter in enumerate(system.model_parameters):
-        if model_parameter.factor is not None:
+        if model_parameter.factor is not None or model_parameter.of_deck is not None:
             continue
         tried = []
         for value in _trials(system, i, float(theta[i])):

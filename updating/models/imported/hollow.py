@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
+from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
-from updating.models.imported.checks import factored
+from updating.models.imported.ordering import factored
 
 LOST = 1e-10
 """A pivot below this share of its diagonal entry has lost all its digits [-]."""
@@ -18,7 +19,9 @@ NOTHING = 1e-9
 """Below this share of what each of its rows has, a motion has nothing [-]."""
 
 
-def check_hollow(stiffness: Sparse, mass: Sparse, factor: Any, source: str) -> None:
+def check_hollow(
+    stiffness: Sparse, mass: Sparse, factor: Any, source: str, places: FloatArray | None = None
+) -> None:
     """See that no motion has neither stiffness nor mass, where pivots of the factored sum have lost their digits.
 
     Such motions are eigenvectors to zero of K and M added, the sum scaled by its diagonal.
@@ -33,7 +36,7 @@ def check_hollow(stiffness: Sparse, mass: Sparse, factor: Any, source: str) -> N
         return
     both = _ones_on_diagonal(Sparse(_level(stiffness) + _level(mass)))
     one = sparse.eye_array(both.shape[0])
-    below, above = (factored(Sparse(both + shift * one)) for shift in (NOTHING, -NOTHING))
+    below, above = (factored(Sparse(both + shift * one), places) for shift in (NOTHING, -NOTHING))
     count = int((above.U.diagonal() < 0).sum())
     if (below.U.diagonal() < 0).any() or not count:
         return

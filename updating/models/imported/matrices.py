@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from updating.models.fields import Sparse
 from updating.models.imported.checks import check_mass, check_size, check_sum, symmetric, with_mass_everywhere
 from updating.models.imported.nodes import NodeTable
 from updating.models.imported.placing import Places
+
+if TYPE_CHECKING:
+    from updating.models.decks.model import DeckModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +34,8 @@ class Imported:
         no region.
     source : str
         For messages.
+    deck : DeckModel, optional
+        The deck that CalculiX made them of.
 
     Raises
     ------
@@ -43,6 +49,7 @@ class Imported:
     stiffness_parts: tuple[Sparse, ...] = ()
     mass_parts: tuple[Sparse, ...] = ()
     source: str = "model"
+    deck: DeckModel | None = None
     massless: bool = field(init=False, default=False)
     rest: dict[str, Sparse | None] = field(init=False, default_factory=dict)
 
@@ -75,7 +82,8 @@ class Imported:
         if self.massless and self.mass_parts:
             left = self.rest["mass"]
             self.rest["mass"] = Sparse(self.mass - bare if left is None else left + self.mass - bare)
-        check_mass(self.mass, self.source)
+        if self.deck is None:  # a deck's is a sum of elements', each of positive mass
+            check_mass(self.mass, self.source, self.row_places)
 
     @property
     def order(self) -> int:
@@ -83,9 +91,18 @@ class Imported:
         return int(self.stiffness.shape[0])
 
     @cached_property
+    def row_places(self) -> FloatArray:
+        """Where the rows are, (n, 3), not a number where that is not known [m]."""
+        found = np.full((self.order, 3), np.nan)
+        there = self.nodes.row >= 0
+        found[self.nodes.row[there]] = self.nodes.places[there]
+        return found
+
+    @cached_property
     def places(self) -> Places:
         """The nodes, as places at which the structure's motion is known."""
-        return Places.of(self.nodes, self.order)
+        places = Places.of(self.nodes, self.order)
+        return places if self.deck is None else replace(places, elements=self.deck.elements)
 
     @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray]:

@@ -11,7 +11,7 @@ import pandas as pd
 from acquisition.arrays import FloatArray, IntArray, frozen_array
 from acquisition.errors import StudyError
 from updating.models.imported.calculix import read_dofs
-from updating.models.imported.deck import read_deck
+from updating.models.imported.deck import Deck, read_deck
 
 COLUMNS = ("node", "x", "y", "z", "direction", "row")
 
@@ -192,11 +192,22 @@ def read_deck_table(path: Path, dofs: Path, order: int) -> NodeTable:
         raise StudyError(
             f"{dofs}: {len(node)} degrees of freedom where the matrices have {order} rows; run ccx anew"
         )
+    return deck_table(deck, node, direction, f"{path} and {dofs.name}")
+
+
+def deck_table(deck: Deck, node: IntArray, direction: IntArray, source: str) -> NodeTable:
+    """Make the node table of a deck from the node and the direction of every row, each (n_dofs,).
+
+    Raises
+    ------
+    StudyError
+        If a row belongs to a node that the deck does not have.
+    """
     last = max(deck.nodes)
     unknown = sorted({n for n in node.tolist() if n not in deck.nodes and n <= last})
     if unknown:
         raise StudyError(
-            f"{dofs}: node {unknown[0]} stands in no *NODE card of {path}; give the deck that was run"
+            f"{source}: node {unknown[0]} stands in no *NODE card, but has a row; give the deck that was run"
         )
     rows = [
         (n, d, row)
@@ -206,4 +217,4 @@ def read_deck_table(path: Path, dofs: Path, order: int) -> NodeTable:
     rows += [(n, d, HELD) for n, d in sorted(deck.held) if d <= 3 and n in deck.nodes]
     table = np.array(rows, dtype=np.int64).reshape(-1, 3)
     coordinates = np.array([deck.nodes[n] for n in table[:, 0].tolist()]).reshape(-1, 3)
-    return NodeTable(table[:, 0], coordinates, table[:, 1], table[:, 2], f"{path} and {dofs.name}")
+    return NodeTable(table[:, 0], coordinates, table[:, 1], table[:, 2], source)

@@ -12,6 +12,7 @@ from scipy.spatial import KDTree
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.models.fields import Sparse
+from updating.models.imported.elements import Elements
 from updating.models.imported.nodes import HELD, NodeTable
 
 NEIGHBOURS = {0: 1, 1: 7, 2: 21, 3: 45}
@@ -75,6 +76,8 @@ class Places:
         Rotation about x, y and z.
     known : (6, n) bool array
         Which of these the matrices hold, or a support.
+    elements : Elements, optional
+        The elements between the nodes, where they are known.
     """
 
     node: IntArray
@@ -82,6 +85,7 @@ class Places:
     moves: tuple[Sparse, ...]
     turns: tuple[Sparse, ...]
     known: BoolArray
+    elements: Elements | None = None
 
     @classmethod
     def of(cls, table: NodeTable, order: int) -> Places:
@@ -108,10 +112,11 @@ class Places:
         return self._trees[axis] is not None
 
     def find(self, point: FloatArray, axis: int) -> Found:
-        """Fit a cubic surface to the nodes about a point, nearest nodes weighing most.
+        """Return the shares of nodes in the motion at a point: those of the element that holds it, else of a fit.
 
-        Moving least squares (Lancaster and Salkauskas 1981) with weights that fall with the fourth power of the
-        distance, so that at a node the node alone speaks.
+        The fit is a cubic surface through the nodes about the point, nearest nodes weighing most: moving least squares
+        (Lancaster and Salkauskas 1981) with weights that fall with the fourth power of the distance, so that at a node
+        the node alone speaks.
 
         Parameters
         ----------
@@ -123,6 +128,8 @@ class Places:
         entry = self._trees[axis]
         assert entry is not None
         index, tree = entry
+        if (held := self._held(point, axis)) is not None:
+            return held
         count = min(NEIGHBOURS[3], len(index))
         distance, near = (np.atleast_1d(a) for a in tree.query(point, k=count))
         near = near.astype(np.int64)
@@ -137,6 +144,22 @@ class Places:
         beyond = _beyond((self.at[index[near[:around]]] - point) @ axes.T)
         return Found(
             index[near], weights, slopes / spacing, int(index[near[0]]), float(distance[0]), spacing, beyond
+        )
+
+    def _held(self, point: FloatArray, axis: int) -> Found | None:
+        """Return the shares of the element that holds a point; None where there is none, or a node of it has no row."""
+        element = None if self.elements is None else self.elements.find(point)
+        if element is None or axis > 2:
+            return None
+        index = np.searchsorted(self.node, element.nodes)
+        there = self.node[np.minimum(index, len(self.node) - 1)] == element.nodes
+        if not there.all() or not self.known[axis][index].all():
+            return None
+        away = np.linalg.norm(self.at[index] - point, axis=1)
+        spacing = float(np.median(np.linalg.norm(self.at[index] - self.at[index].mean(axis=0), axis=1)))
+        nearest = int(index[np.argmin(away)])
+        return Found(
+            index, element.weights, element.slopes, nearest, element.distance, spacing, element.distance
         )
 
     def rows(self, points: FloatArray, directions: FloatArray) -> dict[str, Sparse]:

@@ -13,8 +13,9 @@ from scipy.sparse import linalg
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
-from updating.models.imported.checks import factored, negative_pivots
+from updating.models.imported.checks import negative_pivots
 from updating.models.imported.hollow import check_hollow
+from updating.models.imported.ordering import factored
 from updating.models.solve import DENSE, lowest
 
 SMALL_SHIFT = 1e-9
@@ -36,12 +37,15 @@ class Shifted:
         For messages.
     massless : bool
         Whether some motions have no mass, or next to none, so that 1 / (lambda + s) is solved for.
+    places : (n, 3) array, optional
+        Where the rows are, by which they are ordered [m].
     """
 
     stiffness: Sparse
     mass: Sparse
     source: str = "model"
     massless: bool = False
+    places: FloatArray | None = None
 
     @cached_property
     def shift(self) -> float:
@@ -59,13 +63,13 @@ class Shifted:
             If the stiffness has a negative eigenvalue beyond the shift.
         """
         try:
-            factor = factored(Sparse(self.stiffness + self.shift * self.mass))
+            factor = factored(Sparse(self.stiffness + self.shift * self.mass), self.places)
         except RuntimeError as error:
             raise StudyError(
                 f"{self.source}: singular: some motion has neither stiffness nor mass ({error}); leave out degrees of "
                 "freedom that nothing holds"
             ) from error
-        check_hollow(self.stiffness, self.mass, factor, self.source)
+        check_hollow(self.stiffness, self.mass, factor, self.source, self.places)
         found = negative_pivots(factor)
         if found is not None:
             raise StudyError(

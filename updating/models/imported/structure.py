@@ -13,6 +13,7 @@ from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.models.base import Structure, scale_of
 from updating.models.fields import Sparse
+from updating.models.imported.answers import part_answers
 from updating.models.imported.matrices import Imported
 from updating.models.imported.shifted import Shifted
 from updating.models.solve import DENSE
@@ -87,7 +88,7 @@ class ImportedStructure(Structure):
 
     def _shifted(self, stiffness: Sparse, mass: Sparse) -> Shifted:
         massless = self.imported.massless or self.unknowns < self.n_dofs
-        return Shifted(stiffness, mass, self.imported.source, massless)
+        return Shifted(stiffness, mass, self.imported.source, massless, self.imported.row_places)
 
     @cached_property
     def _nominal(self) -> Shifted:
@@ -177,6 +178,19 @@ class ImportedStructure(Structure):
         low = elastic[:, : min(4, elastic.shape[1])]
         parts = (*self.imported.stiffness_parts, *self.imported.mass_parts)
         return np.hstack([np.zeros((self.n_dofs, 0)), *(part @ low for part in parts)])
+
+    def static_answers(
+        self, loads: FloatArray, values: FloatArray, vectors: FloatArray, shift: float
+    ) -> FloatArray:
+        """Return the answers to loads, and the main directions of those to a change of each part."""
+        source = self.imported
+        changed = part_answers(
+            self._nominal.solve,
+            (self.matrix("stiffness"), self.matrix("mass")),
+            (source.stiffness_parts, source.mass_parts),
+            (values, vectors, self.rigid_modes),
+        )
+        return np.hstack([self.solve(loads, shift), changed])
 
     def solve(self, loads: FloatArray, shift: float) -> FloatArray:
         """Return the answers of K + s M to loads (n_dofs, n); the shift is that of the one factor [SI]."""

@@ -200,8 +200,11 @@ class Specimen:
 
     def enriched(self, modes: FloatArray) -> Specimen | None:
         """Return the same specimen with modes of the full model (n_dofs, n) in its basis, or None if it has no own."""
-        structure = self.predictor.reduced.structure
-        if self.affine is None or self.affine.rank >= structure.unknowns:
+        structure, numbers = self.predictor.reduced.structure, self.parameter_set.model_parameters
+        of_deck = all(not k.effect for k in numbers) and any(k.of_deck is not None for k in numbers)
+        if (self.affine is None and not of_deck) or self.predictor.reduced.basis.shape[
+            1
+        ] >= structure.unknowns:
             return None
         return self._on(extended(self.predictor.reduced, modes))
 

@@ -62,7 +62,7 @@ def groups(structure: Structure, model_parameters: Sequence[ModelParameter]) -> 
 
 def eligible(model_parameters: Sequence[ModelParameter]) -> bool:
     """Whether all parameters are factors of the model, or of no concern to its frequencies."""
-    return all(not k.effect for k in model_parameters)
+    return all(not k.effect and k.of_deck is None for k in model_parameters)
 
 
 @dataclass(frozen=True, eq=False)

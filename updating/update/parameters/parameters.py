@@ -11,6 +11,8 @@ import numpy as np
 from acquisition.errors import StudyError
 from updating.effects import LIBRARY, Effect
 from updating.models.damping import WHOLE
+from updating.models.decks import KNOWN, DeckParameter
+from updating.models.decks.states import deck_state
 from updating.models.spec import Region, Spec
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -79,6 +81,8 @@ class ModelParameter:
         Effect and its parameter, empty for a factor.
     reach : float
         How far the stretched length goes per unit of the value, for ``length`` [1/m]; else 0.
+    of_deck : DeckParameter, optional
+        Number of a deck that it is.
     """
 
     name: str
@@ -96,15 +100,20 @@ class ModelParameter:
     effect: str = ""
     parameter: str = ""
     reach: float = 0.0
+    of_deck: DeckParameter | None = None
 
     @property
     def is_factor(self) -> bool:
         """Whether the value is a nominal value times a factor."""
+        if self.of_deck is not None:
+            return self.of_deck.relative
         return self.factor is not None and not self.effect
 
     @property
     def quantity(self) -> str:
         """What is updated, without where or of which effect."""
+        if self.of_deck is not None:
+            return self.of_deck.kind.partition("_")[0]
         return self.parameter or self.damper or str(self.factor)
 
     @property
@@ -155,6 +164,8 @@ class ParameterSet:
         state = State()
         effects: dict[str, dict[str, float]] = {}
         for model_parameter, value in zip(self.model_parameters, values, strict=True):
+            if model_parameter.of_deck is not None:
+                continue
             if model_parameter.effect:
                 effects.setdefault(model_parameter.effect, dict(self.fixed.get(model_parameter.effect, {})))[
                     model_parameter.parameter
@@ -170,7 +181,12 @@ class ParameterSet:
                 state = state.plus(State(factors={str(model_parameter.factor): value}))
         for name, given in effects.items():
             state = state.plus(LIBRARY[name].state(predictor, given))
-        return state
+        return state.plus(deck_state(predictor.reduced, self._of_deck(values), state))
+
+    def _of_deck(self, values: Sequence[float]) -> dict[DeckParameter, float]:
+        """Return the values of the numbers of a deck among the parameters."""
+        both = zip(self.model_parameters, values, strict=True)
+        return {parameter.of_deck: value for parameter, value in both if parameter.of_deck is not None}
 
     def effects(self, values: Sequence[float]) -> dict[str, dict[str, float]]:
         """Return the values of the effects among the parameters, by effect."""
@@ -235,7 +251,13 @@ def _check_complete(parameter_set: ParameterSet, predictor: Predictor) -> None:
 def _model_parameters(name: str, predictor: Predictor, tolerances: Tolerances) -> list[ModelParameter]:
     spec = predictor.spec
     head, _, tail = name.rpartition(".") if "." in name else (name, "", "")
+    deck = None if spec.imported is None else spec.imported.deck
     places = tuple(i for i, region in enumerate(spec.regions) if region.name == head)
+    if deck is not None and tail:
+        if not places and tail in REGIONAL:
+            places = deck.division.made_of(head)
+        if (number := deck.parameter(name)) is not None:
+            return [_number(number, tolerances)]
     if places and tail in DAMPERS:
         return [_damper(name, tail, predictor, places)]
     if places and tail:
@@ -252,6 +274,7 @@ def _model_parameters(name: str, predictor: Predictor, tolerances: Tolerances) -
         f"update: no parameter {name!r}; known are {known}, and region.E, region.density, region.thickness, "
         f"region.area, region.inertia, region.alpha ... with the regions {', '.join(own[:4])}"
         + ("..." if len(own) > 4 else "")
+        + (f"; of the deck: MATERIAL.E, MATERIAL.density, {KNOWN}" if deck is not None else "")
     )
 
 
@@ -263,9 +286,21 @@ def _whole(name: str, spec: Spec, tolerances: Tolerances) -> ModelParameter:
         "thickness": spec.thickness,
         "width": spec.width,
     }[name]
+    of_deck = spec.imported is not None and spec.imported.deck is not None
+    every = tuple(range(len(spec.regions))) if of_deck else ()  # a deck's springs have no modulus
     return _factor(
-        name, _unit(UNITS[name], nominal, spec), nominal, tolerances.factors.get(name, 0.0), name, ()
+        name, _unit(UNITS[name], nominal, spec), nominal, tolerances.factors.get(name, 0.0), name, every
     )
+
+
+def _number(number: DeckParameter, tolerances: Tolerances) -> ModelParameter:
+    """Return a number of a deck: a factor runs by its logarithm, a shift by itself."""
+    tolerance = tolerances.factors.get("thickness", 0.0) if number.kind.startswith("thickness") else 0.0
+    doubt = (tolerance or UNTOLD) if number.relative else (number.high - number.low) / np.sqrt(12)
+    return ModelParameter(
+        number.name, number.unit, number.nominal, number.start, number.low, number.high, float(doubt), tolerance > 0,
+        log=number.relative, of_deck=number,
+    )  # fmt: skip
 
 
 def _regional(

@@ -1,0 +1,94 @@
+"""``[model] type = "calculix"``: a deck, what the study says of its regions, and the specification that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from acquisition.errors import StudyError
+from modalkit.study.matrices import FACTORS_ALONE, FOREIGN, sides_of, spec_of
+from updating.models import Damping, Material, Region, Spec
+from updating.models.decks import DeckModel, read_deck_model
+from updating.models.imported import SI, UNITS
+
+if TYPE_CHECKING:
+    from modalkit.study.tables import ModelTable
+
+OF_MATRICES = ("stiffness", "mass_matrix", "stiffness_parts", "mass_parts", "nodes", "material")
+"""Keys that matrices have and a deck says itself."""
+
+OWN = ("E", "density", "thickness", "area", "inertia", "x", "y")
+"""Keys of a region that its elements say."""
+
+
+def deck_of(model: ModelTable, file: Callable[[str], Path]) -> DeckModel:
+    """Read the deck that a ``[model]`` of type calculix names.
+
+    Parameters
+    ----------
+    model : ModelTable
+        The table.
+    file : callable
+        Takes a name of the study file to its path.
+
+    Raises
+    ------
+    StudyError
+        If a key is missing or does not belong there, or the deck cannot be read.
+    """
+    if foreign := [key for key in (*FOREIGN, *OF_MATRICES) if getattr(model, key)]:
+        raise StudyError(f"[model] of type calculix takes no {', '.join(foreign)}: the deck says it")
+    if model.deck is None:
+        raise StudyError('[model] of type calculix needs a deck = "part.inp"')
+    for region in model.region:
+        if own := [key for key in OWN if getattr(region, key) is not None]:
+            raise StudyError(
+                f"[[model.region]] {region.name!r} takes no {', '.join(own)} on a deck: it is an element set, of its "
+                'name or set = "..."'
+            )
+    return read_deck_model(
+        file(model.deck), [(r.name, r.set or r.name) for r in model.region], units=model.units or SI
+    )
+
+
+def deck_spec(model: ModelTable, deck: DeckModel, damping: Damping) -> Spec:
+    """Return the specification of a deck.
+
+    Parameters
+    ----------
+    model : ModelTable
+        What the study says beside it.
+    deck : DeckModel
+        The deck.
+    damping : Damping
+        What the modeller expects.
+
+    Raises
+    ------
+    StudyError
+        If CalculiX does not solve it.
+    """
+    stated = {table.name: table for table in model.region}
+    regions = []
+    for number, own in enumerate(deck.division.regions):
+        box = deck.imported.box(number)
+        x, y = sides_of(deck.imported, deck.imported.extents if box is None else box)
+        table = stated.get(own.name)
+        damps = {} if table is None else table.model_dump(include={"alpha", "beta", "loss_factor"})
+        made = _material(deck, own.materials)
+        regions.append(Region(own.name, x, y, made.E, made.density, **damps))
+    names = dict.fromkeys(name for own in deck.division.regions for name in own.materials)
+    return spec_of(model, deck.imported, _material(deck, tuple(names)), tuple(regions), damping)
+
+
+def _material(deck: DeckModel, names: tuple[str, ...]) -> Material:
+    """Return the one isotropic material of some elements [SI], else one whose modulus and density are factors."""
+    length, force = UNITS[deck.units]
+    if len(names) != 1:
+        return FACTORS_ALONE
+    modulus, density = (deck.mesh.property_of(names[0], card) for card in ("*ELASTIC", "*DENSITY"))
+    return Material(
+        FACTORS_ALONE.E if modulus is None else modulus * force / length**2,
+        FACTORS_ALONE.density if density is None else density * force / length**4,
+    )

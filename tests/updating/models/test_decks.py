@@ -1,0 +1,313 @@
+"""Decks as models: parts, parameters and errors, against CalculiX's own frequencies, closed forms and other decks."""
+
+from __future__ import annotations
+
+import importlib
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from acquisition.errors import StudyError
+from updating import Material, Spec, build_structure
+from updating.models.decks import cache as deck_cache
+from updating.models.decks import deck_matrices, parameter_matrices, program, read_deck_model
+from updating.models.decks.cards import read_cards
+from updating.models.fields import Sparse
+from updating.models.imported import Imported
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+
+needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="no ccx: apt-get install calculix-ccx")
+
+Bricks = Callable[..., list[str]]
+
+
+@pytest.fixture(scope="module")
+def bricks() -> Iterator[Bricks]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(EXAMPLES / "deck"))
+        yield importlib.import_module("bricks").brick_deck
+
+
+@pytest.fixture(scope="module")
+def shells() -> Iterator[ModuleType]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(EXAMPLES / "calculix"))
+        yield importlib.import_module("mesh")
+
+
+def bar(bricks: Bricks, *more: str, length: float = 200.0, steps: int = 10, kind: str = "C3D20") -> list[str]:
+    """Return a bar of 20 x 10 mm along x, in mm, t and s, one half ROOT and one TIP, held at x = 0."""
+    lines = (np.linspace(0, length, steps + 1).tolist(), [0.0, 10.0, 20.0], [0.0, 5.0, 10.0])
+    sets = {"CLAMP": lambda x, y, z: x == 0, "END": lambda x, y, z: x == length}
+    deck = bricks(lines, lambda x, y, z: "ROOT" if x < length / 2 else "TIP", sets, kind)
+    deck += ["*MATERIAL, NAME=STEEL", "*ELASTIC", "210000., 0.", "*DENSITY", "7.85e-9"]
+    deck += [f"*SOLID SECTION, ELSET={name}, MATERIAL=STEEL" for name in ("ROOT", "TIP")]
+    return [*deck, *more, "*BOUNDARY", "CLAMP, 1, 3"]
+
+
+def written(folder: Path, lines: list[str], name: str = "part.inp") -> Path:
+    (folder / name).write_text("\n".join(lines) + "\n", encoding="latin-1")
+    return folder / name
+
+
+def frequencies(imported: Imported, count: int) -> np.ndarray:
+    spec = Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), imported=imported)
+    return np.sqrt(build_structure(spec).eigen(count)[0]) / (2 * np.pi)
+
+
+def by_ccx(folder: Path, lines: list[str], count: int) -> list[float]:
+    """Return the frequencies that CalculiX itself finds [Hz]."""
+    written(folder, [*lines, "*STEP", "*FREQUENCY", str(count), "*END STEP"], "modes.inp")
+    subprocess.run(["ccx", "modes"], cwd=folder, check=True, capture_output=True)
+    rows = (folder / "modes.dat").read_text().split("P A R T I C", maxsplit=1)[0].splitlines()
+    return [float(r.split()[3]) for r in rows if len(r.split()) == 5 and r.split()[0].isdigit()]
+
+
+def apart(one: Sparse, other: Sparse) -> float:
+    """Return the largest difference of two matrices, relative to their diagonals [-]."""
+    scale = sparse.diags_array(1 / np.sqrt(np.abs(one.diagonal())))
+    return float(abs(scale @ (one - other) @ scale).max())
+
+
+@needs_ccx
+def test_a_solid_is_what_ccx_finds_and_what_a_bar_does(bricks: Bricks, tmp_path: Path) -> None:
+    """To 1e-6 of CalculiX's seven digits; along the bar, c / 4 L and three times that, on the nose."""
+    lines = bar(bricks)
+    found = frequencies(read_deck_model(written(tmp_path, lines), units="mm-t-s").imported, 12)
+    assert found == pytest.approx(by_ccx(tmp_path, lines, 12), rel=1e-6)
+    along = np.sqrt(210e9 / 7850) / (4 * 0.2)
+    assert np.abs(found / along - 1).min() < 1e-4
+
+
+@needs_ccx
+def test_a_slender_cantilever_bends_as_the_closed_form_says(bricks: Bricks, tmp_path: Path) -> None:
+    """1 m by 20 x 10 mm: shear and rotary inertia take 1e-4 or less from the first mode each way."""
+    found = frequencies(
+        read_deck_model(written(tmp_path, bar(bricks, length=1000.0, steps=40)), units="mm-t-s").imported, 2
+    )
+    for value, height in zip(found, (0.010, 0.020), strict=True):
+        bending = 1.8751040687**2 / (2 * np.pi) * np.sqrt(210e9 * height**2 / 12 / 7850)
+        assert value == pytest.approx(bending, rel=1e-3)
+
+
+@needs_ccx
+def test_parts_are_the_whole_and_each_of_its_own_elements(bricks: Bricks, tmp_path: Path) -> None:
+    """Also of a set that no section names, and where a later section takes elements from an earlier one."""
+    more = ["*ELSET, ELSET=MIDDLE", *(f"{i}," for i in (17, 18, 19, 20, 21, 22, 23, 24))]
+    more += ["*MATERIAL, NAME=ALU", "*ELASTIC", "70000., 0.3", "*DENSITY", "2.7e-9"]
+    more += ["*SOLID SECTION, ELSET=MIDDLE, MATERIAL=ALU"]
+    model = read_deck_model(written(tmp_path, bar(bricks, *more)), [("waist", "MIDDLE")], units="mm-t-s")
+    assert [(r.name, len(r.elements), r.materials) for r in model.division.regions] == [
+        ("waist", 8, ("ALU",)), ("ROOT", 16, ("STEEL",)), ("TIP", 16, ("STEEL",))
+    ]  # fmt: skip
+    imported = model.imported
+    assert imported.rest == {"stiffness": None, "mass": None}
+    low, high = imported.box(0) or (np.zeros(3), np.zeros(3))
+    assert (low[0], high[0]) == pytest.approx((0.08, 0.12))
+    ones = np.zeros(imported.order)
+    ones[imported.nodes.row[(imported.nodes.direction == 2) & (imported.nodes.row >= 0)]] = 1.0
+    assert ones @ imported.mass_parts[0] @ ones == pytest.approx(0.04 * 0.02 * 0.01 * 2700)
+    assert model.division.made_of("steel") == (1, 2)
+
+
+def plate(shells: ModuleType, thickness: float, fold: bool) -> list[str]:
+    """Return a strip of shells, 100 x 40 mm, flat or with its second half standing up."""
+
+    def place(u: float, v: float) -> tuple[float, float, float]:
+        x, y = 0.1 * u, 0.04 * v
+        return (x, y, 0.0) if not fold or u <= 0.5 else (0.05, y, x - 0.05)
+
+    def region(u: float, v: float) -> str:
+        return "FOOT" if u < 0.5 else "WALL"
+
+    steel = (210e9, 0.3, 7850.0)
+    lines: list[str] = shells.shell_deck((8, 4), place, region, {"FOOT": steel, "WALL": steel}, 0.003)
+    at = next(i for i, line in enumerate(lines) if line.startswith("*SHELL SECTION, ELSET=WALL"))
+    lines[at + 1] = f"{thickness}"
+    return lines
+
+
+@needs_ccx
+@pytest.mark.parametrize("fold", [False, True])
+@pytest.mark.parametrize("factor", [0.7, 1.1])
+def test_thickness_between_the_runs_is_that_of_a_run(
+    shells: ModuleType, tmp_path: Path, fold: bool, factor: float
+) -> None:
+    """Five runs give the matrices of any other thickness: the powers -1 to 3 are all there are."""
+    base = 0.003 if fold else 0.0031
+    model = read_deck_model(written(tmp_path, plate(shells, base, fold)))
+    parameter = model.parameter("WALL.thickness")
+    assert parameter is not None
+    assert (parameter.nominal, parameter.unit) == (base, "m")
+    runs = [model.matrices({parameter: value}) for value in parameter.samples]
+    shares = parameter.weights(factor)
+    other = read_deck_model(written(tmp_path, plate(shells, base * factor, fold), "other.inp"))
+    for kind in (0, 1):
+        made = sum((s * run[kind] for s, run in zip(shares, runs, strict=True)), 0 * runs[0][kind])
+        assert apart(deck_matrices(other.path, model)[kind], made) < 1e-9
+        assert apart(parameter_matrices(model, "WALL.thickness", base * factor)[kind], made) < 1e-9
+
+
+@needs_ccx
+def test_shells_that_begin_to_differ_are_joined_otherwise(shells: ModuleType, tmp_path: Path) -> None:
+    model = read_deck_model(written(tmp_path, plate(shells, 0.003, fold=False)))
+    parameter = model.parameter("WALL.thickness")
+    assert parameter is not None
+    with pytest.raises(
+        StudyError, match=r"WALL\.thickness = 0\.0018 m, ccx eliminates other .* by a thousandth"
+    ):
+        model.matrices({parameter: 0.6})
+
+
+@needs_ccx
+def test_springs_and_masses_are_linear_and_in_si(bricks: Bricks, tmp_path: Path) -> None:
+    """A spring of 50 N/mm at a node of the end, a mass of 10 g: what they add stands at their rows."""
+    more = ["*ELEMENT, TYPE=SPRING1, ELSET=FOOT", "900, 200", "*SPRING, ELSET=FOOT", "3", "50."]
+    more += ["*ELEMENT, TYPE=MASS, ELSET=BOLT", "901, 200", "*MASS, ELSET=BOLT", "1e-5"]
+    model = read_deck_model(written(tmp_path, bar(bricks, *more)), units="mm-t-s")
+    spring, mass = model.parameter("FOOT.stiffness"), model.parameter("bolt.mass")
+    assert spring is not None
+    assert mass is not None
+    assert (spring.nominal, mass.nominal) == pytest.approx((50e3, 0.01))
+    stiffer, _ = model.change({spring: 3.0})
+    assert abs(stiffer).max() == pytest.approx(2 * 50e3, rel=1e-4)
+    assert abs(stiffer).sum() == pytest.approx(2 * 50e3, rel=1e-2)
+    _, heavier = model.change({mass: 3.0})
+    assert heavier.diagonal().sum() == pytest.approx(3 * 2 * 0.01, rel=1e-6)
+
+
+@needs_ccx
+def test_a_longer_bar_is_a_node_set_moved(bricks: Bricks, tmp_path: Path) -> None:
+    """The end moved by 4 mm: along it c / 4 (L + s), and middle nodes follow, between runs as well as in one."""
+    model = read_deck_model(written(tmp_path, bar(bricks)), units="mm-t-s")
+    end = model.parameter("END.x")
+    assert end is not None
+    assert (end.low, end.high) == pytest.approx((-6e-3, 6e-3))
+    stiffness, mass = model.matrices({end: 4e-3})
+    moved = Imported(stiffness, mass, model.undivided.nodes)
+    along = np.sqrt(210e9 / 7850) / (4 * 0.204)
+    assert np.abs(frequencies(moved, 12) / along - 1).min() < 1e-4
+    runs = [model.matrices({end: value}) for value in end.samples]
+    shares = end.weights(4e-3)
+    made = sum((s * run[0] for s, run in zip(shares, runs, strict=True)), 0 * stiffness)
+    assert apart(stiffness, made) < 1e-4
+
+
+@needs_ccx
+def test_what_was_made_is_kept_and_the_deck_stays(
+    bricks: Bricks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A second reading runs nothing; a changed included file, or a damaged file of the cache, runs again."""
+    monkeypatch.setenv(deck_cache.VARIABLE, str(tmp_path / "kept"))
+    lines = bar(bricks)
+    cut = next(i for i, line in enumerate(lines) if line.startswith("*MATERIAL"))
+    written(tmp_path, lines[cut : cut + 5], "steel.inp")
+    path = written(tmp_path, [*lines[:cut], "*INCLUDE, INPUT=steel.inp", *lines[cut + 5 :]])
+    before = path.read_bytes()
+    ran = []
+    own = program.run
+    monkeypatch.setattr(program, "run", lambda *stated: (ran.append(1), own(*stated))[1])
+    first = read_deck_model(path).imported
+    assert len(ran) == 3
+    again = read_deck_model(path).imported
+    assert len(ran) == 3
+    assert abs(first.stiffness - again.stiffness).max() == 0
+    assert path.read_bytes() == before
+    text = (tmp_path / "steel.inp").read_text()
+    (tmp_path / "steel.inp").write_text(text.replace("210000.", "200000."))
+    softer = read_deck_model(path).base
+    assert len(ran) == 4
+    assert softer.stiffness.max() < first.stiffness.max()
+    for file in (tmp_path / "kept").glob("*.npz"):
+        file.write_bytes(file.read_bytes()[:100])
+    read_deck_model(path).base  # noqa: B018
+    assert len(ran) == 5
+
+
+def test_the_folder_of_what_is_kept_stays_small(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(deck_cache.VARIABLE, str(tmp_path))
+    monkeypatch.setattr(deck_cache, "MOST", 25e3)
+    for i in range(5):
+        deck_cache.kept(f"{i}", lambda: {"a": np.zeros(1000)})
+    assert len(list(tmp_path.glob("*.npz"))) == 3
+    assert not list(tmp_path.glob("*.part"))
+    monkeypatch.setenv(deck_cache.VARIABLE, "")
+    assert deck_cache.cache_folder() is None
+
+
+def test_supports_of_steps_stay_and_nothing_else_of_them(tmp_path: Path) -> None:
+    lines = ["*NODE", "1, 0, 0, 0", "*STEP", "*FREQUENCY", "5", "*BOUNDARY, OP=NEW", "1, 1, 3"]
+    lines += ["*BOUNDARY, BASE MOTION=1", "1, 1", "*NODE FILE", "U", "*END STEP"]
+    assert [card.head for card in read_cards(written(tmp_path, lines))] == ["*NODE", "*BOUNDARY"]
+
+
+REFUSED: dict[str, tuple[Callable[[list[str]], list[str]], list[tuple[str, str]], str]] = {
+    "no such set": (list, [("rib", "RIB")], r"'rib': no element set or material RIB in .*; element sets: ROOT, TIP;"),
+    "overlap": (list, [("a", "ROOT"), ("b", "STEEL")], r"'b' and 'a' share element 1 \(20 in all\)"),
+    "no material": (
+        lambda deck: [line.replace("TIP, MATERIAL=STEEL", "TIP, MATERIAL=STELE") for line in deck], [],
+        r"no \*MATERIAL STELE",
+    ),
+    "no section": (lambda deck: [x for x in deck if "SECTION" not in x], [], "no section gives an element"),
+    "layers": (
+        lambda deck: [x.replace("SOLID SECTION, ELSET=TIP, MATERIAL=STEEL", "SHELL SECTION, ELSET=TIP, COMPOSITE")
+                      for x in deck], [], "several layers",
+    ),
+    "unknown elements": (
+        lambda deck: [*deck, "*ELEMENT, TYPE=U1, ELSET=X", "999, 1, 2"], [], "type U1 are not followed"
+    ),
+    "flat": (lambda deck: ["*PART, NAME=A", *deck], [], r"\*PART is not followed"),
+    "broken element": (
+        lambda deck: [*deck, "*ELEMENT, TYPE=C3D8, ELSET=X", "999, 1, 2"], [], "3 words are not elements of 8 nodes"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_is_refused_before_anything_runs(case: str, bricks: Bricks, tmp_path: Path) -> None:
+    change, regions, message = REFUSED[case]
+    with pytest.raises(StudyError, match=message):
+        read_deck_model(written(tmp_path, change(bar(bricks))), regions)
+
+
+@needs_ccx
+def test_a_deck_that_does_not_solve_says_what_ccx_says(bricks: Bricks, tmp_path: Path) -> None:
+    lines = [line for line in bar(bricks) if line not in ("*DENSITY", "7.85e-9")]
+    with pytest.raises(
+        StudyError, match=r"part\.inp: ccx does not solve this deck: \*ERROR.*density"
+    ) as caught:
+        read_deck_model(written(tmp_path, lines)).base  # noqa: B018
+    assert "\n" not in str(caught.value)
+
+
+def test_without_ccx_the_error_says_how_to_get_it(
+    bricks: Bricks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(StudyError, match=r"needs the program ccx, and there is none; .*calculix-ccx"):
+        read_deck_model(written(tmp_path, bar(bricks))).imported  # noqa: B018
+
+
+@needs_ccx
+def test_numbers_that_are_not_there(bricks: Bricks, tmp_path: Path) -> None:
+    model = read_deck_model(written(tmp_path, bar(bricks)), units="mm-t-s")
+    for name, message in {
+        "TIP.thickness": "it has no thickness to turn",
+        "FOOT.stiffness": r"no \*SPRING, ELSET=FOOT in .*; there are: none",
+        "FACE.x": "no node set FACE; there are: ALL, CLAMP, END",
+        "ALL.x": "the set holds every node",
+        "RIB.thickness": "no element set RIB",
+    }.items():
+        with pytest.raises(StudyError, match=message):
+            model.parameter(name)
+    assert model.parameter("TIP.colour") is None
+    other = written(tmp_path, bar(bricks, kind="C3D8"), "coarse.inp")
+    with pytest.raises(StudyError, match=r"its matrices have 270 rows, those of .* 900,"):
+        deck_matrices(other, model)

@@ -1,0 +1,219 @@
+"""A deck as a model: its matrices, regions, materials and parameters, each made by CalculiX once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from acquisition.errors import StudyError
+from updating.models.decks.cards import Cards, read_cards, text_of
+from updating.models.decks.mesh import Mesh, family_of
+from updating.models.decks.parameters import DeckParameter, parameter_of
+from updating.models.decks.program import Stored, stored
+from updating.models.decks.regions import Division, divide
+from updating.models.fields import Sparse
+from updating.models.imported.checks import symmetric
+from updating.models.imported.deck import Deck, read_deck
+from updating.models.imported.elements import Elements
+from updating.models.imported.matrices import Imported
+from updating.models.imported.nodes import NodeTable, deck_table
+from updating.models.imported.units import SI, matrix_in_si, places_in_si, units_of
+
+
+@dataclass(frozen=True, eq=False)
+class DeckModel:
+    """A deck that CalculiX turns into matrices, as it is and with other numbers in it.
+
+    Parameters
+    ----------
+    path : Path
+        The deck.
+    nodes : Deck
+        Nodes, node sets and supports.
+    division : Division
+        Its regions.
+    units : str
+        What it is written in.
+    """
+
+    path: Path
+    nodes: Deck
+    division: Division
+    units: str = SI
+
+    @property
+    def mesh(self) -> Mesh:
+        """Elements, sets, sections and materials."""
+        return self.division.mesh
+
+    @property
+    def cards(self) -> Cards:
+        """The model of the deck."""
+        return self.mesh.cards
+
+    @cached_property
+    def base(self) -> Stored:
+        """The matrices of the deck as it is, in its units."""
+        return stored(text_of(self.cards), str(self.path))
+
+    @cached_property
+    def table(self) -> NodeTable:
+        """Where the rows are, in the deck's units."""
+        return deck_table(self.nodes, self.base.node, self.base.direction, str(self.path))
+
+    @cached_property
+    def elements(self) -> Elements:
+        """The elements between the nodes [m]."""
+        length, _ = units_of(self.units)
+        members = [(family_of(kind), nodes) for kind, nodes in self.mesh.elements.values()]
+        known = [(family, nodes) for family, nodes in members if family]
+        return Elements({n: length * at for n, at in self.nodes.nodes.items()}, tuple(known))
+
+    def part(self, region: int) -> tuple[Sparse, Sparse]:
+        """Return stiffness and mass of a region alone [SI]."""
+        return self._in_si(self._same_rows(self.division.part(region), self.division.regions[region].name))
+
+    def region_of(self, parameter: DeckParameter) -> int | None:
+        """Return the region that holds all elements of a thickness, None where there is no one such."""
+        inside = [i for i, r in enumerate(self.division.regions) if parameter.elements <= r.elements]
+        return inside[0] if inside and parameter.elements else None
+
+    def parameter(self, name: str) -> DeckParameter | None:
+        """Return the number of the deck that a name stands for; see :func:`parameter_of`."""
+        length, force = units_of(self.units)
+        scale = {"length": length, "stiffness": force / length, "mass": force / length}
+        named = {region.name: region.elements for region in self.division.regions}
+        return parameter_of(self.mesh, self.nodes, name, scale, named)
+
+    def matrices(self, values: Mapping[DeckParameter, float]) -> tuple[Sparse, Sparse]:
+        """Return stiffness and mass of the deck with other numbers in it [SI].
+
+        Parameters
+        ----------
+        values : mapping of DeckParameter to float
+            A factor or a shift of each.
+
+        Raises
+        ------
+        StudyError
+            If CalculiX does not solve it.
+        """
+        cards, words = self.cards, list[str]()
+        for parameter, value in values.items():
+            cards = parameter.changed(cards, value)
+            words.append(f"{parameter.name} = {parameter.nominal * value:.4g} {parameter.unit}")
+        return self._in_si(self._same_rows(cards, ", ".join(words)))
+
+    def change(self, values: Mapping[DeckParameter, float]) -> tuple[Sparse, Sparse]:
+        """Return what other numbers add to stiffness and mass [SI]."""
+        stiffness, mass = self.matrices(values)
+        before = self._in_si(self.base)
+        return Sparse(stiffness - before[0]), Sparse(mass - before[1])
+
+    def _same_rows(self, cards: Cards, what: str) -> Stored:
+        found = stored(text_of(cards), f"{self.path} ({what})" if what else str(self.path))
+        if not found.same_rows(self.base):
+            raise StudyError(
+                f"{self.path}: with {what}, ccx eliminates other degrees of freedom; shells of one thickness join "
+                "otherwise than shells of two: let the deck's own thicknesses differ by a thousandth"
+            )
+        return found
+
+    def _in_si(self, found: Stored) -> tuple[Sparse, Sparse]:
+        return (
+            matrix_in_si(symmetric(found.stiffness, f"{self.path}: stiffness"), self.table, self.units),
+            matrix_in_si(symmetric(found.mass, f"{self.path}: mass"), self.table, self.units),
+        )
+
+    @cached_property
+    def imported(self) -> Imported:
+        """The deck as matrices with a part of each region."""
+        _ = self.base  # first: what is wrong with the deck is no fault of a part
+        parts = [self.part(i) for i in range(len(self.division.regions))]
+        return self._matrices(tuple(k for k, _ in parts), tuple(m for _, m in parts))
+
+    @cached_property
+    def undivided(self) -> Imported:
+        """The deck as matrices without parts."""
+        return self._matrices((), ())
+
+    def _matrices(self, stiffness: tuple[Sparse, ...], mass: tuple[Sparse, ...]) -> Imported:
+        return Imported(
+            *self._in_si(self.base),
+            places_in_si(self.table, self.units),
+            stiffness,
+            mass,
+            str(self.path),
+            self,
+        )
+
+
+def read_deck_model(path: Path, regions: Sequence[tuple[str, str]] = (), *, units: str = SI) -> DeckModel:
+    """Read a deck; CalculiX runs when matrices are asked for.
+
+    Parameters
+    ----------
+    path : Path
+        The deck.
+    regions : sequence of (name, set)
+        Regions, and the element set or material each of them is; what they leave out becomes a region for each
+        section.
+    units : {"m-kg-s", "mm-t-s", "in-lbf-s"}
+        What the deck is written in.
+
+    Raises
+    ------
+    StudyError
+        If the deck cannot be read, or a set does not exist.
+    """
+    units_of(units)
+    mesh = Mesh(read_cards(path), str(path))
+    return DeckModel(path, read_deck(path), divide(mesh, regions), units)
+
+
+def deck_matrices(path: Path, like: DeckModel) -> tuple[Sparse, Sparse]:
+    """Return stiffness and mass of another deck on the rows of one: a hypothesis ``deck = "loose.inp"`` [SI].
+
+    Raises
+    ------
+    StudyError
+        If it cannot be read or solved, or has other rows.
+    """
+    other = read_deck_model(path, units=like.units)
+    if not other.base.same_rows(like.base):
+        raise StudyError(
+            f"{path}: its matrices have {len(other.base.node)} rows, those of {like.path} {len(like.base.node)}, or as "
+            "many of other nodes; give a deck on the same mesh and supports"
+        )
+    return other._in_si(other.base)
+
+
+def parameter_matrices(model: DeckModel, name: str, value: float) -> tuple[Sparse, Sparse]:
+    """Return stiffness and mass with one number changed: a hypothesis ``parameter = "web.thickness"`` [SI].
+
+    Parameters
+    ----------
+    model : DeckModel
+        The deck.
+    name : str
+        As in ``[update] parameters``.
+    value : float
+        In its unit, not as a factor: a thickness in m, a stiffness in N/m; of a coordinate the shift in m.
+
+    Raises
+    ------
+    StudyError
+        If there is no such number, or CalculiX does not solve the deck with it.
+    """
+    parameter = model.parameter(name)
+    if parameter is None:
+        raise StudyError(f"{model.path}: no parameter {name!r}; known: {KNOWN}")
+    return model.matrices({parameter: value / parameter.nominal})
+
+
+KNOWN = "SET.thickness, SET.thickness_1, SET.thickness_2, SET.stiffness, SET.mass, NODESET.x, NODESET.y, NODESET.z"
+"""Numbers of a deck, for messages."""
+
+__all__ = ["DeckModel", "deck_matrices", "parameter_matrices", "read_deck_model"]
