@@ -53,7 +53,12 @@ class Session(Displayed):
         return self.case.measured._frame()
 
 
-def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Session:
+def open_study(
+    study: Study | Path | str,
+    *,
+    with_baseline: bool = True,
+    known: tuple[Processed, ModalModel] | None = None,
+) -> Session:
     """Work out the case of a study: process and identify its test and its baseline.
 
     Parameters
@@ -62,6 +67,8 @@ def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Sess
         The study, or its file.
     with_baseline : bool
         Whether the baseline is worked out too; only a diagnosis needs it.
+    known : (Processed, ModalModel), optional
+        FRFs and modes of the test, as :func:`process` gives them, where they are there already.
 
     Raises
     ------
@@ -69,7 +76,7 @@ def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Sess
         If the study names no data.
     """
     study = study if isinstance(study, Study) else read_study(study)
-    test, processed, identified = _measure(study, study.test, "test")
+    test, processed, identified = _measure(study, study.test, "test", known)
     baseline, *before = (
         _measure(study, study.baseline, "baseline")
         if study.baseline is not None and with_baseline
@@ -154,7 +161,16 @@ def _identified(
     drop: Sequence[float] = (),
     progress: Progress | None = None,
 ) -> tuple[Processed, ModalModel]:
-    processing = ProcessingOptions(
+    files = [study.file(f) for f in table.files]
+    processed = read_frfs(files, processing=processing_of(study, table), progress=progress)
+    return processed, processed.identify(
+        band=band or table.band, order=order or table.order, add=[*table.add, *add], drop=[*table.drop, *drop]
+    )
+
+
+def processing_of(study: Study, table: MeasurementTable) -> ProcessingOptions:
+    """Return how a study wants the records of a test to be treated."""
+    return ProcessingOptions(
         decay=table.exponential_window,
         window_on=table.window_on,
         window=table.window,
@@ -163,16 +179,15 @@ def _identified(
         leave=tuple(table.leave),
         layout=None if table.layout is None else study.file(table.layout),
         sensor_masses=tuple(table.sensor_masses.items()),
-    )
-    files = [study.file(f) for f in table.files]
-    processed = read_frfs(files, processing=processing, progress=progress)
-    return processed, processed.identify(
-        band=band or table.band, order=order, add=[*table.add, *add], drop=[*table.drop, *drop]
+        references=tuple(table.references),
     )
 
 
 def _measure(
-    study: Study, table: MeasurementTable, name: str
+    study: Study,
+    table: MeasurementTable,
+    name: str,
+    known: tuple[Processed, ModalModel] | None = None,
 ) -> tuple[Measured, Processed | None, ModalModel | None]:
     options: dict[str, float | str] = {
         "calibration": table.calibration,
@@ -188,7 +203,7 @@ def _measure(
         return replace(measured, warnings=(*measured.warnings, *beyond), below=below), None, None
     if not table.files:
         raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
-    processed, identified = _identified(study, table)
+    processed, identified = _identified(study, table) if known is None else known
     with _naming(study):
         measured = measured_from_identified(identified, axes, spec, **options)
     return _with_levels(measured, processed, identified), processed, identified
