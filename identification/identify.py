@@ -17,9 +17,9 @@ from acquisition.quantities import hertz, percent
 from acquisition.warned import Consequential
 from identification.arrangement import arrange, signs, unsigned
 from identification.band.uninformed import uninformed_modes
+from identification.fit.equations import basis
 from identification.fit.equations.pruning import inside, located
-from identification.fit.equations.refine import Fit
-from identification.fit.equations.residues import Residues
+from identification.fit.equations.residues import Residues, synthesise
 from identification.fit.fit import Fitted, fit_candidates, provisional, with_named
 from identification.fit.noise.disagreement import Disagreement
 from identification.fit.poly_reference import sorted_frfs
@@ -144,7 +144,7 @@ class Prepared:
     def _kept(self) -> dict[tuple[float, ...], Fitted]:
         return {}
 
-    def provisional(self, hertz: float, *, add: Sequence[float] = ()) -> Fit:
+    def provisional(self, hertz: float, *, add: Sequence[float] = ()) -> Provisional:
         """Return the fit with one more mode as far as a picture needs it; :meth:`modes` gives the last digits.
 
         Parameters
@@ -160,7 +160,28 @@ class Prepared:
             If it is not among the lines.
         """
         with threadpool_limits(1, user_api="blas"):
-            return provisional(self._with(tuple(add)), hertz)
+            fitted = self._with(tuple(add))
+            fit = provisional(fitted, hertz)
+            modes = inside(fit.poles, self.band, self.data.df)
+            values = synthesise(basis.Axis.of(fitted.frfs), fit.poles, fit.linear)
+            frfs = replace(fitted.frfs, values=values, coherence=None, variance=None, averages=None)
+            return Provisional(fit.poles[modes], frfs)
+
+
+@dataclass(frozen=True, eq=False)
+class Provisional:
+    """What a picture needs of modes whose last digits are still being worked out.
+
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        Poles in the band [rad/s].
+    frfs : FrfSet
+        The FRFs of the fit, as measured in form and signs.
+    """
+
+    poles: ComplexArray
+    frfs: FrfSet
 
 
 def prepare(

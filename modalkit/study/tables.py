@@ -93,6 +93,7 @@ class MeasurementTable(Strict):
     drop: list[Hertz] = []
     order: Annotated[int, Field(ge=2, le=400)] | None = None
     references: list[str] = []
+    pairs: list[tuple[Hertz, Annotated[int, Field(ge=0)]]] = []
     layout: str | None = None
     sensor_masses: dict[str, Mass] = {}
     calibration: Annotated[float, in_unit(""), Field(gt=0.0)] = 0.02

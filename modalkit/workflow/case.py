@@ -19,6 +19,7 @@ from modalkit.workflow.files import Progress
 from modalkit.workflow.identification import Processed, read_frfs
 from modalkit.workflow.processing_options import ProcessingOptions
 from updating import Case, Measured, measured_from_identified, measured_from_modes
+from updating.test_data.measured import NO_PARTNER, UNSTATED
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -200,13 +201,44 @@ def _measure(
         modes, below, beyond = modes_in_band(study, table, name)
         with _naming(study):
             measured = measured_from_modes(modes, axes, spec, **options)
+        measured = _with_pairs(study, table, measured)
         return replace(measured, warnings=(*measured.warnings, *beyond), below=below), None, None
     if not table.files:
         raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
     processed, identified = _identified(study, table) if known is None else known
     with _naming(study):
         measured = measured_from_identified(identified, axes, spec, **options)
+    measured = _with_pairs(study, table, measured)
     return _with_levels(measured, processed, identified), processed, identified
+
+
+PAIRED = 0.01
+"""Relative distance within which a stated pair means a measured mode: that of modes to drop [-]."""
+
+
+def _with_pairs(study: Study, table: MeasurementTable, measured: Measured) -> Measured:
+    """Return a test with the pairs that are stated of it.
+
+    Raises
+    ------
+    StudyError
+        If there is no mode where one is paired, or two with one model mode.
+    """
+    if not table.pairs:
+        return measured
+    partners = np.full(len(measured.frequency), UNSTATED)
+    for hertz, mode in table.pairs:
+        distance = np.abs(measured.frequency / hertz - 1)
+        if distance.min() > PAIRED:
+            found = ", ".join(f"{f:.5g}" for f in measured.frequency)
+            raise StudyError(
+                f"{study.path}: pairs name a mode at {hertz:g} Hz; those of the test are at {found} Hz"
+            )
+        partners[distance.argmin()] = mode - 1 if mode else NO_PARTNER
+    stated = partners[partners >= 0]
+    if len(set(stated.tolist())) < len(stated):
+        raise StudyError(f"{study.path}: pairs give one model mode to two measured ones; decide for one")
+    return replace(measured, partners=partners)
 
 
 def modes_in_band(study: Study, table: MeasurementTable, name: str) -> tuple[ModalData, int, tuple[str, ...]]:

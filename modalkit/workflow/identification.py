@@ -262,7 +262,7 @@ def read(
     content = read_files(paths, layout=processing.layout, progress=progress)
     modes = existing(content.modal, paths, content.title, content.warnings)
     if modes is None or content.tests or content.frfs is not None:
-        return _processed(content, paths, processing)
+        return from_content(content, paths, processing)
     if replace(processing, layout=None) != AS_READ:
         raise InputError(
             f"{modes.source}: holds modes; decay, windows, hits, estimator and sensor masses are for hits and FRFs"
@@ -308,7 +308,23 @@ def _statement(processing: ProcessingOptions, decay: float, layout: Path | str |
     return processing
 
 
-def _processed(content: UffContent, paths: Sequence[Path], processing: ProcessingOptions) -> Processed:
+def from_content(content: UffContent, paths: Sequence[Path], processing: ProcessingOptions) -> Processed:
+    """Return the FRFs of a test whose files are read already.
+
+    Parameters
+    ----------
+    content : UffContent
+        What they hold; it stays as it is.
+    paths : sequence of path
+        Their names, for messages.
+    processing : Handling
+        How records are treated.
+
+    Raises
+    ------
+    InputError
+        If there are neither hits nor FRFs, or what is said of their treatment does not fit them.
+    """
     warnings = list(content.warnings)
     if processing.references:
         content = with_references(content, processing.references)

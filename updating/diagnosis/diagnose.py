@@ -36,7 +36,11 @@ from updating.test_data.same_places import unmatched
 
 
 def diagnose(
-    case: Case, *, library: Sequence[Effect] | None = None, rng: np.random.Generator | None = None
+    case: Case,
+    *,
+    library: Sequence[Effect] | None = None,
+    rng: np.random.Generator | None = None,
+    progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     """Say where the gap between a test and a model lies, what causes it, and how far it closes.
 
@@ -48,6 +52,8 @@ def diagnose(
         Effects to consider; left out, the whole library.
     rng : Generator, optional
         For the bootstrap; left out, a fixed one, so that the answer repeats.
+    progress : function, optional
+        Called with the name of every stage as it begins.
 
     Returns
     -------
@@ -59,9 +65,10 @@ def diagnose(
         If no measured mode has a partner in the model.
     """
     with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
+        _stage(progress, "pairing the modes")
         problem, warnings = pose(case)
         accepted = {name for name, _ in case.accepted}
-        return _diagnose(problem, (case.title,), accepted, library, rng, warnings)
+        return _diagnose(problem, (case.title,), accepted, library, rng, warnings, progress)
 
 
 def diagnose_together(
@@ -111,13 +118,16 @@ def _diagnose(
     library: Sequence[Effect] | None,
     rng: np.random.Generator | None,
     warnings: list[str],
+    progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     effects = list(LIBRARY.values()) if library is None else list(library)
+    _stage(progress, "comparing the effects")
     found = search(problem, [effect for effect in effects if effect.name not in accepted])
     chance = found.empty.p_value
     significant = is_significant(found, chance)
     comparable = not any(one.mostly_alone for one in problem.specimens)
     draws = np.random.default_rng(1) if rng is None else rng
+    _stage(progress, "predicting modes held out")
     shrink = _shrink(problem, found, draws, significant=significant)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
     left = remainder_of(problem, titles, leader if significant else found.empty.explanation, shrink)
@@ -128,6 +138,7 @@ def _diagnose(
         closed=None if shrink.closed is None else shrink.closed.value,
         left=left.significant,
     )
+    _stage(progress, "choosing the next test")
     return Diagnosis(
         " and ".join(titles),
         significant,
@@ -145,6 +156,11 @@ def _diagnose(
         left if significant or found.empty.explanation.candidate.outliers else None,
         included(found),
     )
+
+
+def _stage(progress: Callable[[str], None] | None, name: str) -> None:
+    if progress is not None:
+        progress(name)
 
 
 def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
