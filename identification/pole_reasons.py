@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, IntArray
 from identification.model import ModalModel
 from identification.poles.selection import chains, needed, representative
 
@@ -68,22 +68,42 @@ def pole_origins(model: ModalModel, *, add: Sequence[float] = (), drop: Sequence
     """
     chart = model.chart
     groups, least = chains(chart), needed(chart)
+    poles = np.array([representative(chart, members) for members in groups], complex)
     number = np.zeros(len(chart.poles), dtype=np.int64)
-    reasons, found = [], set()
     for i, members in enumerate(groups):
         number[members] = i
-        reason = _reason(model, representative(chart, members), len(members), least, drop)
-        if reason.kind == "mode" and reason.mode is not None:
-            found.add(reason.mode)
-        reasons.append(reason)
+    long = np.array([len(members) >= least for members in groups])
+    became = _became(model.poles, poles, long)
+    reasons = tuple(
+        _reason(model, poles[i], len(members), least, became, drop, i) for i, members in enumerate(groups)
+    )
     named = {_nearest(model.poles, value) for value in add}
     modes = tuple(
-        "named" if i in named else "chain" if i in found else "refinement" for i in range(len(model))
+        "named" if r in named else "chain" if r in became.values() else "refinement"
+        for r in range(len(model))
     )
-    return Origins(tuple(reasons), number, modes)
+    return Origins(reasons, number, modes)
 
 
-def _reason(model: ModalModel, pole: complex, length: int, least: int, drop: Sequence[float]) -> PoleReason:
+def _became(modes: ComplexArray, poles: ComplexArray, long: BoolArray) -> dict[int, int]:
+    """Return the mode that each of some chains became: per mode the nearest of the long chains, if one is near."""
+    found = {}
+    for r, mode in enumerate(modes):
+        distance = np.where(long, np.abs(np.abs(poles) / abs(mode) - 1.0), np.inf)
+        if len(distance) and distance.min() < NEAR:
+            found[int(distance.argmin())] = r
+    return found
+
+
+def _reason(
+    model: ModalModel,
+    pole: complex,
+    length: int,
+    least: int,
+    became: Mapping[int, int],
+    drop: Sequence[float],
+    chain: int,
+) -> PoleReason:
     """Return what became of a chain with this pole in its middle."""
     orders = len(model.chart.orders)
     if length == 1:
@@ -91,11 +111,11 @@ def _reason(model: ModalModel, pole: complex, length: int, least: int, drop: Seq
     if length < least:
         text = f"holds through {length} of {orders} orders only; a candidate holds through {least}"
         return PoleReason("short", text)
+    if chain in became:
+        mode = became[chain]
+        return PoleReason("mode", f"stable through {length} of {orders} orders: mode {mode + 1}", mode)
     frequency = abs(pole) / (2 * np.pi)
     low, high = model.band
-    mode = _near(model.poles, pole)
-    if mode is not None:
-        return PoleReason("mode", f"stable through {length} of {orders} orders: mode {mode + 1}", mode)
     if not low <= frequency <= high:
         return PoleReason("outside", "stable, but outside the band: it stays in the fit as background")
     if any(abs(frequency - value) <= NEAR * value for value in drop):
@@ -105,8 +125,11 @@ def _reason(model: ModalModel, pole: complex, length: int, least: int, drop: Seq
             "stable, but the data do not tell its frequency or its damping: it stays in the fit as background"
         )
         return PoleReason("background", text)
-    text = "stable, but the fit does without it: what it explains is no more than noise, or a neighbour does"
-    return PoleReason("pruned", text)
+    beside = _near(model.poles, pole)
+    if beside is not None:
+        text = f"stable, but one with mode {beside + 1}: frequencies that differ from FRF to FRF make one mode several"
+        return PoleReason("pruned", text)
+    return PoleReason("pruned", "stable, but the fit does without it: it explains no more than noise does")
 
 
 def _near(poles: ComplexArray, pole: complex) -> int | None:

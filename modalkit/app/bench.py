@@ -9,6 +9,7 @@ from typing import Any
 
 from acquisition.errors import InputError, ModalkitError
 from identification import ModalModel
+from modalkit.app.acceptance import accepted_entries
 from modalkit.app.actions import ACTIONS
 from modalkit.app.export import Handed, export, free_folder, study_text
 from modalkit.app.history import History, State
@@ -154,8 +155,9 @@ class Bench:
     def shapes(self) -> dict[str, Any]:
         """Return the page of the shapes."""
         with self._lock:
-            beside, why = self._beside_or_why()
-            return shapes_page(self._workbench.modal(self.study), beside) | {"no_model": why}
+            modal = self._workbench.modal(self.study)
+            beside, why = (None, "") if modal.shapes is None else self._beside_or_why()
+            return shapes_page(modal, beside) | {"no_model": why}
 
     def model(self) -> dict[str, Any]:
         """Return the page of the model."""
@@ -228,6 +230,22 @@ class Bench:
 
     def _name(self) -> str:
         return self.study.name if self._opened.is_study else self._opened.path.stem
+
+    def accept(self, row: int) -> dict[str, Any]:
+        """Put the effects of a row of the diagnosis into the model, with the values found.
+
+        Raises
+        ------
+        InputError
+            If there is no such row.
+        """
+        with self._lock:
+            found = self._result("diagnose")
+            ranking = [] if found is None else found["document"]["cause"]["ranking"]
+            if not 0 <= row < len(ranking):
+                raise InputError(f"the diagnosis has no row {row + 1}; diagnose first")
+            entries = accepted_entries(ranking[row], self._workbench.predictor(self.study))
+            return self.act("accept", {"effects": entries})
 
     def stop(self) -> dict[str, Any]:
         """Stop the work that runs."""

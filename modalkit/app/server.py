@@ -42,6 +42,7 @@ PAGES: dict[str, Answer] = {
 
 CHANGES: dict[str, Answer] = {
     "act": lambda bench, a: bench.act(str(a["name"]), _mapping(a.get("arguments", {}))),
+    "accept": lambda bench, a: bench.accept(int(a["row"])),
     "undo": lambda bench, a: bench.step(back=True),
     "redo": lambda bench, a: bench.step(back=False),
     "moved": lambda bench, a: bench.moved(

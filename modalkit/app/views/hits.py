@@ -26,6 +26,7 @@ def hits_page(processed: Processed | None, study: Study) -> dict[str, Any]:
         "force": None if force is None else str(force),
         "frfs": frf_names(processed.frfs),
         "unit": processed.frfs.unit,
+        "estimator": study.test.estimator,
         "warnings": [str(w) for w in processed.warnings],
     }
 

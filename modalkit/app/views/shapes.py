@@ -119,7 +119,7 @@ def _model(
     pairs = {
         int(t) - 1: (int(m) - 1, float(c)) for t, m, c in table[["test mode", "model mode", "MAC"]].to_numpy()
     }
-    surface = _surface(beside)
+    surface = _surface(beside, prediction.vectors.shape[0])
     found: list[dict[str, Any] | None] = []
     for r, mode in enumerate(modes):
         if r not in pairs:
@@ -142,15 +142,18 @@ def _model(
                 "difference": difference / max(float(np.abs(vectors[:, :, r]).max()), 1e-300),
                 "surface": None
                 if surface is None
-                else factor * surface["rows"] @ prediction.vectors[: surface["rows"].shape[1], partner],
+                else factor * (surface["rows"] @ prediction.vectors[:, partner]),
             }
         )
     drawn = None if surface is None else {k: v for k, v in surface.items() if k != "rows"}
     return {"modes": found, "surface": drawn}
 
 
-def _surface(beside: Beside) -> dict[str, Any] | None:
-    """Return the model's own line or surface in the test's coordinates, with the rows of its basis; None without."""
+def _surface(beside: Beside, count: int) -> dict[str, Any] | None:
+    """Return the model's own line or surface in the test's coordinates, with the rows of its basis; None without.
+
+    ``count`` is the number of coordinates of the basis that the shapes have.
+    """
     study, predictor = beside.session.study, beside.predictor
     spec = predictor.spec
     if spec.imported is not None:
@@ -169,5 +172,5 @@ def _surface(beside: Beside) -> dict[str, Any] | None:
         "places": space @ axes.rotation + np.asarray(axes.origin),
         "along": axes.rotation[2],
         "shape": shape,
-        "rows": predictor.reduced.rows(flat)["w"],
+        "rows": predictor.reduced.rows(flat)["w"][:, :count],
     }
