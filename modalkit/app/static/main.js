@@ -24,7 +24,7 @@ const app = {
   async change(name, body = {}) { return changed(() => post(name, body)); },
   async working(text, work) {
     notice(text, "busy");
-    try { const found = await work(); notice(""); return found; } catch (error) { notice(error.message, "error"); throw error; }
+    try { const found = await work(); if (byId("notice").className === "busy") notice(""); return found; } catch (error) { notice(error.message, "error"); throw error; }
   },
   notice,
   quiet(promise) { promise.catch(() => {}); },
@@ -40,7 +40,7 @@ function notice(text, kind = "") {
 /** Make a change; a refused one leaves everything as it is and says why. */
 async function changed(send) {
   let state;
-  try { state = await app.working("working", send); } catch { await show(); return false; }
+  try { state = await app.working("working", send); } catch (error) { await show(); notice(error.message, "error"); return false; }
   app.state = state;
   head();
   await show();

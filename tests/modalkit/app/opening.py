@@ -8,6 +8,9 @@ from modalkit.app.bench import Bench
 from modalkit.app.opened import open_path
 from modalkit.app.store import Store
 
+FAINT = 260.0
+"""Frequency of a mode that the noise of a fixture all but hides [Hz]."""
+
 
 def opened(path: Path) -> Bench:
     """Return it."""
