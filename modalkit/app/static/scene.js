@@ -24,7 +24,7 @@ function disc() {
 
 /** One set of points that moves, with what joins them. */
 class Body {
-  constructor(group, places, { lines = [], faces = [], dots = true, opacity = 0.5, size = 10 } = {}) {
+  constructor(group, places, { lines = [], faces = [], dots = true, opacity = 0.5, size = 8 } = {}) {
     this.places = places;
     this.count = places.length;
     this.positions = new Float32Array(3 * this.count);
@@ -44,7 +44,7 @@ class Body {
       add(new THREE.Mesh(geometry(triangles), new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide, transparent: opacity < 1, opacity, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 })));
     }
     if (lines.length) add(new THREE.LineSegments(geometry(lines.flat()), new THREE.LineBasicMaterial({ vertexColors: true })));
-    if (dots) add(new THREE.Points(geometry(null), new THREE.PointsMaterial({ size: size * window.devicePixelRatio, sizeAttenuation: false, vertexColors: true, map: disc(), alphaTest: 0.5 })));
+    if (dots) add(new THREE.Points(geometry(null), new THREE.PointsMaterial({ size: size * Math.min(2, window.devicePixelRatio), sizeAttenuation: false, vertexColors: true, map: disc(), alphaTest: 0.5 })));
   }
 
   /** Move every point by re cos - im sin, and colour it by a value from -1 to 1. */
@@ -146,9 +146,9 @@ export class Scene {
   aim() {
     const apart = this.beside.visible ? this.apart ?? [0, 0, 0] : [0, 0, 0];
     const centre = this.centre.map((v, k) => v + apart[k] / 2);
-    const reach = 0.11 * this.size;
-    const half = this.spread.map((v, k) => (v + apart[k]) / 2 + (v < reach ? reach : 0));
-    const corners = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => [x, y, z].map((s, k) => centre[k] + s * half[k]))));
+    const reach = 0.09 * this.size;
+    const places = [...this.page.places, ...(this.page.model?.surface?.places ?? this.page.places).map((p) => p.map((v, k) => v + apart[k]))];
+    const corners = places.flatMap((p) => [0, 1, 2].flatMap((k) => [-reach, reach].map((d) => p.map((v, i) => v + (i === k ? d : 0)))));
     this.orbit.aim(centre, corners, this.camera.aspect);
   }
 

@@ -12,7 +12,8 @@ export function open(root, app) {
   const notes = h("div");
   const records = h("section", { class: "panel" }, h("h2", {}, "The hit"), verdict,
     h("div", { class: "two" }, titled("Force", charts.force), titled("Spectrum of the force", charts.spectrum)), titled("Response", charts.response));
-  const picture = h("section", { class: "panel" }, h("h2", {}, "FRF of the hits used"), chooser, titled("Magnitude", charts.frf), titled("Coherence", charts.coherence));
+  const heading = h("h2", {}, "FRF of the hits used");
+  const picture = h("section", { class: "panel" }, heading, chooser, titled("Magnitude", charts.frf), titled("Coherence", charts.coherence));
   const side = h("section", { class: "panel side" }, h("h2", {}, "Hits"), list);
   root.append(notes, h("div", { class: "columns" }, side, h("div", {}, records, picture)));
   const view = { hit: null, frf: 0, page: null, before: null };
@@ -22,6 +23,7 @@ export function open(root, app) {
     const { hits, frfs } = view.page;
     fill(notes, warnings(view.page.warnings));
     records.hidden = !hits.length;
+    heading.textContent = hits.length ? "FRF of the hits used" : "FRFs";
     if (!hits.length) {
       fill(list, h("p", {}, frfs.length ? "The files hold FRFs, no hits: they stay as they are." : "The test has modes alone: no hits and no FRFs. Go on to its modes."));
     } else {
