@@ -138,6 +138,8 @@ def _watch(job: Job) -> None:
         if "stage" in news:
             job.stages.append((str(news["stage"]), time.monotonic() - job.begun))
         job.error = str(news.get("error", job.error))
+        if news.get("done") and job.state == "running":
+            job.state = "done"
     last = job.process.stderr.read().strip().rpartition("\n")[2]
     code = job.process.wait()
     if job.state != "running":

@@ -23,9 +23,10 @@ Progress = Callable[[str], None]
 
 def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Diagnose a study and write the report."""
-    from modalkit.figures.words import answer
+    from acquisition.quantities import bare_p, probability
+    from modalkit.figures.words import answer, parameters
     from modalkit.output.documents import diagnosis_document
-    from modalkit.output.summary import answers
+    from modalkit.output.summary import answers, separates
     from modalkit.report import diagnosis_report
     from modalkit.study.read import read_study
     from modalkit.workflow.case import open_study
@@ -40,6 +41,23 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     return {
         "answer": answer(found),
         "summary": answers(found),
+        "rows": [
+            {
+                "probability": probability(row.probability),
+                "parameters": parameters(row),
+                "p": bare_p(row.p_value),
+            }
+            for row in found.ranking
+        ],
+        "next": [
+            {"measure": t.measure, "separates": separates(t), "sigma": t.expected_sigma}
+            for t in found.next_test
+        ],
+        "closes": {
+            "before": found.shrink.size(found.shrink.held_before),
+            "after": found.shrink.size(found.shrink.held_after),
+            "floor": found.shrink.size(found.shrink.floor),
+        },
         "document": diagnosis_document(found, warnings_of([session])),
     }
 

@@ -1,7 +1,7 @@
 // Diagnosis: progress by stages, the answer as in the report, a cause accepted, what to measure next, planning.
 
 import { axis, colour, draw } from "../charts.js";
-import { button, fill, fixed, h, short, table, warnings } from "../dom.js";
+import { button, fill, fixed, h, table, warnings } from "../dom.js";
 import { worker } from "./work.js";
 
 export function open(root, app) {
@@ -26,25 +26,21 @@ export function open(root, app) {
     fill(answer, h("p", { class: "big", id: "diagnosis-answer" }, found.answer), h("dl", { class: "summary" }, Object.entries(found.summary).map(([k, v]) => [h("dt", {}, k), h("dd", {}, v)])),
       h("p", {}, h("a", { href: "report/diagnose", target: "_blank", rel: "noopener" }, "The whole report"), " opens in a page of its own."));
     const accepted = d.cause.verdict === "named" || d.cause.verdict === "class";
-    const columns = ["causes", "probability", "", "parameters", "fit p", ...(d.cause.ranking.length ? [""] : [])].map((name, i) => ({ name, number: i === 1 || i === 4, wide: i === 3 }));
-    fill(causes, table("Explanations, most probable first", columns, d.cause.ranking.slice(0, 10).map((row, i) => [row.effects.join(" + ") || "tolerances alone", `${(100 * row.probability).toFixed(1)} %`,
-      h("meter", { min: "0", max: "1", value: String(row.probability), "aria-label": "probability" }), parameters(row), short(row.fit_p_value),
+    const columns = ["causes", "probability", "share", "parameters", "fit p", "model"].map((name, i) => ({ name, number: i === 1 || i === 4, wide: i === 3 }));
+    fill(causes, table("Explanations, most probable first", columns, d.cause.ranking.slice(0, 10).map((row, i) => [row.effects.join(" + ") || "tolerances alone", found.rows[i].probability,
+      h("meter", { min: "0", max: "1", value: String(row.probability), "aria-label": "probability" }), found.rows[i].parameters, found.rows[i].p,
       row.effects.length ? button("Accept", () => app.change("accept", { row: i }), { class: "small", "aria-label": `put ${row.effects.join(" and ")} into the model`, id: `accept-${i}` }) : ""])),
     h("p", { class: "muted" }, accepted ? "Accept puts a row into the model; diagnose again to see what is left." : "No row is the answer; accept one only if you know better."));
     const modes = d.gap.modes;
     await draw(gap, [{ type: "bar", x: modes.map((_, i) => `${i + 1}`), y: modes.map((m) => m.error_percent), marker: { color: colour("orange") }, name: "model as it stands",
       error_y: { type: "data", array: modes.map((m) => 2 * m.sigma_percent), color: colour("muted"), thickness: 1 }, customdata: modes.map((m) => [m.test_hz, m.model_hz]), hovertemplate: "mode %{x}: test %{customdata[0]:.3f} Hz, model %{customdata[1]:.3f} Hz, %{y:.3f} %<extra></extra>" }],
     { height: 280, xaxis: axis("mode", { type: "category" }), yaxis: axis("error of the model [%]", { zeroline: true, zerolinecolor: colour("muted") }) });
-    const shrink = d.shrink.held_out;
     fill(rest,
-      h("p", {}, `On modes held out the gap goes from ${short(shrink.before_percent)} to ${short(shrink.after_percent)}; the noise floor is ${short(shrink.noise_floor_percent)} (${d.shrink.metric}).`),
-      d.next_test.length ? table("What to measure next", [{ name: "measure", wide: true }, { name: "separates" }, { name: "σ", number: true }], d.next_test.map((t) => [t.measure, t.separates.join(" from "), fixed(t.expected_sigma, 1)])) : h("p", {}, "No further test is proposed."),
+      h("p", {}, `On modes held out the gap goes from ${found.closes.before} to ${found.closes.after}; the noise floor is ${found.closes.floor}.`),
+      found.next.length ? table("What to measure next", [{ name: "measure" }, { name: "separates", wide: true }, { name: "σ", number: true }], found.next.map((t) => [t.measure, t.separates, fixed(t.sigma, 1)])) : h("p", {}, "No further test is proposed."),
       Object.keys(d.not_examined).length ? h("details", {}, h("summary", {}, `${Object.keys(d.not_examined).length} effects were not examined`), h("ul", {}, Object.entries(d.not_examined).map(([k, v]) => h("li", {}, `${k}: ${v}`)))) : null,
       warnings(d.warnings));
   }
-
-  const parameters = (row) => Object.entries(row.parameters).map(([name, p]) =>
-    `${name} ${typeof p.value === "number" ? `${short(p.value)} ${p.unit === "-" ? "" : p.unit} (${short(p.low95)} to ${short(p.high95)})` : [p.value].flat().join(", ")}${p.at_bound ? " at its bound" : ""}`).join("; ");
 
   async function forecast(found) {
     fill(planned, found ? h("ul", { class: "plain-list", id: "plan-lines" }, found.lines.map((text) => h("li", {}, text.replace(/\s+/g, " ")))) : null);

@@ -13,7 +13,7 @@ export function open(root, app) {
   const matrix = h("section", { class: "panel" }, h("h2", {}, "MAC"), mac);
   const stated = h("section", { class: "panel" }, h("h2", {}, "The study"), fields, inside,
     h("details", {}, h("summary", {}, "The whole study as text"), text, h("div", { class: "row" }, button("Take this text", () => app.act("text", { text: text.value }), { id: "study-take" }))));
-  root.append(notes, h("div", { class: "two" }, moving, comparing), h("div", { class: "two wide-left" }, drawn, matrix), stated);
+  root.append(notes, h("div", { class: "two wide-right" }, moving, comparing), h("div", { class: "two wide-left" }, drawn, matrix), stated);
   const view = { page: null, frf: 0, effect: "", values: {}, factors: {}, asked: 0, running: false };
 
   async function update() {

@@ -67,9 +67,10 @@ export function open(root, app) {
       const found = await get("provisional", { hertz, index: view.frf });
       const near = found.frequency_hz.reduce((a, b) => (Math.abs(b - hertz) < Math.abs(a - hertz) ? b : a), found.frequency_hz[0] ?? hertz);
       const k = found.frequency_hz.indexOf(near);
-      await Promise.all([charted([...view.page.table, { mode: "new", frequency_hz: near, damping_ratio: found.damping_ratio[k], origin: "named", whence: "being refined" }]), overlaid(found.fit)]);
-      readout.textContent = `${near.toFixed(3)} Hz, being refined …`;
+      await overlaid(found.fit);
       root.dataset.pictured = String(performance.now() - begun);
+      await charted([...view.page.table, { mode: "new", frequency_hz: near, damping_ratio: found.damping_ratio[k], origin: "named", whence: "being refined" }]);
+      readout.textContent = `${near.toFixed(3)} Hz, being refined …`;
     } catch (error) { app.notice(error.message, "error"); return; }
     const done = await app.act("pick", { hertz });
     root.dataset.settled = String(performance.now() - begun);
@@ -77,7 +78,7 @@ export function open(root, app) {
   }
 
   async function charted(modes) {
-    const { chart: found, sum, band, unit } = view.page;
+    const { chart: found, sum, band } = view.page;
     const behind = Object.keys(sum).filter((k) => (view.over === "cmif" && "cmif1" in sum ? k.startsWith("cmif") : k === "sum"));
     const traces = behind.map((k, i) => line(k === "sum" ? "Σ|H|" : k.toUpperCase(), sum.x, sum[k], i ? "faint" : "muted", { yaxis: "y2", hoverinfo: "x", opacity: i ? 0.7 : 0.9 }));
     for (const [kind, name, symbol, size, shade] of KINDS) {
@@ -103,7 +104,6 @@ export function open(root, app) {
       if (mode !== null && mode !== undefined && Number.isFinite(mode)) { chosenRow(mode); return; }
       picked(point.x);
     });
-    void unit;
   }
 
   function chosenRow(mode) {
@@ -118,7 +118,7 @@ export function open(root, app) {
 
   function listed(modes) {
     const columns = [{ name: "mode", number: true }, { name: "frequency [Hz]", number: true }, { name: "σ [Hz]", number: true }, { name: "damping [%]", number: true }, { name: "σ [%]", number: true },
-      { name: "MPC", number: true }, { name: "where from", wide: true }, ...(view.page.identified ? [{ name: "" }] : [])];
+      { name: "MPC", number: true }, { name: "where from", wide: true }, ...(view.page.identified ? [{ name: "change" }] : [])];
     const percent = (v) => (v === null ? null : 100 * v);
     fill(rows, table(`${modes.length} modes${view.page.scaled ? ", shapes mass-normalised" : ""}`, columns, modes.map((m) => [m.mode, fixed(m.frequency_hz, 4), fixed(m.frequency_sigma_hz, 5), fixed(percent(m.damping_ratio), 4),
       fixed(percent(m.damping_sigma), 5), fixed(m.mpc, 3), m.whence,

@@ -9,7 +9,7 @@ export function open(root, app) {
   const canvas = h("canvas", { tabindex: "0", role: "img", "aria-label": "the structure as it moves; arrow keys turn it, plus and minus bring it near" });
   const frame = h("div", { class: "canvas" }, canvas);
   const picker = h("div", { class: "row", role: "group", "aria-label": "modes" }), tools = h("div", { class: "row" });
-  const legend = h("p", { class: "muted", "aria-live": "polite" }), list = h("div"), nothing = h("p", {});
+  const legend = h("p", { class: "muted", "aria-live": "polite" }), list = h("div"), nothing = h("div");
   const drawn = h("section", { class: "panel" }, h("h2", {}, "Shapes"), picker, tools, frame, legend);
   root.append(nothing, drawn, h("section", { class: "panel" }, list));
   const view = { mode: 0, options: { model: "over", difference: false, arrows: false }, page: null, scene: null };
@@ -18,7 +18,7 @@ export function open(root, app) {
     view.page = await get("shapes");
     const page = view.page;
     drawn.hidden = !page.modes.length;
-    fill(nothing, page.modes.length ? null : page.why);
+    fill(nothing, page.modes.length ? null : h("p", {}, page.why));
     if (!page.modes.length) return;
     view.mode = Math.min(view.mode, page.modes.length - 1);
     if (!view.scene) {

@@ -2,7 +2,7 @@
 
 import { get } from "../api.js";
 import { axis, colour, draw } from "../charts.js";
-import { field, fill, fixed, h, select, short, table, warnings } from "../dom.js";
+import { field, fill, fixed, h, select, table, warnings } from "../dom.js";
 import { worker } from "./work.js";
 
 export function open(root, app) {
@@ -43,7 +43,7 @@ export function open(root, app) {
       h("details", {}, h("summary", {}, "The report of the fit"), h("pre", { tabindex: "0" }, found.text)), warnings(d.warnings));
   }
 
-  const digits = (value) => (value === null ? "–" : String(Number(value.toPrecision(6))));
-  void short;
+  /** Six digits, as the command prints them: to be computed with. */
+  const digits = (value) => (value === null ? "–" : Math.abs(value) >= 1e6 || (value !== 0 && Math.abs(value) < 1e-4) ? value.toExponential(5) : String(Number(value.toPrecision(6))));
   return { update, close: work.close };
 }

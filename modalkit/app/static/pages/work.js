@@ -20,23 +20,16 @@ export function worker(app, kind, { start, again, done }) {
     const running = job?.state === "running";
     fill(controls,
       button(found.result ? again : start, () => app.change("start", { kind }), { disabled: running, class: "primary", id: `start-${kind}` }),
-      running ? button("Stop", () => app.change("stop"), { id: `stop-${kind}`, class: "danger" }) : null,
-      running ? h("span", { class: "muted" }, `${job.kind}: ${job.seconds.toFixed(0)} s`) : null,
+      running && job.kind === kind ? button("Stop", () => app.change("stop"), { id: `stop-${kind}`, class: "danger" }) : null,
+      running ? h("span", { class: "muted" }, job.kind === kind ? `${job.seconds.toFixed(0)} s` : `waits: ${job.kind} is running`) : null,
       job?.state === "stopped" ? h("span", { class: "muted" }, "Stopped; nothing of it is kept.") : null,
       job?.state === "failed" ? h("span", { class: "error" }, job.error) : null);
-    fill(stages, running ? job.stages.map((s, i) => h("li", { class: i === job.stages.length - 1 ? "now" : "" }, `${s.name} `, h("small", {}, `from ${s.at_s.toFixed(1)} s`))) : null);
-    stages.hidden = !running;
+    fill(stages, running && job.kind === kind ? (job.stages.length ? job.stages : [{ name: "starting", at_s: 0 }]).map((s, i) => h("li", { class: i === job.stages.length - 1 ? "now" : "" }, `${s.name} `, h("small", {}, `from ${s.at_s.toFixed(1)} s`))) : null);
+    stages.hidden = !running || job.kind !== kind;
     await done(found.result, running);
-    if (running) timer = setTimeout(() => app.quiet(poll()), OFTEN);
+    if (running) timer = setTimeout(() => app.quiet(update()), OFTEN);
   }
 
-  async function poll() {
-    if (closed) return;
-    const before = app.state.results.length;
-    const found = await get("work", { kind });
-    await update();
-    if (found.job?.state !== "running") { app.state = await get("state"); void before; }
-  }
 
   return { element, update, close: () => { closed = true; clearTimeout(timer); } };
 }
