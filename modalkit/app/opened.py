@@ -21,6 +21,9 @@ FILE = (
 )
 """Keys that name one."""
 
+OF_HYPOTHESES = ("stiffness", "mass", "deck")
+"""The same in each ``[[hypothesis]]``."""
+
 
 @dataclass(frozen=True)
 class Opened:
@@ -70,10 +73,7 @@ def files_of(content: Mapping[str, Any]) -> list[str]:
         listed = _table(content, table).get(key, [])
         names += listed if isinstance(listed, list) else [listed]
     names += [_table(content, table).get(key) for table, key in FILE]
-    for entry in content.get("hypothesis", []) if isinstance(content.get("hypothesis"), list) else []:
-        names += (
-            [entry.get(key) for key in ("stiffness", "mass", "deck")] if isinstance(entry, Mapping) else []
-        )
+    names += [entry.get(key) for entry in _hypotheses(content) for key in OF_HYPOTHESES]
     return [name for name in names if isinstance(name, str)]
 
 
@@ -100,7 +100,18 @@ def relocated(content: Mapping[str, Any], old: Path, new: Path) -> dict[str, Any
     for table, key in FILE:
         if isinstance(name := _table(changed, table).get(key), str):
             changed[table][key] = moved(name)
+    if _hypotheses(changed):
+        changed["hypothesis"] = [
+            {k: moved(v) if k in OF_HYPOTHESES else v for k, v in entry.items()}
+            for entry in _hypotheses(changed)
+        ]
     return changed
+
+
+def _hypotheses(content: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return the user's own effects, some of which name files."""
+    listed = content.get("hypothesis", [])
+    return [entry for entry in listed if isinstance(entry, Mapping)] if isinstance(listed, list) else []
 
 
 def _table(content: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -166,10 +166,12 @@ export class Scene {
     if (this.playing) { this.phase += 2 * Math.PI * this.speed * step; this.dirty = true; }
     if (!this.dirty || this.mode === undefined) return;
     this.dirty = false;
+    const begun = performance.now();
     this.pose();
     this.renderer.render(this.scene, this.camera);
+    this.work = (this.work ?? 0) + performance.now() - begun;
     this.frames += 1;
-    if (now - this.since > 1000) { this.canvas.dataset.fps = ((1000 * this.frames) / (now - this.since)).toFixed(1); this.frames = 0; this.since = now; }
+    if (now - this.since > 1000) { this.canvas.dataset.fps = ((1000 * this.frames) / (now - this.since)).toFixed(1); this.canvas.dataset.work = (this.work / this.frames).toFixed(2); this.frames = this.work = 0; this.since = now; }
   }
 
   pose() {

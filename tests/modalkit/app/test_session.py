@@ -223,9 +223,11 @@ def test_pairs_that_are_stated_stand(beam):
 
 def test_files_are_named_from_another_folder(tmp_path):
     content = {"test": {"files": ["a.uff", "../b.uff"], "band": [1.0, 2.0]}, "model": {"nodes": "n.csv"}}
+    content["hypothesis"] = [{"name": "loose", "deck": "b.inp"}]
     moved = relocated(content, tmp_path / "study", tmp_path / "study" / "x" / "y")
     assert moved["test"]["files"] == ["../../a.uff", "../../../b.uff"]
     assert moved["model"]["nodes"] == "../../n.csv"
+    assert moved["hypothesis"] == [{"name": "loose", "deck": "../../b.inp"}]
     assert content["test"]["files"] == ["a.uff", "../b.uff"]
 
 
