@@ -2,14 +2,22 @@
 
 async function answered(response) {
   let document = null;
-  try { document = await response.json(); } catch { /* not JSON: an error of the server itself */ }
+  try {
+    document = await response.json();
+  } catch {
+    /* not JSON: an error of the server itself */
+  }
   if (!response.ok) throw new Error(document?.error ?? `the server answered ${response.status}`);
   return document;
 }
 
 async function asked(path, options) {
   let response;
-  try { response = await fetch(path, options); } catch { throw new Error("the server does not answer; start it again: what was done is kept"); }
+  try {
+    response = await fetch(path, options);
+  } catch {
+    throw new Error("the server does not answer; start it again: what was done is kept");
+  }
   return answered(response);
 }
 
@@ -19,5 +27,9 @@ export function get(name, parameters = {}) {
 }
 
 export function post(name, body = {}) {
-  return asked(`api/${name}`, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+  return asked(`api/${name}`, {
+    method: "POST",
+    headers: { "content-type": "application/json" },
+    body: JSON.stringify(body),
+  });
 }

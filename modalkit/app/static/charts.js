@@ -19,23 +19,48 @@ export function colour(name) {
 }
 
 export function axis(title, more = {}) {
-  return { title: { text: title, standoff: 6 }, gridcolor: colour("grid"), linecolor: colour("line"), zeroline: false,
-    tickcolor: colour("line"), ticks: "outside", ticklen: 4, automargin: true, ...more };
+  return {
+    title: { text: title, standoff: 6 },
+    gridcolor: colour("grid"),
+    linecolor: colour("line"),
+    zeroline: false,
+    tickcolor: colour("line"),
+    ticks: "outside",
+    ticklen: 4,
+    automargin: true,
+    ...more,
+  };
 }
 
 export const log = { type: "log", exponentformat: "power", dtick: 1 };
 
 function layout(given) {
   const narrow = window.innerWidth < 600;
-  return { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", height: narrow ? 280 : 320,
-    font: { family: "system-ui, sans-serif", size: 12, color: colour("ink") }, hovermode: "closest",
-    hoverlabel: { bgcolor: colour("panel"), bordercolor: colour("line"), font: { color: colour("ink") }, align: "left" },
-    margin: { l: narrow ? 44 : 56, r: 14, t: 10, b: 40 }, dragmode: narrow ? false : "zoom",
-    legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", xanchor: "left", font: { size: 11.5 } }, ...given };
+  return {
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: "rgba(0,0,0,0)",
+    height: narrow ? 280 : 320,
+    font: { family: "system-ui, sans-serif", size: 12, color: colour("ink") },
+    hovermode: "closest",
+    hoverlabel: {
+      bgcolor: colour("panel"),
+      bordercolor: colour("line"),
+      font: { color: colour("ink") },
+      align: "left",
+    },
+    margin: { l: narrow ? 44 : 56, r: 14, t: 10, b: 40 },
+    dragmode: narrow ? false : "zoom",
+    legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", xanchor: "left", font: { size: 11.5 } },
+    ...given,
+  };
 }
 
-const OPTIONS = { displaylogo: false, responsive: true,
-  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"], toImageButtonOptions: { format: "svg" } };
+const OPTIONS = {
+  displaylogo: false,
+  responsive: true,
+  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+  toImageButtonOptions: { format: "svg" },
+};
 
 /** Draw, or draw anew, a chart in an element. */
 export async function draw(element, traces, given = {}) {
@@ -52,8 +77,15 @@ export async function onclick(element, call) {
   element.on?.("plotly_click", (event) => call(event.points[0]));
 }
 
-export const line = (name, x, y, shade, more = {}) =>
-  ({ type: "scatter", mode: "lines", name, x, y, line: { color: colour(shade), width: 1.4, ...(more.line ?? {}) }, ...without(more, "line") });
+export const line = (name, x, y, shade, more = {}) => ({
+  type: "scatter",
+  mode: "lines",
+  name,
+  x,
+  y,
+  line: { color: colour(shade), width: 1.4, ...(more.line ?? {}) },
+  ...without(more, "line"),
+});
 
 function without(object, key) {
   const { [key]: _, ...rest } = object;
@@ -62,7 +94,23 @@ function without(object, key) {
 
 /** Return the trace of a matrix of MACs. */
 export function macMatrix(matrix, rows, columns) {
-  return { type: "heatmap", z: matrix, x: columns, y: rows, zmin: 0, zmax: 1, xgap: 1, ygap: 1,
-    colorscale: [[0, colour("panel")], [1, colour("blue")]], colorbar: { title: { text: "MAC" }, thickness: 10, outlinewidth: 0 },
-    hovertemplate: "%{y} with %{x}: MAC %{z:.3f}<extra></extra>" };
+  return {
+    type: "heatmap",
+    z: matrix,
+    x: columns,
+    y: rows,
+    zmin: 0,
+    zmax: 1,
+    xgap: 1,
+    ygap: 1,
+    colorscale: [
+      [0, colour("panel")],
+      [1, colour("blue")],
+    ],
+    colorbar: { title: { text: "MAC" }, thickness: 10, outlinewidth: 0 },
+    hovertemplate: "%{y} with %{x}: MAC %{z:.3f}<extra></extra>",
+  };
 }
+
+/** Plotly reads a few tags in its texts; a text from a file must not hold any. */
+export const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");

@@ -28,17 +28,39 @@ export function fill(element, ...children) {
 
 /** Return a table in a frame that scrolls. Columns are {name, number?}; cells are texts or nodes. */
 export function table(caption, columns, rows, options = {}) {
-  const head = h("tr", {}, columns.map((c) => h("th", { scope: "col", class: c.number ? "n" : null }, c.name)));
+  const head = h(
+    "tr",
+    {},
+    columns.map((c) => h("th", { scope: "col", class: c.number ? "n" : null }, c.name)),
+  );
   const body = rows.map((row, i) =>
-    h("tr", options.row ? options.row(i) : {}, row.map((cell, k) =>
-      h(k ? "td" : "th", { scope: k ? null : "row", class: columns[k].number ? "n" : columns[k].wide ? "wide" : null }, cell))));
-  return h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
-    h("table", {}, h("caption", {}, caption), h("thead", {}, head), h("tbody", {}, body)));
+    h(
+      "tr",
+      options.row ? options.row(i) : {},
+      row.map((cell, k) =>
+        h(
+          k ? "td" : "th",
+          { scope: k ? null : "row", class: columns[k].number ? "n" : columns[k].wide ? "wide" : null },
+          cell,
+        ),
+      ),
+    ),
+  );
+  return h(
+    "div",
+    { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
+    h("table", {}, h("caption", {}, caption), h("thead", {}, head), h("tbody", {}, body)),
+  );
 }
 
 /** Return a field with its label. */
 export function field(label, input, unit = "") {
-  return h("label", { class: "field" }, h("span", {}, label), h("span", { class: "with-unit" }, input, unit ? h("span", { class: "unit" }, unit) : null));
+  return h(
+    "label",
+    { class: "field" },
+    h("span", {}, label),
+    h("span", { class: "with-unit" }, input, unit ? h("span", { class: "unit" }, unit) : null),
+  );
 }
 
 export function button(text, onclick, attributes = {}) {
@@ -46,8 +68,11 @@ export function button(text, onclick, attributes = {}) {
 }
 
 export function select(options, value, onchange, attributes = {}) {
-  const element = h("select", { change: () => onchange(element.value), ...attributes },
-    options.map(([v, text]) => h("option", { value: v, selected: String(v) === String(value) }, text)));
+  const element = h(
+    "select",
+    { change: () => onchange(element.value), ...attributes },
+    options.map(([v, text]) => h("option", { value: v, selected: String(v) === String(value) }, text)),
+  );
   return element;
 }
 
@@ -57,6 +82,14 @@ export const short = (value) => (value === null || value === undefined ? "–" :
 
 export function warnings(list) {
   if (!list || !list.length) return null;
-  return h("details", { class: "warnings", open: list.length < 3 }, h("summary", {}, `${list.length} ${list.length > 1 ? "warnings" : "warning"}`),
-    h("ul", {}, list.map((text) => h("li", {}, text))));
+  return h(
+    "details",
+    { class: "warnings", open: list.length < 3 },
+    h("summary", {}, `${list.length} ${list.length > 1 ? "warnings" : "warning"}`),
+    h(
+      "ul",
+      {},
+      list.map((text) => h("li", {}, text)),
+    ),
+  );
 }

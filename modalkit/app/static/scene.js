@@ -1,65 +1,8 @@
 // A structure that moves: points, lines, surfaces and directions, drawn by three.js.
 
 import * as THREE from "./three.module.min.js";
+import { Body, mesh } from "./body.js";
 import { orbit } from "./orbit.js";
-
-/** Colours between those of one sign and the other, through that of nothing; t from -1 to 1. */
-function between(low, middle, high, t, into) {
-  into.copy(middle).lerp(t < 0 ? low : high, Math.min(1, Math.abs(t)));
-}
-
-/** Return the picture of a round point, made once. */
-let round = null;
-function disc() {
-  if (round) return round;
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = 32;
-  const pen = canvas.getContext("2d");
-  pen.fillStyle = "#fff";
-  pen.arc(16, 16, 15, 0, 2 * Math.PI);
-  pen.fill();
-  round = new THREE.CanvasTexture(canvas);
-  return round;
-}
-
-/** One set of points that moves, with what joins them. */
-class Body {
-  constructor(group, places, { lines = [], faces = [], dots = true, opacity = 0.5, size = 8 } = {}) {
-    this.places = places;
-    this.count = places.length;
-    this.positions = new Float32Array(3 * this.count);
-    this.colours = new Float32Array(3 * this.count).fill(0.5);
-    const shared = { position: new THREE.BufferAttribute(this.positions, 3), color: new THREE.BufferAttribute(this.colours, 3) };
-    this.shared = shared;
-    const geometry = (index) => {
-      const made = new THREE.BufferGeometry();
-      made.setAttribute("position", shared.position);
-      made.setAttribute("color", shared.color);
-      if (index) made.setIndex(index);
-      return made;
-    };
-    const add = (object) => { object.frustumCulled = false; group.add(object); };
-    if (faces.length) {
-      const triangles = faces.flatMap((f) => (f.length === 4 ? [f[0], f[1], f[2], f[0], f[2], f[3]] : f));
-      add(new THREE.Mesh(geometry(triangles), new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide, transparent: opacity < 1, opacity, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 })));
-    }
-    if (lines.length) add(new THREE.LineSegments(geometry(lines.flat()), new THREE.LineBasicMaterial({ vertexColors: true })));
-    if (dots) add(new THREE.Points(geometry(null), new THREE.PointsMaterial({ size: size * Math.min(2, window.devicePixelRatio), sizeAttenuation: false, vertexColors: true, map: disc(), alphaTest: 0.5 })));
-  }
-
-  /** Move every point by re cos - im sin, and colour it by a value from -1 to 1. */
-  move(re, im, cos, sin, scale, value, shades) {
-    const { positions, colours, places } = this;
-    const shade = this.shade ??= new THREE.Color();
-    for (let i = 0; i < this.count; i += 1) {
-      for (let k = 0; k < 3; k += 1) positions[3 * i + k] = places[i][k] + scale * (re[i][k] * cos - (im ? im[i][k] : 0) * sin);
-      between(shades.low, shades.middle, shades.high, value(i), shade);
-      colours[3 * i] = shade.r; colours[3 * i + 1] = shade.g; colours[3 * i + 2] = shade.b;
-    }
-    this.shared.position.needsUpdate = true;
-    this.shared.color.needsUpdate = true;
-  }
-}
 
 /** A canvas with a structure in it. */
 export class Scene {
@@ -70,7 +13,9 @@ export class Scene {
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
     this.camera.up.set(0, 0, 1);
-    this.orbit = orbit(canvas, this.camera, () => { this.dirty = true; });
+    this.orbit = orbit(canvas, this.camera, () => {
+      this.dirty = true;
+    });
     this.playing = true;
     this.phase = 0;
     this.speed = 0.8;
@@ -80,15 +25,31 @@ export class Scene {
     this.watcher.observe(canvas.parentElement);
     this.frames = 0;
     this.since = performance.now();
-    const loop = (now) => { if (this.closed) return; this.frame(now); requestAnimationFrame(loop); };
+    const loop = (now) => {
+      if (this.closed) return;
+      this.frame(now);
+      requestAnimationFrame(loop);
+    };
     requestAnimationFrame(loop);
   }
 
   recolour(colours) {
     this.colours = colours;
-    this.shades = { low: new THREE.Color(colours.blue), middle: new THREE.Color(colours.middle), high: new THREE.Color(colours.orange) };
-    this.model = { low: new THREE.Color(colours.muted), middle: new THREE.Color(colours.muted), high: new THREE.Color(colours.muted) };
-    this.good = { low: new THREE.Color(colours.green), middle: new THREE.Color(colours.green), high: new THREE.Color(colours.red) };
+    this.shades = {
+      low: new THREE.Color(colours.blue),
+      middle: new THREE.Color(colours.middle),
+      high: new THREE.Color(colours.orange),
+    };
+    this.model = {
+      low: new THREE.Color(colours.muted),
+      middle: new THREE.Color(colours.muted),
+      high: new THREE.Color(colours.muted),
+    };
+    this.good = {
+      low: new THREE.Color(colours.green),
+      middle: new THREE.Color(colours.green),
+      high: new THREE.Color(colours.red),
+    };
     this.dirty = true;
   }
 
@@ -102,7 +63,11 @@ export class Scene {
     this.scene.add(this.group, this.beside, this.arrows);
     this.test = new Body(this.group, page.places, { lines: page.lines, faces: page.faces, opacity: 0.75 });
     const surface = page.model?.surface;
-    this.fem = surface ? new Body(this.beside, surface.places, mesh(surface.shape)) : page.model ? new Body(this.beside, page.places, { lines: page.lines, faces: page.faces, opacity: 0.4, size: 4 }) : null;
+    this.fem = surface
+      ? new Body(this.beside, surface.places, mesh(surface.shape))
+      : page.model
+        ? new Body(this.beside, page.places, { lines: page.lines, faces: page.faces, opacity: 0.4, size: 4 })
+        : null;
     const all = surface ? [...page.places, ...surface.places] : page.places;
     const low = [0, 1, 2].map((k) => Math.min(...all.map((p) => p[k])));
     const high = [0, 1, 2].map((k) => Math.max(...all.map((p) => p[k])));
@@ -111,7 +76,17 @@ export class Scene {
     this.centre = low.map((v, k) => (v + high[k]) / 2);
     for (const arrow of page.arrows) {
       const to = new THREE.Vector3(...arrow.to);
-      if (to.lengthSq() > 0) this.arrows.add(new THREE.ArrowHelper(to.normalize(), new THREE.Vector3(...page.places[arrow.node]), 0.06 * this.size, this.colours.green, 0.02 * this.size, 0.012 * this.size));
+      if (to.lengthSq() > 0)
+        this.arrows.add(
+          new THREE.ArrowHelper(
+            to.normalize(),
+            new THREE.Vector3(...page.places[arrow.node]),
+            0.06 * this.size,
+            this.colours.green,
+            0.02 * this.size,
+            0.012 * this.size,
+          ),
+        );
     }
     this.resize();
   }
@@ -144,11 +119,16 @@ export class Scene {
   }
 
   aim() {
-    const apart = this.beside.visible ? this.apart ?? [0, 0, 0] : [0, 0, 0];
+    const apart = this.beside.visible ? (this.apart ?? [0, 0, 0]) : [0, 0, 0];
     const centre = this.centre.map((v, k) => v + apart[k] / 2);
     const reach = 0.09 * this.size;
-    const places = [...this.page.places, ...(this.page.model?.surface?.places ?? this.page.places).map((p) => p.map((v, k) => v + apart[k]))];
-    const corners = places.flatMap((p) => [0, 1, 2].flatMap((k) => [-reach, reach].map((d) => p.map((v, i) => v + (i === k ? d : 0)))));
+    const places = [
+      ...this.page.places,
+      ...(this.page.model?.surface?.places ?? this.page.places).map((p) => p.map((v, k) => v + apart[k])),
+    ];
+    const corners = places.flatMap((p) =>
+      [0, 1, 2].flatMap((k) => [-reach, reach].map((d) => p.map((v, i) => v + (i === k ? d : 0)))),
+    );
     this.orbit.aim(centre, corners, this.camera.aspect);
   }
 
@@ -163,7 +143,10 @@ export class Scene {
   frame(now) {
     const step = Math.min(100, now - (this.last ?? now)) / 1000;
     this.last = now;
-    if (this.playing) { this.phase += 2 * Math.PI * this.speed * step; this.dirty = true; }
+    if (this.playing) {
+      this.phase += 2 * Math.PI * this.speed * step;
+      this.dirty = true;
+    }
     if (!this.dirty || this.mode === undefined) return;
     this.dirty = false;
     const begun = performance.now();
@@ -171,7 +154,12 @@ export class Scene {
     this.renderer.render(this.scene, this.camera);
     this.work = (this.work ?? 0) + performance.now() - begun;
     this.frames += 1;
-    if (now - this.since > 1000) { this.canvas.dataset.fps = ((1000 * this.frames) / (now - this.since)).toFixed(1); this.canvas.dataset.work = (this.work / this.frames).toFixed(2); this.frames = this.work = 0; this.since = now; }
+    if (now - this.since > 1000) {
+      this.canvas.dataset.fps = ((1000 * this.frames) / (now - this.since)).toFixed(1);
+      this.canvas.dataset.work = (this.work / this.frames).toFixed(2);
+      this.frames = this.work = 0;
+      this.since = now;
+    }
   }
 
   pose() {
@@ -185,12 +173,25 @@ export class Scene {
       const k = [0, 1, 2].reduce((a, b) => (Math.hypot(r[b], m[b]) > Math.hypot(r[a], m[a]) ? b : a), 0);
       return (r[k] * cos - m[k] * sin) / this.largest;
     };
-    if (difference) this.test.move(shape.re, shape.im, cos, sin, scale, (i) => Math.min(1, difference[i] / 0.3), this.good);
+    if (difference)
+      this.test.move(shape.re, shape.im, cos, sin, scale, (i) => Math.min(1, difference[i] / 0.3), this.good);
     else this.test.move(shape.re, shape.im, cos, sin, scale, at, this.shades);
     if (this.beside.visible && this.surfaceShape) {
       const w = this.surfaceShape;
-      const own = (i) => { const v = w[i]; const k = [0, 1, 2].reduce((a, b) => (Math.abs(v[b]) > Math.abs(v[a]) ? b : a), 0); return (v[k] * cos) / this.largest; };
-      this.fem.move(w, null, cos, sin, scale, this.options.model === "beside" ? own : () => 0, this.options.model === "beside" ? this.shades : this.model);
+      const own = (i) => {
+        const v = w[i];
+        const k = [0, 1, 2].reduce((a, b) => (Math.abs(v[b]) > Math.abs(v[a]) ? b : a), 0);
+        return (v[k] * cos) / this.largest;
+      };
+      this.fem.move(
+        w,
+        null,
+        cos,
+        sin,
+        scale,
+        this.options.model === "beside" ? own : () => 0,
+        this.options.model === "beside" ? this.shades : this.model,
+      );
     }
   }
 
@@ -206,20 +207,4 @@ export class Scene {
     this.watcher.disconnect();
     this.renderer.dispose();
   }
-}
-
-/** Return lines and faces of the model's own grid: [n] along a beam, [rows, columns] over a plate. */
-function mesh(shape) {
-  if (shape.length === 1) return { lines: Array.from({ length: shape[0] - 1 }, (_, i) => [i, i + 1]), dots: false };
-  const [rows, columns] = shape;
-  const at = (r, c) => r * columns + c;
-  const [lines, faces] = [[], []];
-  for (let r = 0; r < rows; r += 1) {
-    for (let c = 0; c < columns; c += 1) {
-      if (c + 1 < columns && (r % 2 === 0)) lines.push([at(r, c), at(r, c + 1)]);
-      if (r + 1 < rows && (c % 2 === 0)) lines.push([at(r, c), at(r + 1, c)]);
-      if (c + 1 < columns && r + 1 < rows) faces.push([at(r, c), at(r, c + 1), at(r + 1, c + 1), at(r + 1, c)]);
-    }
-  }
-  return { lines, faces, dots: false, opacity: 0.35 };
 }

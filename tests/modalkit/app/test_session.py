@@ -239,3 +239,23 @@ def test_modes_alone_are_shown_and_nothing_else(samples):
     assert len(plain(bench.model())["correlation"]["pairs"]) >= 3
     with pytest.raises(InputError):
         bench.frf(0)
+
+
+def test_without_the_extra_the_command_says_what_to_install(beam, monkeypatch):
+    from modalkit.app.serve import serve
+
+    monkeypatch.setitem(sys.modules, "uvicorn", None)
+    with pytest.raises(InputError, match="extra"):
+        serve(beam, browser=False)
+
+
+def test_a_port_that_is_taken_is_an_error_on_purpose(beam):
+    import socket
+
+    from modalkit.app.serve import serve
+
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        with pytest.raises(InputError, match="give another"):
+            serve(beam, port=other.getsockname()[1], browser=False)

@@ -1,25 +1,28 @@
 // Modes: the stabilisation chart with a reason for every pole, the table, the fit over an FRF, the auto-MAC.
 
 import { get } from "../api.js";
-import { axis, colour, draw, line, log, macMatrix, onclick } from "../charts.js";
+import { axis, draw, line, log, macMatrix, onclick } from "../charts.js";
 import { button, field, fill, fixed, h, select, table, warnings } from "../dom.js";
-import { escaped } from "./hits.js";
-
-const KINDS = [
-  ["new", "new at its order", "x-thin", 5, "faint"], ["short", "chain too short", "circle-open", 5, "faint"],
-  ["outside", "outside the band", "triangle-up-open", 6, "muted"], ["pruned", "struck off by the fit", "square-open", 6, "orange"],
-  ["background", "not told by the data", "diamond-open", 6, "orange"], ["dropped", "dropped by you", "cross-thin", 7, "red"],
-  ["mode", "a mode", "circle", 5, "blue"],
-];
-const SYMBOLS = { chain: "triangle-down", refinement: "diamond", named: "star" };
+import { stabilisation } from "./stabilisation.js";
 
 export function open(root, app) {
-  const chart = h("div"), fit = h("div"), mac = h("div"), rows = h("div"), controls = h("div", { class: "controls" }), chooser = h("div", { class: "row" }), notes = h("div");
+  const chart = h("div"),
+    fit = h("div"),
+    mac = h("div"),
+    rows = h("div"),
+    controls = h("div", { class: "controls" }),
+    chooser = h("div", { class: "row" }),
+    notes = h("div");
   const readout = h("p", { class: "muted", "aria-live": "polite", id: "readout" });
   const picking = h("section", { class: "panel" }, h("h2", {}, "Stabilisation chart"), controls, chart, readout);
   const fitted = h("section", { class: "panel" }, h("h2", {}, "Fit"), chooser, fit);
   const matrix = h("section", { class: "panel" }, h("h2", {}, "Auto-MAC"), mac);
-  root.append(notes, picking, h("section", { class: "panel" }, h("h2", {}, "Modes"), rows), h("div", { class: "two wide-left" }, fitted, matrix));
+  root.append(
+    notes,
+    picking,
+    h("section", { class: "panel" }, h("h2", {}, "Modes"), rows),
+    h("div", { class: "two wide-left" }, fitted, matrix),
+  );
   const view = { page: null, frf: 0, over: "sum", curve: null };
 
   async function update() {
@@ -34,23 +37,116 @@ export function open(root, app) {
 
   function controlled() {
     const page = view.page;
-    const low = h("input", { type: "text", inputmode: "decimal", value: String(page.band[0]), size: 7, "aria-label": "lowest frequency of the band", id: "band-low" });
-    const high = h("input", { type: "text", inputmode: "decimal", value: String(page.band[1]), size: 7, "aria-label": "highest frequency of the band", id: "band-high" });
-    const order = h("input", { type: "number", min: "2", max: "400", value: page.order ?? "", placeholder: "60", "aria-label": "highest model order", id: "order" });
-    const hertz = h("input", { type: "text", inputmode: "decimal", size: 9, "aria-label": "frequency to pick", id: "pick-hertz" });
-    const pickNow = () => { if (Number(hertz.value) > 0) picked(Number(hertz.value)); };
-    hertz.addEventListener("keydown", (event) => { if (event.key === "Enter") pickNow(); });
-    const chips = [...page.picked.map((f) => ["picked", f, "drop"]), ...page.dropped.map((f) => ["dropped", f, "pick"])];
-    fill(controls,
-      h("div", { class: "row" },
-        field("Band", h("span", {}, low, " to ", high), "Hz"), button("Set", () => app.act("band", { low: number(low), high: number(high) }), { id: "band-set" }),
+    const low = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      value: String(page.band[0]),
+      size: 7,
+      "aria-label": "lowest frequency of the band",
+      id: "band-low",
+    });
+    const high = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      value: String(page.band[1]),
+      size: 7,
+      "aria-label": "highest frequency of the band",
+      id: "band-high",
+    });
+    const order = h("input", {
+      type: "number",
+      min: "2",
+      max: "400",
+      value: page.order ?? "",
+      placeholder: "60",
+      "aria-label": "highest model order",
+      id: "order",
+    });
+    const hertz = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      size: 9,
+      "aria-label": "frequency to pick",
+      id: "pick-hertz",
+    });
+    const pickNow = () => {
+      if (Number(hertz.value) > 0) picked(Number(hertz.value));
+    };
+    hertz.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") pickNow();
+    });
+    const chips = [
+      ...page.picked.map((f) => ["picked", f, "drop"]),
+      ...page.dropped.map((f) => ["dropped", f, "pick"]),
+    ];
+    fill(
+      controls,
+      h(
+        "div",
+        { class: "row" },
+        field("Band", h("span", {}, low, " to ", high), "Hz"),
+        button("Set", () => app.act("band", { low: number(low), high: number(high) }), { id: "band-set" }),
         page.band_stated ? button("As the force reaches", () => app.act("band", {})) : null,
-        field("Order", order), button("Set", () => app.act("order", { order: order.value ? Number(order.value) : null }), { id: "order-set" }),
-        field("Behind it", select([["sum", "sum of |H|"], ["cmif", "CMIF"]], view.over, (v) => { view.over = v; app.quiet(charted(page.table)); }))),
-      h("div", { class: "row" }, field("Pick at", hertz, "Hz"), button("Pick", pickNow, { id: "pick" }), h("span", { class: "muted" }, "or click a pole, or the curve, in the chart"),
-        chips.map(([word, f, back]) => button(`${word} ${Number(f.toPrecision(6))} Hz ×`, () => app.act(back, { hertz: f }), { class: "chip", title: "take it back" }))),
-      page.references.length > 1 ? h("details", {}, h("summary", {}, `References: ${page.references.filter((r) => r.used).length} of ${page.references.length}`),
-        h("div", { class: "row" }, page.references.map((r) => h("label", { class: "check" }, h("input", { type: "checkbox", checked: r.used, change: (e) => referenced(r.name, e.target.checked) }), r.name)))) : null);
+        field("Order", order),
+        button("Set", () => app.act("order", { order: order.value ? Number(order.value) : null }), {
+          id: "order-set",
+        }),
+        field(
+          "Behind it",
+          select(
+            [
+              ["sum", "sum of |H|"],
+              ["cmif", "CMIF"],
+            ],
+            view.over,
+            (v) => {
+              view.over = v;
+              app.quiet(charted(page.table));
+            },
+          ),
+        ),
+      ),
+      h(
+        "div",
+        { class: "row" },
+        field("Pick at", hertz, "Hz"),
+        button("Pick", pickNow, { id: "pick" }),
+        h("span", { class: "muted" }, "or click a pole, or the curve, in the chart"),
+        chips.map(([word, f, back]) =>
+          button(`${word} ${Number(f.toPrecision(6))} Hz ×`, () => app.act(back, { hertz: f }), {
+            class: "chip",
+            title: "take it back",
+          }),
+        ),
+      ),
+      page.references.length > 1
+        ? h(
+            "details",
+            {},
+            h(
+              "summary",
+              {},
+              `References: ${page.references.filter((r) => r.used).length} of ${page.references.length}`,
+            ),
+            h(
+              "div",
+              { class: "row" },
+              page.references.map((r) =>
+                h(
+                  "label",
+                  { class: "check" },
+                  h("input", {
+                    type: "checkbox",
+                    checked: r.used,
+                    change: (e) => referenced(r.name, e.target.checked),
+                  }),
+                  r.name,
+                ),
+              ),
+            ),
+          )
+        : null,
+    );
   }
 
   const number = (input) => Number(input.value.replace(",", "."));
@@ -65,43 +161,42 @@ export function open(root, app) {
     const begun = performance.now();
     try {
       const found = await get("provisional", { hertz, index: view.frf });
-      const near = found.frequency_hz.reduce((a, b) => (Math.abs(b - hertz) < Math.abs(a - hertz) ? b : a), found.frequency_hz[0] ?? hertz);
+      const near = found.frequency_hz.reduce(
+        (a, b) => (Math.abs(b - hertz) < Math.abs(a - hertz) ? b : a),
+        found.frequency_hz[0] ?? hertz,
+      );
       const k = found.frequency_hz.indexOf(near);
       await overlaid(found.fit);
       root.dataset.pictured = String(performance.now() - begun);
-      await charted([...view.page.table, { mode: "new", frequency_hz: near, damping_ratio: found.damping_ratio[k], origin: "named", whence: "being refined" }]);
+      await charted([
+        ...view.page.table,
+        {
+          mode: "new",
+          frequency_hz: near,
+          damping_ratio: found.damping_ratio[k],
+          origin: "named",
+          whence: "being refined",
+        },
+      ]);
       readout.textContent = `${near.toFixed(3)} Hz, being refined …`;
-    } catch (error) { app.notice(error.message, "error"); return; }
+    } catch (error) {
+      app.notice(error.message, "error");
+      return;
+    }
     const done = await app.act("pick", { hertz });
     root.dataset.settled = String(performance.now() - begun);
     if (!done) readout.textContent = `No mode is kept at ${hertz.toPrecision(6)} Hz.`;
   }
 
   async function charted(modes) {
-    const { chart: found, sum, band } = view.page;
-    const behind = Object.keys(sum).filter((k) => (view.over === "cmif" && "cmif1" in sum ? k.startsWith("cmif") : k === "sum"));
-    const traces = behind.map((k, i) => line(k === "sum" ? "Σ|H|" : k.toUpperCase(), sum.x, sum[k], i ? "faint" : "muted", { yaxis: "y2", hoverinfo: "x", opacity: i ? 0.7 : 0.9 }));
-    for (const [kind, name, symbol, size, shade] of KINDS) {
-      const keep = found.reason.flatMap((r, i) => (found.reasons[r].kind === kind ? [i] : []));
-      if (!keep.length) continue;
-      traces.push({ type: "scatter", mode: "markers", name, x: keep.map((i) => found.frequency[i]), y: keep.map((i) => found.order[i]),
-        marker: { symbol, size, color: colour(shade), line: { color: colour(shade), width: 1 } },
-        text: keep.map((i) => escaped(`${found.frequency[i].toFixed(3)} Hz, damping ${(100 * found.damping[i]).toFixed(3)} %, order ${found.order[i]}`) + "<br>" + escaped(wrapped(found.reasons[found.reason[i]].text)).replaceAll("\n", "<br>")),
-        customdata: keep.map((i) => found.reasons[found.reason[i]].mode), hovertemplate: "%{text}<extra></extra>" });
-    }
-    const top = Math.max(...found.orders) * 1.07;
-    for (const [origin, symbol] of Object.entries(SYMBOLS)) {
-      const those = modes.filter((m) => m.origin === origin);
-      if (those.length) traces.push({ type: "scatter", mode: "markers", showlegend: origin !== "chain", name: origin === "refinement" ? "mode added by the refinement" : "mode picked by you",
-        x: those.map((m) => m.frequency_hz), y: those.map(() => top), marker: { symbol, size: 11, color: colour(origin === "chain" ? "blue" : origin === "named" ? "green" : "orange") },
-        customdata: those.map((m) => m.mode - 1), text: those.map((m) => escaped(`mode ${m.mode}: ${m.frequency_hz.toFixed(3)} Hz`) + "<br>" + escaped(wrapped(m.whence)).replaceAll("\n", "<br>")), hovertemplate: "%{text}<extra></extra>" });
-    }
-    await draw(chart, traces, { height: window.innerWidth < 600 ? 380 : 460, xaxis: axis("frequency [Hz]", { range: band }), yaxis: axis("model order", { range: [0, top * 1.04] }),
-      yaxis2: { overlaying: "y", side: "right", type: "log", showgrid: false, showticklabels: false, title: { text: "" } },
-      shapes: modes.map((m) => ({ type: "line", x0: m.frequency_hz, x1: m.frequency_hz, yref: "paper", y0: 0, y1: 1, layer: "below", line: { color: colour(m.origin === "named" ? "green" : "blue"), width: 1, dash: "dot" } })) });
+    const { traces, layout } = stabilisation(view.page, view.over, modes);
+    await draw(chart, traces, layout);
     await onclick(chart, (point) => {
       const mode = point.customdata;
-      if (mode !== null && mode !== undefined && Number.isFinite(mode)) { chosenRow(mode); return; }
+      if (mode !== null && mode !== undefined && Number.isFinite(mode)) {
+        chosenRow(mode);
+        return;
+      }
       picked(point.x);
     });
   }
@@ -117,23 +212,75 @@ export function open(root, app) {
   }
 
   function listed(modes) {
-    const columns = [{ name: "mode", number: true }, { name: "frequency [Hz]", number: true }, { name: "σ [Hz]", number: true }, { name: "damping [%]", number: true }, { name: "σ [%]", number: true },
-      { name: "MPC", number: true }, { name: "where from", wide: true }, ...(view.page.identified ? [{ name: "change" }] : [])];
+    const columns = [
+      { name: "mode", number: true },
+      { name: "frequency [Hz]", number: true },
+      { name: "σ [Hz]", number: true },
+      { name: "damping [%]", number: true },
+      { name: "σ [%]", number: true },
+      { name: "MPC", number: true },
+      { name: "where from", wide: true },
+      ...(view.page.identified ? [{ name: "change" }] : []),
+    ];
     const percent = (v) => (v === null ? null : 100 * v);
-    fill(rows, table(`${modes.length} modes${view.page.scaled ? ", shapes mass-normalised" : ""}`, columns, modes.map((m) => [m.mode, fixed(m.frequency_hz, 4), fixed(m.frequency_sigma_hz, 5), fixed(percent(m.damping_ratio), 4),
-      fixed(percent(m.damping_sigma), 5), fixed(m.mpc, 3), m.whence,
-      ...(view.page.identified ? [button("Drop", () => app.act("drop", { hertz: m.frequency_hz }), { "aria-label": `drop mode ${m.mode}`, class: "small" })] : [])])),
-      view.page.rejected?.length ? h("p", { class: "muted" }, `left out: ${view.page.rejected.join("; ")}`) : null);
+    fill(
+      rows,
+      table(
+        `${modes.length} modes${view.page.scaled ? ", shapes mass-normalised" : ""}`,
+        columns,
+        modes.map((m) => [
+          m.mode,
+          fixed(m.frequency_hz, 4),
+          fixed(m.frequency_sigma_hz, 5),
+          fixed(percent(m.damping_ratio), 4),
+          fixed(percent(m.damping_sigma), 5),
+          fixed(m.mpc, 3),
+          m.whence,
+          ...(view.page.identified
+            ? [
+                button("Drop", () => app.act("drop", { hertz: m.frequency_hz }), {
+                  "aria-label": `drop mode ${m.mode}`,
+                  class: "small",
+                }),
+              ]
+            : []),
+        ]),
+      ),
+      view.page.rejected?.length ? h("p", { class: "muted" }, `left out: ${view.page.rejected.join("; ")}`) : null,
+    );
   }
 
   async function overlaid(provisional = null) {
     const names = view.page.frfs;
     view.frf = Math.min(view.frf, names.length - 1);
-    fill(chooser, h("label", {}, "Response / force ", select(names.map((n, i) => [i, n]), view.frf, (v) => { view.frf = Number(v); app.quiet(overlaid()); }, { id: "fit-frf" })));
-    const found = provisional && view.curve ? { ...view.curve, fitted: provisional.fitted, x2: provisional.x } : await get("fit", { index: view.frf });
+    fill(
+      chooser,
+      h(
+        "label",
+        {},
+        "Response / force ",
+        select(
+          names.map((n, i) => [i, n]),
+          view.frf,
+          (v) => {
+            view.frf = Number(v);
+            app.quiet(overlaid());
+          },
+          { id: "fit-frf" },
+        ),
+      ),
+    );
+    const found =
+      provisional && view.curve
+        ? { ...view.curve, fitted: provisional.fitted, x2: provisional.x }
+        : await get("fit", { index: view.frf });
     if (!provisional) view.curve = found;
-    const traces = [line("measured", found.x, found.measured, "muted", { line: { width: 2.4 } }), line(provisional ? "fit, being refined" : "fit", found.x2 ?? found.x, found.fitted, "blue"),
-      provisional ? null : line("residual", found.x, found.residual, "orange", { line: { width: 1 } }), found.noise ? line("noise, 1σ", found.x, found.noise, "faint", { line: { width: 1 } }) : null].filter(Boolean);
+    const traces = [
+      line("measured", found.x, found.measured, "muted", { line: { width: 2.4 } }),
+      line(provisional ? "fit, being refined" : "fit", found.x2 ?? found.x, found.fitted, "blue"),
+      provisional ? null : line("residual", found.x, found.residual, "orange", { line: { width: 1 } }),
+      found.noise ? line("noise, 1σ", found.x, found.noise, "faint", { line: { width: 1 } }) : null,
+    ].filter(Boolean);
     await draw(fit, traces, { height: 360, xaxis: axis("frequency [Hz]"), yaxis: axis(`|H| [${found.unit}]`, log) });
   }
 
@@ -142,13 +289,12 @@ export function open(root, app) {
     matrix.hidden = !values || values.length < 2 || values.some((row) => row.some((v) => v === null));
     if (matrix.hidden) return;
     const names = view.page.table.map((m) => `${m.mode}`);
-    await draw(mac, [macMatrix(values, names, names)], { height: 360, xaxis: axis("mode", { type: "category" }), yaxis: axis("mode", { type: "category", autorange: "reversed" }) });
+    await draw(mac, [macMatrix(values, names, names)], {
+      height: 360,
+      xaxis: axis("mode", { type: "category" }),
+      yaxis: axis("mode", { type: "category", autorange: "reversed" }),
+    });
   }
 
   return { update };
-}
-
-/** Break a text into lines of some fifty characters. */
-function wrapped(text) {
-  return text.replace(/(.{1,50})(\s|$)/g, "$1\n").trim();
 }
