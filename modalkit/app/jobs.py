@@ -106,7 +106,7 @@ class Jobs:
                 words,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
                 text=True,
                 env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             )
@@ -127,28 +127,31 @@ class Jobs:
 
 
 def _watch(job: Job) -> None:
-    """Follow the lines of a process to its end."""
-    assert job.process.stdout is not None
-    assert job.process.stderr is not None
-    for line in job.process.stdout:
-        try:
-            news = json.loads(line)
-        except ValueError:
-            continue
-        if "stage" in news:
-            job.stages.append((str(news["stage"]), time.monotonic() - job.begun))
-        job.error = str(news.get("error", job.error))
-        if news.get("done") and job.state == "running":
-            job.state = "done"
-    last = job.process.stderr.read().strip().rpartition("\n")[2]
-    code = job.process.wait()
-    if job.state != "running":
-        return
-    if code == 0:
+    """Follow the lines of a process to its end; what is no news of its own is what went wrong."""
+    last = ""
+    with job.process as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            last = last if _note(job, line) else line.strip() or last
+    if job.state == "running":
+        job.error = job.error or last or f"the process ended with {job.process.returncode}"
+        job.state = "failed"
+
+
+def _note(job: Job, line: str) -> bool:
+    """Note what a line of the process says, and tell whether it is news; the last is that the work is done."""
+    try:
+        news = json.loads(line)
+    except ValueError:
+        return False
+    if not isinstance(news, dict):
+        return False
+    if "stage" in news:
+        job.stages.append((str(news["stage"]), time.monotonic() - job.begun))
+    job.error = str(news.get("error", job.error))
+    if news.get("done") and job.state == "running":
         job.state = "done"
-        return
-    job.error = job.error or last or f"the process ended with {code}"
-    job.state = "failed"
+    return True
 
 
 def result_of(folder: Path) -> dict[str, Any] | None:

@@ -146,10 +146,10 @@ def open_path(path: Path, *, layout: Path | None = None) -> Opened:
 
 def _test(path: Path, layout: Path | None) -> dict[str, Any]:
     """Return the table of a test whose data a file holds."""
-    from modalkit.workflow.existing import Modes
-    from modalkit.workflow.identification import read
+    from modalkit.workflow.files import read_files
 
-    only_modes = isinstance(read(path, layout=layout), Modes)
+    content = read_files(path, layout=layout)
+    only_modes = content.modal is not None and not content.tests and content.frfs is None
     named: dict[str, Any] = {"modes": path.name} if only_modes else {"files": [path.name]}
     if layout is not None:
         named["layout"] = Path(os.path.relpath(layout.resolve(), path.parent.resolve())).as_posix()

@@ -238,6 +238,7 @@ def diagnose_and_stop(page: Page) -> str:
     tab.locator("#start-diagnose").click()
     tab.locator("#diagnosis-answer").wait_for()
     answer = str(tab.locator("#diagnosis-answer").inner_text())
+    report_opens(page, answer)
     tab.locator("#accept-0").click()
     page.settle()
     assert "into the model" in tab.locator("#undo").get_attribute("title")
@@ -245,6 +246,16 @@ def diagnose_and_stop(page: Page) -> str:
     tab.locator("#diagnosis-answer").wait_for()
     assert tab.locator("#diagnosis-answer").inner_text() == answer
     return answer
+
+
+def report_opens(page: Page, answer: str) -> None:
+    with page.tab.expect_popup() as opened:
+        page.tab.get_by_role("link", name="The whole report").click()
+    report = opened.value
+    report.wait_for_load_state()
+    assert answer in report.locator("header").inner_text()
+    assert report.locator("figure svg").count() >= 3
+    report.close()
 
 
 def export(page: Page) -> Path:

@@ -185,7 +185,12 @@ export function open(root, app) {
     }
     const done = await app.act("pick", { hertz });
     root.dataset.settled = String(performance.now() - begun);
-    if (!done) readout.textContent = `No mode is kept at ${hertz.toPrecision(6)} Hz.`;
+    const near = view.page.table.reduce((best, m) =>
+      Math.abs(m.frequency_hz - hertz) < Math.abs(best.frequency_hz - hertz) ? m : best,
+    );
+    readout.textContent = done
+      ? `Picked mode ${near.mode}: ${fixed(near.frequency_hz, 4)} ± ${fixed(near.frequency_sigma_hz, 5)} Hz.`
+      : `No mode is kept at ${hertz.toPrecision(6)} Hz.`;
   }
 
   async function charted(modes) {
