@@ -76,7 +76,11 @@ class Guard:
         origins = {b"http://" + host for host in hosts}
         if any(origin not in origins for origin in headers.get(b"origin", [])):
             return "requests from another site are refused"
-        if any(site not in (b"same-origin", b"none") for site in headers.get(b"sec-fetch-site", [])):
+        elsewhere = any(site not in (b"same-origin", b"none") for site in headers.get(b"sec-fetch-site", []))
+        followed = scope["path"] == f"/{self.token}/" and headers.get(b"sec-fetch-dest") == [b"document"]
+        if (
+            elsewhere and not followed
+        ):  # a link to the page, in a terminal that is a page itself, may be followed
             return "requests from another site are refused"
         if scope["method"] not in ("GET", "HEAD") and headers.get(b"content-type") != [b"application/json"]:
             return "a change is sent as JSON"

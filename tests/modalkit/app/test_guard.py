@@ -71,6 +71,16 @@ def test_a_foreign_origin_is_refused(client, origin, method):
 def test_a_request_that_a_browser_calls_cross_site_is_refused(client):
     headers = {"sec-fetch-site": "cross-site"}
     assert client.get(f"/{TOKEN}/api/state", headers=headers).status_code == 403
+    for kind in ("iframe", "script", "empty"):
+        assert client.get(f"/{TOKEN}/", headers=headers | {"sec-fetch-dest": kind}).status_code == 403
+
+
+def test_a_link_with_the_token_may_be_followed_from_anywhere(client):
+    """The address stands in a terminal, which may be a page itself."""
+    headers = {"sec-fetch-site": "cross-site", "sec-fetch-dest": "document"}
+    assert client.get(f"/{TOKEN}/", headers=headers).status_code == 200
+    assert client.get(f"/{TOKEN}/api/state", headers=headers).status_code == 403
+    assert client.get("/", headers=headers).status_code == 403
 
 
 def test_a_form_of_another_page_cannot_send_a_change(client):

@@ -23,6 +23,7 @@ export function open(root, app) {
 
   async function update() {
     view.page = await get("shapes");
+    if (view.closed) return;
     const page = view.page;
     drawn.hidden = !page.modes.length;
     fill(nothing, page.modes.length ? null : h("p", {}, page.why));
@@ -214,5 +215,11 @@ export function open(root, app) {
     );
   }
 
-  return { update, close: () => view.scene?.close() };
+  return {
+    update,
+    close: () => {
+      view.closed = true;
+      view.scene?.close();
+    },
+  };
 }
