@@ -116,3 +116,13 @@ def test_the_shapes_of_test_and_model_agree_where_their_mac_does(beam):
         assert mac == pytest.approx(model["mac"], abs=0.02)
         assert max(model["difference"]) < 0.5
     assert np.array(page["model"]["surface"]["places"])[:, 0].max() == pytest.approx(0.376)
+
+
+@pytest.mark.parametrize("end", ["start", "low", "high"])
+def test_every_effect_that_has_sliders_can_be_moved_to_their_ends(beam, end):
+    bench = opened(beam)
+    sliders = plain(bench.model())["sliders"]
+    assert len(sliders) > 10
+    for effect in sliders:
+        values = {p["name"]: p[end] for p in effect["parameters"] if p[end] is not None}
+        assert bench.moved(Moved(({"name": effect["name"], **values},)), 0)["model_hz"] is not None

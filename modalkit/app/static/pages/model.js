@@ -189,11 +189,14 @@ export function open(root, app) {
     );
   }
 
+  /** An effect with its values; what is unbounded as long as nobody moves it is left out. */
+  function entryOf(effect) {
+    const values = effect.parameters.map((p) => [p.name, view.values[p.name] ?? p.start]);
+    return { name: effect.name, ...Object.fromEntries(values.filter(([, value]) => value !== null)) };
+  }
+
   async function put(effect) {
-    const entry = {
-      name: effect.name,
-      ...Object.fromEntries(effect.parameters.map((p) => [p.name, view.values[p.name] ?? p.start])),
-    };
+    const entry = entryOf(effect);
     view.effect = "";
     view.values = {};
     await app.act("accept", { effects: [entry] });
@@ -203,7 +206,7 @@ export function open(root, app) {
     const log10 = range.log && range.low > 0;
     const to = (v) => (log10 ? Math.log10(v) : v),
       from = (v) => (log10 ? 10 ** v : v);
-    const out = h("output", {}, `${short(value)} ${unit}`);
+    const out = h("output", {}, value === null ? "unbounded" : `${short(value)} ${unit}`);
     const span = to(range.high) - to(range.low);
     const input = h("input", {
       type: "range",
@@ -219,7 +222,7 @@ export function open(root, app) {
         root.querySelector("#slide-reset").disabled = false;
       },
     });
-    input.value = String(to(value));
+    input.value = String(to(value ?? range.high));
     return h("label", { class: "slider" }, h("span", {}, name), input, out);
   }
 
@@ -233,14 +236,7 @@ export function open(root, app) {
       while (mine !== view.asked) {
         mine = view.asked;
         const effect = view.page.sliders.find((s) => s.name === view.effect);
-        const effects = effect
-          ? [
-              {
-                name: effect.name,
-                ...Object.fromEntries(effect.parameters.map((p) => [p.name, view.values[p.name] ?? p.start])),
-              },
-            ]
-          : [];
+        const effects = effect ? [entryOf(effect)] : [];
         const begun = performance.now();
         try {
           const found = await post("moved", { effects, factors: view.factors, index: view.frf });
