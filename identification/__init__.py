@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from identification.band.health import frf_health, mode_coherence
     from identification.band.informed import at_cut_edge, informed_band
     from identification.fit.equations.residues import Residues, fit_residues
-    from identification.identify import identify
+    from identification.identify import Prepared, identify, prepare
     from identification.levels.slopes import LevelDependence, level_dependence, why_no_level_dependence
     from identification.mac import (
         auto_mac,
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     )
     from identification.model import ModalModel
     from identification.pairing import Correlation, Pair, Subspace, correlate, pair
+    from identification.pole_reasons import Origins, PoleReason, pole_origins
     from identification.poles import ESTIMATORS, PoleEstimator, PoleSets, lsce, lscf
     from identification.poles.cmif import cmif
     from identification.poles.stabilisation import StabilisationChart, stabilise
@@ -40,9 +41,12 @@ __all__ = [
     "Correlation",
     "LevelDependence",
     "ModalModel",
+    "Origins",
     "Pair",
     "PoleEstimator",
+    "PoleReason",
     "PoleSets",
+    "Prepared",
     "Residues",
     "Shapes",
     "StabilisationChart",
@@ -77,6 +81,8 @@ __all__ = [
     "mpc",
     "msf",
     "pair",
+    "pole_origins",
+    "prepare",
     "real_modes",
     "second_opinion",
     "stabilise",
@@ -90,7 +96,7 @@ load_on_demand(
     {
         ".poles.cmif": "cmif",
         ".band.health": "frf_health mode_coherence",
-        ".identify": "identify",
+        ".identify": "Prepared identify prepare",
         ".band.informed": "at_cut_edge informed_band",
         ".levels.slopes": "LevelDependence level_dependence why_no_level_dependence",
         ".mac": (
@@ -99,6 +105,7 @@ load_on_demand(
         ),
         ".model": "ModalModel",
         ".pairing": "Correlation Pair Subspace correlate pair",
+        ".pole_reasons": "Origins PoleReason pole_origins",
         ".poles": "ESTIMATORS PoleEstimator PoleSets lsce lscf",
         ".fit.equations.residues": "Residues fit_residues",
         ".scaling": "Shapes modal_constants mode_shapes real_modes",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -16,9 +17,10 @@ from acquisition.quantities import hertz, percent
 from acquisition.warned import Consequential
 from identification.arrangement import arrange, signs, unsigned
 from identification.band.uninformed import uninformed_modes
+from identification.fit.equations import basis
 from identification.fit.equations.pruning import inside, located
-from identification.fit.equations.residues import Residues
-from identification.fit.fit import Fitted, fit_modes
+from identification.fit.equations.residues import Residues, synthesise
+from identification.fit.fit import Fitted, fit_candidates, provisional, with_named
 from identification.fit.noise.disagreement import Disagreement
 from identification.fit.poly_reference import sorted_frfs
 from identification.fit.search.manual_selection import nearest_modes
@@ -34,6 +36,7 @@ _ORDER = 60
 _LEVELS = 25
 _POOR_FIT = 4.0  # power left over that of the noise that is worth a word
 _HIGHEST = 400
+_KEPT = 8  # fits with modes named by the user that are kept: so many picks can be undone without a new fit
 # Standard deviations by which constants of a mode exceed their noise, in r.m.s. over the FRFs, where it is one even
 # if the damping is not resolved, as between lines far apart. Noise fitted by a pole has 1 to 2, such modes above 70.
 _CLEAR = 5.0
@@ -83,20 +86,132 @@ def identify(
     EstimationError
         If no mode stands out.
     """
+    return prepare(frfs, band=band, order=order, method=method).modes(add=add, drop=drop)
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """All of an identification that does not depend on which modes the user names.
+
+    Parameters
+    ----------
+    frfs, data : FrfSet
+        What was given, and that of it which lies in the band.
+    band : tuple of float
+        The band [Hz].
+    chart : StabilisationChart
+        Where the candidates came from.
+    fitted : Fitted
+        Their fit.
+    points_rejected : tuple of str
+        Points whose FRFs were left out, with the reason.
+    """
+
+    frfs: FrfSet
+    data: FrfSet
+    band: tuple[float, float]
+    chart: StabilisationChart
+    fitted: Fitted
+    points_rejected: tuple[str, ...]
+
+    def modes(self, *, add: Sequence[float] = (), drop: Sequence[float] = ()) -> ModalModel:
+        """Return the modes with the user's word on them: what :func:`identify` returns, to the last digit.
+
+        Parameters
+        ----------
+        add, drop : sequence of float
+            As of :func:`identify` [Hz].
+
+        Raises
+        ------
+        InputError
+            If no mode can be kept where one is named, or there is none where one is to be dropped.
+        EstimationError
+            If no mode is left.
+        """
+        with threadpool_limits(1, user_api="blas"):
+            return _selected(self, self._with(tuple(add)), add, drop)
+
+    def _with(self, add: tuple[float, ...]) -> Fitted:
+        """Return the fit with the modes named, kept for the next call with the same."""
+        if add not in self._kept:
+            if len(self._kept) >= _KEPT:
+                self._kept.pop(next(iter(self._kept)))
+            self._kept[add] = with_named(self.fitted, add, band=self.band)
+        return self._kept[add]
+
+    @cached_property
+    def _kept(self) -> dict[tuple[float, ...], Fitted]:
+        return {}
+
+    def provisional(self, hertz: float, *, add: Sequence[float] = ()) -> Provisional:
+        """Return the fit with one more mode as far as a picture needs it; :meth:`modes` gives the last digits.
+
+        Parameters
+        ----------
+        hertz : float
+            Where the mode is [Hz].
+        add : sequence of float
+            Modes that were named before [Hz].
+
+        Raises
+        ------
+        InputError
+            If it is not among the lines.
+        """
+        with threadpool_limits(1, user_api="blas"):
+            fitted = self._with(tuple(add))
+            fit = provisional(fitted, hertz)
+            modes = inside(fit.poles, self.band, self.data.df)
+            values = synthesise(basis.Axis.of(fitted.frfs), fit.poles, fit.linear)
+            frfs = replace(fitted.frfs, values=values, coherence=None, variance=None, averages=None)
+            return Provisional(fit.poles[modes], frfs)
+
+
+@dataclass(frozen=True, eq=False)
+class Provisional:
+    """What a picture needs of modes whose last digits are still being worked out.
+
+    Parameters
+    ----------
+    poles : (n_modes,) complex array
+        Poles in the band [rad/s].
+    frfs : FrfSet
+        The FRFs of the fit, as measured in form and signs.
+    """
+
+    poles: ComplexArray
+    frfs: FrfSet
+
+
+def prepare(
+    frfs: FrfSet,
+    *,
+    band: tuple[float, float] | None = None,
+    order: int | None = None,
+    method: str = "lscf",
+) -> Prepared:
+    """Do all of an identification that does not depend on which modes the user names.
+
+    Parameters
+    ----------
+    frfs, band, order, method
+        As of :func:`identify`.
+
+    Raises
+    ------
+    InputError
+        If the band is empty, or the method unknown.
+    EstimationError
+        If no pole stands out.
+    """
     if method not in ESTIMATORS:
         raise InputError(f"unknown pole estimator {method!r}; use one of {', '.join(ESTIMATORS)}")
     with threadpool_limits(1, user_api="blas"):  # on small matrices a second thread only costs
-        return _identified(frfs, band, order, method, add, drop)
+        return _prepared(frfs, band, order, method)
 
 
-def _identified(
-    frfs: FrfSet,
-    band: tuple[float, float] | None,
-    order: int | None,
-    method: str,
-    add: Sequence[float],
-    drop: Sequence[float],
-) -> ModalModel:
+def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None, method: str) -> Prepared:
     data, points_rejected = _usable(frfs, band)
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
     estimator = ESTIMATORS[method]
@@ -108,7 +223,13 @@ def _identified(
             f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
             "order rises; widen the band, raise the order or check the FRFs"
         )
-    fitted = fit_modes(data, start, band=limits, add=add)
+    fitted = fit_candidates(data, start, band=limits)
+    return Prepared(frfs, data, limits, chart, fitted, points_rejected)
+
+
+def _selected(prepared: Prepared, fitted: Fitted, add: Sequence[float], drop: Sequence[float]) -> ModalModel:
+    """Return the modes of a fit that the data bear out or the user names, with their uncertainty."""
+    data, limits = prepared.data, prepared.band
     modes = inside(fitted.fit.poles, limits, data.df)
     modes &= ~nearest_modes(fitted.fit.poles, drop, modes, data.df)
     errors = _Errors.of(fitted, modes)
@@ -117,9 +238,9 @@ def _identified(
     struck, modes = fitted.fit.poles[modes & ~known], modes & known
     if not modes.any():
         why = "once the modes named are dropped" if drop else "in the band: what was found is a background"
-        raise EstimationError(f"{frfs.source}: no mode is left {why}; widen the band")
-    result = _assemble(data, fitted, errors, modes, chart, limits, points_rejected)
-    statement = (*_struck(struck), *uninformed_modes(frfs, result.modal.frequency))
+        raise EstimationError(f"{data.source}: no mode is left {why}; widen the band")
+    result = _assemble(data, fitted, errors, modes, prepared.chart, limits, prepared.points_rejected)
+    statement = (*_struck(struck), *uninformed_modes(prepared.frfs, result.modal.frequency))
     return replace(result, warnings=result.warnings + statement) if statement else result
 
 

@@ -31,6 +31,7 @@ from identification.fit.search.completion import (
 )
 
 _LONG = 40
+_FEW = 2  # steps of a provisional fit: the first finds the frequency, the second the damping too
 _FINE = 1e-10
 _BROAD = 0.1
 _AT_REST = 1e-4  # gain in the misfit, there a chi-square
@@ -84,9 +85,7 @@ class Fitted:
         return float(np.median(ratio.mean(axis=1) / np.maximum(1.0 - self.absorbed, 0.02).mean(axis=1)))
 
 
-def fit_modes(
-    frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float], add: Sequence[float] = ()
-) -> Fitted:
+def fit_candidates(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float]) -> Fitted:
     """Fit a modal model starting from candidate poles.
 
     Candidates that the data do not bear out are struck off; poles beyond the band's edges and more residual
@@ -101,13 +100,11 @@ def fit_modes(
         Candidate poles [rad/s].
     band : tuple of float
         The band [Hz].
-    add : sequence of float
-        Frequencies at which a mode is kept whatever the data say of it [Hz].
 
     Returns
     -------
     Fitted
-        The fit and the noise.
+        The fit and the noise; residues are not held to rank one yet, see :func:`with_named`.
 
     Raises
     ------
@@ -128,8 +125,48 @@ def fit_modes(
     while find_split_mode(fitted.frfs, fitted.fit) is not None:
         fit = without_split_modes(fitted.frfs, fitted.fit)
         fitted = _weighted(frfs, fit, fitted.drift, band)
-    data = fitted.frfs
-    return _held(data, _with_added(data, fitted, add, band), band)
+    return fitted
+
+
+def with_named(fitted: Fitted, add: Sequence[float], *, band: tuple[float, float]) -> Fitted:
+    """Return a fit of candidates with the modes that the user names, each mode held to one shape where it has one.
+
+    Parameters
+    ----------
+    fitted : Fitted
+        The fit of :func:`fit_candidates`.
+    add : sequence of float
+        Frequencies at which a mode is kept whatever the data say of it [Hz].
+    band : tuple of float
+        The band [Hz].
+
+    Raises
+    ------
+    InputError
+        If no mode can be kept where one is named.
+    """
+    return _held(fitted.frfs, _with_added(fitted.frfs, fitted, add, band), band)
+
+
+def provisional(fitted: Fitted, hertz: float) -> Fit:
+    """Return a fit with one more mode, refined by a few steps only: what a picture needs of :func:`with_named`.
+
+    Parameters
+    ----------
+    fitted : Fitted
+        The fit to add to.
+    hertz : float
+        Where the mode is [Hz].
+
+    Raises
+    ------
+    InputError
+        If that is not among the lines.
+    """
+    fit, frfs = fitted.fit, fitted.frfs
+    pole = manual_selection.best_start(frfs, fit.poles, fit.linear.powers, fitted.weights, hertz)
+    poles, powers = np.append(fit.poles, pole), fit.linear.powers
+    return refine(frfs, poles, fitted.weights, powers=powers, iterations=_FEW)
 
 
 def _with_added(frfs: FrfSet, fitted: Fitted, hertz: Sequence[float], band: tuple[float, float]) -> Fitted:
@@ -138,7 +175,7 @@ def _with_added(frfs: FrfSet, fitted: Fitted, hertz: Sequence[float], band: tupl
     for value in hertz:
         pole = manual_selection.best_start(frfs, fit.poles, fit.linear.powers, fitted.weights, value)
         poles, before = np.append(fit.poles, pole), fit.poles
-        fit = refine(frfs, poles, fitted.weights, powers=fit.linear.powers, iterations=_LONG)
+        fit = refine(frfs, poles, fitted.weights, powers=fit.linear.powers, iterations=_LONG, enough=_AT_REST)
         modes = inside(fit.poles, band, frfs.df)
         manual_selection.must_have_stayed(fit.poles, before, value, modes, frfs.df)
     if fit is fitted.fit:

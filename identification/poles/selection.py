@@ -18,11 +18,20 @@ def candidates(chart: StabilisationChart) -> ComplexArray:
     A chain that ends where another of the same frequency, damping and participation begins, without ever
     standing beside it at one order, is the same pole.
     """
-    groups = _merged(chart, _tracks(chart))
-    needed = max(2, int(np.ceil(_SHARE * len(chart.orders))))
-    poles = [_representative(chart, members) for members in groups if len(members) >= needed]
+    least = needed(chart)
+    poles = [representative(chart, members) for members in chains(chart) if len(members) >= least]
     found = np.array(poles, dtype=complex)
     return found[np.argsort(np.abs(found))]
+
+
+def needed(chart: StabilisationChart) -> int:
+    """Return through how many orders a chain must hold to be a candidate."""
+    return max(2, int(np.ceil(_SHARE * len(chart.orders))))
+
+
+def chains(chart: StabilisationChart) -> list[IntArray]:
+    """Return the poles of every chain, as rows of the chart, pieces of broken chains joined."""
+    return _merged(chart, _tracks(chart))
 
 
 def _tracks(chart: StabilisationChart) -> list[IntArray]:
@@ -57,7 +66,7 @@ def _merged(chart: StabilisationChart, tracks: list[IntArray]) -> list[IntArray]
     return [np.concatenate([tracks[i] for i in group]) for group in groups]
 
 
-def _representative(chart: StabilisationChart, members: IntArray) -> complex:
+def representative(chart: StabilisationChart, members: IntArray) -> complex:
     """Return the median of the upper half of a chain: high orders are the less biased."""
     levels: FloatArray = chart.level[members].astype(float)
     upper = members[levels >= np.median(levels)]

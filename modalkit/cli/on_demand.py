@@ -82,6 +82,11 @@ ENTRIES = (
         "Identify, update and diagnose a folder of studies, and write modes, factors and causes as tables.",
     ),
     Entry("part", "batching", "Work out one study of a batch.", hidden=True),
+    Entry(
+        "app",
+        "serving",
+        "Open the app on this machine: pick poles, watch shapes, compare with the model, diagnose.",
+    ),
     Entry("demo", "demonstrate", "Run the main job on shipped data: hits to modes to the cause of the gap."),
 )
 

@@ -13,16 +13,15 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from modalkit.cli.common import out, progress, show_figures, show_table, working
 from modalkit.output.whole import write_json
-from modalkit.planning import Advice, DesignForecast, Forecast, KnownTest, forecast
+from modalkit.planning import DesignForecast, Forecast, KnownTest, forecast
 from modalkit.planning.document import family_of, statement, to_json
 from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.from_study import known_test_of
-from modalkit.planning.separability import CLASS, NONE, SEEN, SURE
+from modalkit.planning.note import followed, note, separated, some
+from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check, check
 from modalkit.planning.writing import noise_for, write_case
 from modalkit.study.read import read_study
-
-_LINES = 4
 
 
 def plan_study(
@@ -71,7 +70,7 @@ def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:
         noise = _noise(found.known_test) if found.known_test.shapes else None
     columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=progress) as bar:
-        task = bar.add_task("trials", total=(2 if _followed(found) else 1) * trials)
+        task = bar.add_task("trials", total=(2 if followed(found) else 1) * trials)
         return check(found, trials, seed, noise=noise, workers=workers, progress=lambda: bar.advance(task))
 
 
@@ -97,72 +96,6 @@ def show_note(name: str, found: Forecast) -> None:
     left = [*known_test.left_out, *[f"{key} ({why})" for key, why in NOT_FORECAST.items()]]
     out.print(f"Not in:  {'; '.join(left)}; pairs of effects", markup=False)
     out.print()
-
-
-def _followed(found: Forecast) -> bool:
-    return bool(found.advice) and found.advice[0].worth > 0
-
-
-def note(found: Forecast) -> list[str]:
-    """Return the forecast in a few sentences."""
-    now = found.now
-    lines = [_separates(now), *_cannot(now), _from_when(now)]
-    if _followed(found):
-        lines.append(_best(found.advice[0]))
-    else:
-        lines.append("Advice:  no single change that was tried buys anything worth the trouble.")
-    return lines
-
-
-def _separates(now: DesignForecast) -> str:
-    pairs = list(now.pairs.values())
-    separately = sum(value >= SEEN for value in pairs)
-    return f"Tells:   {separately} of {len(pairs)} pairs of effects apart, each effect as strong as asked about below."
-
-
-def _cannot(now: DesignForecast) -> list[str]:
-    lines, groups = [], [" = ".join(group) for group in now.classes]
-    if groups:
-        lines.append(
-            f"Cannot:  tell apart (under {CLASS:g} sigma, all doubts counted in) {'; '.join(groups)}."
-        )
-    near = [
-        f"{a} from {b} ({value:.1f} sigma)"
-        for (a, b), value in sorted(now.pairs.items(), key=lambda item: item[1])
-        if value < SEEN and not any(a in group and b in group for group in now.classes)
-    ]
-    if near:
-        lines.append(f"Hardly:  {_some(near)}.")
-    if now.unseen:
-        lines.append(f"Blind:   {', '.join(now.unseen)} would be taken for no effect at all.")
-    return lines
-
-
-def _some(words: list[str]) -> str:
-    """Return the first of a list, and how many more there are."""
-    rest = len(words) - _LINES
-    return ", ".join(words) if rest < 2 else f"{', '.join(words[:_LINES])} and {rest} pairs more"
-
-
-def _separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
-    return [f"shows {a}" if b == NONE else f"{a} from {b}" for a, b in pairs]
-
-
-def _from_when(now: DesignForecast) -> str:
-    """Return the effects that need to be largest, against what is asked about, to be told."""
-    hard = sorted(now.limits, key=lambda name: -now.limits[name].separated / now.limits[name].clear)[:_LINES]
-    words = []
-    for name in hard:
-        limit = now.limits[name]
-        never = f"{name} at no severity ({limit.nearest} does the same)"
-        words.append(statement(now, name, limit.separated) or never)
-    return f"Late:    told from all others only from here on: {'; '.join(words)}."
-
-
-def _best(best: Advice) -> str:
-    newly = _some(_separated(best.separates))
-    first = f"separates {newly}" if newly else "separates no further pair"
-    return f"Advice:  {best.change.measure}: {first}; severities told become {best.factor:.1f} times smaller."
 
 
 def show_tables(found: Forecast) -> None:
@@ -215,7 +148,7 @@ def _changes(found: Forecast) -> pd.DataFrame:
         [
             {
                 "change": one.change.measure,
-                "newly separates": _some(_separated(one.separates)) or "-",
+                "newly separates": some(separated(one.separates)) or "-",
                 "times smaller": one.factor,
                 "share told": one.after.separated_share,
             }

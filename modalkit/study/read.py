@@ -43,6 +43,7 @@ __all__ = [
     "TolerancesTable",
     "UpdateTable",
     "read_study",
+    "study_of",
 ]
 
 NOTHING = 1e-9
@@ -239,6 +240,25 @@ def read_study(path: Path | str) -> Study:
         raise StudyError(not_utf8(path, path.read_bytes()) or binary) from error
     except (ValueError, RecursionError) as error:
         raise StudyError(f"{path}: not a valid TOML file: {error}") from error
+    return study_of(content, path)
+
+
+def study_of(content: dict[str, Any], path: Path) -> Study:
+    """Return the study that the tables of a file are.
+
+    Parameters
+    ----------
+    content : dict
+        As TOML gives it; it stays as it is.
+    path : path
+        The file it is of, for messages, and because its files are relative to it.
+
+    Raises
+    ------
+    StudyError
+        If it has a key or value that does not belong there.
+    """
+    content = dict(content)
     if "path" in content:
         raise StudyError(f"{path}: unknown key path; known here: {', '.join(known_keys((), Study))}")
     model = content.get("model", {})

@@ -91,6 +91,9 @@ class MeasurementTable(Strict):
     leave: list[tuple[str, int]] = []
     add: list[Hertz] = []
     drop: list[Hertz] = []
+    order: Annotated[int, Field(ge=2, le=400)] | None = None
+    references: list[str] = []
+    pairs: list[tuple[Hertz, Annotated[int, Field(ge=0)]]] = []
     layout: str | None = None
     sensor_masses: dict[str, Mass] = {}
     calibration: Annotated[float, in_unit(""), Field(gt=0.0)] = 0.02
@@ -134,6 +137,8 @@ OF_RECORDS = (
     "leave",
     "add",
     "drop",
+    "order",
+    "references",
     "layout",
     "sensor_masses",
 )

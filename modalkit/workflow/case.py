@@ -19,6 +19,7 @@ from modalkit.workflow.files import Progress
 from modalkit.workflow.identification import Processed, read_frfs
 from modalkit.workflow.processing_options import ProcessingOptions
 from updating import Case, Measured, measured_from_identified, measured_from_modes
+from updating.test_data.measured import NO_PARTNER, UNSTATED
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,7 +54,12 @@ class Session(Displayed):
         return self.case.measured._frame()
 
 
-def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Session:
+def open_study(
+    study: Study | Path | str,
+    *,
+    with_baseline: bool = True,
+    known: tuple[Processed, ModalModel] | None = None,
+) -> Session:
     """Work out the case of a study: process and identify its test and its baseline.
 
     Parameters
@@ -62,6 +68,8 @@ def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Sess
         The study, or its file.
     with_baseline : bool
         Whether the baseline is worked out too; only a diagnosis needs it.
+    known : (Processed, ModalModel), optional
+        FRFs and modes of the test, as :func:`process` gives them, where they are there already.
 
     Raises
     ------
@@ -69,7 +77,7 @@ def open_study(study: Study | Path | str, *, with_baseline: bool = True) -> Sess
         If the study names no data.
     """
     study = study if isinstance(study, Study) else read_study(study)
-    test, processed, identified = _measure(study, study.test, "test")
+    test, processed, identified = _measure(study, study.test, "test", known)
     baseline, *before = (
         _measure(study, study.baseline, "baseline")
         if study.baseline is not None and with_baseline
@@ -154,7 +162,16 @@ def _identified(
     drop: Sequence[float] = (),
     progress: Progress | None = None,
 ) -> tuple[Processed, ModalModel]:
-    processing = ProcessingOptions(
+    files = [study.file(f) for f in table.files]
+    processed = read_frfs(files, processing=processing_of(study, table), progress=progress)
+    return processed, processed.identify(
+        band=band or table.band, order=order or table.order, add=[*table.add, *add], drop=[*table.drop, *drop]
+    )
+
+
+def processing_of(study: Study, table: MeasurementTable) -> ProcessingOptions:
+    """Return how a study wants the records of a test to be treated."""
+    return ProcessingOptions(
         decay=table.exponential_window,
         window_on=table.window_on,
         window=table.window,
@@ -163,16 +180,15 @@ def _identified(
         leave=tuple(table.leave),
         layout=None if table.layout is None else study.file(table.layout),
         sensor_masses=tuple(table.sensor_masses.items()),
-    )
-    files = [study.file(f) for f in table.files]
-    processed = read_frfs(files, processing=processing, progress=progress)
-    return processed, processed.identify(
-        band=band or table.band, order=order, add=[*table.add, *add], drop=[*table.drop, *drop]
+        references=tuple(table.references),
     )
 
 
 def _measure(
-    study: Study, table: MeasurementTable, name: str
+    study: Study,
+    table: MeasurementTable,
+    name: str,
+    known: tuple[Processed, ModalModel] | None = None,
 ) -> tuple[Measured, Processed | None, ModalModel | None]:
     options: dict[str, float | str] = {
         "calibration": table.calibration,
@@ -185,13 +201,44 @@ def _measure(
         modes, below, beyond = modes_in_band(study, table, name)
         with _naming(study):
             measured = measured_from_modes(modes, axes, spec, **options)
+        measured = _with_pairs(study, table, measured)
         return replace(measured, warnings=(*measured.warnings, *beyond), below=below), None, None
     if not table.files:
         raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
-    processed, identified = _identified(study, table)
+    processed, identified = _identified(study, table) if known is None else known
     with _naming(study):
         measured = measured_from_identified(identified, axes, spec, **options)
+    measured = _with_pairs(study, table, measured)
     return _with_levels(measured, processed, identified), processed, identified
+
+
+PAIRED = 0.01
+"""Relative distance within which a stated pair means a measured mode: that of modes to drop [-]."""
+
+
+def _with_pairs(study: Study, table: MeasurementTable, measured: Measured) -> Measured:
+    """Return a test with the pairs that are stated of it.
+
+    Raises
+    ------
+    StudyError
+        If there is no mode where one is paired, or two with one model mode.
+    """
+    if not table.pairs:
+        return measured
+    partners = np.full(len(measured.frequency), UNSTATED)
+    for hertz, mode in table.pairs:
+        distance = np.abs(measured.frequency / hertz - 1)
+        if distance.min() > PAIRED:
+            found = ", ".join(f"{f:.5g}" for f in measured.frequency)
+            raise StudyError(
+                f"{study.path}: pairs name a mode at {hertz:g} Hz; those of the test are at {found} Hz"
+            )
+        partners[distance.argmin()] = mode - 1 if mode else NO_PARTNER
+    stated = partners[partners >= 0]
+    if len(set(stated.tolist())) < len(stated):
+        raise StudyError(f"{study.path}: pairs give one model mode to two measured ones; decide for one")
+    return replace(measured, partners=partners)
 
 
 def modes_in_band(study: Study, table: MeasurementTable, name: str) -> tuple[ModalData, int, tuple[str, ...]]:

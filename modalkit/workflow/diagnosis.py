@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from acquisition.errors import InputError
@@ -16,6 +16,8 @@ def diagnose_studies(
     studies: Sequence[Session | Study | Path | str],
     shared: Sequence[str] = (),
     without: Sequence[str] = (),
+    *,
+    progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     """Diagnose one study, or several together.
 
@@ -27,6 +29,8 @@ def diagnose_studies(
         Effects of one and the same size in all studies; those of all others are free in each.
     without : sequence of str
         Effects of the library that are left out, as if it did not know them.
+    progress : function, optional
+        Called with the name of every stage of the diagnosis of one study.
 
     Raises
     ------
@@ -40,7 +44,7 @@ def diagnose_studies(
         return diagnose_together([session.case for session in sessions], shared=shared, library=library)
     if shared:
         raise InputError(f"--shared {','.join(shared)}: there is one study only; give those that share it")
-    return diagnose(sessions[0].case, library=library)
+    return diagnose(sessions[0].case, library=library, progress=progress)
 
 
 def _library(without: Sequence[str]) -> list[Effect]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,14 +36,19 @@ from modalkit.workflow.joining import together
 from modalkit.workflow.level_warnings import with_level_warning
 from modalkit.workflow.mixed import with_read
 from modalkit.workflow.processing_options import ProcessingOptions
+from modalkit.workflow.references import among_references, with_references
 from modalkit.workflow.sensors import without_sensors
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from identification import ModalModel
+    from identification import ModalModel, Prepared
 
 AS_READ = ProcessingOptions()
+KEPT = 4
+"""Bands and orders whose fits a test keeps: what is undone and done again needs no new fit. Each takes some ten times
+the memory of the FRFs [-]."""
+
 SAME_DECAY = 1e-3  # relative difference of decays that are the same
 
 
@@ -133,14 +139,12 @@ class Processed(Displayed):
     def _identified(
         self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
-        from identification import identify
-
         reach = self._reach([*add, *drop]) if band is None else None
         if reach is None and band is not None:
             return self._informed(band, order, add, drop)
         if reach is None:
-            return identify(self.frfs, band=band, order=order, add=add, drop=drop)
-        model = identify(self.frfs, band=reach, order=order, add=add, drop=drop)
+            return self.prepared(band, order).modes(add=add, drop=drop)
+        model = self.prepared(reach, order).modes(add=add, drop=drop)
         statement = Consequential(
             f"the force is 20 dB down at {hertz(reach[1])}: modes are looked for below that; give a band to go "
             "further"
@@ -151,15 +155,56 @@ class Processed(Displayed):
         self, band: tuple[float, float], order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
         """Identify the modes of the part of a band in which the FRFs carry information."""
-        from identification import at_cut_edge, identify, informed_band
+        from identification import at_cut_edge
 
-        within, statement = informed_band(self.frfs, [(j.test, j.verdicts) for j in self.judged], band)
-        if any(not within[0] <= f <= within[1] for f in (*add, *drop)):
-            within, statement = band, None
-        model = identify(self.frfs, band=within, order=order, add=add, drop=drop)
+        within, statement = self._informed_part(band, [*add, *drop])
+        prepared = self.prepared(within, order)
+        model = prepared.modes(add=add, drop=drop)
         if beyond := at_cut_edge(model.modal.frequency, within, band, self.frfs.df):
-            model = identify(self.frfs, band=within, order=order, add=add, drop=[*drop, *beyond])
+            model = prepared.modes(add=add, drop=[*drop, *beyond])
         return model if statement is None else replace(model, warnings=(*model.warnings, statement))
+
+    def _informed_part(
+        self, band: tuple[float, float], named: Sequence[float]
+    ) -> tuple[tuple[float, float], str | None]:
+        """Return the part of a band that carries information and what was cut; all of it if a mode is named beyond."""
+        from identification import informed_band
+
+        if band not in self._informed_bands:
+            judged = [(j.test, j.verdicts) for j in self.judged]
+            self._informed_bands[band] = informed_band(self.frfs, judged, band)
+        within, statement = self._informed_bands[band]
+        if any(not within[0] <= f <= within[1] for f in named):
+            return band, None
+        return within, statement
+
+    def within(self, band: tuple[float, float] | None, named: Sequence[float]) -> tuple[float, float] | None:
+        """Return the band that is identified where this one is asked for and modes are named [Hz]; None is all."""
+        return self._reach(named) if band is None else self._informed_part(band, named)[0]
+
+    def prepared(self, band: tuple[float, float] | None, order: int | None) -> Prepared:
+        """Return what of an identification does not depend on the modes named, kept for the next call.
+
+        Parameters
+        ----------
+        band, order : tuple of float and int, optional
+            As of :func:`identification.identify`.
+        """
+        from identification import prepare
+
+        if (band, order) not in self._prepared:
+            if len(self._prepared) >= KEPT:
+                self._prepared.pop(next(iter(self._prepared)))
+            self._prepared[band, order] = prepare(self.frfs, band=band, order=order)
+        return self._prepared[band, order]
+
+    @cached_property
+    def _prepared(self) -> dict[tuple[tuple[float, float] | None, int | None], Prepared]:
+        return {}
+
+    @cached_property
+    def _informed_bands(self) -> dict[tuple[float, float], tuple[tuple[float, float], str | None]]:
+        return {}
 
     def _reach(self, named: Sequence[float]) -> tuple[float, float] | None:
         """Return the band that the force reaches, if it ends before the lines do and no mode is named beyond."""
@@ -217,7 +262,7 @@ def read(
     content = read_files(paths, layout=processing.layout, progress=progress)
     modes = existing(content.modal, paths, content.title, content.warnings)
     if modes is None or content.tests or content.frfs is not None:
-        return _processed(content, paths, processing)
+        return from_content(content, paths, processing)
     if replace(processing, layout=None) != AS_READ:
         raise InputError(
             f"{modes.source}: holds modes; decay, windows, hits, estimator and sensor masses are for hits and FRFs"
@@ -263,8 +308,27 @@ def _statement(processing: ProcessingOptions, decay: float, layout: Path | str |
     return processing
 
 
-def _processed(content: UffContent, paths: Sequence[Path], processing: ProcessingOptions) -> Processed:
+def from_content(content: UffContent, paths: Sequence[Path], processing: ProcessingOptions) -> Processed:
+    """Return the FRFs of a test whose files are read already.
+
+    Parameters
+    ----------
+    content : UffContent
+        What they hold; it stays as it is.
+    paths : sequence of path
+        Their names, for messages.
+    processing : Handling
+        How records are treated.
+
+    Raises
+    ------
+    InputError
+        If there are neither hits nor FRFs, or what is said of their treatment does not fit them.
+    """
     warnings = list(content.warnings)
+    if processing.references:
+        content = with_references(content, processing.references)
+        processing = among_references(processing)
     judged = _judged(content.tests, processing, warnings)
     if judged:
         warnings += on_hits([(j.test, j.verdicts) for j in judged])

@@ -36,6 +36,8 @@ class ProcessingOptions:
         Rate, units and points of column text.
     sensor_masses : tuple of (str, float)
         Accelerometers whose mass is taken out of the FRFs: where, as printed, and its mass [kg].
+    references : tuple of str
+        Degrees of freedom, as printed, whose forces are used; left out, all.
 
     Raises
     ------
@@ -51,6 +53,7 @@ class ProcessingOptions:
     leave: tuple[HitName, ...] = ()
     layout: Path | str | None = None
     sensor_masses: tuple[tuple[str, float], ...] = ()
+    references: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the entries."""

@@ -38,7 +38,11 @@ from updating.thresholds import FEWEST_DATA
 
 
 def diagnose(
-    case: Case, *, library: Sequence[Effect] | None = None, rng: np.random.Generator | None = None
+    case: Case,
+    *,
+    library: Sequence[Effect] | None = None,
+    rng: np.random.Generator | None = None,
+    progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     """Say where the gap between a test and a model lies, what causes it, and how far it closes.
 
@@ -50,6 +54,8 @@ def diagnose(
         Effects to consider; left out, the whole library.
     rng : Generator, optional
         For the bootstrap; left out, a fixed one, so that the answer repeats.
+    progress : function, optional
+        Called with the name of every stage as it begins.
 
     Returns
     -------
@@ -61,9 +67,10 @@ def diagnose(
         If no measured mode has a partner in the model.
     """
     with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
+        _stage(progress, "pairing the modes")
         problem, warnings = pose(case)
         accepted = {name for name, _ in case.accepted}
-        return _diagnose(problem, (case.title,), accepted, library, rng, warnings)
+        return _diagnose(problem, (case.title,), accepted, library, rng, warnings, progress)
 
 
 def diagnose_together(
@@ -113,13 +120,16 @@ def _diagnose(
     library: Sequence[Effect] | None,
     rng: np.random.Generator | None,
     warnings: list[str],
+    progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     effects = list(LIBRARY.values()) if library is None else list(library)
+    _stage(progress, "comparing the effects")
     found = search(problem, [e for e in effects if e.several or e.name not in accepted])
     chance = found.empty.p_value
     significant = is_significant(found, chance)
     comparable = not any(one.mostly_alone for one in problem.specimens)
     draws = np.random.default_rng(1) if rng is None else rng
+    _stage(progress, "predicting modes held out")
     shrink = _shrink(problem, found, draws, significant=significant)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
     left = remainder_of(problem, titles, leader if significant else found.empty.explanation, shrink)
@@ -133,6 +143,7 @@ def _diagnose(
     apart = splits(problem, leader) if verdict == "named" else ()
     if apart:
         verdict, sets = "unknown", ()
+    _stage(progress, "choosing the next test")
     return Diagnosis(
         " and ".join(titles),
         significant,
@@ -150,6 +161,11 @@ def _diagnose(
         left if significant or found.empty.explanation.candidate.outliers else None,
         included(found),
     )
+
+
+def _stage(progress: Callable[[str], None] | None, name: str) -> None:
+    if progress is not None:
+        progress(name)
 
 
 def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:

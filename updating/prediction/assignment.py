@@ -31,6 +31,10 @@ def mac_of_constants(
     return np.asarray((a.T @ b) ** 2 / np.maximum(power, 1e-300))
 
 
+AS_STATED = 1e3
+"""What a stated pair gains over any other: more than all other pairs of any test cost together [-]."""
+
+
 def match(
     measured: Measured, prediction: Prediction, order: IntArray, trusted: BoolArray | None = None
 ) -> IntArray:
@@ -59,4 +63,7 @@ def match(
     ratio = np.abs(np.log(measured.frequency[:, None] / prediction.frequency[None, :]))
     ratio = np.nan_to_num(ratio, nan=3.0)
     cost = 1 - mac_of_constants(measured, prediction, trusted) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
+    if measured.partners is not None:
+        rows = np.flatnonzero((measured.partners >= 0) & (measured.partners < cost.shape[1]))
+        cost[rows, measured.partners[rows]] = -AS_STATED
     return np.asarray(linear_sum_assignment(cost)[1])

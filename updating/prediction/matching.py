@@ -13,7 +13,7 @@ from identification import pair
 from updating.prediction.assignment import mac_of_constants, match
 from updating.prediction.predict import Prediction
 from updating.prediction.trusted_frfs import left_out, trusted_rows
-from updating.test_data.measured import Measured
+from updating.test_data.measured import NO_PARTNER, UNSTATED, Measured
 
 WILD = 0.25
 """Standard deviation of the logarithms of the frequency ratios beyond which ranks are doubted."""
@@ -91,6 +91,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     ratio = np.log(measured.frequency / prediction.frequency[order])
     distance = np.minimum(np.abs(ratio - np.median(ratio)) / ASTRAY, 1.0)
     keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * distance
+    keep = _as_stated(measured, prediction, keep)
     if not keep.any():
         raise EstimationError(
             f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
@@ -107,6 +108,24 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     if trusted is not None:
         lost.append(f"modes are paired without {left_out(measured, trusted)}, which spoils their shapes")
     return Paired(replace(measured.modes(keep), trusted=trusted), order[keep], tuple(lost), alone)
+
+
+def _as_stated(measured: Measured, prediction: Prediction, keep: BoolArray) -> BoolArray:
+    """Return which modes have a partner once the stated pairs stand.
+
+    Raises
+    ------
+    EstimationError
+        If a stated partner is none of the model's modes.
+    """
+    if measured.partners is None:
+        return keep
+    if (measured.partners >= len(prediction.frequency)).any():
+        raise EstimationError(
+            f"{measured.title or 'test'}: pairs name model mode {int(measured.partners.max()) + 1}; the model has "
+            f"{len(prediction.frequency)} modes in the band of the test"
+        )
+    return np.asarray((keep | (measured.partners >= 0)) & (measured.partners != NO_PARTNER))
 
 
 MOSTLY_ALONE = (
@@ -135,6 +154,8 @@ def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
 
 def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     """Pair by rank; let modes be skipped only where the ratios of frequencies are wild without."""
+    if measured.partners is not None and (measured.partners != UNSTATED).any():
+        return _by_statement(measured, prediction)
     above = prediction.frequency[measured.below :]
     count = min(len(measured.frequency), len(above))
     ratio = np.log(measured.frequency[:count] / above[:count])
@@ -150,6 +171,22 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     keep[rows] = True
     lost = [f"mode at {hertz(f)} has no partner in the model" for f in measured.frequency[~keep]]
     return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))
+
+
+def _by_statement(measured: Measured, prediction: Prediction) -> Paired:
+    """Pair by rank with the stated pairs in it: the other modes take the model's that are left, in order."""
+    assert measured.partners is not None
+    keep = _as_stated(measured, prediction, np.ones(len(measured.frequency), dtype=bool))
+    stated = measured.partners
+    free = [m for m in range(measured.below, len(prediction.frequency)) if m not in set(stated.tolist())]
+    rest = np.flatnonzero(keep & (stated == UNSTATED))
+    keep[rest[len(free) :]] = False
+    order = stated.copy()
+    order[rest[: len(free)]] = free[: len(rest)]
+    lost = [f"mode at {hertz(f)} has no partner in the model" for f in measured.frequency[~keep]]
+    if not keep.any():
+        raise EstimationError(f"{measured.title or 'test'}: no measured frequency has a partner in the model")
+    return Paired(measured.modes(keep), order[keep], tuple(lost))
 
 
 MISTAKEN = {

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 UNKNOWN_LEVEL = 0.2
 """A calibration worse than this is found by least squares before anything is linearised [-]."""
 
+UNSTATED, NO_PARTNER = -1, -2
+"""What stands among the partners for a mode of which nothing is stated, and for one that is stated to have none."""
+
 
 @dataclass(frozen=True, eq=False)
 class Measured(Displayed):
@@ -84,6 +87,8 @@ class Measured(Displayed):
         Each point as the test writes its degree of freedom, ``5+Z``; left out, by its node alone.
     trusted : (n_frf,) bool array, optional
         Rows by whose shapes modes are paired, where the others spoil them; left out, all.
+    partners : (n_modes,) int array, optional
+        Rank of the model mode that each one is stated to be, from 0; `UNSTATED`, or `NO_PARTNER`.
     """
 
     frequency: FloatArray
@@ -117,6 +122,7 @@ class Measured(Displayed):
     below: int = 0
     written: tuple[str, ...] = ()
     trusted: BoolArray | None = None
+    partners: IntArray | None = None
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -152,7 +158,15 @@ class Measured(Displayed):
     def modes(self, keep: BoolArray | IntArray) -> Measured:
         """Return the same test with some of its modes."""
         across = ("constants", "constants_sigma", "noise", "shared", "phase", "phase_sigma")
-        along = ("frequency", "frequency_sigma", "damping", "damping_sigma", "slope", "slope_sigma")
+        along = (
+            "frequency",
+            "frequency_sigma",
+            "damping",
+            "damping_sigma",
+            "slope",
+            "slope_sigma",
+            "partners",
+        )
         columns = {n: getattr(self, n)[:, keep] for n in across if getattr(self, n) is not None}
         rows = {n: getattr(self, n)[keep] for n in along if getattr(self, n) is not None}
         return replace(self, **rows, **columns)

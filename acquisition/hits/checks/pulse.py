@@ -55,13 +55,27 @@ def force_bands(wave: FloatArray, rate: float) -> tuple[float, float]:
     rate : float
         Sampling rate [Hz].
     """
+    frequency, size = pulse_spectrum(wave, rate)
+    bands = []
+    for decibels in (10, 20):
+        low = np.flatnonzero(size < size[0] * 10 ** (-decibels / 20))
+        bands.append(float(frequency[low[0] if len(low) else -1]))
+    return bands[0], bands[1]
+
+
+def pulse_spectrum(wave: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
+    """Return lines [Hz] and the magnitude of the spectrum of a pulse alone, without the noise of the rest [N].
+
+    Parameters
+    ----------
+    wave : (n_samples,) array
+        Force record, pulse upwards and without offset [N].
+    rate : float
+        Sampling rate [Hz].
+    """
     first, last = pulse_ends(wave)
     reach = 2 * (last - first + 1)
     pulse = wave[max(0, first - reach) : last + reach + 1]
     length = scipy.fft.next_fast_len(max(len(wave), 8 * len(pulse)), real=True)
     size = np.abs(scipy.fft.rfft(pulse, length))
-    bands = []
-    for decibels in (10, 20):
-        low = np.flatnonzero(size < size[0] * 10 ** (-decibels / 20))
-        bands.append(float(low[0] if len(low) else length // 2) * rate / length)
-    return bands[0], bands[1]
+    return np.asarray(np.arange(len(size)) * rate / length), size

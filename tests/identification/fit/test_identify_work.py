@@ -32,13 +32,13 @@ def bases(monkeypatch) -> list[int]:
 def test_one_thread_whatever_the_caller_has(monkeypatch):
     """Matrices of some 50 columns: two threads take several times the processor time of one."""
     threads, module = [], sys.modules["identification.identify"]
-    fit = module.fit_modes
+    fit = module.fit_candidates
 
     def seen(*args, **kwargs):
         threads.extend(pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas")
         return fit(*args, **kwargs)
 
-    monkeypatch.setattr(module, "fit_modes", seen)
+    monkeypatch.setattr(module, "fit_candidates", seen)
     truth = structure((120.0, 200.0), (0.006, 0.005), 6, seed=21)
     frfs = truth.frfs(lines(high=300.0), column(6), noise=0.003, rng=np.random.default_rng(1))
     with threadpool_limits(2, user_api="blas"):

@@ -1,0 +1,271 @@
+"""One study in the app: its history, what is computed of it, the work on it; all that the server serves."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from acquisition.errors import InputError, ModalkitError
+from identification import ModalModel
+from modalkit.app.acceptance import accepted_entries
+from modalkit.app.actions import ACTIONS
+from modalkit.app.export import Handed, export, free_folder, study_text
+from modalkit.app.history import History, State
+from modalkit.app.jobs import Jobs, report_of, result_of
+from modalkit.app.opened import Opened
+from modalkit.app.store import Store
+from modalkit.app.views.hits import frf_page, hits_page, record_page
+from modalkit.app.views.model import Moved, model_page, moved_page
+from modalkit.app.views.modes import fit_page, modes_page, provisional_page
+from modalkit.app.views.shapes import Beside, shapes_page
+from modalkit.app.work import KINDS
+from modalkit.app.workbench import Workbench
+from modalkit.study.read import Study
+from modalkit.workflow.identification import Processed
+from modalkit.workflow.references import references_of
+
+NEEDS_MODES = frozenset({"hit", "pick", "drop", "band", "order", "references", "estimator", "text", "set"})
+"""Changes that are made only if the modes can be identified after them."""
+
+EXPORT = "modalkit-export"
+
+
+class Bench:
+    """The state of the app and what follows from it.
+
+    Parameters
+    ----------
+    opened : Opened
+        What was opened.
+    store : Store
+        Where its state is kept; one that is there is gone on with.
+    """
+
+    def __init__(self, opened: Opened, store: Store) -> None:
+        """Go on where the last session ended."""
+        self._opened, self._store = opened, store
+        self._workbench, self._jobs = Workbench(), Jobs()
+        self._lock = threading.RLock()
+        self._history = store.load() or History((State.of(opened.content, "open"),))
+
+    @property
+    def study(self) -> Study:
+        """The study as it stands."""
+        return self._opened.study(self._history.now.content)
+
+    @property
+    def title(self) -> str:
+        """What it is called."""
+        return str(self._history.now.content.get("title") or self._opened.path.name)
+
+    def state(self) -> dict[str, Any]:
+        """Return what the head of the page shows."""
+        job = self._jobs.last
+        history = self._history
+        return {
+            "title": self.title,
+            "file": self._opened.path.name,
+            "is_study": self._opened.is_study,
+            "has_model": history.now.content.get("model") is not None,
+            "has_files": bool(history.now.content.get("test", {}).get("files")),
+            "key": history.now.key,
+            "position": history.position,
+            "undo": history.undo_label,
+            "redo": history.redo_label,
+            "job": None if job is None else job.document(),
+            "results": [kind for kind in KINDS if self._result(kind) is not None],
+        }
+
+    def act(self, name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+        """Make a change, if the study is one after it and its modes can be identified; save it.
+
+        Raises
+        ------
+        InputError
+            If there is no such change, or it cannot be made; the study then stays as it is.
+        """
+        if name not in ACTIONS:
+            raise InputError(f"there is no change called {name!r}")
+        with self._lock:
+            content, label = ACTIONS[name](self._history.now.content, arguments)
+            study = self._opened.study(content)
+            if study.model is not None:
+                study.spec()
+                study.accepted()
+            if name in NEEDS_MODES:
+                self._workbench.modes(study)
+            elif study.model is not None:
+                self._beside(study)
+            self._keep(self._history.then(content, label))
+        return self.state()
+
+    def step(self, *, back: bool) -> dict[str, Any]:
+        """Undo or redo one change."""
+        with self._lock:
+            self._keep(self._history.undone() if back else self._history.redone())
+        return self.state()
+
+    def _keep(self, history: History) -> None:
+        """Save a history, and then show it."""
+        self._store.save(history)
+        self._history = history
+
+    def hits(self) -> dict[str, Any]:
+        """Return the page of the hits."""
+        with self._lock:
+            return hits_page(self._workbench.processed(self.study), self.study)
+
+    def record(self, point: str, hit: int) -> dict[str, Any]:
+        """Return the records of one hit."""
+        with self._lock:
+            return record_page(self._processed(), point, hit)
+
+    def frf(self, index: int) -> dict[str, Any]:
+        """Return one FRF."""
+        with self._lock:
+            return frf_page(self._processed(), index)
+
+    def _processed(self) -> Processed:
+        processed = self._workbench.processed(self.study)
+        if processed is None:
+            raise InputError("this test has modes alone, no hits and no FRFs")
+        return processed
+
+    def modes(self) -> dict[str, Any]:
+        """Return the page of the modes."""
+        with self._lock:
+            bench, study = self._workbench, self.study
+            processed, content = bench.processed(study), bench.content(study)
+            origins = None if processed is None else bench.origins(study)
+            references = [] if content is None else references_of(content)
+            return modes_page(processed, bench.modes(study), origins, study, references)
+
+    def fit(self, index: int) -> dict[str, Any]:
+        """Return one FRF with its fit."""
+        with self._lock:
+            return fit_page(self._workbench.identified(self.study), index)
+
+    def provisional(self, hertz: float, index: int) -> dict[str, Any]:
+        """Return what a picture needs of a pick, before its last digits are there."""
+        with self._lock:
+            return provisional_page(self._workbench.provisional(self.study, hertz), index)
+
+    def shapes(self) -> dict[str, Any]:
+        """Return the page of the shapes."""
+        with self._lock:
+            modal = self._workbench.modal(self.study)
+            beside, why = (None, "") if modal.shapes is None else self._beside_or_why()
+            return shapes_page(modal, beside) | {"no_model": why}
+
+    def model(self) -> dict[str, Any]:
+        """Return the page of the model."""
+        with self._lock:
+            beside, why = self._beside_or_why()
+            content = self._history.now.content
+            return model_page(content, self.study, beside, why) | {"frfs": self._frf_names()}
+
+    def _frf_names(self) -> list[str]:
+        if not self.study.test.files:
+            return []
+        names: list[str] = self.modes()["frfs"]
+        return names
+
+    def moved(self, moved: Moved, index: int) -> dict[str, Any]:
+        """Return the model with effects and factors moved; nothing is kept of it."""
+        with self._lock:
+            study = self.study
+            identified: ModalModel | None = None
+            if study.test.files:
+                identified = self._workbench.identified(study)
+            return moved_page(self._beside(study), identified, moved, index)
+
+    def _beside(self, study: Study) -> Beside:
+        session = self._workbench.session(study)
+        return Beside(session, self._workbench.predictor(study), self._workbench.correlation(study))
+
+    def _beside_or_why(self) -> tuple[Beside | None, str]:
+        if self.study.model is None:
+            return None, "the study has no [model]"
+        try:
+            return self._beside(self.study), ""
+        except ModalkitError as error:
+            return None, str(error)
+
+    def _result(self, kind: str) -> dict[str, Any] | None:
+        return result_of(self._store.results(kind, self._history.now.key))
+
+    def work(self, kind: str) -> dict[str, Any]:
+        """Return how a kind of work on this state stands."""
+        if kind not in KINDS:
+            raise InputError(f"there is no work called {kind!r}")
+        job = self._jobs.last
+        mine = job is not None and job.kind == kind and job.key == self._history.now.key
+        return {
+            "job": job.document() if job is not None and (mine or job.state == "running") else None,
+            "result": self._result(kind),
+        }
+
+    def report(self, kind: str) -> str | None:
+        """Return the report of a finished piece of work on this state."""
+        return report_of(self._store.results(kind, self._history.now.key)) if kind in KINDS else None
+
+    def start(self, kind: str) -> dict[str, Any]:
+        """Start a piece of work on this state.
+
+        Raises
+        ------
+        InputError
+            If something is running already, or the study has no model.
+        """
+        with self._lock:
+            self.study.spec()
+            now = self._history.now
+            folder = self._store.results(kind, now.key)
+            text = study_text(self._opened, now.content, self._name(), folder)
+            self._jobs.start(kind, now.key, text, folder)
+            self._store.trim()
+        return self.state()
+
+    def _name(self) -> str:
+        return self.study.name if self._opened.is_study else self._opened.path.stem
+
+    def accept(self, row: int) -> dict[str, Any]:
+        """Put the effects of a row of the diagnosis into the model, with the values found.
+
+        Raises
+        ------
+        InputError
+            If there is no such row.
+        """
+        with self._lock:
+            found = self._result("diagnose")
+            ranking = [] if found is None else found["document"]["cause"]["ranking"]
+            if not 0 <= row < len(ranking):
+                raise InputError(f"the diagnosis has no row {row + 1}; diagnose first")
+            entries = accepted_entries(ranking[row], self._workbench.predictor(self.study))
+            return self.act("accept", {"effects": entries})
+
+    def stop(self) -> dict[str, Any]:
+        """Stop the work that runs."""
+        self._jobs.stop()
+        return self.state()
+
+    def export(self) -> dict[str, Any]:
+        """Write all of this state into a folder of its own beside the study, or into the store's."""
+        with self._lock:
+            study, now = self.study, self._history.now
+            handed = Handed(
+                self._workbench.processed(study),
+                self._workbench.modes(study),
+                {kind: self._store.results(kind, now.key) for kind in KINDS},
+            )
+            folder = free_folder(self._place(), f"{self._opened.path.stem}-{EXPORT}")
+            text = study_text(self._opened, now.content, self._name(), folder)
+            return {"folder": str(folder), "files": export(folder, text, handed)}
+
+    def _place(self) -> Path:
+        """Return the study's folder, or the store's where that is read-only."""
+        beside = self._opened.study_path.parent.resolve()
+        return beside if self._store.folder.resolve().is_relative_to(beside) else self._store.folder

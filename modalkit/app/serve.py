@@ -1,0 +1,87 @@
+"""Start the app: a free port of this machine, a token, the browser."""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import threading
+import webbrowser
+from collections.abc import Callable
+from pathlib import Path
+
+from acquisition.errors import InputError
+from modalkit.app.bench import Bench
+from modalkit.app.opened import open_path
+from modalkit.app.store import Store
+
+LOOPBACK = "127.0.0.1"
+
+
+def serve(
+    path: Path,
+    *,
+    layout: Path | None = None,
+    port: int = 0,
+    browser: bool = True,
+    ready: Callable[[str], None] = lambda address: None,
+) -> None:
+    """Serve a study or a data file until the process is interrupted.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    layout : Path, optional
+        Of column text.
+    port : int
+        Port to listen at; 0 is any that is free.
+    browser : bool
+        Whether the page is opened.
+    ready : function, optional
+        Called with the address once the server listens.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, the port is taken, or the extra ``app`` is not installed.
+    """
+    try:
+        import uvicorn
+
+        from modalkit.app.server import application
+    except ImportError as error:
+        raise InputError(f"the app needs {error.name}; install the extra: pip install '.[app]'") from error
+    opened = open_path(path, layout=layout)
+    bench = Bench(opened, Store.beside(path))
+    token = secrets.token_urlsafe(24)
+    listener = _listening(port)
+    own_port = int(listener.getsockname()[1])
+    address = f"http://{LOOPBACK}:{own_port}/{token}/"
+    config = uvicorn.Config(
+        application(bench, token=token, port=own_port),
+        log_level="error",
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=1,
+    )
+    ready(address)
+    if browser:
+        threading.Timer(0.5, webbrowser.open, (address,)).start()
+    try:
+        uvicorn.Server(config).run(sockets=[listener])
+    finally:
+        bench.stop()
+        listener.close()
+
+
+def _listening(port: int) -> socket.socket:
+    """Return a socket of this machine alone."""
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((LOOPBACK, port))
+    except OSError as error:
+        listener.close()
+        raise InputError(f"--port {port}: cannot be listened at ({error.strerror}); give another") from error
+    listener.listen(64)
+    return listener

@@ -1,0 +1,157 @@
+"""The server of the app: pages as JSON, changes, work, and the page itself; no path leads to a file of the user's."""
+
+from __future__ import annotations
+
+import json
+import mimetypes
+from collections.abc import Callable, Mapping
+from importlib.resources import files
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, JSONResponse, Response
+from starlette.routing import Route
+
+from acquisition.errors import InputError, ModalkitError
+from modalkit.app.bench import Bench
+from modalkit.app.guard import Asgi, Guard
+from modalkit.app.views.model import Moved
+from modalkit.output.whole import plain
+from modalkit.vendor import PLOTLY, THREE, vendored
+
+SANDBOX = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; font-src data:; sandbox"
+"""What a report may do in the page: show itself."""
+
+Answer = Callable[[Bench, Mapping[str, Any]], Any]
+
+PAGES: dict[str, Answer] = {
+    "state": lambda bench, a: bench.state(),
+    "hits": lambda bench, a: bench.hits(),
+    "record": lambda bench, a: bench.record(str(a["point"]), int(a["hit"])),
+    "frf": lambda bench, a: bench.frf(int(a["index"])),
+    "modes": lambda bench, a: bench.modes(),
+    "fit": lambda bench, a: bench.fit(int(a["index"])),
+    "provisional": lambda bench, a: bench.provisional(float(a["hertz"]), int(a.get("index", 0))),
+    "shapes": lambda bench, a: bench.shapes(),
+    "model": lambda bench, a: bench.model(),
+    "work": lambda bench, a: bench.work(str(a["kind"])),
+}
+"""What is asked for, by name; nothing is changed by it."""
+
+CHANGES: dict[str, Answer] = {
+    "act": lambda bench, a: bench.act(str(a["name"]), _mapping(a.get("arguments", {}))),
+    "accept": lambda bench, a: bench.accept(int(a["row"])),
+    "undo": lambda bench, a: bench.step(back=True),
+    "redo": lambda bench, a: bench.step(back=False),
+    "moved": lambda bench, a: bench.moved(
+        Moved(tuple(_mapping(e) for e in a.get("effects", [])), _numbers(a.get("factors", {}))),
+        int(a.get("index", 0)),
+    ),
+    "start": lambda bench, a: bench.start(str(a["kind"])),
+    "stop": lambda bench, a: bench.stop(),
+    "export": lambda bench, a: bench.export(),
+}
+"""What is sent, by name."""
+
+
+def application(bench: Bench, *, token: str, port: int) -> Asgi:
+    """Return the app as ASGI has it, behind its guard.
+
+    Parameters
+    ----------
+    bench : Bench
+        The study.
+    token : str
+        First part of every path.
+    port : int
+        Where it is served.
+    """
+    routes = [
+        Route("/", _page),
+        Route("/static/{name:path}", _static),
+        Route("/api/{name}", _asked, methods=["GET"]),
+        Route("/api/{name}", _changed, methods=["POST"]),
+        Route("/report/{kind}", _report),
+    ]
+    inner = Starlette(routes=routes)
+    inner.state.bench = bench
+    return Guard(inner, token, port)
+
+
+async def _page(request: Request) -> Response:
+    return HTMLResponse(files("modalkit.app").joinpath("static", "index.html").read_bytes())
+
+
+async def _static(request: Request) -> Response:
+    """Serve one of the files of the page, by its exact name."""
+    name = request.path_params["name"]
+    if name in (PLOTLY, *THREE):
+        content = vendored(name).read_bytes()
+    elif name in SERVED:
+        content = files("modalkit.app").joinpath("static", *name.split("/")).read_bytes()
+    else:
+        return Response("not found", 404)
+    kind = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0]
+    return Response(content, media_type=kind)
+
+
+def _served() -> frozenset[str]:
+    """Return the names of the files of the page."""
+    root = files("modalkit.app").joinpath("static")
+    names = [entry.name for entry in root.iterdir() if entry.is_file()]
+    names += [f"pages/{entry.name}" for entry in root.joinpath("pages").iterdir() if entry.is_file()]
+    return frozenset(names)
+
+
+SERVED = _served()
+
+
+async def _asked(request: Request) -> Response:
+    return await _answered(request, PAGES, dict(request.query_params))
+
+
+async def _changed(request: Request) -> Response:
+    try:
+        arguments = json.loads(await request.body() or b"{}")
+    except ValueError:
+        return JSONResponse({"error": "the request is no JSON"}, 400)
+    if not isinstance(arguments, dict):
+        return JSONResponse({"error": "the request is no object"}, 400)
+    return await _answered(request, CHANGES, arguments)
+
+
+async def _answered(
+    request: Request, answers: Mapping[str, Answer], arguments: Mapping[str, Any]
+) -> Response:
+    """Return what a function of the bench returns, or its error on purpose in a line."""
+    answer = answers.get(request.path_params["name"])
+    if answer is None:
+        return JSONResponse({"error": "not found"}, 404)
+    bench: Bench = request.app.state.bench
+    try:
+        found = await run_in_threadpool(lambda: plain(answer(bench, arguments)))
+    except ModalkitError as error:
+        return JSONResponse({"error": str(error)}, 422)
+    except (KeyError, TypeError, ValueError) as error:
+        return JSONResponse({"error": f"the request is not understood: {error}"}, 400)
+    return JSONResponse(found)
+
+
+async def _report(request: Request) -> Response:
+    bench: Bench = request.app.state.bench
+    page = await run_in_threadpool(bench.report, request.path_params["kind"])
+    if page is None:
+        return Response("there is no report of this state yet", 404)
+    return HTMLResponse(page, headers={"content-security-policy": SANDBOX})
+
+
+def _mapping(value: Any) -> Mapping[str, Any]:
+    if not isinstance(value, dict):
+        raise InputError("an object of names and values is wanted")
+    return value
+
+
+def _numbers(value: Any) -> dict[str, float]:
+    return {str(name): float(number) for name, number in _mapping(value).items()}

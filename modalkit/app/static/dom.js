@@ -1,0 +1,95 @@
+// Elements made of data: every text goes in as text, never as markup.
+
+/** Return an element. Attributes that are functions are listeners; children are nodes, texts, or lists of these. */
+export function h(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (typeof value === "function") element.addEventListener(name, value);
+    else if (name in element && typeof value !== "string") element[name] = value;
+    else element.setAttribute(name, value === true ? "" : String(value));
+  }
+  append(element, children);
+  return element;
+}
+
+function append(element, children) {
+  for (const child of children.flat(Infinity)) {
+    if (child === null || child === undefined || child === false) continue;
+    element.append(child instanceof Node ? child : document.createTextNode(String(child)));
+  }
+}
+
+/** Put children in place of those an element has. */
+export function fill(element, ...children) {
+  element.replaceChildren();
+  append(element, children);
+}
+
+/** Return a table in a frame that scrolls. Columns are {name, number?}; cells are texts or nodes. */
+export function table(caption, columns, rows, options = {}) {
+  const head = h(
+    "tr",
+    {},
+    columns.map((c) => h("th", { scope: "col", class: c.number ? "n" : null }, c.name)),
+  );
+  const body = rows.map((row, i) =>
+    h(
+      "tr",
+      options.row ? options.row(i) : {},
+      row.map((cell, k) =>
+        h(
+          k ? "td" : "th",
+          { scope: k ? null : "row", class: columns[k].number ? "n" : columns[k].wide ? "wide" : null },
+          cell,
+        ),
+      ),
+    ),
+  );
+  return h(
+    "div",
+    { class: "scroll", tabindex: "0", role: "region", "aria-label": caption },
+    h("table", {}, h("caption", {}, caption), h("thead", {}, head), h("tbody", {}, body)),
+  );
+}
+
+/** Return a field with its label. */
+export function field(label, input, unit = "") {
+  return h(
+    "label",
+    { class: "field" },
+    h("span", {}, label),
+    h("span", { class: "with-unit" }, input, unit ? h("span", { class: "unit" }, unit) : null),
+  );
+}
+
+export function button(text, onclick, attributes = {}) {
+  return h("button", { type: "button", click: onclick, ...attributes }, text);
+}
+
+export function select(options, value, onchange, attributes = {}) {
+  const element = h(
+    "select",
+    { change: () => onchange(element.value), ...attributes },
+    options.map(([v, text]) => h("option", { value: v, selected: String(v) === String(value) }, text)),
+  );
+  return element;
+}
+
+/** Return numbers as the tables of the command line have them. */
+export const fixed = (value, digits) => (value === null || value === undefined ? "–" : value.toFixed(digits));
+export const short = (value) => (value === null || value === undefined ? "–" : String(Number(value.toPrecision(4))));
+
+export function warnings(list) {
+  if (!list || !list.length) return null;
+  return h(
+    "details",
+    { class: "warnings", open: list.length < 3 },
+    h("summary", {}, `${list.length} ${list.length > 1 ? "warnings" : "warning"}`),
+    h(
+      "ul",
+      {},
+      list.map((text) => h("li", {}, text)),
+    ),
+  );
+}

@@ -1,0 +1,201 @@
+// The page: which part of the way of the work is shown, undo and redo, what runs.
+
+import { get, post } from "./api.js";
+import { button, fill, h } from "./dom.js";
+import * as diagnosis from "./pages/diagnosis.js";
+import * as hits from "./pages/hits.js";
+import * as model from "./pages/model.js";
+import * as modes from "./pages/modes.js";
+import * as shapes from "./pages/shapes.js";
+import * as update from "./pages/update.js";
+
+const PAGES = {
+  hits: ["Hits", hits],
+  modes: ["Modes", modes],
+  shapes: ["Shapes", shapes],
+  model: ["Model", model],
+  update: ["Update", update],
+  diagnosis: ["Diagnosis", diagnosis],
+};
+const NEEDS_MODEL = new Set(["update", "diagnosis"]);
+
+const byId = (id) => document.getElementById(id);
+
+/** What pages are given: the state, ways to change it, and to say what happens. */
+const app = {
+  state: null,
+  shown: null,
+  page: "",
+  async act(name, args = {}) {
+    return changed(() => post("act", { name, arguments: args }));
+  },
+  async change(name, body = {}) {
+    return changed(() => post(name, body));
+  },
+  async working(text, work) {
+    notice(text, "busy");
+    try {
+      const found = await work();
+      if (byId("notice").className === "busy") notice("");
+      return found;
+    } catch (error) {
+      notice(error.message, "error");
+      throw error;
+    }
+  },
+  notice,
+  quiet(promise) {
+    promise.catch(() => {});
+  },
+};
+
+function notice(text, kind = "") {
+  const place = byId("notice");
+  place.className = kind;
+  fill(
+    place,
+    text
+      ? [
+          kind === "busy" ? h("span", { class: "spinner", "aria-hidden": "true" }) : null,
+          text,
+          kind === "error"
+            ? button("×", () => notice(""), { class: "close", "aria-label": "close the message" })
+            : null,
+        ]
+      : null,
+  );
+}
+
+/** Make a change; a refused one leaves everything as it is and says why. */
+async function changed(send) {
+  let state;
+  try {
+    state = await app.working("working", send);
+  } catch (error) {
+    await show();
+    notice(error.message, "error");
+    return false;
+  }
+  app.state = state;
+  head();
+  await show();
+  return true;
+}
+
+function head() {
+  const state = app.state;
+  document.title = `${state.title} – modalkit`;
+  fill(byId("title"), state.title);
+  fill(byId("file"), state.file);
+  fill(
+    byId("tools"),
+    button("↶ Undo", () => app.change("undo"), {
+      disabled: !state.undo,
+      title: state.undo ? `take back: ${state.undo}` : "nothing to take back",
+      id: "undo",
+    }),
+    button("↷ Redo", () => app.change("redo"), {
+      disabled: !state.redo,
+      title: state.redo ? `do again: ${state.redo}` : "nothing to do again",
+      id: "redo",
+    }),
+    button("Export", exported, {
+      id: "export",
+      title: "study, UFF, JSON, CSV and report into a folder beside the study",
+    }),
+    button(dark() ? "Light" : "Dark", turned, { id: "theme", title: "light or dark" }),
+  );
+  fill(
+    byId("tabs"),
+    Object.entries(PAGES).map(([name, [title]]) =>
+      h(
+        "a",
+        {
+          href: `#${name}`,
+          "aria-current": name === app.page ? "page" : null,
+          class: NEEDS_MODEL.has(name) && !state.has_model ? "idle" : null,
+        },
+        title,
+      ),
+    ),
+  );
+}
+
+async function exported() {
+  try {
+    const found = await app.working("writing", () => post("export"));
+    notice(`written to ${found.folder}: ${found.files.join(", ")}`, "done");
+  } catch {
+    /* said already */
+  }
+}
+
+const dark = () =>
+  (document.documentElement.dataset.theme ??
+    (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
+
+function turned() {
+  document.documentElement.dataset.theme = dark() ? "light" : "dark";
+  try {
+    localStorage.setItem("theme", document.documentElement.dataset.theme);
+  } catch {
+    /* a browser without storage */
+  }
+  head();
+  app.quiet(show());
+}
+
+/** Show the page that the address names; the same page is only brought up to date. */
+async function show() {
+  const named = location.hash.slice(1);
+  const name = named in PAGES ? named : app.state.has_files ? "hits" : "modes";
+  if (name !== app.page) {
+    app.shown?.close?.();
+    app.page = name;
+    head();
+    const root = byId("page");
+    root.replaceChildren();
+    const inner = h("div", { class: `page-${name}` });
+    root.append(inner);
+    app.shown = PAGES[name][1].open(inner, app);
+  }
+  const here = app.shown;
+  try {
+    await app.working("computing", () => here.update());
+  } catch (error) {
+    console.warn(error.message);
+  }
+}
+
+function keys(event) {
+  if (!(event.ctrlKey || event.metaKey) || /^(INPUT|TEXTAREA)$/.test(event.target.tagName)) return;
+  const key = event.key.toLowerCase();
+  if (key === "z" && !event.shiftKey && app.state.undo) {
+    event.preventDefault();
+    app.change("undo");
+  }
+  if ((key === "y" || (key === "z" && event.shiftKey)) && app.state.redo) {
+    event.preventDefault();
+    app.change("redo");
+  }
+}
+
+async function begin() {
+  try {
+    const kept = localStorage.getItem("theme");
+    if (kept) document.documentElement.dataset.theme = kept;
+  } catch {
+    /* as above */
+  }
+  app.state = await app.working("opening", () => get("state"));
+  head();
+  window.addEventListener("hashchange", () => app.quiet(show()));
+  window.addEventListener("keydown", keys);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    head();
+    app.quiet(show());
+  });
+  await show();
+}
+
+app.quiet(begin());

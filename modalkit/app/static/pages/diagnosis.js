@@ -1,0 +1,197 @@
+// Diagnosis: progress by stages, the answer as in the report, a cause accepted, what to measure next, planning.
+
+import { axis, colour, draw } from "../charts.js";
+import { button, fill, fixed, h, table, warnings } from "../dom.js";
+import { worker } from "./work.js";
+
+export function open(root, app) {
+  const answer = h("div"),
+    gap = h("div"),
+    causes = h("div"),
+    rest = h("div"),
+    planned = h("div");
+  const result = h(
+    "div",
+    { hidden: true },
+    h("section", { class: "panel" }, h("h2", {}, "The answer"), answer),
+    h("section", { class: "panel" }, h("h2", {}, "What causes it"), causes),
+    h("section", { class: "panel" }, h("h2", {}, "The gap by mode"), gap),
+    h("section", { class: "panel" }, h("h2", {}, "What next"), rest),
+  );
+  const work = worker(app, "diagnose", { start: "Diagnose", again: "Diagnose again", done: shown });
+  const plan = worker(app, "plan", { start: "Plan the next test", again: "Plan again", done: forecast });
+  root.append(
+    h(
+      "section",
+      { class: "panel" },
+      h("h2", {}, "Diagnosis"),
+      h(
+        "p",
+        { class: "muted" },
+        "Which effect that the model leaves out makes the gap, where it sits, and how far the gap closes with it.",
+      ),
+      work.element,
+    ),
+    result,
+    h(
+      "section",
+      { class: "panel" },
+      h("h2", {}, "Planning"),
+      h("p", { class: "muted" }, "What a test of this rig could tell apart, and which change of it buys most."),
+      plan.element,
+      planned,
+    ),
+  );
+
+  async function update() {
+    if (!app.state.has_model) {
+      fill(
+        root,
+        h(
+          "section",
+          { class: "panel" },
+          h("h2", {}, "Diagnosis"),
+          h(
+            "p",
+            {},
+            "There is no model to diagnose: open a study that has one, or write a [model] on the page of the model.",
+          ),
+        ),
+      );
+      return;
+    }
+    await work.update();
+    await plan.update();
+  }
+
+  async function shown(found) {
+    result.hidden = !found;
+    if (!found) return;
+    const d = found.document;
+    fill(
+      answer,
+      h("p", { class: "big", id: "diagnosis-answer" }, found.answer),
+      h(
+        "dl",
+        { class: "summary" },
+        Object.entries(found.summary).map(([k, v]) => [h("dt", {}, k), h("dd", {}, v)]),
+      ),
+      h(
+        "p",
+        {},
+        h("a", { href: "report/diagnose", target: "_blank", rel: "noopener" }, "The whole report"),
+        " opens in a page of its own.",
+      ),
+    );
+    const accepted = d.cause.verdict === "named" || d.cause.verdict === "class";
+    const columns = ["causes", "probability", "share", "parameters", "fit p", "model"].map((name, i) => ({
+      name,
+      number: i === 1 || i === 4,
+      wide: i === 3,
+    }));
+    fill(
+      causes,
+      table(
+        "Explanations, most probable first",
+        columns,
+        d.cause.ranking.slice(0, 10).map((row, i) => [
+          row.effects.join(" + ") || "tolerances alone",
+          found.rows[i].probability,
+          h("meter", { min: "0", max: "1", value: String(row.probability), "aria-label": "probability" }),
+          found.rows[i].parameters,
+          found.rows[i].p,
+          row.effects.length
+            ? button("Accept", () => app.change("accept", { row: i }), {
+                class: "small",
+                "aria-label": `put ${row.effects.join(" and ")} into the model`,
+                id: `accept-${i}`,
+              })
+            : "",
+        ]),
+      ),
+      h(
+        "p",
+        { class: "muted" },
+        accepted
+          ? "Accept puts a row into the model; diagnose again to see what is left."
+          : "No row is the answer; accept one only if you know better.",
+      ),
+    );
+    const modes = d.gap.modes;
+    await draw(
+      gap,
+      [
+        {
+          type: "bar",
+          x: modes.map((_, i) => `${i + 1}`),
+          y: modes.map((m) => m.error_percent),
+          marker: { color: colour("orange") },
+          name: "model as it stands",
+          error_y: {
+            type: "data",
+            array: modes.map((m) => 2 * m.sigma_percent),
+            color: colour("muted"),
+            thickness: 1,
+          },
+          customdata: modes.map((m) => [m.test_hz, m.model_hz]),
+          hovertemplate:
+            "mode %{x}: test %{customdata[0]:.3f} Hz, model %{customdata[1]:.3f} Hz, %{y:.3f} %<extra></extra>",
+        },
+      ],
+      {
+        height: 280,
+        xaxis: axis("mode", { type: "category" }),
+        yaxis: axis("error of the model [%]", { zeroline: true, zerolinecolor: colour("muted") }),
+      },
+    );
+    fill(
+      rest,
+      h(
+        "p",
+        {},
+        `On modes held out the gap goes from ${found.closes.before} to ${found.closes.after}; the noise floor is ${found.closes.floor}.`,
+      ),
+      found.next.length
+        ? table(
+            "What to measure next",
+            [{ name: "measure" }, { name: "separates", wide: true }, { name: "σ", number: true }],
+            found.next.map((t) => [t.measure, t.separates, fixed(t.sigma, 1)]),
+          )
+        : h("p", {}, "No further test is proposed."),
+      Object.keys(d.not_examined).length
+        ? h(
+            "details",
+            {},
+            h("summary", {}, `${Object.keys(d.not_examined).length} effects were not examined`),
+            h(
+              "ul",
+              {},
+              Object.entries(d.not_examined).map(([k, v]) => h("li", {}, `${k}: ${v}`)),
+            ),
+          )
+        : null,
+      warnings(d.warnings),
+    );
+  }
+
+  async function forecast(found) {
+    fill(
+      planned,
+      found
+        ? h(
+            "ul",
+            { class: "plain-list", id: "plan-lines" },
+            found.lines.map((text) => h("li", {}, text.replace(/\s+/g, " "))),
+          )
+        : null,
+    );
+  }
+
+  return {
+    update,
+    close: () => {
+      work.close();
+      plan.close();
+    },
+  };
+}

@@ -1,0 +1,294 @@
+// Hits: every verdict with its reason, the records of one, and the FRF that follows from what is used.
+
+import { get } from "../api.js";
+import { axis, colour, draw, escaped, line, log } from "../charts.js";
+import { button, fill, h, select, warnings } from "../dom.js";
+
+export function open(root, app) {
+  const list = h("div", { class: "hits-list" });
+  const verdict = h("p", { class: "verdict", "aria-live": "polite" });
+  const charts = { force: h("div"), spectrum: h("div"), response: h("div"), frf: h("div"), coherence: h("div") };
+  const chooser = h("div", { class: "row" });
+  const notes = h("div");
+  const records = h(
+    "section",
+    { class: "panel" },
+    h("h2", {}, "The hit"),
+    verdict,
+    h("div", { class: "two" }, titled("Force", charts.force), titled("Spectrum of the force", charts.spectrum)),
+    titled("Response", charts.response),
+  );
+  const heading = h("h2", {}, "FRF of the hits used");
+  const picture = h(
+    "section",
+    { class: "panel" },
+    heading,
+    chooser,
+    titled("Magnitude", charts.frf),
+    titled("Coherence", charts.coherence),
+  );
+  const side = h("section", { class: "panel side" }, h("h2", {}, "Hits"), list);
+  root.append(notes, h("div", { class: "columns" }, side, h("div", {}, records, picture)));
+  const view = { hit: null, frf: 0, page: null, before: null };
+
+  async function update() {
+    view.page = await get("hits");
+    const { hits, frfs } = view.page;
+    fill(notes, warnings(view.page.warnings));
+    records.hidden = !hits.length;
+    heading.textContent = hits.length ? "FRF of the hits used" : "FRFs";
+    if (!hits.length) {
+      fill(
+        list,
+        h(
+          "p",
+          {},
+          frfs.length
+            ? "The files hold FRFs, no hits: they stay as they are."
+            : "The test has modes alone: no hits and no FRFs. Go on to its modes.",
+        ),
+      );
+    } else {
+      if (!view.hit || !hits.some(same)) view.hit = hits.find((v) => !v.used) ?? hits[0];
+      listed();
+    }
+    picture.hidden = !frfs.length;
+    if (frfs.length) chosen();
+    await Promise.all([hits.length ? record() : null, frfs.length ? frf() : null]);
+  }
+
+  const same = (v) => v.point === view.hit.point && v.hit === view.hit.hit;
+
+  function listed() {
+    const { hits, force } = view.page;
+    const out = hits.filter((v) => !v.used).length;
+    const groups = Map.groupBy ? Map.groupBy(hits, (v) => v.point) : grouped(hits);
+    fill(
+      list,
+      h("p", { class: "muted" }, `${hits.length} hits, ${out} left out. ${force ? `Force: ${force}.` : ""}`),
+      h(
+        "div",
+        { class: "scroll tall", tabindex: "0", role: "region", "aria-label": "hits" },
+        [...groups].map(([point, those]) =>
+          h("fieldset", { class: "point" }, h("legend", {}, point), those.map(item)),
+        ),
+      ),
+    );
+  }
+
+  function item(v) {
+    const box = h("input", {
+      type: "checkbox",
+      checked: v.used,
+      "aria-label": `use hit ${v.hit} at ${v.point}`,
+      "data-hit": `${v.point}:${v.hit}`,
+      change: () => judged(v, box.checked),
+    });
+    return h(
+      "div",
+      { class: `hit ${v.used ? "" : "out"} ${same(v) ? "chosen" : ""}` },
+      box,
+      button(
+        h(
+          "span",
+          {},
+          `hit ${v.hit} · ${v.peak}`,
+          v.decided ? h("em", {}, " by you") : null,
+          v.reasons.length ? h("small", {}, v.reasons.join("; ")) : null,
+        ),
+        () => {
+          view.hit = v;
+          listed();
+          app.quiet(record());
+        },
+        { class: "plain", "aria-pressed": same(v) ? "true" : "false" },
+      ),
+    );
+  }
+
+  async function judged(v, used) {
+    view.hit = v;
+    view.before = view.curve;
+    await app.act("hit", { point: v.point, hit: v.hit, used, proposed: v.proposed });
+  }
+
+  async function record() {
+    const { point, hit } = view.hit;
+    const found = await get("record", { point, hit });
+    if (view.hit.point !== point || view.hit.hit !== hit) return;
+    const v = found.verdict;
+    fill(
+      verdict,
+      h("strong", {}, `Hit ${hit} at ${point}: ${v.used ? "used" : "left out"}. `),
+      v.reasons.join("; ") || "Nothing speaks against it.",
+    );
+    const mark = v.used ? "green" : "red";
+    const s = found.spectrum;
+    await Promise.all([
+      draw(charts.force, [line("force", found.force.time, found.force.value, mark)], {
+        showlegend: false,
+        height: 240,
+        xaxis: axis("time [s]", pulse(found.force)),
+        yaxis: axis("force [N]"),
+        annotations: [reason(v)],
+      }),
+      draw(charts.spectrum, [line("force", s.frequency, s.level, mark)], {
+        showlegend: false,
+        height: 240,
+        xaxis: axis("frequency [Hz]"),
+        yaxis: axis("level [dB]", { range: [-45, 5] }),
+        shapes: [down(s.band10, -10), down(s.band20, -20)].flat(),
+        annotations: [at(s.band20, -20, `−20 dB: ${v.band20}`)],
+      }),
+      draw(
+        charts.response,
+        found.responses.map((r, i) => line(r.dof, r.time, r.value, ["blue", "orange", "green", "red"][i % 4])),
+        {
+          height: 240,
+          showlegend: found.responses.length > 1,
+          xaxis: axis("time [s]"),
+          yaxis: axis(`response [${found.unit}]`),
+        },
+      ),
+    ]);
+  }
+
+  const reason = (v) => ({
+    xref: "paper",
+    yref: "paper",
+    x: 0.99,
+    y: 0.97,
+    xanchor: "right",
+    yanchor: "top",
+    showarrow: false,
+    align: "right",
+    text: escaped(v.used ? "used" : (v.reasons[0] ?? "left out")),
+    font: { color: colour(v.used ? "green" : "red"), size: 12 },
+  });
+  const down = (x, y) => [
+    { type: "line", x0: x, x1: x, y0: -45, y1: y, line: { color: colour("muted"), width: 1, dash: "dot" } },
+    { type: "line", xref: "paper", x0: 0, x1: 1, y0: y, y1: y, line: { color: colour("grid"), width: 1 } },
+  ];
+  const at = (x, y, text) => ({ x, y, text, showarrow: true, arrowhead: 0, ax: 34, ay: -22, font: { size: 12 } });
+
+  function chosen() {
+    fill(
+      chooser,
+      h(
+        "label",
+        {},
+        "Response / force ",
+        select(
+          view.page.frfs.map((name, i) => [i, name]),
+          view.frf,
+          (v) => {
+            view.frf = Number(v);
+            view.before = null;
+            app.quiet(frf());
+          },
+          { id: "frf" },
+        ),
+      ),
+      h(
+        "label",
+        {},
+        "Estimator ",
+        select(
+          [
+            ["H1", "H1"],
+            ["H2", "H2"],
+            ["Hv", "Hv"],
+          ],
+          view.page.estimator,
+          (v) => app.act("estimator", { name: v }),
+          { disabled: !view.page.hits.length, id: "estimator" },
+        ),
+      ),
+    );
+  }
+
+  async function frf() {
+    view.frf = Math.min(view.frf, view.page.frfs.length - 1);
+    const found = await get("frf", { index: view.frf });
+    view.curve = { ...found, index: view.frf };
+    const old =
+      view.before && view.before.name === found.name && String(view.before.magnitude) !== String(found.magnitude)
+        ? view.before
+        : null;
+    const edge = found.band20
+      ? [
+          {
+            type: "line",
+            x0: found.band20,
+            x1: found.band20,
+            yref: "paper",
+            y0: 0,
+            y1: 1,
+            line: { color: colour("muted"), dash: "dot", width: 1 },
+          },
+        ]
+      : [];
+    const traces = [
+      old ? line("before", old.x, old.magnitude, "faint") : null,
+      line(found.hits ? `of ${found.hits} hits` : "FRF", found.x, found.magnitude, "blue"),
+    ].filter(Boolean);
+    await draw(charts.frf, traces, {
+      height: 280,
+      showlegend: traces.length > 1,
+      xaxis: axis("frequency [Hz]"),
+      yaxis: axis(`|H| [${found.unit}]`, log),
+      shapes: edge,
+      annotations: found.band20
+        ? [
+            {
+              x: found.band20,
+              yref: "paper",
+              y: 1,
+              text: "force −20 dB",
+              showarrow: false,
+              xanchor: "left",
+              yanchor: "top",
+              font: { size: 11, color: colour("muted") },
+            },
+          ]
+        : [],
+    });
+    charts.coherence.parentElement.hidden = !found.coherence;
+    if (found.coherence) {
+      await draw(
+        charts.coherence,
+        [
+          old?.coherence ? line("before", old.x, old.coherence, "faint") : null,
+          line("coherence", found.x, found.coherence, "orange"),
+        ].filter(Boolean),
+        {
+          height: 200,
+          showlegend: false,
+          xaxis: axis("frequency [Hz]"),
+          yaxis: axis("coherence [–]", { range: [0, 1.05] }),
+          shapes: edge,
+        },
+      );
+    }
+  }
+
+  return { update };
+}
+
+/** Show a force about its pulse: a hundred times its length at the most. */
+function pulse(force) {
+  const size = force.value.map(Math.abs);
+  const top = Math.max(...size);
+  const inside = force.time.filter((_, i) => size[i] > 0.1 * top);
+  const [first, last, end] = [inside[0], inside[inside.length - 1], force.time[force.time.length - 1]];
+  const reach = Math.max(6 * (last - first), end / 100);
+  return { range: [Math.max(0, first - reach / 2), Math.min(end, last + reach)] };
+}
+
+const titled = (text, chart) => h("figure", {}, h("figcaption", {}, text), chart);
+
+function grouped(hits) {
+  const groups = new Map();
+  for (const v of hits) groups.set(v.point, [...(groups.get(v.point) ?? []), v]);
+  return groups;
+}

@@ -1,0 +1,334 @@
+// Model: what the study says, sliders for effects and factors, pairs found and pairs stated.
+
+import { get, post } from "../api.js";
+import { axis, draw, line, log, macMatrix } from "../charts.js";
+import { button, field, fill, fixed, h, select, short, table, warnings } from "../dom.js";
+
+export function open(root, app) {
+  const notes = h("div"),
+    fields = h("div", { class: "fields" }),
+    inside = h("div"),
+    sliders = h("div"),
+    pairs = h("div"),
+    frf = h("div"),
+    mac = h("div"),
+    chooser = h("div", { class: "row" });
+  const text = h("textarea", { rows: "18", spellcheck: false, "aria-label": "the study as text", id: "study-text" });
+  const comparing = h("section", { class: "panel" }, h("h2", {}, "Test beside model"), pairs);
+  const moving = h("section", { class: "panel" }, h("h2", {}, "What if"), sliders);
+  const drawn = h("section", { class: "panel" }, h("h2", {}, "FRF"), chooser, frf);
+  const matrix = h("section", { class: "panel" }, h("h2", {}, "MAC"), mac);
+  const stated = h(
+    "section",
+    { class: "panel" },
+    h("h2", {}, "The study"),
+    fields,
+    inside,
+    h(
+      "details",
+      {},
+      h("summary", {}, "The whole study as text"),
+      text,
+      h(
+        "div",
+        { class: "row" },
+        button("Take this text", () => app.act("text", { text: text.value }), { id: "study-take" }),
+      ),
+    ),
+  );
+  root.append(
+    notes,
+    h("div", { class: "two wide-right" }, moving, comparing),
+    h("div", { class: "two wide-left" }, drawn, matrix),
+    stated,
+  );
+  const view = { page: null, frf: 0, effect: "", values: {}, factors: {}, asked: 0, running: false };
+
+  async function update() {
+    view.page = await get("model");
+    const page = view.page;
+    for (const one of [comparing, moving, drawn, matrix]) one.hidden = !page.correlation;
+    fill(
+      notes,
+      page.correlation ? warnings(page.correlation.warnings) : h("p", {}, `No model beside the test: ${page.why}.`),
+    );
+    text.value = page.text;
+    fielded();
+    if (!page.correlation) return;
+    slid();
+    fill(
+      chooser,
+      page.frfs.length
+        ? h(
+            "label",
+            {},
+            "Response / force ",
+            select(
+              page.frfs.map((n, i) => [i, n]),
+              view.frf,
+              (v) => {
+                view.frf = Number(v);
+                moved();
+              },
+            ),
+          )
+        : null,
+    );
+    await moved();
+  }
+
+  function fielded() {
+    fill(
+      fields,
+      view.page.fields.map((f) => {
+        const input = h("input", {
+          type: "text",
+          value: f.value === null ? "" : String(f.value),
+          placeholder: f.default === null ? "" : String(f.default),
+          id: `field-${f.path.join("-")}`,
+          change: () => app.act("set", { path: f.path, value: read(input.value) }),
+        });
+        return field(f.label, input, f.unit);
+      }),
+    );
+    fill(
+      inside,
+      view.page.effects.length
+        ? [
+            h("h3", {}, "Effects put into the model"),
+            h(
+              "ul",
+              {},
+              view.page.effects.map((e, i) =>
+                h(
+                  "li",
+                  {},
+                  `${e.name}: ${
+                    Object.entries(e)
+                      .filter(([k]) => k !== "name")
+                      .map(([k, v]) => `${k} = ${typeof v === "number" ? short(v) : v}`)
+                      .join(", ") || "no parameters"
+                  } `,
+                  button("Take out", () => app.act("remove", { index: i }), { class: "small" }),
+                ),
+              ),
+            ),
+          ]
+        : null,
+    );
+  }
+
+  /** A number is a number; anything else, "376 mm" for instance, is read by the study with its unit. */
+  const read = (value) => (value.trim() !== "" && Number.isFinite(Number(value)) ? Number(value) : value.trim());
+
+  function slid() {
+    const page = view.page;
+    const effect = page.sliders.find((s) => s.name === view.effect);
+    const anything = effect || Object.values(view.factors).some((v) => v !== 1);
+    fill(
+      sliders,
+      page.factors.map((f) =>
+        slider(
+          `${f.name} ×`,
+          "",
+          { low: f.low, high: f.high, log: false },
+          view.factors[f.name] ?? 1,
+          (v) => {
+            view.factors[f.name] = v;
+          },
+          `factor-${f.name}`,
+        ),
+      ),
+      field(
+        "Effect",
+        select(
+          [["", "none"], ...page.sliders.map((s) => [s.name, s.name])],
+          view.effect,
+          (v) => {
+            view.effect = v;
+            view.values = {};
+            slid();
+            app.quiet(moved());
+          },
+          { id: "effect" },
+        ),
+      ),
+      effect
+        ? [
+            h("p", { class: "muted" }, effect.summary),
+            effect.parameters.map((p) =>
+              slider(
+                p.name,
+                p.unit === "-" ? "" : p.unit,
+                p,
+                view.values[p.name] ?? p.start,
+                (v) => {
+                  view.values[p.name] = v;
+                },
+                `effect-${p.name}`,
+              ),
+            ),
+          ]
+        : null,
+      h(
+        "div",
+        { class: "row" },
+        button(
+          "Back to the study",
+          () => {
+            view.effect = "";
+            view.values = {};
+            view.factors = {};
+            slid();
+            app.quiet(moved());
+          },
+          { disabled: !anything, id: "slide-reset" },
+        ),
+        effect ? button("Put the effect into the model", () => put(effect), { id: "slide-put" }) : null,
+      ),
+    );
+  }
+
+  /** An effect with its values; what is unbounded as long as nobody moves it is left out. */
+  function entryOf(effect) {
+    const values = effect.parameters.map((p) => [p.name, view.values[p.name] ?? p.start]);
+    return { name: effect.name, ...Object.fromEntries(values.filter(([, value]) => value !== null)) };
+  }
+
+  async function put(effect) {
+    const entry = entryOf(effect);
+    view.effect = "";
+    view.values = {};
+    await app.act("accept", { effects: [entry] });
+  }
+
+  function slider(name, unit, range, value, set, id) {
+    const log10 = range.log && range.low > 0;
+    const to = (v) => (log10 ? Math.log10(v) : v),
+      from = (v) => (log10 ? 10 ** v : v);
+    const out = h("output", {}, value === null ? "unbounded" : `${short(value)} ${unit}`);
+    const span = to(range.high) - to(range.low);
+    const input = h("input", {
+      type: "range",
+      min: String(to(range.low)),
+      max: String(to(range.high)),
+      step: String(span / 400),
+      id,
+      input: () => {
+        const v = from(Number(input.value));
+        set(v);
+        out.textContent = `${short(v)} ${unit}`;
+        app.quiet(moved());
+        root.querySelector("#slide-reset").disabled = false;
+      },
+    });
+    input.value = String(to(value ?? range.high));
+    return h("label", { class: "slider" }, h("span", {}, name), input, out);
+  }
+
+  /** Ask for what the sliders say; while an answer is awaited only the last position counts. */
+  async function moved() {
+    view.asked += 1;
+    if (view.running) return;
+    view.running = true;
+    try {
+      let mine = 0;
+      while (mine !== view.asked) {
+        mine = view.asked;
+        const effect = view.page.sliders.find((s) => s.name === view.effect);
+        const effects = effect ? [entryOf(effect)] : [];
+        const begun = performance.now();
+        try {
+          const found = await post("moved", { effects, factors: view.factors, index: view.frf });
+          root.dataset.moved = String(performance.now() - begun);
+          await shown(found);
+          app.notice("");
+        } catch (error) {
+          app.notice(error.message, "error");
+        }
+      }
+    } finally {
+      view.running = false;
+    }
+  }
+
+  async function shown(found) {
+    const page = view.page;
+    const was = new Map(page.correlation.pairs.map((p) => [p.test_mode, p]));
+    const stated = [
+      ["", "as found"],
+      ["0", "none"],
+      ...page.model_hz.map((f, i) => [i + 1, `${i + 1}: ${fixed(f, 1)} Hz`]),
+    ];
+    const alone = page.correlation.unpaired_test.map((u) => ({
+      test_mode: u.mode,
+      test_hz: u.frequency_hz,
+      model_mode: null,
+    }));
+    const rows = [...found.pairs, ...alone.filter((u) => !found.pairs.some((p) => p.test_mode === u.test_mode))].sort(
+      (a, b) => a.test_mode - b.test_mode,
+    );
+    const columns = ["test", "test [Hz]", "model [Hz]", "error [%]", "study's [%]", "MAC", "partner"].map(
+      (name, i) => ({ name, number: i < 6 }),
+    );
+    fill(
+      pairs,
+      found.why ? h("p", { class: "error" }, found.why) : null,
+      h(
+        "p",
+        { class: "big", id: "rms" },
+        found.pairs.length ? `${fixed(rms(found.pairs), 3)} % r.m.s. over ${found.pairs.length} pairs` : "no pairs",
+      ),
+      table(
+        "Pairs of test and model",
+        columns,
+        rows.map((p) => [
+          p.test_mode,
+          fixed(p.test_hz, 3),
+          fixed(p.model_hz, 3),
+          fixed(p.error_percent, 3),
+          fixed(was.get(p.test_mode)?.error_percent, 3),
+          fixed(p.mac, 3),
+          select(
+            stated,
+            p.model_mode ?? "0",
+            (v) => app.act("pair", { hertz: p.test_hz, model: v === "" ? null : Number(v) }),
+            { "aria-label": `partner of test mode ${p.test_mode}`, "data-pair": p.test_mode },
+          ),
+        ]),
+      ),
+    );
+    if (found.frf) {
+      await draw(
+        frf,
+        [
+          line("measured", found.frf.x, found.frf.measured, "muted", { line: { width: 2.2 } }),
+          line("model", found.frf.x, found.frf.model, "blue"),
+        ],
+        { height: 340, xaxis: axis("frequency [Hz]"), yaxis: axis(`|H| [${found.frf.unit}]`, log) },
+      );
+    }
+    drawn.hidden = !found.frf;
+    matrix.hidden = !found.mac;
+    if (found.mac) {
+      await draw(
+        mac,
+        [
+          macMatrix(
+            found.mac,
+            found.mac.map((_, i) => `${i + 1}`),
+            found.mac[0].map((_, i) => `${i + 1}`),
+          ),
+        ],
+        {
+          height: 340,
+          xaxis: axis("model mode", { type: "category" }),
+          yaxis: axis("test mode", { type: "category", autorange: "reversed" }),
+        },
+      );
+    }
+  }
+
+  const rms = (those) => Math.sqrt(those.reduce((sum, p) => sum + p.error_percent ** 2, 0) / those.length);
+  return { update };
+}

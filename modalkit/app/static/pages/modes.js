@@ -1,0 +1,305 @@
+// Modes: the stabilisation chart with a reason for every pole, the table, the fit over an FRF, the auto-MAC.
+
+import { get } from "../api.js";
+import { axis, draw, line, log, macMatrix, onclick } from "../charts.js";
+import { button, field, fill, fixed, h, select, table, warnings } from "../dom.js";
+import { stabilisation } from "./stabilisation.js";
+
+export function open(root, app) {
+  const chart = h("div"),
+    fit = h("div"),
+    mac = h("div"),
+    rows = h("div"),
+    controls = h("div", { class: "controls" }),
+    chooser = h("div", { class: "row" }),
+    notes = h("div");
+  const readout = h("p", { class: "muted", "aria-live": "polite", id: "readout" });
+  const picking = h("section", { class: "panel" }, h("h2", {}, "Stabilisation chart"), controls, chart, readout);
+  const fitted = h("section", { class: "panel" }, h("h2", {}, "Fit"), chooser, fit);
+  const matrix = h("section", { class: "panel" }, h("h2", {}, "Auto-MAC"), mac);
+  root.append(
+    notes,
+    picking,
+    h("section", { class: "panel" }, h("h2", {}, "Modes"), rows),
+    h("div", { class: "two wide-left" }, fitted, matrix),
+  );
+  const view = { page: null, frf: 0, over: "sum", curve: null };
+
+  async function update() {
+    view.page = await get("modes");
+    const page = view.page;
+    picking.hidden = fitted.hidden = !page.identified;
+    fill(notes, warnings(page.warnings));
+    listed(page.table);
+    if (page.identified) controlled();
+    await Promise.all([page.identified ? charted(page.table) : null, page.identified ? overlaid() : null, macs()]);
+  }
+
+  function controlled() {
+    const page = view.page;
+    const low = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      value: String(page.band[0]),
+      size: 7,
+      "aria-label": "lowest frequency of the band",
+      id: "band-low",
+    });
+    const high = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      value: String(page.band[1]),
+      size: 7,
+      "aria-label": "highest frequency of the band",
+      id: "band-high",
+    });
+    const order = h("input", {
+      type: "number",
+      min: "2",
+      max: "400",
+      value: page.order ?? "",
+      placeholder: "60",
+      "aria-label": "highest model order",
+      id: "order",
+    });
+    const hertz = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      size: 9,
+      "aria-label": "frequency to pick",
+      id: "pick-hertz",
+    });
+    const pickNow = () => {
+      if (Number(hertz.value) > 0) picked(Number(hertz.value));
+    };
+    hertz.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") pickNow();
+    });
+    const chips = [
+      ...page.picked.map((f) => ["picked", f, "drop"]),
+      ...page.dropped.map((f) => ["dropped", f, "pick"]),
+    ];
+    fill(
+      controls,
+      h(
+        "div",
+        { class: "row" },
+        field("Band", h("span", {}, low, " to ", high), "Hz"),
+        button("Set", () => app.act("band", { low: number(low), high: number(high) }), { id: "band-set" }),
+        page.band_stated ? button("As the force reaches", () => app.act("band", {})) : null,
+        field("Order", order),
+        button("Set", () => app.act("order", { order: order.value ? Number(order.value) : null }), {
+          id: "order-set",
+        }),
+        field(
+          "Behind it",
+          select(
+            [
+              ["sum", "sum of |H|"],
+              ["cmif", "CMIF"],
+            ],
+            view.over,
+            (v) => {
+              view.over = v;
+              app.quiet(charted(page.table));
+            },
+          ),
+        ),
+      ),
+      h(
+        "div",
+        { class: "row" },
+        field("Pick at", hertz, "Hz"),
+        button("Pick", pickNow, { id: "pick" }),
+        h("span", { class: "muted" }, "or click a pole, or the curve, in the chart"),
+        chips.map(([word, f, back]) =>
+          button(`${word} ${Number(f.toPrecision(6))} Hz ×`, () => app.act(back, { hertz: f }), {
+            class: "chip",
+            title: "take it back",
+          }),
+        ),
+      ),
+      page.references.length > 1
+        ? h(
+            "details",
+            {},
+            h(
+              "summary",
+              {},
+              `References: ${page.references.filter((r) => r.used).length} of ${page.references.length}`,
+            ),
+            h(
+              "div",
+              { class: "row" },
+              page.references.map((r) =>
+                h(
+                  "label",
+                  { class: "check" },
+                  h("input", {
+                    type: "checkbox",
+                    checked: r.used,
+                    change: (e) => referenced(r.name, e.target.checked),
+                  }),
+                  r.name,
+                ),
+              ),
+            ),
+          )
+        : null,
+    );
+  }
+
+  const number = (input) => Number(input.value.replace(",", "."));
+
+  function referenced(name, used) {
+    const names = view.page.references.filter((r) => (r.name === name ? used : r.used)).map((r) => r.name);
+    return app.act("references", { names: names.length === view.page.references.length ? [] : names });
+  }
+
+  /** Pick a mode: a picture at once from what is factorised already, the last digits when they are there. */
+  async function picked(hertz) {
+    const begun = performance.now();
+    try {
+      const found = await get("provisional", { hertz, index: view.frf });
+      const near = found.frequency_hz.reduce(
+        (a, b) => (Math.abs(b - hertz) < Math.abs(a - hertz) ? b : a),
+        found.frequency_hz[0] ?? hertz,
+      );
+      const k = found.frequency_hz.indexOf(near);
+      await overlaid(found.fit);
+      root.dataset.pictured = String(performance.now() - begun);
+      await charted([
+        ...view.page.table,
+        {
+          mode: "new",
+          frequency_hz: near,
+          damping_ratio: found.damping_ratio[k],
+          origin: "named",
+          whence: "being refined",
+        },
+      ]);
+      readout.textContent = `${near.toFixed(3)} Hz, being refined …`;
+    } catch (error) {
+      app.notice(error.message, "error");
+      return;
+    }
+    const done = await app.act("pick", { hertz });
+    root.dataset.settled = String(performance.now() - begun);
+    const near = view.page.table.reduce((best, m) =>
+      Math.abs(m.frequency_hz - hertz) < Math.abs(best.frequency_hz - hertz) ? m : best,
+    );
+    readout.textContent = done
+      ? `Picked mode ${near.mode}: ${fixed(near.frequency_hz, 4)} ± ${fixed(near.frequency_sigma_hz, 5)} Hz.`
+      : `No mode is kept at ${hertz.toPrecision(6)} Hz.`;
+  }
+
+  async function charted(modes) {
+    const { traces, layout } = stabilisation(view.page, view.over, modes);
+    await draw(chart, traces, layout);
+    await onclick(chart, (point) => {
+      const mode = point.customdata;
+      if (mode !== null && mode !== undefined && Number.isFinite(mode)) {
+        chosenRow(mode);
+        return;
+      }
+      picked(point.x);
+    });
+  }
+
+  function chosenRow(mode) {
+    const row = rows.querySelectorAll("tbody tr")[mode];
+    rows.querySelectorAll("tr.chosen").forEach((one) => one.classList.remove("chosen"));
+    row?.classList.add("chosen");
+    row?.scrollIntoView({ block: "nearest" });
+    row?.querySelector("button")?.focus({ preventScroll: true });
+    const m = view.page.table[mode];
+    if (m) readout.textContent = `Mode ${m.mode}: ${fixed(m.frequency_hz, 4)} Hz, ${m.whence}.`;
+  }
+
+  function listed(modes) {
+    const columns = [
+      { name: "mode", number: true },
+      { name: "frequency [Hz]", number: true },
+      { name: "σ [Hz]", number: true },
+      { name: "damping [%]", number: true },
+      { name: "σ [%]", number: true },
+      { name: "MPC", number: true },
+      { name: "where from", wide: true },
+      ...(view.page.identified ? [{ name: "change" }] : []),
+    ];
+    const percent = (v) => (v === null ? null : 100 * v);
+    fill(
+      rows,
+      table(
+        `${modes.length} modes${view.page.scaled ? ", shapes mass-normalised" : ""}`,
+        columns,
+        modes.map((m) => [
+          m.mode,
+          fixed(m.frequency_hz, 4),
+          fixed(m.frequency_sigma_hz, 5),
+          fixed(percent(m.damping_ratio), 4),
+          fixed(percent(m.damping_sigma), 5),
+          fixed(m.mpc, 3),
+          m.whence,
+          ...(view.page.identified
+            ? [
+                button("Drop", () => app.act("drop", { hertz: m.frequency_hz }), {
+                  "aria-label": `drop mode ${m.mode}`,
+                  class: "small",
+                }),
+              ]
+            : []),
+        ]),
+      ),
+      view.page.rejected?.length ? h("p", { class: "muted" }, `left out: ${view.page.rejected.join("; ")}`) : null,
+    );
+  }
+
+  async function overlaid(provisional = null) {
+    const names = view.page.frfs;
+    view.frf = Math.min(view.frf, names.length - 1);
+    fill(
+      chooser,
+      h(
+        "label",
+        {},
+        "Response / force ",
+        select(
+          names.map((n, i) => [i, n]),
+          view.frf,
+          (v) => {
+            view.frf = Number(v);
+            app.quiet(overlaid());
+          },
+          { id: "fit-frf" },
+        ),
+      ),
+    );
+    const found =
+      provisional && view.curve
+        ? { ...view.curve, fitted: provisional.fitted, x2: provisional.x }
+        : await get("fit", { index: view.frf });
+    if (!provisional) view.curve = found;
+    const traces = [
+      line("measured", found.x, found.measured, "muted", { line: { width: 2.4 } }),
+      line(provisional ? "fit, being refined" : "fit", found.x2 ?? found.x, found.fitted, "blue"),
+      provisional ? null : line("residual", found.x, found.residual, "orange", { line: { width: 1 } }),
+      found.noise ? line("noise, 1σ", found.x, found.noise, "faint", { line: { width: 1 } }) : null,
+    ].filter(Boolean);
+    await draw(fit, traces, { height: 360, xaxis: axis("frequency [Hz]"), yaxis: axis(`|H| [${found.unit}]`, log) });
+  }
+
+  async function macs() {
+    const values = view.page.auto_mac;
+    matrix.hidden = !values || values.length < 2 || values.some((row) => row.some((v) => v === null));
+    if (matrix.hidden) return;
+    const names = view.page.table.map((m) => `${m.mode}`);
+    await draw(mac, [macMatrix(values, names, names)], {
+      height: 360,
+      xaxis: axis("mode", { type: "category" }),
+      yaxis: axis("mode", { type: "category", autorange: "reversed" }),
+    });
+  }
+
+  return { update };
+}

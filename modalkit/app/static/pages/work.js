@@ -1,0 +1,68 @@
+// Long work: a button to start it, its stages as they begin, a button that stops it.
+
+import { get } from "../api.js";
+import { button, fill, h } from "../dom.js";
+
+const OFTEN = 400; // milliseconds between questions for what a stage is at
+
+/** Return a panel for one kind of work; `done(result)` shows what came of it. */
+export function worker(app, kind, { start, again, done }) {
+  const controls = h("div", { class: "row" }),
+    stages = h("ol", { class: "stages", "aria-live": "polite" });
+  const element = h("div", { class: "work" }, controls, stages);
+  let timer = null;
+  let closed = false;
+
+  async function update() {
+    clearTimeout(timer);
+    const found = await get("work", { kind });
+    if (closed) return;
+    const job = found.job;
+    const running = job?.state === "running";
+    fill(
+      controls,
+      button(found.result ? again : start, () => app.change("start", { kind }), {
+        disabled: running,
+        class: "primary",
+        id: `start-${kind}`,
+      }),
+      running && job.kind === kind
+        ? button("Stop", () => app.change("stop"), { id: `stop-${kind}`, class: "danger" })
+        : null,
+      running
+        ? h(
+            "span",
+            { class: "muted" },
+            job.kind === kind ? `${job.seconds.toFixed(0)} s` : `waits: ${job.kind} is running`,
+          )
+        : null,
+      job?.state === "stopped" ? h("span", { class: "muted" }, "Stopped; nothing of it is kept.") : null,
+      job?.state === "failed" ? h("span", { class: "error" }, job.error) : null,
+    );
+    fill(
+      stages,
+      running && job.kind === kind
+        ? (job.stages.length ? job.stages : [{ name: "starting", at_s: 0 }]).map((s, i) =>
+            h(
+              "li",
+              { class: i === job.stages.length - 1 ? "now" : "" },
+              `${s.name} `,
+              h("small", {}, `from ${s.at_s.toFixed(1)} s`),
+            ),
+          )
+        : null,
+    );
+    stages.hidden = !running || job.kind !== kind;
+    await done(found.result, running);
+    if (running) timer = setTimeout(() => app.quiet(update()), OFTEN);
+  }
+
+  return {
+    element,
+    update,
+    close: () => {
+      closed = true;
+      clearTimeout(timer);
+    },
+  };
+}

@@ -1,0 +1,1 @@
+"""Pages as data: pure functions from what is computed to JSON documents."""

@@ -1,0 +1,116 @@
+"""The page of the hits: every verdict with its reason, the records of one, the FRFs that follow."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from acquisition import FrfSet, HitVerdict, InputError, force_range
+from acquisition.hits.checks import pulse_spectrum, upright
+from acquisition.quantities import hertz, number
+from modalkit.app.views.curves import decibels, envelope, lines
+from modalkit.output.documents import hit_document
+from modalkit.study.read import Study
+from modalkit.workflow.identification import Judged, Processed
+
+
+def hits_page(processed: Processed | None, study: Study) -> dict[str, Any]:
+    """Return the verdicts and the list of FRFs; None stands for a test that has modes alone."""
+    if processed is None:
+        return {"hits": [], "force": None, "frfs": [], "unit": "", "warnings": []}
+    named = {(p.upper(), n) for p, n in (*study.test.use, *study.test.leave)}
+    force = force_range(processed.hits)
+    return {
+        "hits": [_verdict(v, decided=(str(v.point), v.hit) in named) for v in processed.hits],
+        "force": None if force is None else str(force),
+        "frfs": frf_names(processed.frfs),
+        "unit": processed.frfs.unit,
+        "estimator": study.test.estimator,
+        "warnings": [str(w) for w in processed.warnings],
+    }
+
+
+def frf_names(frfs: FrfSet) -> list[str]:
+    """Return what each FRF is between: response / force."""
+    return [f"{a} / {b}" for a, b in zip(frfs.responses, frfs.references, strict=True)]
+
+
+def _verdict(verdict: HitVerdict, *, decided: bool) -> dict[str, Any]:
+    """Return the verdict on a hit, with what was proposed: a hit with a fault is not to be used."""
+    return hit_document(verdict) | {
+        "proposed": not verdict.kind,
+        "decided": decided,
+        "peak": f"{number(verdict.peak)} N",
+        "width": f"{number(1e3 * verdict.width)} ms",
+        "band20": hertz(verdict.band20),
+    }
+
+
+def record_page(processed: Processed, point: str, hit: int) -> dict[str, Any]:
+    """Return force and responses of a hit, and the spectrum of its force with where it is 10 and 20 dB down.
+
+    Raises
+    ------
+    InputError
+        If there is no such hit.
+    """
+    judged, verdict, entry, row = _found(processed, point, hit)
+    test = judged.test
+    time = np.arange(test.samples) / test.rate
+    wave = upright(np.asarray(test.points[entry].force[[row]], dtype=float))[0]
+    frequency, size = pulse_spectrum(wave, test.rate)
+    level = decibels(size / max(float(size[0]), 1e-300))
+    shown = frequency <= min(3 * max(verdict.band20, 1.0), frequency[-1])
+    x, y = envelope(frequency[shown], np.maximum(level[shown], -80.0))
+    force = envelope(time, test.points[entry].force[row])
+    responses = [
+        {"dof": str(dof), "time": t, "value": v}
+        for dof, motion in zip(test.points[entry].responses, test.points[entry].motion[row], strict=True)
+        for t, v in [envelope(time, motion)]
+    ]
+    return {
+        "verdict": _verdict(verdict, decided=False),
+        "force": {"time": force[0], "value": force[1]},
+        "responses": responses,
+        "unit": {"receptance": "m", "mobility": "m/s", "accelerance": "m/s²"}[test.form],
+        "spectrum": {"frequency": x, "level": y, "band10": verdict.band10, "band20": verdict.band20},
+    }
+
+
+def _found(processed: Processed, point: str, hit: int) -> tuple[Judged, HitVerdict, int, int]:
+    """Return the test, the verdict, the entry and the row of a hit."""
+    for judged in processed.judged:
+        verdicts = iter(judged.verdicts)
+        for entry, hits in enumerate(judged.test.points):
+            for row in range(hits.count):
+                verdict = next(verdicts)
+                if (str(verdict.point), verdict.hit) == (point, hit):
+                    return judged, verdict, entry, row
+    raise InputError(f"there is no hit {hit} at {point}")
+
+
+def frf_page(processed: Processed, index: int) -> dict[str, Any]:
+    """Return an FRF with its coherence.
+
+    Raises
+    ------
+    InputError
+        If there is no such FRF.
+    """
+    frfs = processed.frfs
+    if not 0 <= index < len(frfs.responses):
+        raise InputError(f"there is no FRF {index + 1}; there are {len(frfs.responses)}")
+    coherence = None if frfs.coherence is None else frfs.coherence[index]
+    force = force_range(processed.hits)
+    return lines(
+        frfs.frequency,
+        magnitude=np.abs(frfs.values[index]),
+        phase=np.degrees(np.angle(frfs.values[index])),
+        coherence=coherence,
+    ) | {
+        "name": frf_names(frfs)[index],
+        "unit": frfs.unit,
+        "hits": None if frfs.averages is None else int(frfs.averages[index]),
+        "band20": None if force is None else force.band20,
+    }

@@ -1,0 +1,203 @@
+"""The page of the model: what the study says, and what changes if effects are put into it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from acquisition import InputError
+from acquisition.errors import ModalkitError
+from identification import ModalModel
+from modalkit.app.toml import toml_text
+from modalkit.app.views.curves import lines
+from modalkit.app.views.shapes import Beside
+from modalkit.output.correlation import correlation_document
+from modalkit.study.read import Study
+from updating import LIBRARY
+from updating.correlation.frfs import correlate_frfs
+from updating.effects import accepted_state
+from updating.models.state import NOMINAL, State
+from updating.prediction.matching import mac_of_constants, pair_modes
+from updating.prediction.predict import Predictor
+
+FACTORS = ("E", "density", "thickness", "length", "width")
+"""Factors of the whole model that can be moved."""
+
+REACH = 0.25
+"""How far a factor can be moved either way: ten times what a modeller doubts of any; beyond, pairs are lost [-]."""
+
+FIELDS: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    ("Length", ("model", "length"), "m"),
+    ("Width", ("model", "width"), "m"),
+    ("Thickness", ("model", "thickness"), "m"),
+    ("Modulus E", ("model", "material", "E"), "Pa"),
+    ("Density", ("model", "material", "density"), "kg/m³"),
+    ("Poisson's ratio", ("model", "material", "poisson"), "–"),
+    ("Theory", ("model", "theory"), ""),
+    ("Tolerance of E", ("tolerances", "E"), "–"),
+    ("Tolerance of density", ("tolerances", "density"), "–"),
+    ("Tolerance of thickness", ("tolerances", "thickness"), "–"),
+    ("Tolerance of length", ("tolerances", "length"), "–"),
+    ("Tolerance of width", ("tolerances", "width"), "–"),
+    ("Tolerance of damping", ("tolerances", "damping"), "–"),
+    ("Calibration", ("test", "calibration"), "–"),
+    ("Repeatability", ("test", "repeatability"), "–"),
+    ("Fluid density", ("environment", "fluid_density"), "kg/m³"),
+)
+"""What can be edited one by one: name, place in the study, unit. All else is edited in the study's text."""
+
+
+@dataclass(frozen=True)
+class Moved:
+    """Effects and factors that are tried out.
+
+    Parameters
+    ----------
+    effects : sequence of mapping
+        Each with its name and values, as ``[[model.effect]]``.
+    factors : mapping of str to float
+        Factors of the whole model [-].
+    """
+
+    effects: Sequence[Mapping[str, Any]] = ()
+    factors: Mapping[str, float] | None = None
+
+
+def model_page(content: Mapping[str, Any], study: Study, beside: Beside | None, why: str) -> dict[str, Any]:
+    """Return what the study says, and where it has a model, pairs, MAC and what can be moved."""
+    page: dict[str, Any] = {
+        "text": toml_text(content),
+        "fields": [_field(content, study, *field) for field in FIELDS] if study.model is not None else [],
+        "effects": list(content.get("model", {}).get("effect", [])),
+        "update": study.update.model_dump(),
+        "why": why,
+        "sliders": [],
+        "factors": [],
+        "correlation": None,
+    }
+    if beside is None:
+        return page
+    predictor = beside.predictor
+    page["correlation"] = correlation_document(beside.correlation)
+    page["model_hz"] = predictor.predict().frequency
+    page["sliders"] = _sliders(predictor)
+    if predictor.spec.imported is None:
+        page["factors"] = [{"name": name, "low": 1 - REACH, "high": 1 + REACH} for name in FACTORS]
+    return page
+
+
+def _field(
+    content: Mapping[str, Any], study: Study, label: str, path: tuple[str, ...], unit: str
+) -> dict[str, Any]:
+    """Return a value as it stands in the file, or what is taken in its place."""
+    stated: Any = content
+    taken: Any = study
+    for key in path:
+        stated = stated.get(key) if isinstance(stated, Mapping) else None
+        taken = getattr(taken, key, None)
+    return {"label": label, "path": path, "unit": unit, "value": stated, "default": taken}
+
+
+def _sliders(predictor: Predictor) -> list[dict[str, Any]]:
+    """Return the effects that can act on this specimen by numbers alone, with the ranges of their parameters."""
+    found = []
+    for name, effect in LIBRARY.items():
+        if effect.labels or effect.why_not(predictor) is not None:
+            continue
+        parameters = effect.parameters(predictor)
+        if parameters:
+            found.append(
+                {
+                    "name": name,
+                    "summary": effect.summary,
+                    "parameters": [
+                        {
+                            "name": p.name,
+                            "unit": p.unit,
+                            "low": -p.high if p.signed and not p.log and p.low >= 0 else p.low,
+                            "high": p.high,
+                            "log": p.log,
+                            "start": p.default if p.default is not None else p.value(0.5),
+                        }
+                        for p in parameters
+                    ],
+                }
+            )
+    return found
+
+
+def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, index: int) -> dict[str, Any]:
+    """Return frequencies, MAC and one FRF of the model with effects and factors moved.
+
+    Raises
+    ------
+    InputError
+        If a factor is none that can be moved.
+    StudyError
+        If an effect does not take such values.
+    """
+    predictor = _with(beside.predictor, moved)
+    measured = beside.session.case.measured
+    prediction = predictor.predict()
+    page: dict[str, Any] = {"model_hz": prediction.frequency, "pairs": [], "mac": None, "frf": None}
+    if measured.has_shapes:
+        page["mac"] = mac_of_constants(measured, prediction)
+    try:
+        paired = pair_modes(measured, prediction)
+    except ModalkitError as error:
+        return page | {"why": str(error)}
+    kept = np.flatnonzero(np.isin(measured.frequency, paired.measured.frequency))
+    mac = page["mac"]
+    page["pairs"] = [
+        {
+            "test_mode": int(t) + 1,
+            "model_mode": int(m) + 1,
+            "test_hz": measured.frequency[t],
+            "model_hz": prediction.frequency[m],
+            "error_percent": 100 * (prediction.frequency[m] / measured.frequency[t] - 1),
+            "mac": None if mac is None else mac[t, m],
+        }
+        for t, m in zip(kept, paired.order, strict=True)
+    ]
+    if identified is not None:
+        row = min(max(index, 0), len(identified.frfs.responses) - 1)
+        page["frf"] = _frf(identified, row, beside, predictor)
+    return page
+
+
+def _frf(identified: ModalModel, row: int, beside: Beside, predictor: Predictor) -> dict[str, Any] | None:
+    """Return an FRF with the model's; None where it is none of the test's."""
+    measured = beside.session.case.measured
+    prediction = predictor.predict()
+    try:
+        both = correlate_frfs(
+            identified.frfs.select([row]), measured, predictor, prediction, pair_modes(measured, prediction)
+        )
+    except ModalkitError:
+        return None
+    return lines(
+        both.measured.frequency,
+        measured=np.abs(both.measured.values[0]),
+        model=np.abs(both.model.values[0]),
+    ) | {"unit": both.measured.unit, "frac": both.frac[0]}
+
+
+def _with(predictor: Predictor, moved: Moved) -> Predictor:
+    """Return the predictor with what is moved in its model, on the same basis."""
+    factors = dict(moved.factors or {})
+    if strange := sorted(set(factors) - set(FACTORS)):
+        raise InputError(f"there is no factor {strange[0]}; those that can be moved are {', '.join(FACTORS)}")
+    if wild := [v for v in factors.values() if not 0.5 <= v <= 2.0]:
+        raise InputError(f"a factor of {wild[0]:g} is no small change; edit the study")
+
+    def state(own: Predictor) -> State:
+        total = State(factors=factors) if factors else NOMINAL
+        for entry in moved.effects:
+            values = {key: value for key, value in entry.items() if key != "name"}
+            total = total.plus(accepted_state(own, str(entry.get("name")), values))
+        return total
+
+    return predictor.for_test(predictor.measured, (*predictor.additions, state))

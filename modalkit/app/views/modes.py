@@ -1,0 +1,149 @@
+"""The page of the modes: the chart with a reason for every pole, the table, the fit, the auto-MAC."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from acquisition import InputError
+from identification import ModalModel, auto_mac, cmif, mpc
+from identification.identify import Provisional
+from identification.pole_reasons import Origins
+from modalkit.app.views.curves import lines
+from modalkit.app.views.hits import frf_names
+from modalkit.study.read import Study
+from modalkit.workflow.existing import Modes
+from modalkit.workflow.identification import Processed
+
+WHENCE = {
+    "chain": "stable poles of the chart",
+    "refinement": "added by the refinement: the fit left a peak here that no pole of the chart explained",
+    "named": "picked by you",
+    "file": "read from the file",
+}
+"""What is said of where a mode comes from."""
+
+
+def table_of(modes: ModalModel | Modes, origins: Origins | None) -> list[dict[str, Any]]:
+    """Return one row per mode."""
+    modal = modes.modal
+    assert modal.damping is not None
+    assert modal.damping_sigma is not None
+    purity = None if modal.shapes is None else mpc(modal.shapes)
+    whence = ["file"] * len(modal) if origins is None else list(origins.modes)
+    return [
+        {
+            "mode": r + 1,
+            "frequency_hz": modal.frequency[r],
+            "frequency_sigma_hz": modal.frequency_sigma[r],
+            "damping_ratio": modal.damping[r],
+            "damping_sigma": modal.damping_sigma[r],
+            "mpc": None if purity is None else purity[r],
+            "origin": whence[r],
+            "whence": WHENCE[whence[r]],
+        }
+        for r in range(len(modal))
+    ]
+
+
+def modes_page(
+    processed: Processed | None,
+    modes: ModalModel | Modes,
+    origins: Origins | None,
+    study: Study,
+    references: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Return everything of the page but the fit of single FRFs; ``references`` are all that the files have."""
+    page = {
+        "table": table_of(modes, origins),
+        "identified": False,
+        "scaled": modes.modal.scaled,
+        "warnings": list(modes.warnings),
+        "auto_mac": None if modes.modal.shapes is None else auto_mac(modes.modal.shapes),
+        "band": study.test.band,
+    }
+    if processed is None or isinstance(modes, Modes) or origins is None:
+        return page
+    wanted = {name.strip().upper() for name in study.test.references}
+    return page | {
+        "identified": True,
+        "band": modes.band,
+        "band_stated": study.test.band is not None,
+        "lines": [float(processed.frfs.frequency[0]), float(processed.frfs.frequency[-1])],
+        "order": study.test.order,
+        "picked": study.test.add,
+        "dropped": study.test.drop,
+        "references": [{"name": n, "used": not wanted or n.upper() in wanted} for n in references],
+        "rejected": list(modes.points_rejected),
+        "frfs": frf_names(modes.frfs),
+        "unit": modes.frfs.unit,
+        "chart": _chart(modes, origins),
+        "sum": _sum(modes),
+    }
+
+
+def _chart(model: ModalModel, origins: Origins) -> dict[str, Any]:
+    """Return the poles in and next to the band, each with the number of its reason."""
+    chart = model.chart
+    low, high = model.band
+    edge = 0.05 * (high - low)
+    near = (chart.frequency >= low - edge) & (chart.frequency <= high + edge)
+    return {
+        "frequency": chart.frequency[near],
+        "order": chart.orders[chart.level[near]],
+        "damping": chart.damping[near],
+        "reason": origins.chain[near],
+        "reasons": [{"kind": r.kind, "text": r.text, "mode": r.mode} for r in origins.reasons],
+        "orders": chart.orders,
+    }
+
+
+def _sum(model: ModalModel) -> dict[str, Any]:
+    """Return the summed magnitude and the mode indicator functions over the lines."""
+    frfs = model.frfs
+    total = np.abs(frfs.values).sum(axis=0)
+    curves = {"sum": np.where(total > 0, total, np.nan)}
+    try:
+        found = cmif(frfs)
+    except InputError:
+        return lines(frfs.frequency, **curves)
+    curves |= {f"cmif{k}": np.asarray(found[k]) for k in found.columns}
+    return lines(frfs.frequency, **curves)
+
+
+def fit_page(model: ModalModel, index: int) -> dict[str, Any]:
+    """Return an FRF, its fit, and what the fit leaves beside the noise.
+
+    Raises
+    ------
+    InputError
+        If there is no such FRF.
+    """
+    frfs = model.frfs
+    if not 0 <= index < len(frfs.responses):
+        raise InputError(f"there is no FRF {index + 1}; there are {len(frfs.responses)}")
+    measured, fitted = frfs.values[index], model.synthesise().values[index]
+    noise = None if frfs.variance is None else np.sqrt(frfs.variance[index])
+    return lines(
+        frfs.frequency,
+        measured=np.abs(measured),
+        fitted=np.abs(fitted),
+        residual=np.abs(measured - fitted),
+        noise=noise,
+        phase=np.degrees(np.angle(measured)),
+        fitted_phase=np.degrees(np.angle(fitted)),
+    ) | {"name": frf_names(frfs)[index], "unit": frfs.unit}
+
+
+def provisional_page(found: Provisional, index: int) -> dict[str, Any]:
+    """Return poles and one FRF of a fit whose last digits are being worked out."""
+    frfs = found.frfs
+    row = min(max(index, 0), len(frfs.responses) - 1)
+    frequency = np.abs(found.poles) / (2 * np.pi)
+    return {
+        "frequency_hz": frequency,
+        "damping_ratio": -found.poles.real / np.abs(found.poles),
+        "fit": lines(frfs.frequency, fitted=np.abs(frfs.values[row])),
+    }

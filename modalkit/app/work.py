@@ -1,0 +1,130 @@
+"""The long work of the app, in a process of its own: ``python -m modalkit.app.work KIND STUDY FOLDER``.
+
+It does what the command of that name does to the study file, writes what the command writes, and prints one line of
+JSON for every stage. A process can be stopped at once; what it had not finished is not there.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from acquisition.errors import ModalkitError
+from modalkit.output.whole import plain, write_text
+
+RESULT, REPORT = "result.json", "report.html"
+
+Progress = Callable[[str], None]
+
+
+def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
+    """Diagnose a study and write the report."""
+    from acquisition.quantities import bare_p, probability
+    from modalkit.figures.words import answer, parameters
+    from modalkit.output.documents import diagnosis_document
+    from modalkit.output.summary import answers, separates
+    from modalkit.report import diagnosis_report
+    from modalkit.study.read import read_study
+    from modalkit.workflow.case import open_study
+    from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
+
+    progress("reading and identifying")
+    session = open_study(read_study(path))
+    found = diagnose_studies([session], progress=progress)
+    progress("writing the report")
+    page = diagnosis_report(found, [session], when=datetime.now().astimezone())
+    write_text(folder / REPORT, page)
+    return {
+        "answer": answer(found),
+        "summary": answers(found),
+        "rows": [
+            {
+                "probability": probability(row.probability),
+                "parameters": parameters(row),
+                "p": bare_p(row.p_value),
+            }
+            for row in found.ranking
+        ],
+        "next": [
+            {"measure": t.measure, "separates": separates(t), "sigma": t.expected_sigma}
+            for t in found.next_test
+        ],
+        "closes": {
+            "before": found.shrink.size(found.shrink.held_before),
+            "after": found.shrink.size(found.shrink.held_after),
+            "floor": found.shrink.size(found.shrink.floor),
+        },
+        "document": diagnosis_document(found, warnings_of([session])),
+    }
+
+
+def update(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
+    """Update the model of a study."""
+    from acquisition.quantities import percent
+    from modalkit.output.update import to_json
+    from modalkit.study.read import read_study
+    from modalkit.workflow.case import open_study
+    from modalkit.workflow.update import update_studies
+
+    progress("reading and identifying")
+    session = open_study(read_study(path), with_baseline=False)
+    progress("updating")
+    found = update_studies([session])
+    before, after = (percent(found.rms_percent(when)) for when in ("before", "after"))
+    state = "converged" if found.converged else "NOT converged"
+    return {
+        "answer": f"{before} → {after} r.m.s., {state} after {found.iterations} iterations",
+        "text": found.report(),
+        "document": to_json(found),
+    }
+
+
+def plan(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
+    """Forecast what the test of a study tells apart."""
+    from modalkit.planning import forecast
+    from modalkit.planning.document import to_json
+    from modalkit.planning.from_study import known_test_of
+    from modalkit.planning.note import note
+    from modalkit.study.read import read_study
+
+    progress("reading the test")
+    known = known_test_of(read_study(path))
+    progress("solving the rig's own body")
+    found = forecast(known)
+    return {"lines": note(found), "document": to_json(found)}
+
+
+KINDS: dict[str, Callable[[Path, Path, Progress], dict[str, Any]]] = {
+    "diagnose": diagnose,
+    "update": update,
+    "plan": plan,
+}
+
+
+def run(kind: str, path: Path, folder: Path) -> int:
+    """Do one kind of work; an error on purpose is a line as well."""
+
+    def begun(name: str) -> None:
+        _line(stage=name)
+
+    try:
+        result = KINDS[kind](path, folder, begun)
+    except ModalkitError as error:
+        _line(error=str(error))
+        return 2
+    write_text(folder / RESULT, json.dumps(plain(result), allow_nan=False))
+    _line(done=True)
+    return 0
+
+
+def _line(**what: Any) -> None:
+    sys.stdout.write(json.dumps(what) + "\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    sys.exit(run(sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])))

@@ -1,0 +1,77 @@
+"""A forecast as a colleague would put it, in ten lines."""
+
+from __future__ import annotations
+
+from modalkit.planning.document import statement
+from modalkit.planning.forecast import Advice, DesignForecast, Forecast
+from modalkit.planning.separability import CLASS, NONE, SEEN
+
+_LINES = 4
+
+
+def followed(found: Forecast) -> bool:
+    """Tell whether there is a change worth the trouble."""
+    return bool(found.advice) and found.advice[0].worth > 0
+
+
+def note(found: Forecast) -> list[str]:
+    """Return the forecast in a few sentences."""
+    now = found.now
+    lines = [_separates(now), *_cannot(now), _from_when(now)]
+    if followed(found):
+        lines.append(_best(found.advice[0]))
+    else:
+        lines.append("Advice:  no single change that was tried buys anything worth the trouble.")
+    return lines
+
+
+def _separates(now: DesignForecast) -> str:
+    pairs = list(now.pairs.values())
+    separately = sum(value >= SEEN for value in pairs)
+    return f"Tells:   {separately} of {len(pairs)} pairs of effects apart, each effect as strong as asked about below."
+
+
+def _cannot(now: DesignForecast) -> list[str]:
+    lines, groups = [], [" = ".join(group) for group in now.classes]
+    if groups:
+        lines.append(
+            f"Cannot:  tell apart (under {CLASS:g} sigma, all doubts counted in) {'; '.join(groups)}."
+        )
+    near = [
+        f"{a} from {b} ({value:.1f} sigma)"
+        for (a, b), value in sorted(now.pairs.items(), key=lambda item: item[1])
+        if value < SEEN and not any(a in group and b in group for group in now.classes)
+    ]
+    if near:
+        lines.append(f"Hardly:  {some(near)}.")
+    if now.unseen:
+        lines.append(f"Blind:   {', '.join(now.unseen)} would be taken for no effect at all.")
+    return lines
+
+
+def some(words: list[str]) -> str:
+    """Return the first of a list, and how many more there are."""
+    rest = len(words) - _LINES
+    return ", ".join(words) if rest < 2 else f"{', '.join(words[:_LINES])} and {rest} pairs more"
+
+
+def separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
+    """Return in words what a change separates."""
+    return [f"shows {a}" if b == NONE else f"{a} from {b}" for a, b in pairs]
+
+
+def _from_when(now: DesignForecast) -> str:
+    """Return the effects that need to be largest, against what is asked about, to be told."""
+    hard = sorted(now.limits, key=lambda name: -now.limits[name].separated / now.limits[name].clear)[:_LINES]
+    words = []
+    for name in hard:
+        limit = now.limits[name]
+        never = f"{name} at no severity ({limit.nearest} does the same)"
+        words.append(statement(now, name, limit.separated) or never)
+    return f"Late:    told from all others only from here on: {'; '.join(words)}."
+
+
+def _best(best: Advice) -> str:
+    newly = some(separated(best.separates))
+    first = f"separates {newly}" if newly else "separates no further pair"
+    return f"Advice:  {best.change.measure}: {first}; severities told become {best.factor:.1f} times smaller."

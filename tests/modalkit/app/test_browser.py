@@ -1,0 +1,363 @@
+"""The whole way of the work in a browser, on hits with a model: what the page shows is what the command line prints.
+
+Needs Debian's ``chromium`` (or one named by ``MODALKIT_CHROMIUM``); without it these tests are skipped.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from opening import FAINT
+
+CHROMIUM = os.environ.get("MODALKIT_CHROMIUM") or shutil.which("chromium")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium here: apt-get install chromium")
+sync = pytest.importorskip("playwright.sync_api", reason="no playwright here")
+
+PATIENCE = 90_000
+"""Milliseconds that a page may take on a machine shared with others."""
+
+
+class Served:
+    """The app as a process of its own, which can be killed."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.start()
+
+    def start(self) -> None:
+        command = [sys.executable, "-m", "modalkit", "app", str(self.path), "--no-browser"]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        assert self.process.stdout is not None
+        self.address = self.process.stdout.readline().strip()
+        assert self.address.startswith("http://127.0.0.1:"), self.address
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait()
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with sync.sync_playwright() as playwright:
+        arguments = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+        one = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield one
+        one.close()
+
+
+@pytest.fixture
+def serve() -> Iterator[Callable[[Path], Served]]:
+    started: list[Served] = []
+
+    def start(path: Path) -> Served:
+        started.append(Served(path))
+        return started[-1]
+
+    yield start
+    for one in started:
+        one.kill()
+
+
+class Page:
+    """A tab, with everything it complained of and every foreign address it asked."""
+
+    def __init__(self, browser: Any, served: Served, **options: Any) -> None:
+        self.served, self.faults, self.foreign = served, [], []
+        self.tab = browser.new_page(**options)
+        self.tab.set_default_timeout(PATIENCE)
+        self.tab.on("console", self._listen)
+        self.tab.on("pageerror", lambda error: self.faults.append(str(error)))
+        self.tab.on("request", self._watch)
+
+    def _listen(self, message: Any) -> None:
+        refused = "422" in message.text  # a change that cannot be made, which the page says itself
+        if message.type == "error" and not refused:
+            self.faults.append(message.text)
+
+    def _watch(self, request: Any) -> None:
+        if not request.url.startswith((self.served.address, "data:", "blob:", "about:")):
+            self.foreign.append(request.url)
+
+    def open(self, name: str) -> None:
+        self.tab.goto(f"{self.served.address}#{name}")
+        self.settle()
+
+    def settle(self) -> None:
+        """Wait until nothing is being computed."""
+        self.tab.wait_for_timeout(150)
+        self.tab.locator("#notice.busy").wait_for(state="detached")
+
+    def modes(self) -> list[list[str]]:
+        """Return the columns of frequency, damping, and their standard deviations on the page of the modes."""
+        rows = self.tab.locator(".page-modes tbody tr").all()
+        return [row.locator("td").all_inner_texts()[:4] for row in rows]
+
+
+def identified(path: Path, folder: Path) -> dict[str, Any]:
+    """Return what the command line gives of a study."""
+    out = folder / "check.json"
+    command = [sys.executable, "-m", "modalkit", "identify", str(path), "--json", str(out)]
+    subprocess.run(command, check=True, capture_output=True)
+    return json.loads(out.read_text(encoding="utf-8"))
+
+
+def printed(document: dict[str, Any]) -> list[list[str]]:
+    """Return the same columns of a JSON file of modes, with the decimals of the command line."""
+    return [
+        [
+            f"{mode['frequency_hz']:.4f}",
+            f"{mode['frequency_sigma_hz']:.5f}",
+            f"{100 * mode['damping_ratio']:.4f}",
+            f"{100 * mode['damping_sigma']:.5f}",
+        ]
+        for mode in document["modes"]
+    ]
+
+
+def test_the_way_of_the_work(browser, serve, beam, tmp_path):
+    """Hits, modes, shapes, model, update, diagnosis, undo, a kill, export."""
+    served = serve(beam)
+    page = Page(browser, served)
+    page.open("modes")
+    nominal = page.modes()
+    assert nominal == printed(identified(beam, tmp_path))
+    throw_out_a_hit(page)
+    page.open("modes")
+    without = page.modes()
+    assert without != nominal
+    drop_and_pick(page, without)
+    watch_shapes(page)
+    slide_and_pair(page)
+    update_the_model(page)
+    answer = diagnose_and_stop(page)
+
+    page.tab.goto("about:blank")
+    served.kill()
+    served.start()
+    page.open("modes")
+    assert page.modes() == without
+    page.open("hits")
+    assert not page.tab.locator('[data-hit="1+Z:3"]').is_checked()
+    page.open("diagnosis")
+    assert page.tab.locator("#diagnosis-answer").inner_text() == answer
+
+    folder = export(page)
+    found = identified(folder / "study.toml", tmp_path)
+    assert found == json.loads((folder / "modes.json").read_text(encoding="utf-8"))
+    assert printed(found) == without
+    assert page.faults == []
+    assert page.foreign == []
+
+
+def throw_out_a_hit(page: Page) -> None:
+    page.open("hits")
+    assert page.tab.locator("#title").inner_text() == "Cantilever beam, dry"
+    page.tab.locator('[data-hit="1+Z:3"]').uncheck()
+    page.settle()
+    assert not page.tab.locator('[data-hit="1+Z:3"]').is_checked()
+    assert "left out by the user" in page.tab.locator(".verdict").inner_text()
+
+
+def drop_and_pick(page: Page, modes: list[list[str]]) -> None:
+    tab = page.tab
+    tab.get_by_label("drop mode 2").click()
+    page.settle()
+    assert len(page.modes()) == len(modes) - 1
+    assert modes[1][0] not in [row[0] for row in page.modes()]
+    tab.get_by_role("button", name="dropped").click()  # taken back
+    page.settle()
+    assert page.modes() == modes
+    tab.locator("#undo").click()  # ... and that undone
+    page.settle()
+    assert len(page.modes()) == len(modes) - 1
+    tab.locator("#pick-hertz").fill("153.96")
+    tab.locator("#pick").click()
+    page.settle()
+    assert page.modes() == modes
+
+
+def watch_shapes(page: Page) -> None:
+    page.open("shapes")
+    assert page.tab.locator(".page-shapes tbody tr").count() == 3
+    page.tab.wait_for_timeout(1500)
+    assert float(page.tab.locator("canvas").get_attribute("data-fps")) > 0
+
+
+def slide_and_pair(page: Page) -> None:
+    tab = page.tab
+    page.open("model")
+    before = tab.locator("#rms").inner_text()
+    tab.locator("#factor-E").fill("0.9")
+    tab.wait_for_timeout(600)
+    page.settle()
+    assert tab.locator("#rms").inner_text() != before
+    tab.locator("#effect").select_option("clamp_rotation")
+    tab.wait_for_timeout(600)
+    page.settle()
+    tab.locator("#slide-reset").click()
+    tab.wait_for_timeout(600)
+    page.settle()
+    assert tab.locator("#rms").inner_text() == before
+    tab.locator('[data-pair="2"]').select_option("4")  # re-paired by hand ...
+    page.settle()
+    assert tab.locator('[data-pair="2"]').input_value() == "4"
+    assert tab.locator("#rms").inner_text() != before
+    tab.locator("#undo").click()  # ... and taken back
+    page.settle()
+    assert tab.locator("#rms").inner_text() == before
+
+
+def update_the_model(page: Page) -> None:
+    page.open("update")
+    page.tab.locator("#start-update").click()
+    page.tab.locator("#update-answer").wait_for()
+    assert "r.m.s." in page.tab.locator("#update-answer").inner_text()
+
+
+def diagnose_and_stop(page: Page) -> str:
+    tab = page.tab
+    page.open("diagnosis")
+    tab.locator("#start-diagnose").click()
+    tab.locator("#stop-diagnose").wait_for()
+    begun = time.monotonic()
+    tab.locator("#stop-diagnose").click()
+    tab.get_by_text("Stopped").wait_for()
+    assert time.monotonic() - begun < 3.0, "a stop takes a second, on a machine shared with others three"
+    page.settle()
+    tab.locator("#start-diagnose").click()
+    tab.locator("#diagnosis-answer").wait_for()
+    answer = str(tab.locator("#diagnosis-answer").inner_text())
+    report_opens(page, answer)
+    tab.locator("#accept-0").click()
+    page.settle()
+    assert "into the model" in tab.locator("#undo").get_attribute("title")
+    tab.locator("#undo").click()
+    tab.locator("#diagnosis-answer").wait_for()
+    assert tab.locator("#diagnosis-answer").inner_text() == answer
+    return answer
+
+
+def report_opens(page: Page, answer: str) -> None:
+    with page.tab.expect_popup() as opened:
+        page.tab.get_by_role("link", name="The whole report").click()
+    report = opened.value
+    report.wait_for_load_state()
+    assert answer in report.locator("header").inner_text()
+    assert report.locator("figure svg").count() >= 3
+    report.close()
+
+
+def export(page: Page) -> Path:
+    page.tab.locator("#export").click()
+    page.tab.locator("#notice.done").wait_for()
+    folder = page.served.path.parent / "study-modalkit-export"
+    assert {p.name for p in folder.iterdir()} == {
+        *("study.toml", "modes.json", "modes.csv", "modes.uff", "frfs.uff"),
+        *("update.json", "diagnose.json", "diagnose.html"),
+    }
+    return folder
+
+
+def test_a_refused_change_says_why_and_changes_nothing(browser, serve, beam):
+    page = Page(browser, serve(beam))
+    page.open("modes")
+    before = page.modes()
+    page.tab.locator("#band-low").fill("400")
+    page.tab.locator("#band-high").fill("20")
+    page.tab.locator("#band-set").click()
+    page.tab.locator("#notice.error").wait_for()
+    assert "20" in page.tab.locator("#notice").inner_text()
+    assert page.modes() == before
+    assert page.tab.locator("#undo").is_disabled()
+
+
+def test_a_file_alone_whose_title_is_a_script(browser, serve, tmp_path):
+    title = "<img src=x onerror=document.title='owned'><script>document.title='owned'</script>"
+    name = "a<b>&amp;.uff"
+    sample = Path(__file__).resolve().parents[3] / "sample_data" / "beam_dry" / "beam_dry.uff"
+    shutil.copy(sample, tmp_path / name)
+    study = tmp_path / "study.toml"
+    study.write_text(f'title = "{title}"\n[test]\nfiles = ["{name}"]\n', encoding="utf-8")
+    page = Page(browser, serve(study))
+    for where in ("hits", "modes", "shapes", "model", "update", "diagnosis"):
+        page.open(where)
+    assert page.tab.locator("#title").inner_text() == title
+    assert page.tab.title().startswith(title[:20])
+    assert page.tab.locator("img").count() == 0
+    assert page.faults == []
+    assert page.foreign == []
+
+
+@pytest.mark.parametrize("width", [1400, 390])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_nothing_is_wider_than_the_page_and_everything_has_a_name(browser, serve, beam, width, scheme):
+    page = Page(browser, serve(beam), viewport={"width": width, "height": 850}, color_scheme=scheme)
+    for where in ("hits", "modes", "shapes", "model", "update", "diagnosis"):
+        page.open(where)
+        page.tab.wait_for_timeout(300)
+        assert page.tab.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), where
+        assert page.tab.evaluate(NAMELESS) == [], where
+    assert page.faults == []
+
+
+NAMELESS = """[...document.querySelectorAll("main button, main input, main select, main textarea, header button")]
+  .filter((e) => e.checkVisibility())
+  .filter((e) => !(e.textContent.trim() && e.tagName === "BUTTON"))
+  .filter((e) => !e.getAttribute("aria-label") && !e.labels?.length)
+  .map((e) => e.outerHTML.slice(0, 80))"""
+"""Controls that a screen reader could not name."""
+
+
+def test_the_keyboard_reaches_hits_and_poles(browser, serve, beam):
+    page = Page(browser, serve(beam))
+    page.open("hits")
+    page.tab.locator('[data-hit="1+Z:1"]').focus()
+    page.tab.keyboard.press("Space")
+    page.settle()
+    assert not page.tab.locator('[data-hit="1+Z:1"]').is_checked()
+    page.tab.locator("#title").click()
+    page.tab.keyboard.press("Control+z")
+    page.settle()
+    assert page.tab.locator('[data-hit="1+Z:1"]').is_checked()
+
+
+def test_a_faint_mode_is_picked_by_keys(browser, serve, faint, tmp_path):
+    """What the automatic choice leaves out is kept once it is picked, with the numbers of the command line."""
+    page = Page(browser, serve(faint))
+    page.open("modes")
+    before = page.modes()
+    page.tab.locator("#pick-hertz").focus()
+    page.tab.keyboard.type(str(FAINT))
+    page.tab.keyboard.press("Enter")
+    page.tab.get_by_role("button", name="picked").wait_for()
+    page.settle()
+    picked = page.modes()
+    assert len(picked) == len(before) + 1
+    assert any(abs(float(row[0]) - FAINT) < 0.01 * FAINT for row in picked)
+    assert "picked by you" in page.tab.locator(".page-modes table").inner_text()
+    out = tmp_path / "out.json"
+    command = [
+        sys.executable,
+        "-m",
+        "modalkit",
+        "identify",
+        str(faint),
+        "--add",
+        str(FAINT),
+        "--json",
+        str(out),
+    ]
+    subprocess.run(command, check=True, capture_output=True)
+    assert printed(json.loads(out.read_text(encoding="utf-8"))) == picked
+    assert page.faults == []

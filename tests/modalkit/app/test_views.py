@@ -1,0 +1,128 @@
+"""What pages are made of: reasons for poles, surfaces, curves made short."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from opening import FAINT, opened
+
+from acquisition.hits.checks import force_bands, pulse_spectrum
+from identification import pole_origins
+from modalkit import read
+from modalkit.app.views.curves import POINTS, envelope
+from modalkit.app.views.faces import closed_faces
+from modalkit.app.views.model import Moved
+from modalkit.output.whole import plain
+
+
+def test_every_pole_of_the_chart_has_a_reason(faint):
+    model = read(faint).identify(add=[FAINT], drop=[110.0])
+    origins = pole_origins(model, add=[FAINT], drop=[110.0])
+    assert len(origins.chain) == len(model.chart.poles)
+    frequency = model.chart.frequency
+    kinds = np.array([origins.reasons[chain].kind for chain in origins.chain])
+    assert set(kinds) <= {"mode", "dropped", "outside", "background", "pruned", "short", "new"}
+    assert set(kinds[np.abs(frequency - 430.0) < 0.05]) >= {"mode"}
+    stable = np.abs(frequency - 110.0) < 0.02
+    assert np.mean(kinds[stable] == "dropped") > 0.5
+    assert origins.modes[np.argmin(np.abs(model.modal.frequency - FAINT))] == "named"
+
+
+def test_a_mode_that_no_chain_became_was_added_by_the_refinement(faint):
+    """Without the chart's poles about it, the mode cannot come from the chart."""
+    from dataclasses import replace
+
+    model = read(faint).identify()
+    keep = np.abs(model.chart.frequency - 430.0) > 20.0
+    chart = replace(
+        model.chart,
+        level=model.chart.level[keep],
+        poles=model.chart.poles[keep],
+        participation=model.chart.participation[keep],
+        track=model.chart.track[keep],
+    )
+    origins = pole_origins(replace(model, chart=chart))
+    last = int(np.argmin(np.abs(model.modal.frequency - 430.0)))
+    assert origins.modes[last] == "refinement"
+    assert origins.modes[0] == "chain"
+
+
+def test_faces_close_three_and_four_lines_and_leave_air_open():
+    """A square with a diagonal is two triangles; a cube six faces; two parallel lines are none."""
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
+    ring = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    assert [set(f) for f in closed_faces(square, ring)] == [{0, 1, 2, 3}]
+    assert {frozenset(f) for f in closed_faces(square, [*ring, (0, 2)])} == {
+        frozenset({0, 1, 2}),
+        frozenset({0, 2, 3}),
+    }
+    assert closed_faces(square, [(0, 1), (2, 3)]) == []
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    edges = [(a, b) for a in range(8) for b in range(a) if np.abs(corners[a] - corners[b]).sum() == 1]
+    assert len(closed_faces(corners, edges)) == 6
+    skew = square.copy()
+    skew[2, 2] = 1.0
+    assert closed_faces(skew, ring) == []
+
+
+@pytest.mark.parametrize("n", [10, POINTS, 10 * POINTS + 7])
+def test_no_peak_is_lost_where_a_curve_is_made_short(n):
+    rng = np.random.default_rng(1)
+    y = rng.standard_normal(n)
+    y[n // 3] = 50.0
+    y[n // 2] = -40.0
+    x, short = envelope(np.arange(float(n)), y)
+    assert len(x) == len(short) <= max(n if n <= POINTS else POINTS, 1)
+    assert max(short) == 50.0
+    assert min(short) == -40.0
+    assert x == sorted(x)
+
+
+def test_the_spectrum_in_the_picture_is_the_one_that_is_judged():
+    """A half-sine of 2 ms is 20 dB down where |cos(pi f T) / (1 - (2 f T)^2)| is a tenth."""
+    rate, length = 20_000.0, 2e-3
+    time = np.arange(4000) / rate - 0.01
+    wave = np.where((time >= 0) & (time <= length), np.sin(np.pi * np.clip(time / length, 0, 1)), 0.0)
+    frequency, size = pulse_spectrum(wave, rate)
+    _, band20 = force_bands(wave, rate)
+    product = frequency * length
+    middle = np.abs(2 * product - 1) < 1e-9  # where it is nothing over nothing: pi / 4
+    exact = np.where(middle, np.pi / 4, np.abs(np.cos(np.pi * product) / (1 - (2 * product) ** 2 + middle)))
+    below = frequency[np.flatnonzero(exact < 0.1)[0]]
+    assert band20 == pytest.approx(below, rel=0.02)
+    assert band20 == frequency[np.flatnonzero(size < 0.1 * size[0])[0]]
+
+
+def test_a_slider_shows_what_the_study_shows_with_the_same_number(beam):
+    """Frequencies of a bending beam follow the root of E; an effect moved is the effect put into the model."""
+    bench = opened(beam)
+    nominal = bench.moved(Moved(), 0)
+    stiffer = bench.moved(Moved((), {"E": 1.1}), 0)
+    ratio = np.asarray(stiffer["model_hz"]) / np.asarray(nominal["model_hz"])
+    assert ratio == pytest.approx(np.sqrt(1.1), rel=1e-6)
+    entry = {"name": "sensor_mass", "mass": 0.0086}
+    moved = plain(bench.moved(Moved((entry,)), 0))
+    bench.act("accept", {"effects": [entry]})
+    put = plain(bench.moved(Moved(), 0))
+    assert moved["pairs"] == put["pairs"]
+    assert moved["frf"]["model"] == pytest.approx(put["frf"]["model"], rel=1e-9)
+
+
+def test_the_shapes_of_test_and_model_agree_where_their_mac_does(beam):
+    page = plain(opened(beam).shapes())
+    for test, model in zip(page["modes"], page["model"]["modes"], strict=True):
+        u, v = np.array(test["re"]).ravel(), np.array(model["at_points"]).ravel()
+        mac = (u @ v) ** 2 / ((u @ u) * (v @ v))
+        assert mac == pytest.approx(model["mac"], abs=0.02)
+        assert max(model["difference"]) < 0.5
+    assert np.array(page["model"]["surface"]["places"])[:, 0].max() == pytest.approx(0.376)
+
+
+@pytest.mark.parametrize("end", ["start", "low", "high"])
+def test_every_effect_that_has_sliders_can_be_moved_to_their_ends(beam, end):
+    bench = opened(beam)
+    sliders = plain(bench.model())["sliders"]
+    assert len(sliders) > 10
+    for effect in sliders:
+        values = {p["name"]: p[end] for p in effect["parameters"] if p[end] is not None}
+        assert bench.moved(Moved(({"name": effect["name"], **values},)), 0)["model_hz"] is not None
