@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from acquisition.encoding import not_utf8
 from acquisition.errors import StudyError
 from modalkit.study.errors import explain, known_keys
+from modalkit.study.hypotheses import HypothesisTable, with_hypotheses
 from modalkit.study.matrices import matrices_of, matrices_spec
 from modalkit.study.probable_units import check_units
 from modalkit.study.stated_effects import accepted_values
@@ -26,7 +27,6 @@ from modalkit.study.tables import (
 )
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
-from updating.models.imported import Imported
 from updating.models.spec_checks import check_places
 from updating.test_data.axes import Axes
 from updating.tolerances import Tolerances
@@ -57,6 +57,7 @@ class Study(Strict):
     test: MeasurementTable
     baseline: MeasurementTable | None = None
     model: ModelTable | None = None
+    hypothesis: tuple[HypothesisTable, ...] = ()
     tolerances: TolerancesTable = TolerancesTable()
     environment: EnvironmentTable = EnvironmentTable()
     update: UpdateTable = UpdateTable()
@@ -79,6 +80,7 @@ class Study(Strict):
                 *model.stiffness_parts,
                 *model.mass_parts,
             ]
+        names += [name for supposed in self.hypothesis for name in supposed.files]
         return (self.path, *(self.file(name) for name in names if name is not None))
 
     @property
@@ -103,14 +105,13 @@ class Study(Strict):
         model = self.model
         if model is None:
             raise StudyError("this command needs a [model]")
-        damping = Damping(
-            model.damping.alpha,
-            model.damping.beta,
-            model.damping.loss_factor,
-            None if model.damping.ratios is None else tuple(model.damping.ratios),
-        )
         if model.type == "matrices":
-            return matrices_spec(model, self._imported, damping)
+            return self._of_matrices
+        if self.hypothesis:
+            raise StudyError(
+                f"[[hypothesis]] {self.hypothesis[0].name!r} is for models given by matrices, found type {model.type}; "
+                "what a beam or a plate may have, the effects of the library are"
+            )
         if given := [key for key in MATRICES_ONLY if getattr(model, key)]:
             raise StudyError(
                 f"[model] of type {model.type} takes no {', '.join(given)}; they are of type matrices"
@@ -136,16 +137,17 @@ class Study(Strict):
             Material(model.material.E, model.material.density, model.material.poisson),
             tuple(Region(**region.model_dump()) for region in model.region),
             tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
-            damping,
+            _damping(model),
         )
         check_places(spec)
         return spec
 
     @cached_property
-    def _imported(self) -> Imported:
-        """The matrices of the model, read once."""
+    def _of_matrices(self) -> Spec:
+        """The model given by matrices, read once."""
         assert self.model is not None
-        return matrices_of(self.model, self.file)
+        spec = matrices_spec(self.model, matrices_of(self.model, self.file), _damping(self.model))
+        return with_hypotheses(spec, self.hypothesis, self.file, self.model.units)
 
     def _elements(self, model: ModelTable) -> tuple[int, ...]:
         if model.elements is None:
@@ -184,6 +186,13 @@ class Study(Strict):
     def surroundings(self) -> Environment:
         """Return the environment."""
         return Environment(**self.environment.model_dump())
+
+
+def _damping(model: ModelTable) -> Damping:
+    """Return the damping that a model states."""
+    stated = model.damping
+    ratios = None if stated.ratios is None else tuple(stated.ratios)
+    return Damping(stated.alpha, stated.beta, stated.loss_factor, ratios)
 
 
 def read_study(path: Path | str) -> Study:

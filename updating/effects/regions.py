@@ -1,27 +1,95 @@
-"""Regions of imported matrices, on which an effect acts where there are no fields."""
+"""Regions and node sets of imported matrices, on which effects act where there are no fields, by their names."""
 
 from __future__ import annotations
 
-from updating.effects.base import Parameter
+from collections.abc import Iterable
+from typing import TypeVar
+
+from acquisition.errors import StudyError
+from updating.effects.base import Values
 from updating.effects.box import Place
+from updating.models.imported.groups import Group, Joint, Support
+from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 
+WAYS = ("x", "y", "z", "rx", "ry", "rz")
+"""Directions along which, and about which, something acts at a node set."""
 
-def stiff_regions(predictor: Predictor) -> tuple[int, ...]:
-    """Return the regions of imported matrices that have a stiffness of their own."""
+Named = TypeVar("Named", Group, Joint, Support)
+
+
+def stiff_regions(predictor: Predictor) -> tuple[str, ...]:
+    """Return the names of the regions of imported matrices that have a stiffness of their own."""
     imported = predictor.spec.imported
-    return () if imported is None else tuple(range(len(imported.stiffness_parts)))
+    count = 0 if imported is None else len(imported.stiffness_parts)
+    return tuple(region.name for region in predictor.spec.regions[:count])
 
 
-def region_parameter(predictor: Predictor) -> Parameter:
-    """Return the number of the region, from 0, which the forms of an effect fix."""
-    last = max(len(stiff_regions(predictor)) - 1, 1)
-    return Parameter("region", "-", 0.0, float(last), "any of the regions, in the study's order from 0")
+def heavy_regions(predictor: Predictor) -> tuple[str, ...]:
+    """Return the names of the regions of imported matrices that have a mass of their own."""
+    imported = predictor.spec.imported
+    count = 0 if imported is None else len(imported.mass_parts)
+    return tuple(region.name for region in predictor.spec.regions[:count])
 
 
-def region_centre(predictor: Predictor, region: int) -> Place:
+def region_index(spec: Spec, values: Values) -> int:
+    """Return which region is meant, by its name or, from 0, its number.
+
+    Raises
+    ------
+    StudyError
+        If there is none of that name.
+    """
+    stated, names = values.get("region"), [region.name for region in spec.regions]
+    if isinstance(stated, str) and stated in names:
+        return names.index(stated)
+    if isinstance(stated, int | float) and stated == int(stated) and 0 <= stated < len(names):
+        return int(stated)
+    raise StudyError(f"region = {stated!r} is none of the model's: {', '.join(names)}")
+
+
+def region_centre(predictor: Predictor, values: Values) -> Place:
     """Return the middle of a region [m]."""
-    spec = predictor.spec
-    chosen = spec.regions[region]
+    spec, index = predictor.spec, region_index(predictor.spec, values)
+    box = None if spec.imported is None else spec.imported.box(index)
+    if box is not None:
+        x, y, z = ((low + high) / 2 for low, high in zip(*box, strict=True))
+        return float(x), float(y), float(z)
+    chosen = spec.regions[index]
     across = (0.0, spec.width) if chosen.y is None else chosen.y
     return (sum(chosen.x) / 2, sum(across) / 2, 0.0)
+
+
+def one_of(known: Iterable[Named], values: Values, label: str) -> Named:
+    """Return the node set, joint or support that a label names.
+
+    Raises
+    ------
+    StudyError
+        If there is none of that name.
+    """
+    found = {one.name: one for one in known}
+    stated = values.get(label)
+    if stated not in found:
+        raise StudyError(f"{label} = {stated!r} is none of the model's: {', '.join(found) or 'it has none'}")
+    return found[str(stated)]
+
+
+def way(values: Values, label: str) -> int:
+    """Return the direction, 0 to 2 along and 3 to 5 about an axis, that a label names.
+
+    Raises
+    ------
+    StudyError
+        If it is none.
+    """
+    stated = values.get(label)
+    if stated not in WAYS:
+        raise StudyError(f"{label} = {stated!r} is no direction; use {', '.join(WAYS)}")
+    return WAYS.index(str(stated))
+
+
+def centre_of(one: Group | Joint | Support) -> Place:
+    """Return the middle of a node set, a joint or a support [m]."""
+    x, y, z = one.centre.tolist()
+    return float(x), float(y), float(z)

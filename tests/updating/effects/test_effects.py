@@ -93,6 +93,7 @@ def test_forms_have_shares_and_fix_what_is_known(name: str, place: str) -> None:
     assert 0 < sum(f.weight for f in forms) <= 1 + 1e-9
     known = {p.name for p in effect.parameters(predictor)} | {*effect.labels}
     known |= {"channel"} if effect.of_sensor else set()
+    known |= set(effect.named) if predictor.spec.kind == "matrices" else set()
     assert all({*f.values, *f.within} <= known and f.weight > 0 for f in forms)
     assert all(0 <= low < high <= 1 for f in forms for low, high in f.within.values())
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -11,6 +12,16 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.checks import check_mass, check_size, check_sum, symmetric, with_mass_everywhere
+from updating.models.imported.groups import (
+    Group,
+    Joint,
+    Support,
+    groups_of,
+    joints_of,
+    places_of_rows,
+    supports_of,
+)
+from updating.models.imported.hypothesis import Hypothesis
 from updating.models.imported.nodes import NodeTable
 from updating.models.imported.placing import Places
 
@@ -30,6 +41,8 @@ class Imported:
         no region.
     source : str
         For messages.
+    hypotheses : tuple of Hypothesis
+        What the modeller thinks may be so; see :meth:`supposing`.
 
     Raises
     ------
@@ -44,6 +57,7 @@ class Imported:
     mass_parts: tuple[Sparse, ...] = ()
     source: str = "model"
     massless: bool = field(init=False, default=False)
+    hypotheses: tuple[Hypothesis, ...] = field(init=False, default=())
     rest: dict[str, Sparse | None] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -72,6 +86,7 @@ class Imported:
         object.__setattr__(self, "massless", bool((self.mass.diagonal() == 0).any()))
         bare = self.mass
         object.__setattr__(self, "mass", with_mass_everywhere(self.stiffness, bare, self.source))
+        self.rest["given mass"] = bare
         if self.massless and self.mass_parts:
             left = self.rest["mass"]
             self.rest["mass"] = Sparse(self.mass - bare if left is None else left + self.mass - bare)
@@ -82,10 +97,43 @@ class Imported:
         """Number of degrees of freedom."""
         return int(self.stiffness.shape[0])
 
+    def supposing(self, hypotheses: tuple[Hypothesis, ...]) -> Imported:
+        """Return the same structure with what the modeller thinks may be so."""
+        other = copy(self)
+        object.__setattr__(other, "hypotheses", hypotheses)
+        return other
+
+    @property
+    def bare_mass(self) -> Sparse:
+        """The mass as it was given, without what stands in for none [kg]."""
+        bare = self.rest["given mass"]
+        return self.mass if bare is None else bare
+
     @cached_property
     def places(self) -> Places:
         """The nodes, as places at which the structure's motion is known."""
         return Places.of(self.nodes, self.order)
+
+    @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """The node sets that are places; of a joint, whose two sides are at one place, the first."""
+        seconds = {joint.sides[1] for joint in self.joints}
+        return tuple(group for group in groups_of(self.places, self.nodes.sets) if group.name not in seconds)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """The joints between two node sets."""
+        return joints_of(self.places, self.nodes.sets, self.stiffness)
+
+    @cached_property
+    def supports(self) -> tuple[Support, ...]:
+        """The supports whose rows the matrices have lost."""
+        return supports_of(self.places, self.nodes.sets, self.stiffness)
+
+    @cached_property
+    def row_places(self) -> FloatArray:
+        """Where every row is, nan where that is not known, (n, 3) [m]."""
+        return places_of_rows(self.places, self.order)
 
     @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray]:
@@ -93,11 +141,17 @@ class Imported:
         return self.nodes.places.min(axis=0), self.nodes.places.max(axis=0)
 
     @cached_property
+    def main_axis(self) -> int:
+        """The axis, 0 to 2, along which most rows move."""
+        return int(
+            np.argmax([np.sum((self.nodes.direction == a) & (self.nodes.row >= 0)) for a in (1, 2, 3)])
+        )
+
+    @cached_property
     def total_mass(self) -> float:
         """Mass that moves when everything moves along the axis of most rows; held nodes are not in it [kg]."""
-        counts = [int(np.sum((self.nodes.direction == a) & (self.nodes.row >= 0))) for a in (1, 2, 3)]
         along = np.zeros(self.order)
-        chosen = (self.nodes.direction == 1 + int(np.argmax(counts))) & (self.nodes.row >= 0)
+        chosen = (self.nodes.direction == 1 + self.main_axis) & (self.nodes.row >= 0)
         along[self.nodes.row[chosen]] = 1.0
         return float(along @ (self.mass @ along))
 
