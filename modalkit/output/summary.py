@@ -9,8 +9,8 @@ from acquisition.quantities import number, p_value, percent, place, probability
 from updating import Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
 from updating.diagnosis.answer.verdict import NAME
-from updating.diagnosis.answer.where import PLACED
 from updating.effects import Lack, Twin, in_a_set, twin_of
+from updating.effects.regions import PLACED
 from updating.thresholds import BELIEVED_DOUBT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})

@@ -98,7 +98,7 @@ def with_hypotheses(
         _of_parameter(spec, table) if table.parameter else _of_matrices(imported, table, file, units or SI)
         for table in tables
     )
-    return replace(spec, imported=imported.supposing((*imported.hypotheses, *found))) if found else spec
+    return replace(spec, hypotheses=(*spec.hypotheses, *found)) if found else spec
 
 
 def _of_matrices(

@@ -8,7 +8,7 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Channel, Effect, Parameter, Values
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import region_centre
+from updating.effects.regions import on_basis, region_centre
 from updating.models.fields import Sparse
 from updating.models.imported.hypothesis import Hypothesis
 from updating.models.spec import Spec
@@ -41,6 +41,10 @@ class Supposed(Effect):
         )
         self.separated_by = "look there, put it right, and repeat the test"
 
+    def _of(self, spec: Spec) -> Hypothesis:
+        """Return the hypothesis as the study of a specimen states it."""
+        return next(one for one in spec.hypotheses if one.name == self.name)
+
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return how far it is so, or the value of the parameter."""
         own = self.hypothesis
@@ -51,8 +55,7 @@ class Supposed(Effect):
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need to be a hypothesis of this very study."""
-        imported = predictor.spec.imported
-        if imported is not None and self.name in {one.name for one in imported.hypotheses}:
+        if self.name in {one.name for one in predictor.spec.hypotheses}:
             return None
         return Obstacle(Lack.MODEL, "the study of this specimen does not state it")
 
@@ -62,23 +65,23 @@ class Supposed(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with so much of the change."""
-        imported = predictor.spec.imported
-        assert imported is not None
-        own = next(one for one in imported.hypotheses if one.name == self.name)
+        own = self._of(predictor.spec)
         if own.factor:
             factor = float(values["value"]) / own.nominal
             return State(factors={own.factor: factor}) if own.region < 0 else State(
                 regional={(own.region, own.factor): factor}
             )  # fmt: skip
         amount = float(values["amount"])
-        stiffness, mass = (_on_basis(predictor, change, amount) for change in (own.stiffness, own.mass))
-        return State(stiffness=stiffness, mass=mass)
+        return State(
+            stiffness=_part(predictor, f"{own.name}: stiffness", own.stiffness, amount),
+            mass=_part(predictor, f"{own.name}: mass", own.mass, amount),
+        )
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the middle of what changes, each row with its share of the change."""
         imported = predictor.spec.imported
         assert imported is not None
-        own = next(one for one in imported.hypotheses if one.name == self.name)
+        own = self._of(predictor.spec)
         if own.factor:
             return () if own.region < 0 else (region_centre(predictor, {"region": own.region}),)
         share = sum(
@@ -93,19 +96,16 @@ class Supposed(Effect):
         return ((float(x), float(y), float(z)),)
 
 
-def _on_basis(predictor: Predictor, change: Sparse | None, amount: float) -> tuple[FloatArray, ...]:
+def _part(predictor: Predictor, name: str, change: Sparse | None, amount: float) -> tuple[FloatArray, ...]:
     """Return so much of a change on the basis, nothing of none."""
     if change is None:
         return ()
-    kept = predictor.reduced.kept
-    if (key := ("supposed", id(change))) not in kept:
-        kept[key] = predictor.reduced.project(change)
-    return (amount * kept[key],)
+    return (amount * on_basis(predictor, ("supposed", name), lambda: change),)
 
 
 def hypotheses_of(spec: Spec) -> tuple[Effect, ...]:
     """Return the hypotheses of a model as effects."""
-    return () if spec.imported is None else tuple(Supposed(one) for one in spec.imported.hypotheses)
+    return tuple(Supposed(one) for one in spec.hypotheses)
 
 
 def _channel(hypothesis: Hypothesis) -> Channel:

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Hashable, Iterable
 from typing import TypeVar
 
+from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.effects.base import Values
 from updating.effects.box import Place
+from updating.models.fields import Sparse
 from updating.models.imported.groups import Group, Joint, Support
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 
 WAYS = ("x", "y", "z", "rx", "ry", "rz")
 """Directions along which, and about which, something acts at a node set."""
+
+PLACED = ("region", "at", "joint", "support")
+"""Values that name a place of the user's own model."""
 
 Named = TypeVar("Named", Group, Joint, Support)
 
@@ -87,6 +92,15 @@ def way(values: Values, label: str) -> int:
     if stated not in WAYS:
         raise StudyError(f"{label} = {stated!r} is no direction; use {', '.join(WAYS)}")
     return WAYS.index(str(stated))
+
+
+def on_basis(predictor: Predictor, key: Hashable, full: Callable[[], Sparse]) -> FloatArray:
+    """Return a matrix over all degrees of freedom on the basis, computed the first time it is asked for [SI]."""
+    kept = predictor.reduced.kept
+    if key not in kept:
+        kept[key] = predictor.reduced.project(full())
+    found: FloatArray = kept[key]
+    return found
 
 
 def centre_of(one: Group | Joint | Support) -> Place:

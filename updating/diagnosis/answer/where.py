@@ -12,14 +12,12 @@ from updating.diagnosis.answer.verdict import decide
 from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
 from updating.effects.measurement.points import channel_point
+from updating.effects.regions import PLACED
 from updating.localisation import areas, centres, compare_regions, regions_at
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import CONCERNED_REACH, NEGLIGIBLE_PROBABILITY, TOGETHER_SHARE
 
 CHANNELS = ("stiffness", "mass", "damping", "measurement")
-
-PLACED = ("region", "at", "joint", "support")
-"""Values that name a place of the user's own model."""
 
 LABELS = (".point", ".points", ".channel")
 """How parameters that speak of points of the test end."""

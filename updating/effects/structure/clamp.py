@@ -51,9 +51,7 @@ class Clamp(Effect):
         if spec.imported is None:
             scale = bending_stiffness(spec) / spec.length**self.power
         else:
-            scale = own_stiffness(predictor) * max(spec.length, spec.width, spec.thickness) ** (
-                3 - self.power
-            )
+            scale = own_stiffness(predictor) * spec.imported.reach ** (3 - self.power)
         unit = self.units[spec.kind == "plate"]
         return (Parameter("stiffness", unit, self.span[0] * scale, self.span[1] * scale, self.why, log=True),)
 
@@ -71,7 +69,7 @@ class Clamp(Effect):
             {"support": support.name, "direction": WAYS[axis]}
             for support in predictor.spec.imported.supports
             for axis in (range(3, 6) if self.freed == "rotation" else range(3))
-            if support.own[axis, axis] > 0
+            if support.holds(axis)
         ]
         return tuple(Variant(fixed, 1 / len(ways)) for fixed in ways)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from updating.effects.base import Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
-from updating.effects.regions import centre_of, one_of
+from updating.effects.regions import centre_of, on_basis, one_of
 from updating.effects.structure.spring import LOSSY, SLIPS, lowest, own_stiffness
 from updating.models.fields import Sparse
 from updating.models.imported.groups import Joint as Sides
@@ -121,18 +122,22 @@ class Joint(Effect):
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a few sizes over the whole range; each form keeps those within its own."""
-        return tuple((u, u, 0.5) for u in np.linspace(0.04, 0.96, 24))
+        return tuple((u, u, 0.5) for u in np.linspace(0.05, 0.95, 13))
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the joint's springs in place of the modelled ones."""
         joint = one_of(_joints(predictor), values, "joint")
-        stated = [values.get(name, own) for name, own in _modelled(joint).items()]
-        change = Sparse(joint.springs[0].shape)
-        for springs, own, wanted in zip(joint.springs, joint.stiffness, stated, strict=True):
-            change = Sparse(change + (float(wanted) / own - 1 if own else float(wanted)) * springs)
-        unit = float(values.get("damping", 0.0)) / (joint.stiffness[0] or 1.0)
-        losses = (Loss(predictor.reduced.project(Sparse(unit * joint.springs[0]))),) if unit else ()
-        return State(stiffness=(predictor.reduced.project(change),) if change.nnz else (), losses=losses)
+        units = [
+            on_basis(predictor, ("joint", joint.name, i), partial(_same, springs))
+            for i, springs in enumerate(joint.springs)
+        ]
+        changes = []
+        for unit, (name, own) in zip(units, _modelled(joint).items(), strict=True):
+            wanted = float(values.get(name, own))
+            if wanted != own:
+                changes.append((wanted / own - 1 if own else wanted) * unit)
+        damping = float(values.get("damping", 0.0)) / (joint.stiffness[0] or 1.0)
+        return State(stiffness=tuple(changes), losses=(Loss(damping * units[0]),) if damping else ())
 
     def damps(self, parameter: str = "") -> bool:
         """Tell that the dashpot does, and nothing else."""
@@ -159,6 +164,10 @@ class Joint(Effect):
         return (centre_of(one_of(_joints(predictor), values, "joint")),)
 
 
+def _same(springs: Sparse) -> Sparse:
+    return springs
+
+
 def _joints(predictor: Predictor) -> tuple[Sides, ...]:
     imported = predictor.spec.imported
     return () if imported is None else imported.joints
@@ -170,9 +179,8 @@ def _modelled(joint: Sides) -> dict[str, Any]:
 
 def _range(predictor: Predictor, joint: Sides, i: int) -> tuple[float, float]:
     """Return how soft and how stiff a joint may be in shifting (0) or turning (1) [N/m, N m/rad]."""
-    spec = predictor.spec
-    reach = max(spec.length, spec.width, spec.thickness)
-    own = own_stiffness(predictor) * (reach**2 if i else 1.0)
+    assert predictor.spec.imported is not None
+    own = own_stiffness(predictor) * (predictor.spec.imported.reach**2 if i else 1.0)
     modelled = joint.stiffness[i]
     if not modelled:
         return SOFT_FOR_STRUCTURE * own, STIFFEST * own

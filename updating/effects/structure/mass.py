@@ -14,9 +14,10 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import LIKE, Place, mirror_images, starting_places
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import centre_of, one_of
+from updating.effects.regions import centre_of, on_basis, one_of
 from updating.models.base import Structure
 from updating.models.fields import Sparse
+from updating.models.imported.matrices import Imported
 from updating.models.imported.structure import ImportedStructure
 from updating.models.spec import Spec
 from updating.models.state import State
@@ -251,15 +252,10 @@ class LumpedMass(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the body."""
         inertia = values.get("bulk", CUBE) * cube_inertia(values["mass"])
-        if predictor.spec.imported is not None and "at" in values:
-            group = one_of(predictor.spec.imported.groups, values, "at")
-            moves, turns = group.motions(range(3)), group.motions(range(3, 6))
-            body = values["mass"] * (moves.T @ moves) + inertia * (turns.T @ turns)
-            return State(mass=(predictor.reduced.project(Sparse(body)),))
+        if predictor.spec.imported is not None:
+            moves, turns = _carried(predictor, predictor.spec.imported, values)
+            return State(mass=(values["mass"] * moves + inertia * turns,))
         point = np.array([[values[name] for name in AXES[: predictor.spec.dim]]])
-        if predictor.spec.kind == "matrices":
-            mass = predictor.reduced.unit_mass(point) * values["mass"]
-            return State(mass=(mass + inertia * _reduced_inertia(predictor, point),))
         return State(mass=(_body(predictor, point, values["mass"], inertia),))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
@@ -268,6 +264,24 @@ class LumpedMass(Effect):
             return (centre_of(one_of(predictor.spec.imported.groups, values, "at")),)
         at = (float(values["x"]), float(values.get("y", 0.0)), float(values.get("z", 0.0)))
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def _carried(predictor: Predictor, imported: Imported, values: Values) -> tuple[FloatArray, FloatArray]:
+    """Return the matrices of 1 kg, and of 1 kg m^2, at a node set or a place of imported matrices, (r, r)."""
+    place = np.array([[values[name] for name in AXES]]) if "at" not in values else None
+    found = []
+    for axes in (range(3), range(3, 6)):
+
+        def unit(axes: range = axes) -> Sparse:
+            if place is None:
+                rows = one_of(imported.groups, values, "at").motions(axes)
+            else:
+                rows = imported.places.motions(place, axes)
+            return Sparse(rows.T @ rows)
+
+        where = values["at"] if place is None else tuple(place[0].tolist())
+        found.append(on_basis(predictor, ("body", where, axes.start), unit))
+    return found[0], found[1]
 
 
 def _body(predictor: Predictor, point: FloatArray, mass: float, inertia: float) -> FloatArray:

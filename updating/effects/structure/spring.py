@@ -11,7 +11,7 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness, total_mass
 from updating.effects.box import Place, mirror_images, place, starting_places
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
-from updating.effects.regions import WAYS, centre_of, one_of, way
+from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
 from updating.effects.structure.mass import AXES, outline
 from updating.models.fields import Sparse
 from updating.models.spec import Spec
@@ -212,8 +212,8 @@ def _unit(predictor: Predictor, values: Values) -> FloatArray:
     """Return the stiffness of 1 N/m in all, shape (r, r) [N/m]."""
     spec = predictor.spec
     if spec.imported is not None and "at" in values:
-        row = one_of(spec.imported.groups, values, "at").motions([way(values, "along")])
-        return predictor.reduced.project(Sparse(row.T @ row))
+        row = one_of(spec.imported.groups, values, "at").rows[way(values, "along")]
+        return on_basis(predictor, ("springs", values["at"], values["along"]), lambda: Sparse(row.T @ row))
     if not spec.outlined:
         at = np.array([[values[name] for name in AXES]])
         directions = _measured_directions(predictor, at)

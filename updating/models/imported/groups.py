@@ -22,6 +22,9 @@ flange or a bolt circle is smaller. Doubled, sides and edges of a structure coun
 TOGETHER = 1e-6
 """Two nodes so near to each other, of the structure's size, are at one place [-]."""
 
+FELT = 1e-6
+"""A support is held in a direction by more than this share of what holds it most [-]: the rest is rounding."""
+
 ANY_STIFFNESS = 1e-12
 """What is left of a spring below this share of the largest stiffness is none [-]."""
 
@@ -189,6 +192,11 @@ class Support:
     centre: FloatArray
     loads: FloatArray
     own: FloatArray
+
+    def holds(self, axis: int) -> bool:
+        """Tell whether the structure resists its shift along an axis 0, 1, 2, or its turn about it, 3, 4, 5."""
+        alike = np.diag(self.own)[:3] if axis < 3 else np.diag(self.own)[3:]
+        return bool(self.own[axis, axis] > FELT * alike.max())
 
 
 def supports_of(places: Places, sets: NodeSets, stiffness: Sparse) -> tuple[Support, ...]:

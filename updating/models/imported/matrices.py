@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -21,7 +20,6 @@ from updating.models.imported.groups import (
     places_of_rows,
     supports_of,
 )
-from updating.models.imported.hypothesis import Hypothesis
 from updating.models.imported.nodes import NodeTable
 from updating.models.imported.placing import Places
 
@@ -41,8 +39,6 @@ class Imported:
         no region.
     source : str
         For messages.
-    hypotheses : tuple of Hypothesis
-        What the modeller thinks may be so; see :meth:`supposing`.
 
     Raises
     ------
@@ -57,7 +53,6 @@ class Imported:
     mass_parts: tuple[Sparse, ...] = ()
     source: str = "model"
     massless: bool = field(init=False, default=False)
-    hypotheses: tuple[Hypothesis, ...] = field(init=False, default=())
     rest: dict[str, Sparse | None] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -97,12 +92,6 @@ class Imported:
         """Number of degrees of freedom."""
         return int(self.stiffness.shape[0])
 
-    def supposing(self, hypotheses: tuple[Hypothesis, ...]) -> Imported:
-        """Return the same structure with what the modeller thinks may be so."""
-        other = copy(self)
-        object.__setattr__(other, "hypotheses", hypotheses)
-        return other
-
     @property
     def bare_mass(self) -> Sparse:
         """The mass as it was given, without what stands in for none [kg]."""
@@ -139,6 +128,11 @@ class Imported:
     def extents(self) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest coordinates of the nodes, each (3,) [m]."""
         return self.nodes.places.min(axis=0), self.nodes.places.max(axis=0)
+
+    @property
+    def reach(self) -> float:
+        """The largest of its extents [m]."""
+        return float((self.extents[1] - self.extents[0]).max())
 
     @cached_property
     def main_axis(self) -> int:

@@ -180,7 +180,7 @@ class ImportedStructure(Structure):
         low = elastic[:, : min(4, elastic.shape[1])]
         known = self.imported
         joints = [springs for joint in known.joints for springs in joint.springs if springs.nnz]
-        supposed = [m for one in known.hypotheses for m in (one.stiffness, one.mass) if m is not None]
+        supposed = [m for one in self.spec.hypotheses for m in (one.stiffness, one.mass) if m is not None]
         parts = (*known.stiffness_parts, *known.mass_parts, *joints, *supposed)
         acting = [group.motions(range(6)).toarray().T for group in known.groups]
         acting += [support.loads for support in known.supports]
