@@ -83,7 +83,7 @@ class Supposed(Effect):
         assert imported is not None
         own = self._of(predictor.spec)
         if own.factor:
-            return () if own.region < 0 else (region_centre(predictor, {"region": own.region}),)
+            return () if own.region < 0 else (region_centre(predictor, {"region": float(own.region)}),)
         share = sum(
             np.abs(change.diagonal()) / np.abs(change.diagonal()).max()
             for change in (own.stiffness, own.mass)

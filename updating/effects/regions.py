@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable
 from typing import TypeVar
 
+import numpy as np
+
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.effects.base import Values
@@ -24,21 +26,21 @@ Named = TypeVar("Named", Group, Joint, Support)
 
 
 def stiff_regions(predictor: Predictor) -> tuple[str, ...]:
-    """Return the names of the regions of imported matrices that have a stiffness of their own."""
+    """Return the names of the regions of imported matrices that have a stiffness of their own, each once."""
     imported = predictor.spec.imported
     count = 0 if imported is None else len(imported.stiffness_parts)
-    return tuple(region.name for region in predictor.spec.regions[:count])
+    return tuple(dict.fromkeys(region.name for region in predictor.spec.regions[:count]))
 
 
 def heavy_regions(predictor: Predictor) -> tuple[str, ...]:
-    """Return the names of the regions of imported matrices that have a mass of their own."""
+    """Return the names of the regions of imported matrices that have a mass of their own, each once."""
     imported = predictor.spec.imported
     count = 0 if imported is None else len(imported.mass_parts)
-    return tuple(region.name for region in predictor.spec.regions[:count])
+    return tuple(dict.fromkeys(region.name for region in predictor.spec.regions[:count]))
 
 
-def region_index(spec: Spec, values: Values) -> int:
-    """Return which region is meant, by its name or, from 0, its number.
+def regions_meant(spec: Spec, values: Values) -> tuple[int, ...]:
+    """Return which regions are meant, by the name that they have in common or, from 0, by the number of one.
 
     Raises
     ------
@@ -47,20 +49,22 @@ def region_index(spec: Spec, values: Values) -> int:
     """
     stated, names = values.get("region"), [region.name for region in spec.regions]
     if isinstance(stated, str) and stated in names:
-        return names.index(stated)
+        return tuple(i for i, name in enumerate(names) if name == stated)
     if isinstance(stated, int | float) and stated == int(stated) and 0 <= stated < len(names):
-        return int(stated)
-    raise StudyError(f"region = {stated!r} is none of the model's: {', '.join(names)}")
+        return (int(stated),)
+    raise StudyError(f"region = {stated!r} is none of the model's: {', '.join(dict.fromkeys(names))}")
 
 
 def region_centre(predictor: Predictor, values: Values) -> Place:
-    """Return the middle of a region [m]."""
-    spec, index = predictor.spec, region_index(predictor.spec, values)
-    box = None if spec.imported is None else spec.imported.box(index)
-    if box is not None:
-        x, y, z = ((low + high) / 2 for low, high in zip(*box, strict=True))
+    """Return the middle of a region, of several of one name that of all [m]."""
+    spec, meant = predictor.spec, regions_meant(predictor.spec, values)
+    boxes = [None if spec.imported is None else spec.imported.box(index) for index in meant]
+    known = [box for box in boxes if box is not None]
+    if known:
+        low, high = np.min([box[0] for box in known], axis=0), np.max([box[1] for box in known], axis=0)
+        x, y, z = ((low + high) / 2).tolist()
         return float(x), float(y), float(z)
-    chosen = spec.regions[index]
+    chosen = spec.regions[meant[0]]
     across = (0.0, spec.width) if chosen.y is None else chosen.y
     return (sum(chosen.x) / 2, sum(across) / 2, 0.0)
 

@@ -19,7 +19,7 @@ from updating.effects.box import (
     starting_places,
 )
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import region_centre, region_index, stiff_regions
+from updating.effects.regions import region_centre, regions_meant, stiff_regions
 from updating.models.softening import softening
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -145,7 +145,8 @@ class LocalStiffness(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with its stiffness changed there."""
         if predictor.spec.kind == "matrices":
-            return State(regional={(region_index(predictor.spec, values), "E"): 1 - values["loss"]})
+            left = 1 - values["loss"]
+            return State(regional={(i, "E"): left for i in regions_meant(predictor.spec, values)})
         factors = predictor.base.factors
         if predictor.spec.kind == "beam" or predictor.reduced.whole:
             lost = self._softening(predictor, values)

@@ -16,7 +16,7 @@ from updating.effects.box import (
     starting_places,
 )
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
-from updating.effects.regions import region_centre, region_index, stiff_regions
+from updating.effects.regions import region_centre, regions_meant, stiff_regions
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
 
@@ -151,10 +151,10 @@ class DampingPatch(Effect):
         """Return stiffness and mass of the bare structure under the layer, each (r, r) [SI]."""
         reduced, factors = predictor.reduced, predictor.base.factors
         if predictor.spec.kind == "matrices":
-            region = region_index(predictor.spec, values)
+            meant = regions_meant(predictor.spec, values)
             parts = dict.fromkeys(("stiffness", "mass"), 0.0 * reduced.sums[0])
             for term, regions in zip(reduced.structure.terms, reduced.parts, strict=True):
-                parts[term.kind] = parts[term.kind] + term.scale(factors) * regions[region]
+                parts[term.kind] = parts[term.kind] + term.scale(factors) * sum(regions[i] for i in meant)
             return parts["stiffness"], parts["mass"]
         inside = shares(predictor, values)
         stiffness = covered(predictor, "stiffness", inside)

@@ -7,7 +7,7 @@ import numpy as np
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import heavy_regions, region_centre, region_index
+from updating.effects.regions import heavy_regions, region_centre, regions_meant
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -53,7 +53,8 @@ class LocalMass(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the region's mass changed."""
-        return State(regional={(region_index(predictor.spec, values), "density"): float(values["factor"])})
+        factor = float(values["factor"])
+        return State(regional={(i, "density"): factor for i in regions_meant(predictor.spec, values)})
 
     def sentence(self, values: Values) -> str:
         """Return which region, and whether it is heavier or lighter."""
@@ -69,9 +70,9 @@ class LocalMass(Effect):
         imported = predictor.spec.imported
         if imported is None:
             return 0.0
-        part = imported.mass_parts[region_index(predictor.spec, values)]
+        parts = [imported.mass_parts[i] for i in regions_meant(predictor.spec, values)]
         along = np.asarray(imported.places.moves[imported.main_axis].sum(axis=0)).ravel() > 0
-        return float((values["factor"] - 1) * (along @ (part @ along)))
+        return float((values["factor"] - 1) * sum(along @ (part @ along) for part in parts))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the middle of the region."""
