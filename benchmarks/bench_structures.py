@@ -3,7 +3,7 @@
     python benchmarks/bench_structures.py [frame|machine] [NUMBER ...]
 
 Each change is made in the bars themselves, not by the effects; the specimen is hit, and the study, which does not hold
-the change, diagnosed. The modulus and the density of the specimen scatter as the study's tolerances say.
+the change, diagnosed. All stiffness and all mass of the specimen scatter as the study's tolerances say.
 """
 
 from __future__ import annotations
@@ -218,13 +218,11 @@ def run(name: str, number: int, folder: Path) -> None:
     if hidden.further is not None:
         hidden.further(specimen)
     factors = 1 + np.array(SCATTER) * rng.standard_normal(2)
-    bars = [part for part in specimen.parts if part in specimen.mass and part != "hidden"]
+    own = [part for part in specimen.parts if part != "hidden"]
     pair = (
-        specimen.matrix("stiffness", factors={p: (factors[0] if p in bars else 1.0) * hidden.stiffness.get(p, 1.0)
-                                              for p in specimen.parts}),
-        specimen.matrix("mass", factors={p: (factors[1] if p in bars else 1.0) * hidden.mass.get(p, 1.0)
-                                         for p in specimen.parts}),
-    )  # fmt: skip
+        specimen.matrix("stiffness", factors={p: factors[0] * hidden.stiffness.get(p, 1.0) for p in own}),
+        specimen.matrix("mass", factors={p: factors[1] * hidden.mass.get(p, 1.0) for p in own}),
+    )
     hit(folder / "hits.uff", specimen, *pair, points, rate=2048.0, rng=rng)
     start = time.perf_counter()
     diagnosis = diagnose_studies([study])
