@@ -6,12 +6,15 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
+from imported_cases import seen_from
 from scipy.linalg import eigh
 
 from acquisition.errors import StudyError
+from updating import LIBRARY, Material, Predictor, Region, Spec
 from updating.models.imported import Imported
 from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends
 from updating.models.imported.nodes import read_table
@@ -104,3 +107,67 @@ def test_hypotheses_that_cannot_be(frame: ModuleType, imported: Imported) -> Non
     check_ends(Hypothesis("h", "", 0.0, 1.0, loose), own, imported.mass)
     with pytest.raises(StudyError, match="hypothesis 'h' at 3: stiffness matrix indefinite"):
         check_ends(Hypothesis("h", "", 0.0, 3.0, loose), own, imported.mass)
+
+
+@pytest.fixture(scope="module")
+def predictor(frame: ModuleType, imported: Imported) -> Predictor:
+    """The frame with its beams as regions, seen from four points of the example."""
+    model = frame.frame()[0]
+    names = ("beam_1", "beam_2")
+    parts = [tuple(model.matrix(kind, parts=[name]) for name in names) for kind in ("stiffness", "mass")]
+    whole = Imported(imported.stiffness, imported.mass, imported.nodes, *parts)
+    size = (whole.extents[1] - whole.extents[0]).tolist()
+    regions = tuple(Region(name, (0.0, size[0]), (0.0, 1.0)) for name in names)
+    spec = Spec(
+        "matrices", size[0], 1e-3, size[2], (), (), "imported", Material(1.0, 1.0), regions, imported=whole
+    )
+    points = np.array([place for place, _ in list(frame.POINTS.values())[:4]])
+    return Predictor(spec, seen_from(points, np.tile([1.0, 0.0, 0.0], (4, 1)), np.array([20.0, 300.0])))
+
+
+def by_hand(made: Any, name: str, values: dict[str, Any], sets: dict[str, list[int]]) -> Any:
+    """Make the change in the bars themselves."""
+    from bars import rows_of
+
+    if name == "local_mass":
+        return made.matrix("stiffness"), made.matrix("mass", factors={values["region"]: values["factor"]})
+    (node,) = sets[values["at"]]
+    if name == "ground_spring":
+        springs = np.zeros((6, 6))
+        springs["xyz".index(values["along"])] = values["stiffness"] * np.eye(6)["xyz".index(values["along"])]
+        made.stiffness["hidden"] = [(rows_of(node), springs)]
+    else:
+        inertia = values["bulk"] * values["mass"] * (values["mass"] / 7850.0) ** (2 / 3) / 6
+        made.body("hidden", node, values["mass"], (inertia,) * 3)
+    return made.matrix("stiffness"), made.matrix("mass")
+
+
+CHANGES = [
+    ("local_mass", {"region": "beam_2", "factor": 1.4}),
+    ("ground_spring", {"at": "joint_3_column", "along": "x", "stiffness": 3e4}),
+    ("ground_spring", {"at": "joint_1_column", "along": "y", "stiffness": 2e4}),
+    ("lumped_mass", {"at": "joint_4_column", "mass": 0.3, "bulk": 2.0}),
+]
+
+
+@pytest.mark.parametrize(("name", "values"), CHANGES)
+def test_effects_at_regions_and_node_sets_are_the_structure_built_so(
+    frame: ModuleType, predictor: Predictor, name: str, values: dict[str, Any]
+) -> None:
+    made, sets = frame.frame()
+    stiffness, mass = by_hand(made, name, values, sets)
+    expected = hertz(stiffness.toarray(), mass.toarray(), 8)
+    found = predictor.predict(LIBRARY[name].state(predictor, values), count=8).frequency
+    assert np.abs(expected / predictor.predict(count=8).frequency - 1).max() > 0.01
+    assert found == pytest.approx(expected, rel=2e-4)
+
+
+def test_names_that_the_model_does_not_have(predictor: Predictor) -> None:
+    for name, values, message in (
+        ("local_stiffness", {"region": "web", "loss": 0.1}, "region = 'web' is none of the model's: beam_1, beam_2"),
+        ("joint", {"joint": "bolt"}, "joint = 'bolt' is none of the model's: joint_1"),
+        ("ground_spring", {"at": "roof", "along": "x", "stiffness": 1.0}, "at = 'roof' is none"),
+        ("ground_spring", {"at": "joint_1_column", "along": "w", "stiffness": 1.0}, "along = 'w' is no direction"),
+    ):  # fmt: skip
+        with pytest.raises(StudyError, match=message):
+            LIBRARY[name].state(predictor, values)
