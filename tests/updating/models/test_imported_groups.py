@@ -145,7 +145,7 @@ def by_hand(made: Any, name: str, values: dict[str, Any], sets: dict[str, list[i
 CHANGES = [
     ("local_mass", {"region": "beam_2", "factor": 1.4}),
     ("ground_spring", {"at": "joint_3_column", "along": "x", "stiffness": 3e4}),
-    ("ground_spring", {"at": "joint_1_column", "along": "y", "stiffness": 2e4}),
+    ("ground_spring", {"at": "joint_1_column", "along": "y", "stiffness": 1e5}),
     ("lumped_mass", {"at": "joint_4_column", "mass": 0.3, "bulk": 2.0}),
 ]
 
