@@ -213,6 +213,8 @@ def run(name: str, number: int, folder: Path) -> None:
     make, build, points, every = STRUCTURES[name]
     hidden = every[number - 1]
     study = make(folder)
+    nominal, sets = build()
+    (folder / "nodes.csv").write_text(nominal.table(sets), encoding="ascii")  # with the sides of joints
     rng = np.random.default_rng(100 * number + len(name))
     specimen, _ = build(hidden.turned or None)
     if hidden.further is not None:

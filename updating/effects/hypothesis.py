@@ -27,6 +27,7 @@ class Supposed(Effect):
 
     models = ("matrices",)
     repeats = False
+    fidelity = 0.03  # what comes loose does not do so quite as supposed, as other idealisations
 
     def __init__(self, hypothesis: Hypothesis) -> None:
         """Take name and reasons from the study."""
