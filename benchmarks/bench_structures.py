@@ -124,7 +124,7 @@ FRAME = (
     Hidden((("joint", "joint_2", "of_modelled_turning", 0.1),), turned={"joint_2": 0.1},
            also={"joint": "joint 2 is loose"}),
     Hidden((("joint", "joint_4", "of_modelled_turning", 5.0),), turned={"joint_4": 5.0}),
-    Hidden((("clamp_rotation", "foot_right", "stiffness", 5000.0),), further=turning_foot(4, 5000.0)),
+    Hidden((("clamp_rotation", "foot_right", "stiffness", 5000.0),), further=turning_foot(frame_node(frame.WIDTH, 0.0), 5000.0)),
     Hidden((("lumped_mass", f"{frame.WIDTH / 3}, 0.0, 0.4", "mass", 0.08),),
            further=body(frame_node(frame.WIDTH / 3, 0.4), 0.08)),
     Hidden((soft("column_left_1", 0.85), soft("beam_2", 0.8)), {"column_left_1": 0.85, "beam_2": 0.8}),
