@@ -274,6 +274,11 @@ PAIRS_ANEW = 3
 """How many of these, the best, are weighed from all starts of either effect. Doubled: pairs take half as long
 again."""
 
+FORMS_TRIED = 6
+"""Of how many forms of a pair of effects on imported matrices, the best by either score test, a short climb chooses
+[-]: the true one was among the first three where two regions of six were changed. Doubled: pairs take half as long
+again."""
+
 SHIFT_SPREAD = 3.0
 """How many times the shift of a starting place may be asked for, 1 sigma [-]: an effect from slight to severe."""
 

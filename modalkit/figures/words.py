@@ -80,6 +80,8 @@ def _detail(diagnosis: Diagnosis) -> tuple[str, str]:
 def located(diagnosis: Diagnosis, *, plate: bool = False) -> str:
     """Say where the cause sits."""
     at = diagnosis.where.location
+    if diagnosis.where.names:
+        return f"at {' and '.join(diagnosis.where.names)}"
     if at is None:
         return "no single place"
     flat = plate or len({zone.center[1] for zone in diagnosis.where.zones}) > 1

@@ -10,6 +10,7 @@ from identification import ModalModel, mpc
 from modalkit.workflow.existing import Modes
 from updating import Diagnosis
 from updating.diagnosis.answer.result import Ranked, Remainder
+from updating.diagnosis.answer.verdict import NAME
 
 
 def modes_document(
@@ -92,6 +93,7 @@ def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> di
             "location": where.location,
             "locations": where.locations,
             "points": where.points,
+            "names": where.names,
             "zones": [
                 {"name": z.name, "center": z.center, "probability": z.probability} for z in where.zones
             ],
@@ -179,8 +181,9 @@ def _gap_document(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _ranked_document(row: Ranked, *, named: bool) -> dict[str, Any]:
-    """Return a row of the ranking; points and sensors stand in the rows of the answer alone, numbers in all."""
-    stated = {n: e for n, e in row.parameters.items() if named or not isinstance(e.value, tuple | str)}
+    """Return a row of the ranking; points and sensors stand in the rows of the answer alone, all else in all."""
+    aside = {n for n, e in row.parameters.items() if isinstance(e.value, tuple | str) and e.unit != NAME}
+    stated = {n: e for n, e in row.parameters.items() if named or n not in aside}
     return {
         "effects": row.effects,
         "probability": row.probability,

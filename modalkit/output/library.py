@@ -41,6 +41,7 @@ def effect_document(effect: Effect) -> dict[str, Any]:
             for p in (named[name] for name in dict.fromkeys(order))
         ],
         "labels": list(effect.labels),
+        "names": list(effect.named),
         "of_sensor": effect.of_sensor,
     }
 
@@ -52,6 +53,7 @@ def effects_table(record: dict[str, Any]) -> str:
     for effect in record["effects"]:
         numbers = [_prior(parameter) for parameter in effect["parameters"]]
         numbers += [f"`{label}`: node numbers" for label in effect["labels"]]
+        numbers += [f"`{label}`: a name, on matrices" for label in effect["names"]]
         numbers += ['`channel`: or a fixed sensor, as "5+Z"'] if effect["of_sensor"] else []
         cells = (
             f"`{effect['name']}`",

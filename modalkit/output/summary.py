@@ -6,9 +6,11 @@ import math
 from itertools import combinations
 
 from acquisition.quantities import number, p_value, percent, place, probability
-from updating import LIBRARY, Diagnosis
+from updating import Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
+from updating.diagnosis.answer.verdict import NAME
 from updating.effects import Lack, Twin, in_a_set, twin_of
+from updating.effects.regions import PLACED
 from updating.thresholds import BELIEVED_DOUBT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
@@ -51,7 +53,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "named":
         names = diagnosis.sets[0]
-        known = in_a_set([name for name in names if name in LIBRARY])
+        library = diagnosis.known
+        known = in_a_set([name for name in names if name in library], library)
         summary = " ".join(dict.fromkeys(effect.sentence(_stated(diagnosis, effect.key)) for effect in known))
         return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
     statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
@@ -85,7 +88,12 @@ def _values(diagnosis: Diagnosis) -> str:
     for name, estimate in row.parameters.items():
         effect, _, parameter = name.partition(".")
         shape = estimate.low95 is None and not isinstance(estimate.value, str | tuple)
-        if estimate.aside or parameter in IN_THE_PLACE or (shape and "point" not in parameter):
+        if (
+            estimate.aside
+            or parameter in IN_THE_PLACE
+            or estimate.unit == NAME
+            or (shape and "point" not in parameter)
+        ):
             continue
         bare = parameter.replace("_", " ")
         several = len(row.effects) > 1 and (parameter == "factor" or len(set(row.effects)) < len(row.effects))
@@ -100,14 +108,25 @@ def _values(diagnosis: Diagnosis) -> str:
 
 
 def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
-    """Return a set of effects, with its size where it is one number."""
-    row, statement = _row(diagnosis, names), " + ".join(names)
-    if row is None or len(row.parameters) != 1 or len(names) > 1:
+    """Return a set of effects, with where each is by name, and its size where it is one number."""
+    row = _row(diagnosis, names)
+    if row is None:
+        return " + ".join(names)
+    statement = " + ".join(name + _at(row, i) for i, name in enumerate(names))
+    numbers = [e for e in row.parameters.values() if e.unit != NAME]
+    if len(numbers) != 1 or len(names) > 1:
         return statement
-    (estimate,) = row.parameters.values()
+    (estimate,) = numbers
     if not isinstance(estimate.value, float):
         return statement
     return f"{statement} ({'x ' if estimate.unit == '-' else ''}{estimate.bare})"
+
+
+def _at(row: Ranked, index: int) -> str:
+    """Return where the form of one effect of a set is, in the user's own names."""
+    values = row.forms[index] if index < len(row.forms) else {}
+    names = [str(values[label]) for label in PLACED if label in values]
+    return f" of {names[0]}" if names else ""
 
 
 def _where(diagnosis: Diagnosis) -> str:
@@ -118,11 +137,15 @@ def _where(diagnosis: Diagnosis) -> str:
         band = f"{where.band} " if where.band else ""
         return f"{band}The {where.channel} is where the least bad explanations act; do not trust it."
     text = f"{where.channel} ({probability(where.channels[where.channel])})"
-    if where.location is None:
+    if where.location is None and not where.names:
         return text + (
             ", spread over the whole structure" if where.channel != "measurement" else _points(where.points)
         )
     places = list(dict.fromkeys(place(at) for at in where.locations[:3]))
+    if where.names and places:
+        return f"{text}, {' and '.join(where.names)} (about {' and '.join(places)})"
+    if where.location is None:
+        return f"{text}, {' and '.join(where.names)}"
     text += ", at " + (" and ".join(places) if places else place(where.location))
     zone = min(where.zones, key=lambda z: math.dist(z.center, where.location or z.center), default=None)
     if zone is not None and round(zone.probability, 2) >= LIKELY and len(places) < 2:
@@ -220,7 +243,7 @@ def _next(diagnosis: Diagnosis) -> str:
         confirm = "to confirm it, " if diagnosis.verdict == "named" else ""
         return f"{confirm}{test.measure}: {separated(test)}"
     names = diagnosis.sets[0] if diagnosis.verdict == "named" else diagnosis.effects
-    ways = "; ".join(dict.fromkeys(LIBRARY[n].separated_by for n in names if n in LIBRARY))
+    ways = "; ".join(dict.fromkeys(diagnosis.known[n].separated_by for n in names if n in diagnosis.known))
     if diagnosis.verdict == "named":
         return f"no rival is left to separate; to confirm: {ways}"
     if diagnosis.verdict == "unknown":

@@ -11,7 +11,7 @@ from acquisition.quantities import bare_p, p_value, percent, probability
 from modalkit.figures.words import METRICS
 from modalkit.output.summary import answers, separates
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
-from updating import LIBRARY, Diagnosis
+from updating import Diagnosis, Effect
 from updating.diagnosis.answer.result import Ranked
 
 ROWS = 8
@@ -191,7 +191,8 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         parts.append(
             element("p", f"{len(rows) - len(shown)} more, together {probability(left)}.", class_="quiet")
         )
-    parts += [_known(name) for name in diagnosis.effects if name in LIBRARY]
+    library = diagnosis.known
+    parts += [_known(library[name]) for name in dict.fromkeys(diagnosis.effects) if name in library]
     return joined(*parts)
 
 
@@ -211,10 +212,9 @@ def _explanation(row: Ranked) -> list[Cell | Raw]:
     return [" + ".join(row.effects), row.probability, row.p_value, "\n".join(stated), "\n".join(near)]
 
 
-def _known(name: str) -> Raw:
-    effect = LIBRARY[name]
+def _known(effect: Effect) -> Raw:
     statement = f"{effect.summary} {effect.footprint} To separate it: {effect.separated_by}."
-    return element("p", element("strong", name), f": {statement}")
+    return element("p", element("strong", effect.name), f": {statement}")
 
 
 def the_shrinkage(diagnosis: Diagnosis) -> Raw:

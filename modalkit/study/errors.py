@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel, ValidationError
 
+from modalkit.study.hypotheses import HypothesisTable
 from modalkit.study.tables import (
     AxesTable,
     DampingTable,
@@ -61,6 +62,7 @@ def known_keys(place: tuple[int | str, ...], root: type[BaseModel]) -> list[str]
         ("tolerances",): TolerancesTable,
         ("environment",): EnvironmentTable,
         ("update",): UpdateTable,
+        ("hypothesis",): HypothesisTable,
     }
     table = tables.get(tuple(str(p) for p in place if not isinstance(p, int)))
     return [] if table is None else [n for n in table.model_fields if n != "path"]

@@ -13,7 +13,7 @@ from acquisition.errors import InputError, StudyError
 from acquisition.si_units import si_value
 from modalkit.study.stated_effects import SOME, nodes, sensor
 from updating import LIBRARY, Predictor
-from updating.effects import check_values, labels_of
+from updating.effects import check_values, labels_of, names_of, optional_values
 from updating.effects.specimens import unit_of
 from updating.models.spec import Kind
 from updating.models.state import State
@@ -56,6 +56,9 @@ def parse_effect(text: str, kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
             continue
         if parameter == "channel" and LIBRARY[name].of_sensor:
             values[parameter] = _sensor(text, stated)
+            continue
+        if parameter in LIBRARY[name].named and stated:
+            values[parameter] = stated
             continue
         try:
             values[parameter] = _value(stated, name, parameter, kind)
@@ -105,10 +108,11 @@ def check_effect(
     if obstacle is not None:
         raise StudyError(f"{where} {name}: {obstacle}")
     takes = {p.name: p for p in effect.parameters(tested)}
-    labels = labels_of(effect, values)
-    needed = {*labels, *(p.name for p in takes.values() if p.needed)}
-    if not needed <= set(values) <= {*takes, *labels}:
+    labels, names = labels_of(effect, values), names_of(effect, predictor.spec)
+    needed = {*labels, *takes} - optional_values(effect, tuple(takes.values()), values, predictor.spec)
+    if not needed <= set(values) <= {*takes, *labels, *names}:
         stated = [f"{label} (node numbers)" for label in effect.labels]
+        stated += sorted(names)
         wanted = ", ".join([*stated, *(f"{p.name} [{p.unit}]" for p in takes.values())]) or "no parameters"
         raise StudyError(f"{where} {name}: it takes {wanted}, found {', '.join(sorted(values)) or 'none'}")
     for label in labels - {"channel"}:

@@ -13,6 +13,7 @@ from acquisition.encoding import not_utf8
 from acquisition.errors import StudyError
 from modalkit.study.decks import deck_of, deck_spec
 from modalkit.study.errors import explain, known_keys
+from modalkit.study.hypotheses import HypothesisTable, with_hypotheses
 from modalkit.study.matrices import matrices_of, matrices_spec
 from modalkit.study.probable_units import check_units
 from modalkit.study.stated_effects import accepted_values, check_repeated
@@ -27,8 +28,6 @@ from modalkit.study.tables import (
 )
 from updating.environment import Environment
 from updating.models import Damping, Material, PointMass, Region, Spec
-from updating.models.decks import DeckModel
-from updating.models.imported import Imported
 from updating.models.spec import Kind
 from updating.models.spec_checks import check_places
 from updating.test_data.axes import Axes
@@ -61,6 +60,7 @@ class Study(Strict):
     test: MeasurementTable
     baseline: MeasurementTable | None = None
     model: ModelTable | None = None
+    hypothesis: tuple[HypothesisTable, ...] = ()
     tolerances: TolerancesTable = TolerancesTable()
     environment: EnvironmentTable = EnvironmentTable()
     update: UpdateTable = UpdateTable()
@@ -84,6 +84,7 @@ class Study(Strict):
                 *model.stiffness_parts,
                 *model.mass_parts,
             ]
+        names += [name for supposed in self.hypothesis for name in supposed.files]
         return (self.path, *(self.file(name) for name in names if name is not None))
 
     @property
@@ -108,16 +109,15 @@ class Study(Strict):
         model = self.model
         if model is None:
             raise StudyError("this command needs a [model]")
-        damping = Damping(
-            model.damping.alpha,
-            model.damping.beta,
-            model.damping.loss_factor,
-            None if model.damping.ratios is None else tuple(model.damping.ratios),
-        )
         if model.type == "matrices":
-            return matrices_spec(model, self._imported, damping)
+            return self._of_matrices
         if model.type == "calculix":
-            return deck_spec(model, self._deck, damping)
+            return self._of_deck
+        if self.hypothesis:
+            raise StudyError(
+                f"[[hypothesis]] {self.hypothesis[0].name!r} is for models given by matrices or a deck, found type "
+                f"{model.type}; what a beam or a plate may have, the effects of the library are"
+            )
         if given := [key for key in MATRICES_ONLY if getattr(model, key)]:
             raise StudyError(
                 f"[model] of type {model.type} takes no {', '.join(given)}; they are of type matrices"
@@ -147,22 +147,24 @@ class Study(Strict):
             Material(model.material.E, model.material.density, model.material.poisson),
             tuple(Region(**region.model_dump(exclude={"set"})) for region in model.region),
             tuple(PointMass(tuple(mass.at), mass.mass, mass.inertia) for mass in model.mass),
-            damping,
+            _damping(model),
         )
         check_places(spec)
         return spec
 
     @cached_property
-    def _imported(self) -> Imported:
-        """The matrices of the model, read once."""
+    def _of_matrices(self) -> Spec:
+        """The model given by matrices, read once."""
         assert self.model is not None
-        return matrices_of(self.model, self.file)
+        spec = matrices_spec(self.model, matrices_of(self.model, self.file), _damping(self.model))
+        return with_hypotheses(spec, self.hypothesis, self.file, self.model.units)
 
     @cached_property
-    def _deck(self) -> DeckModel:
-        """The deck of the model, read once."""
+    def _of_deck(self) -> Spec:
+        """The model that a deck is, run once."""
         assert self.model is not None
-        return deck_of(self.model, self.file)
+        spec = deck_spec(self.model, deck_of(self.model, self.file), _damping(self.model))
+        return with_hypotheses(spec, self.hypothesis, self.file, self.model.units)
 
     def _elements(self, model: ModelTable) -> tuple[int, ...]:
         if model.elements is None:
@@ -209,6 +211,13 @@ class Study(Strict):
 def kind_of(model: ModelTable) -> Kind:
     """Return the kind of model that a table describes: a deck becomes matrices."""
     return "matrices" if model.type == "calculix" else model.type
+
+
+def _damping(model: ModelTable) -> Damping:
+    """Return the damping that a model states."""
+    stated = model.damping
+    ratios = None if stated.ratios is None else tuple(stated.ratios)
+    return Damping(stated.alpha, stated.beta, stated.loss_factor, ratios)
 
 
 def read_study(path: Path | str) -> Study:

@@ -64,6 +64,8 @@ def _value(effect: str, name: str, value: Any, kind: Kind) -> Any:
     """Return the value of a label or a parameter of an effect."""
     if name in LIBRARY[effect].labels:
         return nodes(name, value)
+    if name in LIBRARY[effect].named and isinstance(value, str):
+        return value
     if name == "channel" and LIBRARY[effect].of_sensor:
         return sensor(value)
     return _number(name, value, unit_of(LIBRARY[effect], name, kind) if isinstance(value, str) else "")

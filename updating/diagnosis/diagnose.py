@@ -25,7 +25,7 @@ from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.prior import holds
 from updating.diagnosis.search.search import Search, search
-from updating.effects import LIBRARY, Effect
+from updating.effects import LIBRARY, Effect, hypotheses_of
 from updating.models.state import State
 from updating.nominal import predictor_of
 from updating.prediction.baseline import correct, doubt_in_mass
@@ -51,7 +51,7 @@ def diagnose(
     case : Case
         Test, model, baseline and doubts.
     library : sequence of Effect, optional
-        Effects to consider; left out, the whole library.
+        Effects to consider beside the study's hypotheses; left out, the whole library.
     rng : Generator, optional
         For the bootstrap; left out, a fixed one, so that the answer repeats.
     progress : function, optional
@@ -123,6 +123,8 @@ def _diagnose(
     progress: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     effects = list(LIBRARY.values()) if library is None else list(library)
+    own = {effect.name: effect for one in problem.specimens for effect in hypotheses_of(one.predictor.spec)}
+    effects += [effect for name, effect in own.items() if name not in {effect.name for effect in effects}]
     _stage(progress, "comparing the effects")
     found = search(problem, [e for e in effects if e.several or e.name not in accepted])
     chance = found.empty.p_value
@@ -160,6 +162,7 @@ def _diagnose(
         comparable,
         left if significant or found.empty.explanation.candidate.outliers else None,
         included(found),
+        own,
     )
 
 
@@ -256,7 +259,9 @@ def _rms(values: pd.Series) -> float:
 
 
 def _frac(problem: SpecimenProblem) -> FloatArray:
-    """Return, per FRF, the correlation of measured and nominal constants over the modes [-]."""
+    """Return, per FRF, the correlation of measured and nominal constants over the modes; none without level [-]."""
+    if not problem.measured.absolute:
+        return np.zeros(0)
     a, b = problem.measured.constants, problem.nominal.constants
     power = np.sum(a**2, axis=1) * np.sum(b**2, axis=1)
     return np.asarray(np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300))

@@ -10,7 +10,8 @@ from typing import Any
 
 from acquisition.errors import StudyError
 from updating.effects.base import Channel, Effect, Parameter, Twin, Variant
-from updating.effects.limits import check_values
+from updating.effects.hypothesis import hypotheses_of
+from updating.effects.limits import PLACES, check_values
 from updating.effects.measurement.channel_gain import ChannelGain
 from updating.effects.measurement.delay import TimeDelay
 from updating.effects.measurement.gain import CalibrationGain
@@ -24,16 +25,19 @@ from updating.effects.structure.clamp import ClampRotation, ClampTranslation
 from updating.effects.structure.damping import UniformDamping
 from updating.effects.structure.factor import Density, Modulus, SectionScale, Thickness
 from updating.effects.structure.fluid import FluidAddedMass, FluidDamping
+from updating.effects.structure.joint import Joint
 from updating.effects.structure.joint_nonlinearity import JointNonlinearity
 from updating.effects.structure.length import Length
 from updating.effects.structure.local_stiffness import LocalStiffness
 from updating.effects.structure.mass import LumpedMass, SensorMass
 from updating.effects.structure.orthotropy import Orthotropy
 from updating.effects.structure.patch import DampingPatch
+from updating.effects.structure.region_mass import LocalMass
 from updating.effects.structure.shear import Shear
 from updating.effects.structure.spring import GroundSpring
 from updating.effects.structure.suspension import Suspension
 from updating.effects.structure.taper import Taper
+from updating.models.spec import Spec
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -51,6 +55,8 @@ LIBRARY: dict[str, Effect] = {
         SensorMass(),
         LumpedMass(),
         LocalStiffness(),
+        LocalMass(),
+        Joint(),
         GroundSpring(),
         Suspension(),
         Shear(),
@@ -78,12 +84,15 @@ def register(effect: Effect) -> None:
     LIBRARY[effect.name] = effect
 
 
-def in_a_set(names: Sequence[str]) -> tuple[Effect, ...]:
-    """Return the effects of a set of causes by their names; one that is named twice is there twice."""
+def in_a_set(names: Sequence[str], own: Mapping[str, Effect] = LIBRARY) -> tuple[Effect, ...]:
+    """Return the effects of a set of causes by their names; one that is named twice is there twice.
+
+    ``own`` has them, left out the library.
+    """
     found: list[Effect] = []
     for name in names:
         before = [effect for effect in found if effect.name == name]
-        found.append(before[-1].again() if before else LIBRARY[name])
+        found.append(before[-1].again() if before else own[name])
     return tuple(found)
 
 
@@ -96,6 +105,19 @@ def twin_of(names: Collection[str]) -> Twin | None:
 def labels_of(effect: Effect, values: Mapping[str, Any]) -> set[str]:
     """Return the labels that an effect takes beside its parameters: its own, or ``channel`` where that is stated."""
     return {"channel"} if effect.of_sensor and "channel" in values else set(effect.labels)
+
+
+def names_of(effect: Effect, spec: Spec) -> set[str]:
+    """Return what an effect takes beside its parameters that is a name of the user's own model."""
+    return set() if spec.imported is None else set(effect.named)
+
+
+def optional_values(
+    effect: Effect, parameters: Sequence[Parameter], values: Mapping[str, Any], spec: Spec
+) -> set[str]:
+    """Return what may be left out where an effect is stated: what has a default; of one at a node set its place."""
+    placed = PLACES if "at" in values else frozenset()
+    return {p.name for p in parameters if not p.needed} | names_of(effect, spec) | placed
 
 
 def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -> State:
@@ -113,8 +135,12 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
     if not there_already and (obstacle := effect.why_not(predictor)) is not None:
         raise StudyError(f"[[model.effect]] {name}: {obstacle}")
     parameters = effect.parameters(predictor)
-    takes = {parameter.name for parameter in parameters} | labels_of(effect, values)
-    optional = {parameter.name for parameter in parameters if not parameter.needed}
+    takes = (
+        {parameter.name for parameter in parameters}
+        | labels_of(effect, values)
+        | names_of(effect, predictor.spec)
+    )
+    optional = optional_values(effect, parameters, values, predictor.spec)
     if not takes - optional <= set(values) <= takes:
         wanted = ", ".join(sorted({p.name for p in parameters} | set(effect.labels))) or "no parameters"
         instead = f' (or channel = "5+Z", a sensor that stayed{", in place of points" * bool(effect.labels)})'
@@ -137,8 +163,11 @@ __all__ = [
     "Variant",
     "accepted_state",
     "check_values",
+    "hypotheses_of",
     "in_a_set",
     "labels_of",
+    "names_of",
+    "optional_values",
     "register",
     "twin_of",
 ]

@@ -154,13 +154,13 @@ class Effect(ABC):
     defaults. Register an instance with :func:`updating.effects.register`.
     """
 
-    name: ClassVar[str]
+    name: str
     """Name in the report and the JSON."""
-    channel: ClassVar[Channel]
+    channel: Channel
     """Where it acts."""
-    summary: ClassVar[str]
+    summary: str
     """One sentence for the report."""
-    footprint: ClassVar[str]
+    footprint: str
     """What it does to the data."""
     models: ClassVar[tuple[str, ...]] = ("beam", "plate")
     """Kinds of model it applies to."""
@@ -168,16 +168,18 @@ class Effect(ABC):
     """Effects that some data cannot tell from it."""
     labels: ClassVar[tuple[str, ...]] = ()
     """Values beside the parameters that say which points are meant, by their node numbers."""
+    named: ClassVar[tuple[str, ...]] = ()
+    """Values beside the parameters that are names of the user's own model: of a region, a node set, a direction."""
     of_sensor: ClassVar[bool] = False
     """Whether ``channel`` may be stated in place of the labels: one of several sensors (or forces) that stayed, by node
     and direction as ``5+Z``."""
-    separated_by: ClassVar[str]
+    separated_by: str
     """The test that would separate it from these."""
     fidelity: ClassVar[float] = 0.0
     """How far, relative to the shift the effect makes, its own idealisation may be off (1 sigma) [-]."""
     damping_doubt: ClassVar[float] = 0.0
     """How far the effect leaves the damping in doubt beside what it predicts: 1 sigma of ln zeta [-]."""
-    phrase: ClassVar[str] = ""
+    phrase: str = ""
     """How a sentence names it; left out, by its own name."""
     elsewhere: ClassVar[Mapping[Kind, str]] = MappingProxyType({})
     """Why it does not apply to a kind of model that is not among ``models``, where there is more to say."""

@@ -63,8 +63,6 @@ def _wrong(parameter: Parameter, value: float) -> str | None:
             return f"is off the structure, which reaches from {parameter.low:g} to {parameter.high:g} m"
     elif name in WITHIN and not parameter.low <= value <= parameter.high:
         return f"must lie from {parameter.low:g} to {parameter.high:g}"
-    elif name == "region" and not (value == int(value) and parameter.low <= value <= parameter.high):
-        return f"is no region; they are counted from 0 to {parameter.high:g}"
     elif name == "loss" and value >= WHOLE_LOSS:
         return "takes away all stiffness or more; it is a share below 1"
     elif (

@@ -1,27 +1,113 @@
-"""Regions of imported matrices, on which an effect acts where there are no fields."""
+"""Regions and node sets of imported matrices, on which effects act where there are no fields, by their names."""
 
 from __future__ import annotations
 
-from updating.effects.base import Parameter
+from collections.abc import Callable, Hashable, Iterable
+from typing import TypeVar
+
+import numpy as np
+
+from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
+from updating.effects.base import Values
 from updating.effects.box import Place
+from updating.models.fields import Sparse
+from updating.models.imported.groups import Group, Joint, Support
+from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 
+WAYS = ("x", "y", "z", "rx", "ry", "rz")
+"""Directions along which, and about which, something acts at a node set."""
 
-def stiff_regions(predictor: Predictor) -> tuple[int, ...]:
-    """Return the regions of imported matrices that have a stiffness of their own."""
+PLACED = ("region", "at", "joint", "support")
+"""Values that name a place of the user's own model."""
+
+Named = TypeVar("Named", Group, Joint, Support)
+
+
+def stiff_regions(predictor: Predictor) -> tuple[str, ...]:
+    """Return the names of the regions of imported matrices that have a stiffness of their own, each once."""
     imported = predictor.spec.imported
-    return () if imported is None else tuple(range(len(imported.stiffness_parts)))
+    count = 0 if imported is None else len(imported.stiffness_parts)
+    return tuple(dict.fromkeys(region.name for region in predictor.spec.regions[:count]))
 
 
-def region_parameter(predictor: Predictor) -> Parameter:
-    """Return the number of the region, from 0, which the forms of an effect fix."""
-    last = max(len(stiff_regions(predictor)) - 1, 1)
-    return Parameter("region", "-", 0.0, float(last), "any of the regions, in the study's order from 0")
+def heavy_regions(predictor: Predictor) -> tuple[str, ...]:
+    """Return the names of the regions of imported matrices that have a mass of their own, each once."""
+    imported = predictor.spec.imported
+    count = 0 if imported is None else len(imported.mass_parts)
+    return tuple(dict.fromkeys(region.name for region in predictor.spec.regions[:count]))
 
 
-def region_centre(predictor: Predictor, region: int) -> Place:
-    """Return the middle of a region [m]."""
-    spec = predictor.spec
-    chosen = spec.regions[region]
+def regions_meant(spec: Spec, values: Values) -> tuple[int, ...]:
+    """Return which regions are meant, by the name that they have in common or, from 0, by the number of one.
+
+    Raises
+    ------
+    StudyError
+        If there is none of that name.
+    """
+    stated, names = values.get("region"), [region.name for region in spec.regions]
+    if isinstance(stated, str) and stated in names:
+        return tuple(i for i, name in enumerate(names) if name == stated)
+    if isinstance(stated, int | float) and stated == int(stated) and 0 <= stated < len(names):
+        return (int(stated),)
+    raise StudyError(f"region = {stated!r} is none of the model's: {', '.join(dict.fromkeys(names))}")
+
+
+def region_centre(predictor: Predictor, values: Values) -> Place:
+    """Return the middle of a region, of several of one name that of all [m]."""
+    spec, meant = predictor.spec, regions_meant(predictor.spec, values)
+    boxes = [None if spec.imported is None else spec.imported.box(index) for index in meant]
+    known = [box for box in boxes if box is not None]
+    if known:
+        low, high = np.min([box[0] for box in known], axis=0), np.max([box[1] for box in known], axis=0)
+        x, y, z = ((low + high) / 2).tolist()
+        return float(x), float(y), float(z)
+    chosen = spec.regions[meant[0]]
     across = (0.0, spec.width) if chosen.y is None else chosen.y
     return (sum(chosen.x) / 2, sum(across) / 2, 0.0)
+
+
+def one_of(known: Iterable[Named], values: Values, label: str) -> Named:
+    """Return the node set, joint or support that a label names.
+
+    Raises
+    ------
+    StudyError
+        If there is none of that name.
+    """
+    found = {one.name: one for one in known}
+    stated = values.get(label)
+    if stated not in found:
+        raise StudyError(f"{label} = {stated!r} is none of the model's: {', '.join(found) or 'it has none'}")
+    return found[str(stated)]
+
+
+def way(values: Values, label: str) -> int:
+    """Return the direction, 0 to 2 along and 3 to 5 about an axis, that a label names.
+
+    Raises
+    ------
+    StudyError
+        If it is none.
+    """
+    stated = values.get(label)
+    if stated not in WAYS:
+        raise StudyError(f"{label} = {stated!r} is no direction; use {', '.join(WAYS)}")
+    return WAYS.index(str(stated))
+
+
+def on_basis(predictor: Predictor, key: Hashable, full: Callable[[], Sparse]) -> FloatArray:
+    """Return a matrix over all degrees of freedom on the basis, computed the first time it is asked for [SI]."""
+    kept = predictor.reduced.kept
+    if key not in kept:
+        kept[key] = predictor.reduced.project(full())
+    found: FloatArray = kept[key]
+    return found
+
+
+def centre_of(one: Group | Joint | Support) -> Place:
+    """Return the middle of a node set, a joint or a support [m]."""
+    x, y, z = one.centre.tolist()
+    return float(x), float(y), float(z)

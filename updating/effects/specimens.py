@@ -1,4 +1,4 @@
-"""Specimens on which an effect shows what it takes: a steel beam and a steel plate, both clamped at one end."""
+"""Specimens on which an effect shows what it takes: a beam and a plate of steel, clamped at one end; a chain."""
 
 from __future__ import annotations
 
@@ -9,11 +9,47 @@ import numpy as np
 
 from updating.effects.base import Effect
 from updating.effects.limits import PLACES
-from updating.models.spec import Kind, Material, Spec
+from updating.models.fields import Sparse
+from updating.models.imported import Imported, NodeTable
+from updating.models.spec import Kind, Material, Region, Spec
 from updating.prediction.predict import Predictor
 from updating.test_data.measured import Measured
 
 STEEL = Material(210e9, 7850.0)
+
+BODY, SPRING = 0.1, 1e5
+"""Of the chain that stands for imported matrices [kg, N/m]."""
+
+
+def _chain() -> Imported:
+    """Return four bodies on a chain of springs that move along z, the second and third joined at one place."""
+    links = np.diag([2.0, 2.0, 2.0, 1.0]) - np.diag(np.ones(3), 1) - np.diag(np.ones(3), -1)
+    first, second = np.diag([1.0, 1.0, 0.0, 0.0]), np.diag([0.0, 0.0, 1.0, 1.0])
+    root = np.zeros((4, 4))
+    root[0, 0] = 1.0
+    nodes = NodeTable(
+        np.arange(1, 5),
+        np.array([[0.1, 0, 0], [0.2, 0, 0], [0.2, 0, 0], [0.3, 0, 0]]),
+        np.full(4, 3),
+        np.arange(4),
+        sets={"joint_left": np.array([2]), "joint_right": np.array([3])},
+    )
+    return Imported(
+        Sparse(SPRING * links),
+        Sparse(BODY * np.eye(4)),
+        nodes,
+        (Sparse(SPRING * root), Sparse(SPRING * (links - root))),
+        (Sparse(BODY * first), Sparse(BODY * second)),
+        "chain",
+    )
+
+
+@cache
+def chain() -> Spec:
+    """Return the specification of a chain of bodies, which stands for imported matrices."""
+    regions = Region("root", (0.0, 0.1)), Region("rest", (0.1, 0.3))
+    return Spec("matrices", 0.2, 1e-3, 1e-3, (), (), "imported", STEEL, regions, imported=_chain())
+
 
 SPECIMENS: dict[Kind, Spec] = {
     "beam": Spec("beam", 0.376, 0.0305, 0.0047625, (10,), ("x0",), "euler-bernoulli", STEEL),
@@ -22,7 +58,8 @@ SPECIMENS: dict[Kind, Spec] = {
 """Steel cantilevers whose priors a list of effects shows."""
 
 SHOWN = (
-    "a steel cantilever beam of 376 x 30.5 x 4.7625 mm, or plate of 376 x 200 x 3.175 mm, hit at 20 to 400 Hz"
+    "a steel cantilever beam of 376 x 30.5 x 4.7625 mm, or plate of 376 x 200 x 3.175 mm, hit at 20 to 400 Hz; where "
+    "neither can have it, a chain of four bodies"
 )
 """What they are, in words."""
 
@@ -30,9 +67,10 @@ SHOWN = (
 @cache
 def example(kind: Kind) -> Predictor:
     """Return the specimen of a kind as seen by a complete test: three points, a sensor at the last."""
-    spec = SPECIMENS[kind]
-    x = np.linspace(0.2, 0.376, 3)
-    points = x[:, None] if spec.dim == 1 else np.column_stack([x, np.full(3, 0.2)])
+    spec = chain() if kind == "matrices" else SPECIMENS[kind]
+    x = np.linspace(0.2, 0.3 if kind == "matrices" else 0.376, 3)
+    points = np.column_stack([x, np.full(3, 0.2), np.zeros(3)])[:, : spec.dim]
+    points = points * [1.0, 0.0, 0.0] if kind == "matrices" else points
     two, constants = np.ones(2), np.ones((3, 2))
     measured = Measured(
         np.array([20.0, 400.0]),
@@ -51,8 +89,8 @@ def example(kind: Kind) -> Predictor:
 
 
 def kinds_of(effect: Effect) -> list[Kind]:
-    """Return the kinds of specimen here that an effect applies to."""
-    return [kind for kind in SPECIMENS if kind in effect.models]
+    """Return the kinds of specimen here that an effect applies to; imported matrices where no other does."""
+    return [kind for kind in SPECIMENS if kind in effect.models] or ["matrices"]
 
 
 def unit_of(effect: Effect, parameter: str, kind: Kind) -> str:

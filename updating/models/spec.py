@@ -11,6 +11,7 @@ from acquisition.errors import StudyError
 from updating.models.spec_checks import check_parts
 
 if TYPE_CHECKING:
+    from updating.models.imported.hypothesis import Hypothesis
     from updating.models.imported.matrices import Imported
 
 Kind = Literal["beam", "plate", "matrices"]
@@ -158,6 +159,8 @@ class Spec(Displayed):
         What the modeller expects.
     imported : Imported, optional
         The matrices, where they are given.
+    hypotheses : tuple of Hypothesis
+        What the modeller thinks may be so.
 
     Raises
     ------
@@ -178,6 +181,7 @@ class Spec(Displayed):
     masses: tuple[PointMass, ...] = ()
     damping: Damping = field(default_factory=Damping)
     imported: Imported | None = None
+    hypotheses: tuple[Hypothesis, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "thickness"):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating import LIBRARY, Case, Diagnosis, Predictor
+from updating import Case, Diagnosis, Predictor
 from updating.diagnosis.answer.result import ParameterEstimate
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.fit import Point, evaluate, highest
@@ -67,12 +67,12 @@ def fitted(diagnosis: Diagnosis, case: Case, *, alone: bool = True) -> Fitted:
     """
     problem, _ = pose(case)
     leader = diagnosis.ranking[0] if diagnosis.ranking and diagnosis.verdict != "none" else None
-    if leader is None or any(name not in LIBRARY for name in leader.effects):
+    if leader is None or any(name not in diagnosis.known for name in leader.effects):
         return Fitted(problem)
     found: list[tuple[Candidate, Point]] = []
     for fuller in (False, True)[: 1 + (problem.predictor.spec.fuller is not None)]:
         given = _stated(leader.parameters, case.title)
-        whole = in_a_set(leader.effects)
+        whole = in_a_set(leader.effects, diagnosis.known)
         applying = [effect for effect in whole if problem.applies(effect) is None]
         stated = dict(zip((effect.key for effect in whole), leader.forms, strict=False))
         forms = tuple(

@@ -25,7 +25,7 @@ from modalkit.figures.style import (
     text_width,
 )
 from modalkit.figures.words import located
-from updating import LIBRARY, Case, Diagnosis, Measured
+from updating import Case, Diagnosis, Measured
 from updating.models.imported import Imported
 
 
@@ -129,7 +129,7 @@ def _edges(centres: list[float]) -> dict[float, tuple[float, float]]:
 def spans(diagnosis: Diagnosis) -> bool:
     """Tell whether the first explanation has a cause in the measurement and one in the structure."""
     leader = diagnosis.ranking[0].effects if diagnosis.ranking else ()
-    acting = {LIBRARY[name].channel for name in leader if name in LIBRARY}
+    acting = {diagnosis.known[name].channel for name in leader if name in diagnosis.known}
     return diagnosis.verdict in ("named", "class") and "measurement" in acting and len(acting) > 1
 
 

@@ -433,10 +433,10 @@ def test_regions_of_imported_matrices_soften_and_damp() -> None:
     predictor = LOOK["matrices"]
     for name in ("local_stiffness", "damping_patch"):
         effect = LIBRARY[name]
-        assert {v.values["region"] for v in effect.variants(predictor)} == {0, 1, 2, 3}
+        assert {v.values["region"] for v in effect.variants(predictor)} == {f"part{i}" for i in (1, 2, 3, 4)}
     k, m = (clamp(a) for a in beam_matrices(20))
     for loss in (0.4, -4.0):
-        state = LIBRARY["local_stiffness"].state(predictor, {"region": 1, "loss": loss})
+        state = LIBRARY["local_stiffness"].state(predictor, {"region": "part2", "loss": loss})
         lost = loss * clamp(beam_matrices(20, 5, 10)[0])
         exact = np.sqrt(linalg.eigh((k - lost).toarray(), m.toarray(), eigvals_only=True)[:4]) / (2 * np.pi)
         assert predictor.predict(state, count=4).frequency == pytest.approx(exact, rel=1e-6)

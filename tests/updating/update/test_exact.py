@@ -46,8 +46,6 @@ def test_every_parameter_moves_the_full_model_as_the_reduced_one(name: str, plac
     assert before is not None
     np.testing.assert_allclose(before, lower, rtol=bound(effect, predictor, before))
     for parameter in effect.parameters(predictor):
-        if parameter.name == "region":
-            continue
         values = {**start, parameter.name: parameter.value(0.6)}
         after, higher = exact(effect, predictor, values), reduced(effect, predictor, values)
         assert after is not None

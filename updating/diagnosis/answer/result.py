@@ -21,6 +21,7 @@ from acquisition.quantities import (
     quantity,
     sigmas,
 )
+from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
 
 Verdict = Literal["named", "class", "unknown", "none"]
@@ -176,6 +177,8 @@ class Where(Displayed):
         One sentence on the modes and the kind of data that carry the gap.
     nearest : tuple of int
         Test nodes nearest to the places, where any are near.
+    names : tuple of str
+        Regions, node sets, joints and supports of the user's own model that the first explanation names.
     """
 
     channel: str
@@ -189,6 +192,7 @@ class Where(Displayed):
     modes: pd.DataFrame | None = None
     band: str = ""
     nearest: tuple[int, ...] = ()
+    names: tuple[str, ...] = ()
 
     def _headline(self) -> str:
         share = probability(self.channels.get(self.channel, 0.0))
@@ -340,6 +344,8 @@ class Diagnosis(Displayed):
         What the first set of the ranking leaves; None where there is no gap.
     included : dict of str to float
         Probability of each effect that it is among the causes [-].
+    own : dict of str to Effect
+        The study's hypotheses.
     """
 
     title: str
@@ -357,6 +363,7 @@ class Diagnosis(Displayed):
     comparable: bool = True
     remainder: Remainder | None = None
     included: Mapping[str, float] = field(default_factory=dict)
+    own: Mapping[str, Effect] = field(default_factory=dict)
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -365,6 +372,11 @@ class Diagnosis(Displayed):
         for names in self.sets:
             most |= Counter(names)
         return tuple(most.elements())
+
+    @property
+    def known(self) -> Mapping[str, Effect]:
+        """The effects of the library and the study's hypotheses, by name."""
+        return {**LIBRARY, **self.own}
 
     def table(self) -> pd.DataFrame:
         """Return the ranking, one row per set of effects, with its probability [-] to four decimals.

@@ -31,6 +31,9 @@ from updating.thresholds import (
     USUAL_SHARE,
 )
 
+NAME = "name"
+"""Unit of what is a name of the user's own model."""
+
 
 def is_significant(found: Search, p_value: float) -> bool:
     """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
@@ -198,7 +201,9 @@ def estimates(
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
     labels = [f"{effect.key}.{label}" for effect in candidate.effects for label in effect.labels]
     sensors = [f"{effect.key}.channel" for effect in candidate.effects if effect.of_sensor]
-    for name, unit in [*((label, "node") for label in labels), *((sensor, "channel") for sensor in sensors)]:
+    own = [f"{effect.key}.{name}" for effect in candidate.effects for name in effect.named]
+    stated = [(label, "node") for label in labels] + [(sensor, "channel") for sensor in sensors]
+    for name, unit in [*stated, *((name, NAME) for name in own)]:
         if name in drawn[0]:
             result[name] = ParameterEstimate(drawn[0][name], unit, None, None, False)
     derived = [problem.derived(candidate, u) for u in samples]

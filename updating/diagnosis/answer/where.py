@@ -12,6 +12,7 @@ from updating.diagnosis.answer.verdict import decide
 from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
 from updating.effects.measurement.points import channel_point
+from updating.effects.regions import PLACED
 from updating.localisation import areas, centres, compare_regions, regions_at
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import CONCERNED_REACH, NEGLIGIBLE_PROBABILITY, TOGETHER_SHARE
@@ -62,7 +63,17 @@ def locate(
         seen.modes,
         seen.summary,
         _nearest(problem, likely_places),
+        _names(leader),
     )
+
+
+def _names(leader: Compared | None) -> tuple[str, ...]:
+    """Return the regions, node sets, joints and supports that an explanation names."""
+    if leader is None:
+        return ()
+    candidate = leader.explanation.candidate
+    named = [form.values[label] for form in candidate.forms for label in PLACED if label in form.values]
+    return tuple(dict.fromkeys(str(name) for name in named))
 
 
 def _leading(shares: dict[str, float]) -> str:
@@ -135,12 +146,10 @@ def _by_explanations(problem: SpecimenProblem, found: Search) -> FloatArray:
 
 def _spread(problem: SpecimenProblem, row: Compared, even: FloatArray) -> FloatArray:
     explanation = row.explanation
-    values = problem.values(explanation.candidate, explanation.best.coordinates)
-    if any(
-        name.endswith(".region") for name in values
-    ):  # one form per region, of which only the best is kept
-        channel = next(e.channel for e in explanation.candidate.effects if f"{e.key}.region" in values)
-        return _by_regions(problem, channel)
+    if row.regions:
+        names = [region.name for region in problem.predictor.spec.regions]
+        shares = np.array([row.regions.get(name, 0.0) for name in names])
+        return np.asarray(shares / shares.sum())
     sampled = sampled_places(problem, explanation)
     if not sampled.weights.sum() > 0:
         return even

@@ -186,7 +186,7 @@ def _parabolas(peaks: list[Peak], samples: FloatArray) -> FloatArray:
     found = []
     for peak in peaks:
         away = samples - peak.point.coordinates
-        slope = peak.gradient * _at_edge(peak)
+        slope = _outward(peak)
         curve = 0.5 * np.einsum("si,ij,sj->s", away, peak.normal, away)
         found.append(peak.point.marginal.log_likelihood + away @ slope - curve)
     return np.asarray(np.max(found, axis=0))
@@ -268,14 +268,15 @@ def _log_density(samples: FloatArray, peak: Peak, scale: FloatArray) -> FloatArr
 def _scale(peak: Peak) -> FloatArray:
     """Return the covariance to draw with: a little wider than the peak, no wider than its slope at an edge."""
     k = len(peak.gradient)
-    precision = peak.normal + np.diag(peak.gradient**2 * _at_edge(peak)) + 4.0 * np.eye(k)
+    precision = peak.normal + np.diag(_outward(peak) ** 2) + 4.0 * np.eye(k)
     values, vectors = np.linalg.eigh((precision + precision.T) / 2)
     return np.asarray((vectors * (1.4 / np.maximum(values, 1.0))) @ vectors.T)
 
 
-def _at_edge(peak: Peak) -> FloatArray:
-    u = peak.point.coordinates
-    return np.asarray((u <= 0) | (u >= 1), dtype=float)
+def _outward(peak: Peak) -> FloatArray:
+    """Return the slope at an end of the range, as far as it leads out of it: one that leads in is of no maximum."""
+    u, slope = peak.point.coordinates, peak.gradient
+    return np.where(u <= 0, np.minimum(slope, 0.0), np.where(u >= 1, np.maximum(slope, 0.0), 0.0))
 
 
 __all__ = ["Explanation", "explain"]

@@ -6,8 +6,8 @@ effect's prior, and their evidence is added up.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import logsumexp
@@ -57,6 +57,8 @@ class Compared:
         How well it fits with no data taken to be worse than stated [-].
     extreme : tuple of str
         Parameters that the data push to an end of their range that is no natural one.
+    regions : mapping of str to float
+        How its probability is shared among the regions that its forms name; a form that names two gives each half [-].
     """
 
     explanation: Explanation
@@ -64,6 +66,7 @@ class Compared:
     p_value: float
     as_stated: float
     extreme: tuple[str, ...] = ()
+    regions: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -197,8 +200,19 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
         extreme = _extreme(problem, top.explanation) if probability > NEGLIGIBLE_PROBABILITY else ()
         stated = max(row.as_stated for row in own)
         whole = replace(top.explanation, log_evidence=total)
-        merged.append(Compared(whole, probability, fits, stated, extreme))
+        merged.append(Compared(whole, probability, fits, stated, extreme, _by_region(own, total)))
     return tuple(sorted(merged, key=lambda row: -row.probability))
+
+
+def _by_region(own: list[Compared], total: float) -> dict[str, float]:
+    """Return how the evidence of one set's forms is shared among the regions that they name [-]."""
+    shares: dict[str, float] = {}
+    for row in own:
+        named = [str(f.values["region"]) for f in row.explanation.candidate.forms if "region" in f.values]
+        for name in named:
+            share = float(np.exp(row.explanation.log_evidence - total)) if np.isfinite(total) else 0.0
+            shares[name] = shares.get(name, 0.0) + share / len(named)
+    return shares if sum(shares.values()) > 0 else {}
 
 
 def _extreme(problem: DiagnosisProblem, explanation: Explanation) -> tuple[str, ...]:

@@ -10,13 +10,14 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.fit import Point, evaluate, sensitivities
+from updating.diagnosis.search.fit import Point, evaluate, highest, sensitivities
 from updating.diagnosis.search.prior import log_prior
 from updating.diagnosis.search.together import Part, join, once_more, score_tests
 from updating.effects import Effect
 from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
 from updating.thresholds import (
+    FORMS_TRIED,
     PAIRS_ANEW,
     PAIRS_WEIGHED,
     PLACES_TOGETHER,
@@ -24,6 +25,7 @@ from updating.thresholds import (
     SET_MARGIN,
     SHIFT_SPREAD,
     STEP_INSIDE,
+    STEPS_TRIED,
 )
 
 
@@ -62,7 +64,10 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
             drafts.append(_Draft(first, second, near + cost, far + cost, [u for _, u in together]))
     pairs: list[tuple[Explanation, list[FloatArray]]] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
-    for draft in _promising(drafts):
+    chosen = _promising(drafts)
+    if not all(one.predictor.spec.outlined for one in problem.specimens):
+        chosen = _best_forms(problem, chosen, drafts)
+    for draft in chosen:
         parts = [(e.candidate, e.best.coordinates) for e in (draft.first, draft.second)]
         pair = join(problem, parts[0], parts[1], bar, places=draft.places)
         pairs.append((pair, draft.places))
@@ -113,6 +118,35 @@ def _promising(drafts: list[_Draft]) -> list[_Draft]:
         far.setdefault(draft.names, draft)
     in_turn = chain.from_iterable(zip_longest(near.values(), far.values()))
     return list(dict.fromkeys(draft for draft in in_turn if draft is not None))[:PAIRS_WEIGHED]
+
+
+def _best_forms(problem: DiagnosisProblem, chosen: list[_Draft], drafts: list[_Draft]) -> list[_Draft]:
+    """Return the same pairs of effects in the forms that a short climb finds best.
+
+    On imported matrices every place is a form of its own, and a linear step errs by more than two neighbours differ.
+    """
+    found: dict[tuple[str, ...], list[_Draft]] = {}
+    for names in dict.fromkeys(draft.names for draft in chosen):
+        own = [draft for draft in drafts if draft.names == names]
+        near = sorted((d for d in own if np.isfinite(d.near)), key=lambda draft: -draft.near)[:FORMS_TRIED]
+        far = sorted((d for d in own if np.isfinite(d.far)), key=lambda draft: -draft.far)[:FORMS_TRIED]
+        tried = list(dict.fromkeys([*near, *far]))
+        found[names] = sorted(tried, key=lambda draft: -_climbed(problem, draft)) if len(tried) > 1 else tried
+    taken = dict.fromkeys(found, 0)
+    best = []
+    for draft in chosen:
+        best.append(found[draft.names][taken[draft.names]])
+        taken[draft.names] += 1
+    return best
+
+
+def _climbed(problem: DiagnosisProblem, draft: _Draft) -> float:
+    """Return the log-likelihood, with the forms' shares of the prior, that a pair reaches in a few steps."""
+    (one, a), (two, b) = ((e.candidate, e.best.coordinates) for e in (draft.first, draft.second))
+    both = Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
+    starts = [np.concatenate([a, b]), *draft.places[:1]]
+    reached = [highest(problem, both, start, rounds=STEPS_TRIED).marginal.log_likelihood for start in starts]
+    return max(reached) + both.log_weight
 
 
 def _allowed(problem: DiagnosisProblem, singles: list[Explanation]) -> list[tuple[int, int]]:

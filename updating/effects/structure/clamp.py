@@ -9,20 +9,30 @@ import numpy as np
 from scipy import sparse
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import Effect, Parameter, Values, bending_stiffness
+from updating.effects.base import Effect, Parameter, Values, Variant, bending_stiffness
 from updating.effects.obstacles import Lack, Obstacle
+from updating.effects.regions import WAYS, centre_of, one_of, way
 from updating.effects.structure.length import clamped_places
+from updating.effects.structure.spring import own_stiffness
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.state import State
 from updating.models.structure import FieldStructure
 from updating.prediction.predict import Predictor
 
+NOT_HELD = (
+    "the node table lists no node that a support holds, with empty rows, or the matrices have rows at no place: what "
+    "the supports would do if they gave way is not known"
+)
+"""Why supports of imported matrices cannot give way."""
+
 
 class Clamp(Effect):
     """A spring in place of a built-in edge."""
 
     channel = "stiffness"
+    models = ("beam", "plate", "matrices")
+    named = ("support", "direction")
     fidelity = 0.02
     undone_by = frozenset({"unclamped"})
     freed: ClassVar[Literal["rotation", "translation"]]
@@ -38,21 +48,58 @@ class Clamp(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the spring's stiffness, per metre of edge on plates."""
         spec = predictor.spec
-        scale = bending_stiffness(spec) / spec.length**self.power
+        if spec.imported is None:
+            scale = bending_stiffness(spec) / spec.length**self.power
+        else:
+            scale = own_stiffness(predictor) * spec.imported.reach ** (3 - self.power)
         unit = self.units[spec.kind == "plate"]
         return (Parameter("stiffness", unit, self.span[0] * scale, self.span[1] * scale, self.why, log=True),)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need a clamp."""
+        if predictor.spec.imported is not None:
+            return None if predictor.spec.imported.supports else Obstacle(Lack.MODEL, NOT_HELD)
         return None if predictor.spec.clamped else Obstacle(Lack.MODEL, "the model has no clamped edge")
 
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return the one form there is; of imported matrices, each support in each direction in which it is held."""
+        if predictor.spec.imported is None:
+            return super().variants(predictor)
+        ways = [
+            {"support": support.name, "direction": WAYS[axis]}
+            for support in predictor.spec.imported.supports
+            for axis in (range(3, 6) if self.freed == "rotation" else range(3))
+            if support.holds(axis)
+        ]
+        return tuple(Variant(fixed, 1 / len(ways)) for fixed in ways)
+
+    def sentence(self, values: Values) -> str:
+        """Return the summary, and which support in which direction."""
+        if "support" not in values:
+            return self.summary
+        return f"{self.summary} It is {values['support']}, {str(values['direction']).replace('r', 'about ')}."
+
     def state(self, predictor: Predictor, values: Values) -> State:
-        """Return the structure on the spring."""
+        """Return the structure on the spring.
+
+        Imported matrices have lost the rows of their supports. That one moves in a direction, without mass on its
+        spring s, takes l l^T / (k + s) off the stiffness: l what it pulls at the structure, k at itself.
+        """
+        if predictor.spec.imported is not None:
+            support, axis = (
+                one_of(predictor.spec.imported.supports, values, "support"),
+                way(values, "direction"),
+            )
+            load = Sparse(support.loads[:, [axis]])
+            soft = -1 / (support.own[axis, axis] + float(values["stiffness"]))
+            return State(stiffness=(predictor.reduced.project(Sparse(soft * (load @ load.T))),))
         unit = unit_edges(predictor, self.freed)
         return State(stiffness=(values["stiffness"] * unit,), released=frozenset({self.freed}))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
-        """Return the clamped edges."""
+        """Return the clamped edges, or the support."""
+        if predictor.spec.imported is not None:
+            return (centre_of(one_of(predictor.spec.imported.supports, values, "support")),)
         return clamped_places(predictor)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from updating.effects.base import Effect, Parameter, Values, Variant
+from updating.effects.obstacles import Lack, Obstacle
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 
@@ -92,6 +93,14 @@ class SectionScale(FactorEffect):
     phrase = "the scale of the section"
     low, high = 0.4, 2.5
     why = "wrong width or number of layers"
+
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
+        """Need levels, which are all that it changes."""
+        if predictor.measured.absolute:
+            return None
+        return Obstacle(
+            Lack.DATA, "it changes levels alone, and the data have none: FRFs or mass-normalised shapes would"
+        )
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the one form there is, as likely against a wrong calibration as a caliper errs less often."""

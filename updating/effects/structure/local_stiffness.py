@@ -19,7 +19,7 @@ from updating.effects.box import (
     starting_places,
 )
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import region_centre, region_parameter, stiff_regions
+from updating.effects.regions import region_centre, regions_meant, stiff_regions
 from updating.models.softening import softening
 from updating.models.state import State
 from updating.prediction.predict import Predictor
@@ -64,7 +64,8 @@ class LocalStiffness(Effect):
         "Frequencies fall, or rise, in the modes that bend there; those with no curvature there hardly move."
     )
     models = ("beam", "plate", "matrices")
-    equivalent_to = ("clamp_rotation",)
+    equivalent_to = ("clamp_rotation", "joint")
+    named = ("region",)
     repeats = True
     separated_by = "more points around the place, or a visual and dye check there"
     phrase = "a soft or stiff spot"
@@ -76,7 +77,7 @@ class LocalStiffness(Effect):
         why = "from ten times as stiff, over nothing, to nearly severed; uniform in log compliance on either side"
         lost = Parameter("loss", "-", *LOSSES, why, natural=EDGES)
         if spec.kind == "matrices":
-            return (region_parameter(predictor), lost)
+            return (lost,)
         middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
         if spec.kind == "plate":
             middle.append(
@@ -94,9 +95,8 @@ class LocalStiffness(Effect):
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return softer and stiffer, of imported matrices for each region."""
-        known = (
-            [{"region": i} for i in stiff_regions(predictor)] if predictor.spec.kind == "matrices" else [{}]
-        )
+        regional = predictor.spec.kind == "matrices"
+        known = [{"region": name} for name in stiff_regions(predictor)] if regional else [{}]
         halves = ((SHARE_SOFTER, SOFTER), (1 - SHARE_SOFTER, STIFFER))
         return tuple(
             Variant(own, share / len(known), {"loss": half}) for share, half in halves for own in known
@@ -109,7 +109,7 @@ class LocalStiffness(Effect):
         low, high = self._compliances(predictor, values, softer=u >= 0.5)
         size = float(low * (high / low) ** abs(2 * u - 1))
         values["loss"] = size / (1 + size) if u >= 0.5 else -size / (1 - size)
-        return values | {"region": round(values["region"])} if "region" in values else values
+        return values
 
     def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
         """Take values to prior quantiles; of the loss that of its compliance."""
@@ -131,20 +131,22 @@ class LocalStiffness(Effect):
         """Start from a row of places, with two losses and two gains at each."""
         losses = [0.5 + side * size / 2 for side in (1, -1) for size in SIZES]
         if predictor.spec.kind == "matrices":
-            return tuple((0.5, loss) for loss in losses)
+            return tuple((loss,) for loss in losses)
         where, short = starting_places(predictor.spec, along=16), (SHORT,) * predictor.spec.dim
         return tuple((*at, *short, loss) for loss in losses for at in where)
 
     def sentence(self, values: Values) -> str:
         """Return whether it is softer or stiffer."""
+        where = f"{values['region']}" if "region" in values else "One place"
         if values.get("loss", 0.0) < 0:
-            return "One place is stiffer than modelled (rib, weld, repair)."
-        return "One place is softer than modelled (crack, notch, loose joint)."
+            return f"{where} is stiffer than modelled (rib, weld, repair)."
+        return f"{where} is softer than modelled (crack, notch, loose joint)."
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with its stiffness changed there."""
         if predictor.spec.kind == "matrices":
-            return State(regional={(int(values["region"]), "E"): 1 - values["loss"]})
+            left = 1 - values["loss"]
+            return State(regional={(i, "E"): left for i in regions_meant(predictor.spec, values)})
         factors = predictor.base.factors
         if predictor.spec.kind == "beam" or predictor.reduced.whole:
             lost = self._softening(predictor, values)
@@ -159,7 +161,7 @@ class LocalStiffness(Effect):
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the place; where no shapes tell it from its mirror images, these too."""
         if predictor.spec.kind == "matrices":
-            return (region_centre(predictor, int(values["region"])),)
+            return (region_centre(predictor, values),)
         at = place(values)
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 from scipy.special import ndtr, ndtri
@@ -13,8 +14,10 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import LIKE, Place, mirror_images, starting_places
 from updating.effects.obstacles import Lack, Obstacle
+from updating.effects.regions import centre_of, on_basis, one_of
 from updating.models.base import Structure
 from updating.models.fields import Sparse
+from updating.models.imported.matrices import Imported
 from updating.models.imported.structure import ImportedStructure
 from updating.models.spec import Spec
 from updating.models.state import State
@@ -188,7 +191,8 @@ class LumpedMass(Effect):
     )
     phrase = "a mass left out of the model"
     models = ("beam", "plate", "matrices")
-    equivalent_to = ("sensor_mass",)
+    equivalent_to = ("sensor_mass", "local_mass")
+    named = ("at",)
     repeats = True
     separated_by = "look for the body and take it off; or more points around the place"
     fidelity = 0.03
@@ -206,9 +210,10 @@ class LumpedMass(Effect):
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need places: on imported matrices, the points of the test."""
-        if predictor.spec.kind != "matrices" or len(predictor.measured.points):
+        imported = predictor.spec.imported
+        if imported is None or len(predictor.measured.points) or imported.groups:
             return None
-        what = "the test has no points on the imported matrices at which a body might sit"
+        what = "imported matrices need points of the test, or node sets, at which a body might sit"
         return Obstacle(Lack.DATA, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
@@ -218,8 +223,10 @@ class LumpedMass(Effect):
         leaves no room for another body.
         """
         points = np.unique(predictor.measured.points, axis=0)
-        if predictor.spec.kind == "matrices":
-            return tuple(Variant(_named(point), 1 / len(points)) for point in points)
+        if predictor.spec.imported is not None:
+            known: list[dict[str, Any]] = [_named(point) for point in points]
+            known += [_named(group.centre) | {"at": group.name} for group in predictor.spec.imported.groups]
+            return tuple(Variant(at, 1 / len(known)) for at in known)
         ends = free_ends(predictor.spec)
         there = SHARES["anywhere"] + SHARES["ends"] * bool(len(ends)) + SHARES["points"] * bool(len(points))
         at_end, at_point = (
@@ -244,17 +251,37 @@ class LumpedMass(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the body."""
-        point = np.array([[values[name] for name in AXES[: predictor.spec.dim]]])
         inertia = values.get("bulk", CUBE) * cube_inertia(values["mass"])
-        if predictor.spec.kind == "matrices":
-            mass = predictor.reduced.unit_mass(point) * values["mass"]
-            return State(mass=(mass + inertia * _reduced_inertia(predictor, point),))
+        if predictor.spec.imported is not None:
+            moves, turns = _carried(predictor, predictor.spec.imported, values)
+            return State(mass=(values["mass"] * moves + inertia * turns,))
+        point = np.array([[values[name] for name in AXES[: predictor.spec.dim]]])
         return State(mass=(_body(predictor, point, values["mass"], inertia),))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the place; where no shapes tell it from its mirror images, these too."""
+        if predictor.spec.imported is not None and "at" in values:
+            return (centre_of(one_of(predictor.spec.imported.groups, values, "at")),)
         at = (float(values["x"]), float(values.get("y", 0.0)), float(values.get("z", 0.0)))
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def _carried(predictor: Predictor, imported: Imported, values: Values) -> tuple[FloatArray, FloatArray]:
+    """Return the matrices of 1 kg, and of 1 kg m^2, at a node set or a place of imported matrices, (r, r)."""
+    place = np.array([[values[name] for name in AXES]]) if "at" not in values else None
+    found = []
+    for axes in (range(3), range(3, 6)):
+
+        def unit(axes: range = axes) -> Sparse:
+            if place is None:
+                rows = one_of(imported.groups, values, "at").motions(axes)
+            else:
+                rows = imported.places.motions(place, axes)
+            return Sparse(rows.T @ rows)
+
+        where = values["at"] if place is None else tuple(place[0].tolist())
+        found.append(on_basis(predictor, ("body", where, axes.start), unit))
+    return found[0], found[1]
 
 
 def _body(predictor: Predictor, point: FloatArray, mass: float, inertia: float) -> FloatArray:
@@ -324,8 +351,8 @@ def outline(predictor: Predictor) -> tuple[Parameter, ...]:
     if spec.kind != "matrices":
         sides: Sequence[tuple[float, float]] = ((0.0, spec.length), (0.0, spec.width))[: spec.dim]
     else:
-        points = predictor.measured.points
-        low, high = points.min(axis=0), points.max(axis=0)
+        assert spec.imported is not None
+        low, high = spec.imported.extents
         sides = [(a, max(b, a + 1e-9)) for a, b in zip(low.tolist(), high.tolist(), strict=True)]
     why = ("anywhere along the structure", "anywhere across the structure", "at any height of the structure")
     return tuple(

@@ -16,7 +16,7 @@ from updating.effects.box import (
     starting_places,
 )
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
-from updating.effects.regions import region_centre, region_parameter, stiff_regions
+from updating.effects.regions import region_centre, regions_meant, stiff_regions
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
 
@@ -50,6 +50,7 @@ class DampingPatch(Effect):
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ("uniform_damping",)
+    named = ("region",)
     repeats = True
     separated_by = "take the layer off, or more modes whose curvature differs along the structure"
     phrase = "a damping patch"
@@ -77,7 +78,7 @@ class DampingPatch(Effect):
         )
         spec = predictor.spec
         if spec.kind == "matrices":
-            return (region_parameter(predictor), *layer)
+            return layer
         place_of = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
         if spec.kind == "plate":
             place_of.append(
@@ -103,7 +104,7 @@ class DampingPatch(Effect):
         By alpha and beta with mass and stiffness only, of regions alone only: the two hold what the other would.
         """
         regional = predictor.spec.kind == "matrices"
-        known = [{"region": i} for i in stiff_regions(predictor)] if regional else [{}]
+        known = [{"region": name} for name in stiff_regions(predictor)] if regional else [{}]
         bare = {"mass": 0.0, "stiffness": 0.0}
         found = []
         for law, share in LAWS.items():
@@ -119,7 +120,7 @@ class DampingPatch(Effect):
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a row of places, a fifth of the length long."""
         if predictor.spec.kind == "matrices":
-            return tuple((0.5, u, u, u, 0.1, 0.1) for u in (0.3, 0.7))
+            return tuple((u, u, u, 0.1, 0.1) for u in (0.3, 0.7))
         layer = (*(0.6,) * predictor.spec.dim, 0.55, 0.55, 0.55, 0.1, 0.1)
         return tuple((*where, *layer) for where in starting_places(predictor.spec))
 
@@ -150,9 +151,10 @@ class DampingPatch(Effect):
         """Return stiffness and mass of the bare structure under the layer, each (r, r) [SI]."""
         reduced, factors = predictor.reduced, predictor.base.factors
         if predictor.spec.kind == "matrices":
+            meant = regions_meant(predictor.spec, values)
             parts = dict.fromkeys(("stiffness", "mass"), 0.0 * reduced.sums[0])
             for term, regions in zip(reduced.structure.terms, reduced.parts, strict=True):
-                parts[term.kind] = parts[term.kind] + term.scale(factors) * regions[int(values["region"])]
+                parts[term.kind] = parts[term.kind] + term.scale(factors) * sum(regions[i] for i in meant)
             return parts["stiffness"], parts["mass"]
         inside = shares(predictor, values)
         stiffness = covered(predictor, "stiffness", inside)
@@ -161,7 +163,7 @@ class DampingPatch(Effect):
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the place, and its mirror images where nothing but damping could tell them apart."""
         if predictor.spec.kind == "matrices":
-            return (region_centre(predictor, int(values["region"])),)
+            return (region_centre(predictor, values),)
         at, stated = place(values), predictor.measured.has_shapes and (values["mass"] or values["stiffness"])
         return (at,) if stated else mirror_images(predictor.spec, at)
 

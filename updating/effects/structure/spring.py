@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness, total_mass
 from updating.effects.box import Place, mirror_images, place, starting_places
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
+from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
 from updating.effects.structure.mass import AXES, outline
+from updating.models.fields import Sparse
 from updating.models.spec import Spec
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
@@ -40,7 +43,8 @@ class GroundSpring(Effect):
     """Springs and dashpots to the ground, at a point or evenly over a stretch, or over a square of a plate.
 
     ``stiffness`` and ``damping`` are those of all together; a stretch stays on the structure. Of imported matrices a
-    spring acts at one of the test's points, in the directions in which that is measured.
+    spring acts at one of the test's points, in the directions in which that is measured, or at a node set ``at``,
+    ``along`` an axis.
     """
 
     name = "ground_spring"
@@ -54,6 +58,7 @@ class GroundSpring(Effect):
     phrase = "a spring to the ground"
     models = ("beam", "plate", "matrices")
     equivalent_to = ("axial_load", "suspension")
+    named = ("at", "along")
     repeats = True
     separated_by = (
         "look for what touches the structure there and take it off; or more points around the place"
@@ -81,9 +86,10 @@ class GroundSpring(Effect):
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need places: on imported matrices, the points of the test."""
-        if predictor.spec.kind != "matrices" or len(predictor.measured.points):
+        imported = predictor.spec.imported
+        if imported is None or len(predictor.measured.points) or imported.groups:
             return None
-        what = "the test has no points on the imported matrices at which a spring might act"
+        what = "imported matrices need points of the test, or node sets, at which a spring might act"
         return Obstacle(Lack.DATA, what)
 
     def damps(self, parameter: str = "") -> bool:
@@ -93,7 +99,7 @@ class GroundSpring(Effect):
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return a dashpot alone, a point, and a stretch; without any damping where none can be compared."""
         point, still = {"extent": 0.0}, {"damping": 0.0}
-        shares: list[tuple[dict[str, float], float]] = [
+        shares: list[tuple[dict[str, Any], float]] = [
             (point | {"stiffness": 0.0}, 0.1),
             (point, 0.55),
             ({}, 0.35),
@@ -102,8 +108,7 @@ class GroundSpring(Effect):
             shares = [(point | still, 0.6), (still, 0.4)]
         if predictor.spec.kind != "matrices":
             return tuple(Variant(fixed, share) for fixed, share in shares)
-        points = np.unique(predictor.measured.points, axis=0)
-        named = [dict(zip(AXES, map(float, at), strict=True)) for at in points]
+        named = [*_at_points(predictor), *_at_sets(predictor)]
         alone = [(fixed, share) for fixed, share in shares if fixed.get("extent") == 0.0]
         whole = sum(share for _, share in alone) * len(named)
         return tuple(Variant({**at, **fixed}, share / whole) for fixed, share in alone for at in named)
@@ -138,8 +143,29 @@ class GroundSpring(Effect):
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the middle; where no shapes tell it from its mirror images, these too."""
+        if "at" in values:
+            assert predictor.spec.imported is not None
+            return (centre_of(one_of(predictor.spec.imported.groups, values, "at")),)
         at = (*place(values)[:2], float(values.get("z", 0.0)))
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def _at_points(predictor: Predictor) -> list[dict[str, Any]]:
+    """Return the test points at which a spring may act."""
+    points = np.unique(predictor.measured.points, axis=0)
+    return [dict(zip(AXES, map(float, at), strict=True)) for at in points]
+
+
+def _at_sets(predictor: Predictor) -> list[dict[str, Any]]:
+    """Return the node sets at which a spring may act, and along what."""
+    imported = predictor.spec.imported
+    assert imported is not None
+    return [
+        {**dict(zip(AXES, centre_of(group), strict=True)), "at": group.name, "along": WAYS[axis]}
+        for group in imported.groups
+        for axis in range(3)
+        if group.moves(axis)
+    ]
 
 
 def own_stiffness(predictor: Predictor) -> float:
@@ -185,6 +211,9 @@ def springs(
 def _unit(predictor: Predictor, values: Values) -> FloatArray:
     """Return the stiffness of 1 N/m in all, shape (r, r) [N/m]."""
     spec = predictor.spec
+    if spec.imported is not None and "at" in values:
+        row = one_of(spec.imported.groups, values, "at").rows[way(values, "along")]
+        return on_basis(predictor, ("springs", values["at"], values["along"]), lambda: Sparse(row.T @ row))
     if not spec.outlined:
         at = np.array([[values[name] for name in AXES]])
         directions = _measured_directions(predictor, at)

@@ -12,6 +12,14 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.checks import check_mass, check_size, check_sum, symmetric, with_mass_everywhere
+from updating.models.imported.groups import (
+    Group,
+    Joint,
+    Support,
+    groups_of,
+    joints_of,
+    supports_of,
+)
 from updating.models.imported.nodes import NodeTable
 from updating.models.imported.placing import Places
 
@@ -79,6 +87,7 @@ class Imported:
         object.__setattr__(self, "massless", bool((self.mass.diagonal() == 0).any()))
         bare = self.mass
         object.__setattr__(self, "mass", with_mass_everywhere(self.stiffness, bare, self.source))
+        self.rest["given mass"] = bare
         if self.massless and self.mass_parts:
             left = self.rest["mass"]
             self.rest["mass"] = Sparse(self.mass - bare if left is None else left + self.mass - bare)
@@ -89,6 +98,12 @@ class Imported:
     def order(self) -> int:
         """Number of degrees of freedom."""
         return int(self.stiffness.shape[0])
+
+    @property
+    def bare_mass(self) -> Sparse:
+        """The mass as it was given, without what stands in for none [kg]."""
+        bare = self.rest["given mass"]
+        return self.mass if bare is None else bare
 
     @cached_property
     def row_places(self) -> FloatArray:
@@ -105,16 +120,43 @@ class Imported:
         return places if self.deck is None else replace(places, elements=self.deck.elements)
 
     @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """The node sets that are places; of a joint, whose two sides are at one place, the first."""
+        seconds = {joint.sides[1] for joint in self.joints}
+        return tuple(group for group in groups_of(self.places, self.nodes.sets) if group.name not in seconds)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """The joints between two node sets."""
+        return joints_of(self.places, self.nodes.sets, self.stiffness)
+
+    @cached_property
+    def supports(self) -> tuple[Support, ...]:
+        """The supports whose rows the matrices have lost."""
+        return supports_of(self.places, self.nodes.sets, self.stiffness)
+
+    @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest coordinates of the nodes, each (3,) [m]."""
         return self.nodes.places.min(axis=0), self.nodes.places.max(axis=0)
 
+    @property
+    def reach(self) -> float:
+        """The largest of its extents [m]."""
+        return float((self.extents[1] - self.extents[0]).max())
+
+    @cached_property
+    def main_axis(self) -> int:
+        """The axis, 0 to 2, along which most rows move."""
+        return int(
+            np.argmax([np.sum((self.nodes.direction == a) & (self.nodes.row >= 0)) for a in (1, 2, 3)])
+        )
+
     @cached_property
     def total_mass(self) -> float:
         """Mass that moves when everything moves along the axis of most rows; held nodes are not in it [kg]."""
-        counts = [int(np.sum((self.nodes.direction == a) & (self.nodes.row >= 0))) for a in (1, 2, 3)]
         along = np.zeros(self.order)
-        chosen = (self.nodes.direction == 1 + int(np.argmax(counts))) & (self.nodes.row >= 0)
+        chosen = (self.nodes.direction == 1 + self.main_axis) & (self.nodes.row >= 0)
         along[self.nodes.row[chosen]] = 1.0
         return float(along @ (self.mass @ along))
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -12,8 +13,12 @@ from acquisition.arrays import FloatArray, IntArray, frozen_array
 from acquisition.errors import StudyError
 from updating.models.imported.calculix import read_dofs
 from updating.models.imported.deck import Deck, read_deck
+from updating.models.imported.sets import NodeSets, sets_of_deck, sets_of_table
 
 COLUMNS = ("node", "x", "y", "z", "direction", "row")
+
+SETS = "sets"
+"""Column of the names of the node sets to which a node belongs; it may be left out."""
 
 HELD = -1
 """Row of a degree of freedom that a support holds and the matrices do not contain."""
@@ -36,6 +41,8 @@ class NodeTable:
         of an expanded shell: the node moves with their mean.
     source : str
         File, for messages.
+    sets : mapping of str to int array
+        Node sets: the numbers of their nodes.
     """
 
     node: IntArray
@@ -43,6 +50,7 @@ class NodeTable:
     direction: IntArray
     row: IntArray
     source: str = "nodes"
+    sets: NodeSets = field(default_factory=lambda: MappingProxyType({}))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "places", frozen_array(self.places).reshape(-1, 3))
@@ -94,7 +102,7 @@ class NodeTable:
 
 
 def read_table(path: Path, order: int) -> NodeTable:
-    """Read a node table: CSV with the columns node, x, y, z, direction, row.
+    """Read a node table: CSV with the columns node, x, y, z, direction, row, and sets where nodes belong to some.
 
     Rows are counted from 1, as the matrix formats do; from 0 if the table has a row 0. An empty row is a degree
     of freedom that a support holds.
@@ -111,7 +119,7 @@ def read_table(path: Path, order: int) -> NodeTable:
     StudyError
         If a column is missing, a value is no number, or a row lies beyond the matrices.
     """
-    values = _columns_of(path)
+    values, names = _columns_of(path)
     rows = values["row"].to_numpy()
     if np.nanmin(rows, initial=1.0) < 0:
         raise StudyError(f"{path}: row {int(np.nanmin(rows))}; leave it empty where a support holds")
@@ -135,13 +143,14 @@ def read_table(path: Path, order: int) -> NodeTable:
         values["direction"].to_numpy(dtype=np.int64),
         np.where(np.isnan(rows), HELD, np.nan_to_num(rows) - base).astype(np.int64),
         str(path),
+        sets_of_table(values["node"].to_numpy(dtype=np.int64), names),
     )
     found.check(order)
     return found
 
 
-def _columns_of(path: Path) -> pd.DataFrame:
-    """Return the columns of a node table as numbers, its heading checked."""
+def _columns_of(path: Path) -> tuple[pd.DataFrame, list[str]]:
+    """Return the columns of a node table as numbers, and the sets that each line names; its heading checked."""
     try:
         table = pd.read_csv(path, comment="#", skipinitialspace=True, encoding="utf-8-sig")
     except OSError as error:
@@ -161,7 +170,10 @@ def _columns_of(path: Path) -> pd.DataFrame:
             f"{path}: no column {', '.join(missing)}; the table needs {', '.join(COLUMNS)}, separated by commas"
         )
     try:
-        return table[list(COLUMNS)].astype(float)
+        names = (
+            [""] * len(table) if SETS not in table.columns else table[SETS].fillna("").astype(str).to_list()
+        )
+        return table[list(COLUMNS)].astype(float), names
     except (ValueError, OverflowError) as error:
         raise StudyError(f"{path}: {error}; every column holds numbers") from error
 
@@ -217,4 +229,4 @@ def deck_table(deck: Deck, node: IntArray, direction: IntArray, source: str) -> 
     rows += [(n, d, HELD) for n, d in sorted(deck.held) if d <= 3 and n in deck.nodes]
     table = np.array(rows, dtype=np.int64).reshape(-1, 3)
     coordinates = np.array([deck.nodes[n] for n in table[:, 0].tolist()]).reshape(-1, 3)
-    return NodeTable(table[:, 0], coordinates, table[:, 1], table[:, 2], source)
+    return NodeTable(table[:, 0], coordinates, table[:, 1], table[:, 2], source, sets_of_deck(deck))

@@ -174,10 +174,19 @@ class ImportedStructure(Structure):
         return Sparse(rows.T @ rows)
 
     def softenings(self, elastic: FloatArray) -> FloatArray:
-        """Return the forces (n_dofs, n) of each region's stiffness, and mass, in the lowest modes."""
+        """Return the forces (n_dofs, n) of regions' stiffness and mass, joints and hypotheses in the lowest modes.
+
+        Also those that act at node sets and supports.
+        """
         low = elastic[:, : min(4, elastic.shape[1])]
-        parts = (*self.imported.stiffness_parts, *self.imported.mass_parts)
-        return np.hstack([np.zeros((self.n_dofs, 0)), *(part @ low for part in parts)])
+        known = self.imported
+        joints = [springs for joint in known.joints for springs in joint.springs if springs.nnz]
+        supposed = [m for one in self.spec.hypotheses for m in (one.stiffness, one.mass) if m is not None]
+        parts = (*known.stiffness_parts, *known.mass_parts, *joints, *supposed)
+        acting = [group.motions(range(6)).toarray().T for group in known.groups]
+        acting += [support.loads for support in known.supports]
+        loads = np.hstack([np.zeros((self.n_dofs, 0)), *(part @ low for part in parts), *acting])
+        return np.asarray(loads[:, np.abs(loads).max(axis=0, initial=0.0) > 0])
 
     def static_answers(
         self, loads: FloatArray, values: FloatArray, vectors: FloatArray, shift: float

@@ -1,0 +1,183 @@
+"""``[[hypothesis]]``: the user's own effects, for models given by matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from acquisition.errors import StudyError
+from acquisition.si_units import si_value
+from modalkit.study.tables import Strict, rising
+from updating import LIBRARY
+from updating.models import Spec
+from updating.models.decks import deck_matrices
+from updating.models.fields import Sparse
+from updating.models.imported import Imported, read_matrix
+from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends, same_as
+from updating.models.imported.units import SI, matrix_in_si
+
+SIGNS = frozenset(".#+(")
+"""What stands between names, and between a name and its parameter, and so cannot stand in one."""
+
+UNITS = {"E": "Pa", "density": "kg/m^3"}
+
+
+class HypothesisTable(Strict):
+    """``[[hypothesis]]``."""
+
+    name: str = Field(min_length=1, max_length=80)
+    stiffness: str | None = None
+    mass: str | None = None
+    deck: str | None = None
+    parameter: str | None = None
+    range: Annotated[list[float | str], Field(min_length=2, max_length=2)] | None = None
+    why: str = ""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        """See that the name can be one, and that there is one thing that is supposed."""
+        if self.name in LIBRARY:
+            raise ValueError(f"name = {self.name!r} is that of an effect; give it a name of its own")
+        if wrong := sorted(SIGNS & set(self.name)):
+            raise ValueError(
+                f"name = {self.name!r} has a {wrong[0]!r}, which stands behind names; leave it out"
+            )
+        matrices = self.stiffness is not None or self.mass is not None
+        if matrices + (self.deck is not None) + (self.parameter is not None) != 1:
+            raise ValueError(f"{self.name!r} takes stiffness, mass or both; or deck; or parameter")
+        if self.parameter is not None and self.range is None:
+            raise ValueError(f"{self.name!r}: a parameter needs its range, [low, high]")
+        return self
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Names of the files that it is in."""
+        return tuple(name for name in (self.stiffness, self.mass, self.deck) if name is not None)
+
+
+def check_names(tables: Sequence[HypothesisTable]) -> None:
+    """See that no two hypotheses bear one name.
+
+    Raises
+    ------
+    StudyError
+        If two do.
+    """
+    names = [table.name for table in tables]
+    if twice := [name for i, name in enumerate(names) if name in names[:i]]:
+        raise StudyError(f"[[hypothesis]] {twice[0]!r} stands twice; give each its own name")
+
+
+def with_hypotheses(
+    spec: Spec, tables: Sequence[HypothesisTable], file: Callable[[str], Path], units: str | None
+) -> Spec:
+    """Return a model with the hypotheses of its study.
+
+    Parameters
+    ----------
+    spec : Spec
+        Given by matrices.
+    tables : sequence of HypothesisTable
+        As the study has them.
+    file : callable
+        Takes a name of the study file to its path.
+    units : str, optional
+        What the matrices are in; left out, SI.
+
+    Raises
+    ------
+    StudyError
+        If one cannot be, or changes nothing.
+    """
+    check_names(tables)
+    imported = spec.imported
+    assert imported is not None
+    found = tuple(
+        _of_parameter(spec, table) if table.parameter else _of_matrices(imported, table, file, units or SI)
+        for table in tables
+    )
+    return replace(spec, hypotheses=(*spec.hypotheses, *found)) if found else spec
+
+
+def _of_matrices(
+    imported: Imported, table: HypothesisTable, file: Callable[[str], Path], units: str
+) -> Hypothesis:
+    stiffness, mass = (
+        None if matrix is None else change_of(own, matrix, f"[[hypothesis]] {table.name!r}: {what}")
+        for own, (matrix, what) in zip(
+            (imported.stiffness, imported.bare_mass), _supposed(imported, table, file, units), strict=True
+        )
+    )
+    low, high = _range(table, "")
+    found = Hypothesis(table.name, table.why, low, high, stiffness, mass)
+    check_ends(found, imported.stiffness, imported.mass)
+    return found
+
+
+def _supposed(
+    imported: Imported, table: HypothesisTable, file: Callable[[str], Path], units: str
+) -> list[tuple[Sparse | None, str]]:
+    """Return stiffness and mass if it were so, None for one that is as modelled, and where they are from."""
+    if table.deck is None:
+        return [
+            (
+                None if name is None else matrix_in_si(read_matrix(file(name)), imported.nodes, units),
+                f"{kind} = {name!r}",
+            )
+            for kind, name in (("stiffness", table.stiffness), ("mass", table.mass))
+        ]
+    if imported.deck is None:
+        raise StudyError(
+            f'[[hypothesis]] {table.name!r}: a deck is for [model] type = "calculix"; export its matrices, and give '
+            "stiffness and mass"
+        )
+    what = f"deck = {table.deck!r}"
+    supposed = deck_matrices(file(table.deck), like=imported.deck)
+    changed = [
+        same_as(own, matrix)
+        for own, matrix in zip((imported.stiffness, imported.bare_mass), supposed, strict=True)
+    ]
+    if all(changed):
+        raise StudyError(
+            f"[[hypothesis]] {table.name!r}: {what} is the model's own: the hypothesis changes nothing"
+        )
+    return [(None if same else matrix, what) for matrix, same in zip(supposed, changed, strict=True)]
+
+
+def _range(table: HypothesisTable, unit: str) -> tuple[float, float]:
+    try:
+        low, high = (float(si_value(end, unit)) for end in (table.range or [0.0, 1.0]))
+        rising("range", (low, high))
+    except ValueError as error:
+        raise StudyError(f"[[hypothesis]] {table.name!r}: {error}") from error
+    if not table.parameter and low <= 0.0 <= high and max(-low, high) <= 0:
+        raise StudyError(f"[[hypothesis]] {table.name!r}: its range holds nothing but the model as it stands")
+    return low, high
+
+
+def _of_parameter(spec: Spec, table: HypothesisTable) -> Hypothesis:
+    """Return a hypothesis on a modulus or a density, of the whole or of a region."""
+    assert spec.imported is not None
+    region, _, factor = str(table.parameter).rpartition(".")
+    names = [one.name for one in spec.regions]
+    if factor not in UNITS or (region and region not in names):
+        known = ", ".join([*UNITS, *(f"{name}.{factor}" for name in names for factor in UNITS)])
+        raise StudyError(f"[[hypothesis]] {table.name!r}: no parameter {table.parameter!r}; known: {known}")
+    if why := spec.imported.obstacle(factor, regional=bool(region)):
+        raise StudyError(f"[[hypothesis]] {table.name!r}: {table.parameter}: {why}")
+    own = getattr(spec.regions[names.index(region)], factor) if region else None
+    nominal = float(getattr(spec.material, factor) if own is None else own)
+    unit = "-" if (spec.material.E, spec.material.density) == (1.0, 1.0) else UNITS[factor]
+    low, high = _range(table, "" if unit == "-" else unit)
+    if not low > 0:
+        raise StudyError(
+            f"[[hypothesis]] {table.name!r}: {table.parameter} must be positive over its whole range"
+        )
+    index = names.index(region) if region else -1
+    return Hypothesis(
+        table.name, table.why, low, high, factor=factor, region=index, nominal=nominal, unit=unit
+    )

@@ -1,0 +1,173 @@
+"""Node sets, joints and supports of imported matrices against the same structures put together by hand."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from imported_cases import seen_from
+from scipy.linalg import eigh
+
+from acquisition.errors import StudyError
+from updating import LIBRARY, Material, Predictor, Region, Spec
+from updating.models.imported import Imported
+from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends
+from updating.models.imported.nodes import read_table
+from updating.models.imported.sets import sets_of_table
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
+
+
+@pytest.fixture(scope="module")
+def frame() -> Iterator[ModuleType]:
+    patch = pytest.MonkeyPatch()
+    patch.syspath_prepend(str(EXAMPLES))
+    import frame  # type: ignore[import-not-found]
+
+    yield frame
+    patch.undo()
+    for name in ("frame", "bars", "hits"):
+        sys.modules.pop(name, None)
+
+
+@pytest.fixture(scope="module")
+def imported(frame: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Imported:
+    model, sets = frame.frame()
+    path = tmp_path_factory.mktemp("frame") / "nodes.csv"
+    path.write_text(model.table(sets))
+    stiffness = model.matrix("stiffness")
+    return Imported(stiffness, model.matrix("mass"), read_table(path, stiffness.shape[0]))
+
+
+def hertz(stiffness: np.ndarray, mass: np.ndarray, count: int = 6) -> np.ndarray:
+    return np.sqrt(eigh(stiffness, mass, eigvals_only=True, subset_by_index=(0, count - 1))) / (2 * np.pi)
+
+
+def test_names_stand_in_the_node_table() -> None:
+    found = sets_of_table(np.array([1, 1, 2, 3]), ["a b", "a", "b; c", ""])
+    assert {name: nodes.tolist() for name, nodes in found.items()} == {"a": [1], "b": [1, 2], "c": [2]}
+
+
+def test_joints_are_nodes_at_one_place_with_the_springs_between_them(
+    frame: ModuleType, imported: Imported
+) -> None:
+    joints = {joint.name: joint for joint in imported.joints}
+    assert set(joints) == set(frame.JOINTS)
+    turning = np.mean(frame.JOINT[3:])
+    for joint in joints.values():
+        assert joint.stiffness == pytest.approx((frame.JOINT[0], turning))
+    assert {group.name for group in imported.groups} == {f"{name}_column" for name in frame.JOINTS}
+
+
+def test_a_joint_that_turns_is_the_structure_built_with_it(frame: ModuleType, imported: Imported) -> None:
+    joint = next(joint for joint in imported.joints if joint.name == "joint_3")
+    soft = (imported.stiffness - 0.9 * joint.springs[1]).toarray()
+    built = frame.frame({"joint_3": 0.1})[0]
+    expected = hertz(built.matrix("stiffness").toarray(), built.matrix("mass").toarray())
+    assert hertz(soft, imported.mass.toarray()) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(("axis", "stiffness"), [(0, 1e6), (2, 3e6), (3, 500.0), (4, 2000.0)])
+def test_a_support_that_gives_way_is_the_structure_on_a_spring(
+    frame: ModuleType, imported: Imported, axis: int, stiffness: float
+) -> None:
+    """The rows of the support are lost; the other structure has them, on stiff springs and one soft one.
+
+    What is left is the mass of half an element, which moves there and not here.
+    """
+    from bars import rows_of  # type: ignore[import-not-found]
+
+    support = next(s for s in imported.supports if s.name == "foot_left")
+    load = support.loads[:, [axis]]
+    soft = imported.stiffness.toarray() - load @ load.T / (support.own[axis, axis] + stiffness)
+    built, sets = frame.frame()
+    (foot,) = sets["foot_left"]
+    built.held.discard(foot)
+    springs = np.array([1e12] * 3 + [1e10] * 3)
+    springs[axis] = stiffness
+    built.stiffness["ground"] = [(rows_of(foot), np.diag(springs))]
+    expected = hertz(built.matrix("stiffness").toarray(), built.matrix("mass").toarray())
+    nominal = hertz(imported.stiffness.toarray(), imported.mass.toarray())
+    assert np.abs(expected / nominal - 1).max() > 0.005
+    assert hertz(soft, imported.mass.toarray()) == pytest.approx(expected, rel=4e-4)
+
+
+def test_hypotheses_that_cannot_be(frame: ModuleType, imported: Imported) -> None:
+    own = imported.stiffness
+    with pytest.raises(StudyError, match="changes nothing"):
+        change_of(own, own.copy(), "h")
+    with pytest.raises(StudyError, match="of order 12 and the model of order"):
+        change_of(own, own[:12][:, :12], "h")
+    loose = change_of(own, frame.frame({"joint_1": 0.05})[0].matrix("stiffness"), "h")
+    check_ends(Hypothesis("h", "", 0.0, 1.0, loose), own, imported.mass)
+    with pytest.raises(StudyError, match="hypothesis 'h' at 3: stiffness matrix indefinite"):
+        check_ends(Hypothesis("h", "", 0.0, 3.0, loose), own, imported.mass)
+
+
+@pytest.fixture(scope="module")
+def predictor(frame: ModuleType, imported: Imported) -> Predictor:
+    """The frame with its beams as regions, seen from four points of the example."""
+    model = frame.frame()[0]
+    names = ("beam_1", "beam_2")
+    parts = [tuple(model.matrix(kind, parts=[name]) for name in names) for kind in ("stiffness", "mass")]
+    whole = Imported(imported.stiffness, imported.mass, imported.nodes, *parts)
+    size = (whole.extents[1] - whole.extents[0]).tolist()
+    regions = tuple(Region(name, (0.0, size[0]), (0.0, 1.0)) for name in names)
+    spec = Spec(
+        "matrices", size[0], 1e-3, size[2], (), (), "imported", Material(1.0, 1.0), regions, imported=whole
+    )
+    points = np.array([place for place, _ in list(frame.POINTS.values())[:4]])
+    return Predictor(spec, seen_from(points, np.tile([1.0, 0.0, 0.0], (4, 1)), np.array([20.0, 300.0])))
+
+
+def by_hand(made: Any, name: str, values: dict[str, Any], sets: dict[str, list[int]]) -> Any:
+    """Make the change in the bars themselves."""
+    from bars import rows_of
+
+    if name == "local_mass":
+        return made.matrix("stiffness"), made.matrix("mass", factors={values["region"]: values["factor"]})
+    (node,) = sets[values["at"]]
+    if name == "ground_spring":
+        springs = np.zeros((6, 6))
+        springs["xyz".index(values["along"])] = values["stiffness"] * np.eye(6)["xyz".index(values["along"])]
+        made.stiffness["hidden"] = [(rows_of(node), springs)]
+    else:
+        inertia = values["bulk"] * values["mass"] * (values["mass"] / 7850.0) ** (2 / 3) / 6
+        made.body("hidden", node, values["mass"], (inertia,) * 3)
+    return made.matrix("stiffness"), made.matrix("mass")
+
+
+CHANGES = [
+    ("local_mass", {"region": "beam_2", "factor": 1.4}),
+    ("ground_spring", {"at": "joint_3_column", "along": "x", "stiffness": 3e4}),
+    ("ground_spring", {"at": "joint_1_column", "along": "y", "stiffness": 1e5}),
+    ("lumped_mass", {"at": "joint_4_column", "mass": 0.3, "bulk": 2.0}),
+]
+
+
+@pytest.mark.parametrize(("name", "values"), CHANGES)
+def test_effects_at_regions_and_node_sets_are_the_structure_built_so(
+    frame: ModuleType, predictor: Predictor, name: str, values: dict[str, Any]
+) -> None:
+    made, sets = frame.frame()
+    stiffness, mass = by_hand(made, name, values, sets)
+    expected = hertz(stiffness.toarray(), mass.toarray(), 8)
+    found = predictor.predict(LIBRARY[name].state(predictor, values), count=8).frequency
+    assert np.abs(expected / predictor.predict(count=8).frequency - 1).max() > 0.01
+    assert found == pytest.approx(expected, rel=2e-4)
+
+
+def test_names_that_the_model_does_not_have(predictor: Predictor) -> None:
+    for name, values, message in (
+        ("local_stiffness", {"region": "web", "loss": 0.1}, "region = 'web' is none of the model's: beam_1, beam_2"),
+        ("joint", {"joint": "bolt"}, "joint = 'bolt' is none of the model's: joint_1"),
+        ("ground_spring", {"at": "roof", "along": "x", "stiffness": 1.0}, "at = 'roof' is none"),
+        ("ground_spring", {"at": "joint_1_column", "along": "w", "stiffness": 1.0}, "along = 'w' is no direction"),
+    ):  # fmt: skip
+        with pytest.raises(StudyError, match=message):
+            LIBRARY[name].state(predictor, values)
