@@ -108,7 +108,7 @@ def test_parts_are_the_whole_and_each_of_its_own_elements(bricks: Bricks, tmp_pa
         ("waist", 8, ("ALU",)), ("ROOT", 16, ("STEEL",)), ("TIP", 16, ("STEEL",))
     ]  # fmt: skip
     imported = model.imported
-    assert imported.rest == {"stiffness": None, "mass": None}
+    assert (imported.rest["stiffness"], imported.rest["mass"]) == (None, None)
     low, high = imported.box(0) or (np.zeros(3), np.zeros(3))
     assert (low[0], high[0]) == pytest.approx((0.08, 0.12))
     ones = np.zeros(imported.order)

@@ -174,32 +174,42 @@ class ImportedStructure(Structure):
         return Sparse(rows.T @ rows)
 
     def softenings(self, elastic: FloatArray) -> FloatArray:
-        """Return the forces (n_dofs, n) of regions' stiffness and mass, joints and hypotheses in the lowest modes.
+        """Return the forces (n_dofs, n) of parts and joints in the lowest modes, and at node sets and supports."""
+        low = elastic[:, : min(4, elastic.shape[1])]
+        stiffness, mass = self._changing
+        return np.hstack([*(part @ low for part in (*stiffness, *mass)), self._acting(elastic)])
 
-        Also those that act at node sets and supports.
-        """
+    @property
+    def _changing(self) -> tuple[tuple[Sparse, ...], tuple[Sparse, ...]]:
+        """Parts of the stiffness and of the mass that may change, hypotheses' among them, each (n, n) [SI]."""
+        known, supposed = self.imported, self.spec.hypotheses
+        return (
+            (*known.stiffness_parts, *(one.stiffness for one in supposed if one.stiffness is not None)),
+            (*known.mass_parts, *(one.mass for one in supposed if one.mass is not None)),
+        )
+
+    def _acting(self, elastic: FloatArray) -> FloatArray:
+        """Return the forces (n_dofs, n) at node sets and supports, and of joints that give way in the lowest modes."""
         low = elastic[:, : min(4, elastic.shape[1])]
         known = self.imported
-        joints = [springs for joint in known.joints for springs in joint.springs if springs.nnz]
-        supposed = [m for one in self.spec.hypotheses for m in (one.stiffness, one.mass) if m is not None]
-        parts = (*known.stiffness_parts, *known.mass_parts, *joints, *supposed)
-        acting = [group.motions(range(6)).toarray().T for group in known.groups]
+        acting = [springs @ low for joint in known.joints for springs in joint.springs if springs.nnz]
+        acting += [group.motions(range(6)).toarray().T for group in known.groups]
         acting += [support.loads for support in known.supports]
-        loads = np.hstack([np.zeros((self.n_dofs, 0)), *(part @ low for part in parts), *acting])
+        loads = np.hstack([np.zeros((self.n_dofs, 0)), *acting])
         return np.asarray(loads[:, np.abs(loads).max(axis=0, initial=0.0) > 0])
 
     def static_answers(
         self, loads: FloatArray, values: FloatArray, vectors: FloatArray, shift: float
     ) -> FloatArray:
-        """Return the answers to loads, and the main directions of those to a change of each part."""
-        source = self.imported
+        """Return the answers to loads, and the main directions of those to a change of each part or as supposed."""
         changed = part_answers(
             self._nominal.solve,
             (self.matrix("stiffness"), self.matrix("mass")),
-            (source.stiffness_parts, source.mass_parts),
+            self._changing,
             (values, vectors, self.rigid_modes),
         )
-        return np.hstack([self.solve(loads, shift), changed])
+        given = np.hstack([loads, self._acting(vectors[:, self.rigid_modes :])])
+        return np.hstack([self.solve(given, shift), changed])
 
     def solve(self, loads: FloatArray, shift: float) -> FloatArray:
         """Return the answers of K + s M to loads (n_dofs, n); the shift is that of the one factor [SI]."""
