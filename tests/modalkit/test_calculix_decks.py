@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from acquisition.errors import StudyError
+from modalkit.study.read import read_study
 from updating import Material, Spec, build_structure
 from updating.models.imported import read_imported
 
@@ -222,3 +223,55 @@ def test_shapes_are_those_that_ccx_prints(example: Callable[[str], ModuleType], 
             )
             level = float(every.T.ravel() @ scale / (scale @ scale))
             np.testing.assert_allclose(ours[:, mode], level * theirs, atol=1e-4 * np.abs(every).max())
+
+
+SUPPOSED = """
+[test]
+modes = "modes.csv"
+[model]
+type = "calculix"
+deck = "block.inp"
+units = "mm-t-s"
+[[hypothesis]]
+name = "tip is softer"
+deck = "softer.inp"
+"""
+
+
+@needs_ccx
+def test_a_deck_may_be_what_is_supposed(tmp_path: Path) -> None:
+    """Half way to a deck whose tip has 0.8 of its modulus the tip has 0.9; the mass stays."""
+    written(tmp_path, block())
+    written(tmp_path, block(factor=0.8), "softer.inp")
+    study = tmp_path / "study.toml"
+    study.write_text(SUPPOSED)
+    spec = read_study(study).spec()
+    (supposed,) = spec.hypotheses
+    assert supposed.mass is None
+    assert supposed.stiffness is not None
+    assert spec.imported is not None
+    half = spec.imported.stiffness + 0.5 * supposed.stiffness
+    written(tmp_path, block(factor=0.9), "half.inp")
+    study.write_text(SUPPOSED.replace("softer.inp", "half.inp"))
+    (between,) = read_study(study).spec().hypotheses
+    assert between.stiffness is not None
+    difference = abs(half - spec.imported.stiffness - between.stiffness).max()
+    assert difference < 1e-9 * abs(between.stiffness).max()
+
+
+@needs_ccx
+@pytest.mark.parametrize(
+    ("lines", "what"),
+    [
+        (block(), "the model's own: the hypothesis changes nothing"),
+        (block(across=2), "give a deck on the same mesh"),
+    ],
+)
+def test_decks_that_suppose_nothing_or_another_mesh_are_refused(
+    tmp_path: Path, lines: list[str], what: str
+) -> None:
+    written(tmp_path, block())
+    written(tmp_path, lines, "softer.inp")
+    (tmp_path / "study.toml").write_text(SUPPOSED)
+    with pytest.raises(StudyError, match=what):
+        read_study(tmp_path / "study.toml").spec()
