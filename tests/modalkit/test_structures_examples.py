@@ -110,5 +110,5 @@ def test_hypotheses_are_of_models_given_by_matrices(frame: Path) -> None:
         '[test]\nfiles = ["hits.uff"]\n[model]\ntype = "beam"\nlength = 1.0\nwidth = 0.1\nthickness = 0.01\n'
         f"[model.material]\nE = 210e9\ndensity = 7850.0\n{FIRST}\n"
     )
-    with pytest.raises(StudyError, match="is for models given by matrices, found type beam"):
+    with pytest.raises(StudyError, match="is for models given by matrices or a deck, found"):
         read_study(other).spec()

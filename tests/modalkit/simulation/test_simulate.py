@@ -330,6 +330,7 @@ EVERYTHING = {
         ]
     )
     for name, effect in LIBRARY.items()
+    if "beam" in effect.models
 }
 
 

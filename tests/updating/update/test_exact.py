@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,11 @@ CONDENSED = {"fluid_added_mass", "fluid_damping"}
 COUNT = 5
 NO_FULL = CONDENSED | {"shear"}
 PLACES = ["beam", "timoshenko", "plate", "free", "matrices"]
+
+
+def undamped(effect: Effect, values: Mapping[str, Any], predictor: Predictor) -> State:
+    """The effect without its dampers."""
+    return replace(effect.state(predictor, values), losses=())
 
 
 def exact(effect: Effect, predictor: Predictor, values: Mapping[str, Any]) -> np.ndarray | None:
@@ -68,7 +74,9 @@ def test_the_full_model_is_the_one_put_together_by_hand(name: str, place: str) -
         by_hand = full_modes(name, predictor, values, COUNT)
         # the tails of a place's edges are cut off at 1e-4, which a gain makes more of
         close = 2e-5 if values.get("loss", 0.0) < 0 else 1e-6
-        assert exact(effect, predictor, values) == pytest.approx(by_hand, rel=close)
+        found = exact_modes(predictor, partial(undamped, effect, values), COUNT)
+        assert found is not None
+        assert found[0] == pytest.approx(by_hand, rel=close)
 
 
 @pytest.mark.parametrize("place", ["beam", "plate"])

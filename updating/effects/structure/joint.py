@@ -188,4 +188,5 @@ def _range(predictor: Predictor, joint: Sides, i: int) -> tuple[float, float]:
 
 
 def _span(ranges: list[tuple[float, float]]) -> tuple[float, float]:
-    return min(low for low, _ in ranges), max(high for _, high in ranges)
+    """Return the widest of some ranges, anything where there is no joint."""
+    return min((low for low, _ in ranges), default=1.0), max((high for _, high in ranges), default=1e12)

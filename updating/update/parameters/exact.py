@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.models.damping import coupled
 from updating.models.fields import Sparse
 from updating.models.solve import DENSE
 from updating.models.state import State
@@ -55,8 +56,19 @@ def full_modes(
     else:
         values, vectors = structure.eigen(wanted, stiffness=stiffness, mass=mass, released=state.released)
     shift = 1.0 + state.slope * (predictor.measured.level or 0.0)
-    frequency = shift * np.sqrt(np.maximum(values[first:], 0.0)) / (2 * np.pi)
+    frequency = (
+        shift * _coupling(predictor, change, count) * np.sqrt(np.maximum(values[first:], 0.0)) / (2 * np.pi)
+    )
     return np.asarray(frequency), vectors[:, first:]
+
+
+def _coupling(predictor: Predictor, change: Callable[[Predictor], State], count: int) -> FloatArray:
+    """Return the factors (count,) on frequencies where dampers couple the modes, by all of the reduced basis."""
+    state = predictor.base.plus(change(predictor))
+    if not state.losses:
+        return np.ones(count)
+    first = predictor.reduced.structure.rigid_modes
+    return coupled(state, *predictor.reduced.eigen(state), np.arange(first, first + count))
 
 
 def _on_all(whole: Predictor, change: Callable[[Predictor], State]) -> State | None:
