@@ -14,7 +14,7 @@ from acquisition.errors import InputError
 from updating.case import Case
 from updating.diagnosis.answer.consistency import Split, splits
 from updating.diagnosis.answer.remainder import remainder_of
-from updating.diagnosis.answer.result import Diagnosis, Gap, Shrink, Where
+from updating.diagnosis.answer.result import Diagnosis, Gap, Shrink, Verdict, Where
 from updating.diagnosis.answer.shrink import shrinkage
 from updating.diagnosis.answer.verdict import decide, included, is_significant, rank
 from updating.diagnosis.answer.where import locate
@@ -100,7 +100,8 @@ def diagnose_together(
         If no measured mode of a specimen has a partner in its model.
     """
     effects = list(LIBRARY.values()) if library is None else list(library)
-    if unknown := [name for name in shared if name not in {effect.name for effect in effects}]:
+    own = {one.name for case in cases for one in hypotheses_of(case.spec)}
+    if unknown := [name for name in shared if name not in {effect.name for effect in effects} | own]:
         raise InputError(f"--shared {unknown[0]}: there is no such effect; `modalkit effects` lists them")
     titles = tuple(case.title for case in cases)
     if len(set(titles)) < len(titles):
@@ -151,13 +152,17 @@ def _diagnose(
         significant,
         chance,
         _gap(problem, titles),
-        _locate(problem, found, significant=significant),
+        _locate(problem, found, verdict),
         shrink,
         verdict,
         sets,
         rank(problem, found),
         propose(problem, found, sets, verdict),
-        tuple(dict.fromkeys((*warnings, *_notes(problem, found), *_on_fit(leader, apart)))),
+        tuple(
+            dict.fromkeys(
+                (*warnings, *_notes(problem, found), *_on_fit(leader, apart, significant=significant))
+            )
+        ),
         found.not_examined,
         comparable,
         left if significant or found.empty.explanation.candidate.outliers else None,
@@ -213,10 +218,10 @@ def _corrected(before: Paired) -> Callable[[Predictor], State]:
     return build
 
 
-def _locate(problem: DiagnosisProblem, found: Search, *, significant: bool) -> Where:
+def _locate(problem: DiagnosisProblem, found: Search, verdict: Verdict) -> Where:
     """Say where the cause sits; of several specimens, on the first on which all of the best explanation acts."""
     if not isinstance(problem, Several):
-        return locate(problem.specimens[0], found, significant=significant)
+        return locate(problem.specimens[0], found, verdict=verdict)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
 
     def on(one: Explanation, i: int) -> Explanation:
@@ -225,7 +230,7 @@ def _locate(problem: DiagnosisProblem, found: Search, *, significant: bool) -> W
     i = int(np.argmax([len(on(leader, j).names) for j in range(len(problem.specimens))]))
     rows = tuple(replace(row, explanation=on(row.explanation, i)) for row in found.compared)
     part = replace(found, nothing=on(found.nothing, i), compared=rows)
-    return locate(problem.specimens[i], part, significant=significant, whole=found)
+    return locate(problem.specimens[i], part, verdict=verdict, whole=found)
 
 
 def _gap(problem: DiagnosisProblem, titles: tuple[str, ...]) -> Gap:
@@ -279,9 +284,11 @@ def _shrink(
     return result if significant else replace(result, closed=None)
 
 
-def _on_fit(leader: Explanation, apart: Sequence[Split]) -> list[str]:
+def _on_fit(leader: Explanation, apart: Sequence[Split], *, significant: bool) -> list[str]:
     """Return what the reader ought to know about how far the data bear the first set of causes."""
     notes = [f"{' + '.join(leader.names)}: {split}: it is not named" for split in apart[:1]]
+    if not significant:
+        return notes
     beyond = len(leader.best.comparison.residual) - len(leader.best.coordinates)
     if leader.names and beyond < FEWEST_DATA:
         notes.append(

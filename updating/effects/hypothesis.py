@@ -86,7 +86,7 @@ class Supposed(Effect):
         if own.factor:
             return () if own.region < 0 else (region_centre(predictor, {"region": float(own.region)}),)
         share = sum(
-            np.abs(change.diagonal()) / np.abs(change.diagonal()).max()
+            np.abs(change.diagonal()) / max(float(np.abs(change.diagonal()).max()), 1e-300)
             for change in (own.stiffness, own.mass)
             if change is not None
         )

@@ -260,9 +260,15 @@ class Reduced:
         return self.project(self.structure.unit_mass(points))
 
     def eigen(self, state: State) -> tuple[FloatArray, FloatArray]:
-        """Return all eigenvalues [rad^2/s^2] and mass-normalised vectors of a state in the reduced basis."""
+        """Return all eigenvalues [rad^2/s^2] and mass-normalised vectors of a state in the reduced basis.
+
+        Eigenvalues are not numbers where the state has lost its mass.
+        """
         stiffness, mass = self.matrices(state)
-        values, vectors = dense.eigh(stiffness, mass)
+        try:
+            values, vectors = dense.eigh(stiffness, mass)
+        except dense.LinAlgError:  # a mass that is not positive
+            return np.full(len(mass), np.nan), np.eye(len(mass))
         return values, vectors
 
 

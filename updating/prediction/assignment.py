@@ -64,6 +64,22 @@ def match(
     ratio = np.nan_to_num(ratio, nan=3.0)
     cost = 1 - mac_of_constants(measured, prediction, trusted) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
     if measured.partners is not None:
-        rows = np.flatnonzero((measured.partners >= 0) & (measured.partners < cost.shape[1]))
-        cost[rows, measured.partners[rows]] = -AS_STATED
+        columns = _stated(measured, prediction)
+        rows = np.flatnonzero((columns >= 0) & (columns < cost.shape[1]))
+        cost[rows, columns[rows]] = -AS_STATED
     return np.asarray(linear_sum_assignment(cost)[1])
+
+
+def _stated(measured: Measured, prediction: Prediction) -> IntArray:
+    """Return the predicted mode that each measured one is stated to be (n_measured,), negative where none is.
+
+    Pairs are stated of the nominal model; in one that has changed its modes are known again by their shapes, since two
+    may have changed places.
+    """
+    assert measured.partners is not None
+    if measured.partner_constants is None:
+        return measured.partners
+    own, now = measured.partner_constants, prediction.constants
+    power = np.sum(own**2, axis=0)[:, None] * np.sum(now**2, axis=0)
+    alike = np.nan_to_num((own.T @ now) ** 2 / np.maximum(power, 1e-300))
+    return np.where(measured.partners < 0, measured.partners, alike.argmax(axis=1))

@@ -79,7 +79,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     """
     if not measured.has_shapes:
         return _pair_by_order(measured, prediction)
-    measured, lost = _without_faint(replace(measured, trusted=None))
+    measured, lost = _without_faint(replace(measured, trusted=None, partner_constants=None))
     if len(measured.frequency) > len(prediction.frequency):
         raise EstimationError(
             f"the test has {len(measured.frequency)} modes and the model {len(prediction.frequency)} in its band; "
@@ -107,6 +107,8 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
         lost.append(MOSTLY_ALONE)
     if trusted is not None:
         lost.append(f"modes are paired without {left_out(measured, trusted)}, which spoils their shapes")
+    if measured.partners is not None:
+        measured = replace(measured, partner_constants=prediction.constants[:, order])
     return Paired(replace(measured.modes(keep), trusted=trusted), order[keep], tuple(lost), alone)
 
 

@@ -88,7 +88,9 @@ class Measured(Displayed):
     trusted : (n_frf,) bool array, optional
         Rows by whose shapes modes are paired, where the others spoil them; left out, all.
     partners : (n_modes,) int array, optional
-        Rank of the model mode that each one is stated to be, from 0; `UNSTATED`, or `NO_PARTNER`.
+        Rank of the nominal model's mode that each one is stated to be, from 0; `UNSTATED`, or `NO_PARTNER`.
+    partner_constants : (n_frf, n_modes) array, optional
+        Constants of those modes, by which they are known again in a model that has changed [as ``constants``].
     """
 
     frequency: FloatArray
@@ -123,6 +125,7 @@ class Measured(Displayed):
     written: tuple[str, ...] = ()
     trusted: BoolArray | None = None
     partners: IntArray | None = None
+    partner_constants: FloatArray | None = None
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -157,7 +160,15 @@ class Measured(Displayed):
 
     def modes(self, keep: BoolArray | IntArray) -> Measured:
         """Return the same test with some of its modes."""
-        across = ("constants", "constants_sigma", "noise", "shared", "phase", "phase_sigma")
+        across = (
+            "constants",
+            "constants_sigma",
+            "noise",
+            "shared",
+            "phase",
+            "phase_sigma",
+            "partner_constants",
+        )
         along = (
             "frequency",
             "frequency_sigma",

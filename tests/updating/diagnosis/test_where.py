@@ -116,7 +116,7 @@ def compared(truth: str) -> tuple[SpecimenProblem, Search]:
 
 
 def test_a_place_is_the_posterior_mean_with_its_spread() -> None:
-    where = locate(*compared("soft"), significant=True)
+    where = locate(*compared("soft"), verdict="named")
     assert where.location is not None
     assert where.location == where.locations[0] == where.likely_places[0].place
     assert where.location[0] == pytest.approx(0.15, abs=0.01)
@@ -128,28 +128,28 @@ def test_a_place_is_the_posterior_mean_with_its_spread() -> None:
 
 
 def test_a_mass_on_the_sensor_is_at_its_node() -> None:
-    where = locate(*compared("tip"), significant=True)
+    where = locate(*compared("tip"), verdict="named")
     assert where.channel == "mass"
     assert where.points == (5,)
     assert max(where.zones, key=lambda z: z.probability).name == "zone10"
 
 
 def test_points_of_the_measurement_are_named() -> None:
-    where = locate(*compared("reversed"), significant=True)
+    where = locate(*compared("reversed"), verdict="named")
     assert where.channel == "measurement"
     assert where.points == (3,)
 
 
 def test_what_nothing_explains_is_still_put_into_a_region() -> None:
     problem, found = compared("unknown")
-    where = locate(problem, found, significant=True)
+    where = locate(problem, found, verdict="unknown")
     assert where.zones_by == "regions"
     assert max(where.zones, key=lambda z: z.probability).name == "zone1"
     assert sum(z.probability for z in where.zones) == pytest.approx(1.0)
 
 
 def test_without_a_gap_there_is_no_place() -> None:
-    where = locate(*compared("none"), significant=False)
+    where = locate(*compared("none"), verdict="none")
     assert (where.channel, where.location, where.locations, where.points) == ("none", None, (), ())
     assert "No mode stands out" in where.band
 

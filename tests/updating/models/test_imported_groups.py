@@ -16,6 +16,7 @@ from scipy.linalg import eigh
 from acquisition.errors import StudyError
 from updating import LIBRARY, Material, Predictor, Region, Spec
 from updating.models.imported import Imported
+from updating.models.imported.groups import joints_of
 from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends
 from updating.models.imported.nodes import read_table
 from updating.models.imported.sets import sets_of_table
@@ -171,3 +172,12 @@ def test_names_that_the_model_does_not_have(predictor: Predictor) -> None:
     ):  # fmt: skip
         with pytest.raises(StudyError, match=message):
             LIBRARY[name].state(predictor, values)
+
+
+def test_joints_of_sets_that_are_alike_by_name_have_names_of_their_own(predictor: Predictor) -> None:
+    imported = predictor.spec.imported
+    assert imported is not None
+    sides = [imported.nodes.sets[name] for joint in imported.joints[:2] for name in joint.sides]
+    alike = {f"J_{i}": nodes for i, nodes in enumerate(sides)}
+    found = joints_of(imported.places, alike, imported.stiffness)
+    assert [joint.name for joint in found] == ["J_0/J_1", "J_2/J_3"]

@@ -7,8 +7,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.diagnosis.answer.clusters import Cluster, clusters, sampled_places
 from updating.diagnosis.answer.contributions import contributions
-from updating.diagnosis.answer.result import LikelyPlace, Place, Where, Zone
-from updating.diagnosis.answer.verdict import decide
+from updating.diagnosis.answer.result import LikelyPlace, Place, Verdict, Where, Zone
 from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
 from updating.effects.measurement.points import channel_point
@@ -24,7 +23,7 @@ LABELS = (".point", ".points", ".channel")
 
 
 def locate(
-    problem: SpecimenProblem, found: Search, *, significant: bool, whole: Search | None = None
+    problem: SpecimenProblem, found: Search, *, verdict: Verdict, whole: Search | None = None
 ) -> Where:
     """Say where the cause sits, averaged over all explanations by their probability.
 
@@ -34,14 +33,14 @@ def locate(
         Test and model.
     found : Search
         What was weighed.
-    significant : bool
-        Whether there is a gap at all; if not, the channel is ``none``.
+    verdict : {"named", "class", "unknown", "none"}
+        With none, no gap, the channel is ``none``; where nothing is named, regions are compared by themselves.
     whole : Search, optional
         What was weighed for several specimens, of which ``found`` holds what acts on this one.
     """
     shares, nothing = _channels(found if whole is None else whole)
     seen = contributions(problem)
-    if not significant:
+    if verdict == "none":
         zones = _zones(problem, _by_explanations(problem, found))
         stated = {**shares, "none": nothing}
         return Where("none", stated, None, (), (), zones, modes=seen.modes, band=seen.summary)
@@ -49,7 +48,7 @@ def locate(
     leader = next((row for row in found.compared if row.names), None)
     likely_places = () if leader is None else clusters(problem, leader.explanation, top)
     places = tuple(_place(cluster.place) for cluster in likely_places)
-    unknown = decide(found, significant=True, comparable=not problem.mostly_alone)[0] == "unknown"
+    unknown = verdict == "unknown"
     probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
     return Where(
         top,
@@ -148,7 +147,7 @@ def _spread(problem: SpecimenProblem, row: Compared, even: FloatArray) -> FloatA
     explanation = row.explanation
     if row.regions:
         names = [region.name for region in problem.predictor.spec.regions]
-        shares = np.array([row.regions.get(name, 0.0) for name in names])
+        shares = np.array([row.regions.get(name, 0.0) / names.count(name) for name in names])
         return np.asarray(shares / shares.sum())
     sampled = sampled_places(problem, explanation)
     if not sampled.weights.sum() > 0:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 from scipy import sparse
+from scipy.spatial import KDTree
 
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
@@ -130,7 +131,11 @@ def joints_of(places: Places, sets: NodeSets, stiffness: Sparse) -> tuple[Joint,
             centre = places.at[[a for a, _ in pairs]].mean(axis=0)
             springs, sizes = zip(*sides, strict=True)
             found.append(Joint(_common(first, second), (first, second), centre, springs, sizes))
-    return tuple(found)
+    names = [joint.name for joint in found]
+    return tuple(
+        replace(joint, name="/".join(joint.sides)) if names.count(joint.name) > 1 else joint
+        for joint in found
+    )
 
 
 def _pairs(places: Places, first: IntArray, second: IntArray) -> list[tuple[int, int]]:
@@ -138,10 +143,11 @@ def _pairs(places: Places, first: IntArray, second: IntArray) -> list[tuple[int,
     if not len(first) or not len(second) or len(np.intersect1d(first, second)):
         return []
     near = TOGETHER * float(np.ptp(places.at, axis=0).max())
-    away = np.linalg.norm(places.at[first][:, None] - places.at[second][None], axis=2)
-    if away.min(axis=1).max() > near and away.min(axis=0).max() > near:
-        return []
-    return [(int(first[i]), int(second[j])) for i, j in zip(*np.nonzero(away <= near), strict=True)]
+    trees = [KDTree(places.at[nodes]) for nodes in (first, second)]
+    alike = trees[0].query_ball_tree(trees[1], near)
+    pairs = [(int(a), int(second[j])) for a, own in zip(first, alike, strict=True) for j in sorted(own)]
+    whole = len({a for a, _ in pairs}) == len(first) or len({b for _, b in pairs}) == len(second)
+    return pairs if whole else []
 
 
 def _springs(
@@ -214,9 +220,7 @@ def supports_of(places: Places, sets: NodeSets, stiffness: Sparse) -> tuple[Supp
     gathered = list(_gathered(places, held))
     middles = np.array([places.at[group].mean(axis=0) for group in gathered])
     at = places_of_rows(places, stiffness.shape[0])
-    away = np.stack(
-        [np.linalg.norm(at[:, None] - places.at[group][None], axis=2).min(axis=1) for group in gathered]
-    )
+    away = np.stack([KDTree(places.at[group]).query(at)[0] for group in gathered])
     owner = away.argmin(axis=0)
     found = []
     for number, (group, centre) in enumerate(zip(gathered, middles, strict=True)):
@@ -262,9 +266,15 @@ def places_of_rows(places: Places, order: int) -> FloatArray:
 def _gathered(places: Places, held: IntArray) -> Iterator[IntArray]:
     """Gather held nodes that are near each other: nearer than a share of the structure."""
     reach = COMPACT * float(np.ptp(places.at, axis=0).max())
-    away = np.linalg.norm(places.at[held][:, None] - places.at[held][None], axis=2)
-    count, label = sparse.csgraph.connected_components(sparse.csr_array(away <= reach / 2))
-    yield from (held[label == i] for i in range(count))
+    left = held
+    while len(left):
+        group, edge = left[:1], left[:1]
+        left = left[1:]
+        while len(edge) and len(left):
+            near = KDTree(places.at[edge]).query(places.at[left])[0] <= reach / 2
+            edge, left = left[near], left[~near]
+            group = np.concatenate([group, edge])
+        yield np.sort(group)
 
 
 def _named(places: Places, sets: NodeSets, group: IntArray, number: int) -> str:
