@@ -22,6 +22,14 @@ from updating.problem.gates import TheoryError
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
 
+Named = tuple[tuple[str, str], ...]
+"""The names of places that a form fixes, as (parameter, name)."""
+
+
+def _names(effect: Effect, form: Variant) -> Named:
+    """Return the places that a form names: regions, node sets, joints."""
+    return tuple((name, str(form.values[name])) for name in effect.named if name in form.values)
+
 
 @dataclass(frozen=True, eq=False)
 class Several:
@@ -92,8 +100,12 @@ class Several:
         return None if None in found else found[0]
 
     def forms(self, effect: Effect) -> tuple[Variant, ...]:
-        """Return the forms in which an effect may come: those of the first specimen it applies to."""
-        found = self.specimens[self._where(effect)[0]].forms(effect)
+        """Return the forms in which an effect may come: those of the first specimen, and at other names of others."""
+        found: list[Variant] = []
+        for i in self._where(effect):
+            known = [_names(effect, form) for form in found]
+            own = self.specimens[i].forms(effect)
+            found += [form for form in own if not found or _names(effect, form) not in known]
         return tuple(
             form for form in found if "channel" not in form.values
         )  # a sensor of that specimen alone
@@ -103,20 +115,32 @@ class Several:
         return [i for i, problem in enumerate(self.specimens) if problem.applies(effect) is None]
 
     @cached_property
-    def _kept(self) -> dict[str, list[int]]:
+    def _kept(self) -> dict[tuple[str, Named], list[int]]:
         return {}
 
-    def _specimens_of(self, effect: Effect) -> list[int]:
+    def _acting(self, effect: Effect, form: Variant) -> list[int]:
+        """Return the specimens on which a form of an effect acts: those that have the place it names, if any."""
+        names = _names(effect, form)
+        if (effect.name, names) not in self._kept:
+            known = self._where(effect)
+            if names:
+                known = [
+                    i
+                    for i in known
+                    if any(_names(effect, f) == names for f in self.specimens[i].forms(effect))
+                ]
+            self._kept[effect.name, names] = known
+        return self._kept[effect.name, names]
+
+    def _specimens_of(self, effect: Effect, form: Variant) -> list[int]:
         """Return the specimens on which an effect has parameters of its own: the first for a shared one."""
-        if effect.name not in self._kept:
-            self._kept[effect.name] = self._where(effect)
-        return self._kept[effect.name][: 1 if effect.name in self.shared else None]
+        return self._acting(effect, form)[: 1 if effect.name in self.shared else None]
 
     def _blocks(self, candidate: Candidate) -> list[tuple[Effect, Variant, int, list[tuple[str, Parameter]]]]:
         """Return effect, form, specimen and parameters of every block of coordinates, in their order."""
         blocks = []
         for effect, form in zip(candidate.effects, candidate.forms, strict=True):
-            for i in self._specimens_of(effect):
+            for i in self._specimens_of(effect, form):
                 own = Candidate((effect,), candidate.fuller, (form,))
                 stage = own.stage(self.specimens[i].predictor)
                 blocks.append((effect, form, i, list(own.parameters(stage))))
@@ -156,7 +180,7 @@ class Several:
             single = Candidate((effect,), candidate.fuller, (form,))
             stage = single.stage(self.specimens[i].predictor)
             ((_, found),) = single.split(stage, coordinates[start:end].tolist())
-            everywhere = self._kept[effect.name] if effect.name in self.shared else [i]
+            everywhere = self._acting(effect, form) if effect.name in self.shared else [i]
             for j in everywhere:
                 values[j][effect.key] = found
             start = end
@@ -167,8 +191,8 @@ class Several:
         split = self._split(candidate, coordinates)
         return {
             self._name(f"{effect.key}.{n}", effect, i): v
-            for effect in candidate.effects
-            for i in self._specimens_of(effect)
+            for effect, form in zip(candidate.effects, candidate.forms, strict=True)
+            for i in self._specimens_of(effect, form)
             for n, v in split[i][effect.key].items()
         }
 
@@ -176,8 +200,8 @@ class Several:
         """Return derived quantities at prior quantiles, by effect.name."""
         split = self._split(candidate, coordinates)
         found = {}
-        for effect in candidate.effects:
-            for i in self._specimens_of(effect):
+        for effect, form in zip(candidate.effects, candidate.forms, strict=True):
+            for i in self._specimens_of(effect, form):
                 stage = candidate.stage(self.specimens[i].predictor)
                 for n, v in effect.derived(stage, split[i][effect.key]).items():
                     found[self._name(f"{effect.key}.{n}", effect, i)] = v
@@ -240,7 +264,7 @@ class Several:
         kept: list[tuple[Effect, Variant]] = []
         for effect, form, specimen_index, own in self._blocks(candidate):
             end = start + len(own)
-            here = i in self._kept[effect.name] if effect.name in self.shared else specimen_index == i
+            here = i in self._acting(effect, form) if effect.name in self.shared else specimen_index == i
             if here:
                 columns += range(start, end)
                 kept.append((effect, form))
