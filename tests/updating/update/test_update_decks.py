@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -25,10 +24,8 @@ pytestmark = pytest.mark.skipif(shutil.which("ccx") is None, reason="no ccx: apt
 
 
 @pytest.fixture(scope="module")
-def shells() -> Iterator[ModuleType]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(EXAMPLES))
-        yield importlib.import_module("mesh")
+def shells(example_of: Callable[[Path, str], ModuleType]) -> ModuleType:
+    return example_of(EXAMPLES, "mesh")
 
 
 def angle(shells: ModuleType, wall: float = 0.003, spring: float = 2e4, modulus: float = 210e9) -> list[str]:
