@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
+from typing import IO
 
 import numpy as np
 import pytest
@@ -333,6 +334,59 @@ def test_supports_of_steps_stay_and_nothing_else_of_them(tmp_path: Path) -> None
     lines = ["*NODE", "1, 0, 0, 0", "*STEP", "*FREQUENCY", "5", "*BOUNDARY, OP=NEW", "1, 1, 3"]
     lines += ["*BOUNDARY, BASE MOTION=1", "1, 1", "*NODE FILE", "U", "*END STEP"]
     assert [card.head for card in read_cards(written(tmp_path, lines))] == ["*NODE", "*BOUNDARY"]
+
+
+def in_files(folder: Path, lines: list[str]) -> Path:
+    """Write a deck whose every card has its last lines, or all of them, in files of their own."""
+    heads = [i for i, line in enumerate(lines) if line.startswith("*")]
+    written_out = []
+    for number, (start, end) in enumerate(zip(heads, [*heads[1:], len(lines)], strict=True)):
+        kept = start + 1 + (number % 2 if end - start > 2 else 0)
+        written_out += lines[start:kept]
+        if kept < end:
+            written(folder, lines[kept : end - 1] or lines[kept:end], f"{number}.txt")
+            written_out += [
+                f"*INCLUDE, INPUT={number}.txt",
+                *(lines[end - 1 : end] if end - kept > 1 else []),
+            ]
+    return written(folder, written_out, "files.inp")
+
+
+@needs_ccx
+def test_a_file_may_hold_data_of_the_card_before_it(bricks: Bricks, tmp_path: Path) -> None:
+    """CalculiX puts the text of the file in the place of its *INCLUDE: the same supports, rows and frequencies."""
+    lines = bar(bricks)
+    whole, files = read_deck_model(written(tmp_path, lines)), read_deck_model(in_files(tmp_path, lines))
+    assert [(one.head, one.lines) for one in files.cards] == [(one.head, one.lines) for one in whole.cards]
+    assert files.nodes.held == whole.nodes.held
+    assert files.nodes.sets == whole.nodes.sets
+    found = frequencies(files.undivided, 6)
+    assert found == pytest.approx(by_ccx(tmp_path, files.path.read_text().splitlines(), 6), rel=1e-6)
+
+
+def test_what_cannot_be_kept_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk, say: what was made is there all the same."""
+
+    def full(file: IO[bytes], **_: object) -> None:
+        file.write(b"half")
+        raise OSError("no space left on device")
+
+    monkeypatch.setenv(deck_cache.VARIABLE, str(tmp_path))
+    monkeypatch.setattr(np, "savez", full)
+    assert deck_cache.kept("a", lambda: {"a": np.ones(3)})["a"].tolist() == [1, 1, 1]
+    assert list(tmp_path.iterdir()) == []
+
+
+@needs_ccx
+def test_arrays_of_another_version_are_not_read(
+    bricks: Bricks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(deck_cache.VARIABLE, str(tmp_path / "kept"))
+    path = written(tmp_path, bar(bricks))
+    read_deck_model(path).base  # noqa: B018
+    monkeypatch.setattr(program, "ARRAYS", "arrays of another kind")
+    read_deck_model(path).base  # noqa: B018
+    assert len(list((tmp_path / "kept").glob("*.npz"))) == 2
 
 
 REFUSED: dict[str, tuple[Callable[[list[str]], list[str]], list[tuple[str, str]], str]] = {

@@ -93,3 +93,12 @@ def test_a_material_is_all_that_is_made_of_it(shells: ModuleType, tmp_path: Path
     assert result.parameters[0].factor == pytest.approx(1.0, abs=1e-4)
     with pytest.raises(StudyError, match=r"no parameter 'tin.E'; .*of the deck: MATERIAL.E"):
         updated(tmp_path, angle(shells), found, "tin.E")
+
+
+@pytest.mark.parametrize("name", ["sensor_mass.mass", "lumped_mass.mass", "ground_spring.stiffness"])
+def test_an_effect_is_no_number_of_the_deck(name: str, shells: ModuleType, tmp_path: Path) -> None:
+    """Though it ends as those of springs and point masses do: what the library says of it is the answer."""
+    found = by_ccx(tmp_path, angle(shells), 6)
+    with pytest.raises(StudyError) as caught:
+        updated(tmp_path, angle(shells), found, name)
+    assert "ELSET" not in str(caught.value)
