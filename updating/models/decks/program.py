@@ -24,7 +24,7 @@ STEP = "*STEP\n*FREQUENCY, SOLVER=MATRIXSTORAGE\n1\n*END STEP\n"
 """What makes CalculiX write its matrices and stop before it solves anything."""
 
 ARRAYS = "arrays 1"
-"""What :func:`_packed` keeps, a part of the key: its number goes up where the arrays change, and older ones are not read."""
+"""What :func:`_packed` keeps, and part of the key: another number where the arrays change, so none are misread."""
 
 TIME_LIMIT = 3600.0
 """After which a run is stopped [s]: a deck of 100 000 degrees of freedom takes a minute."""
