@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import IO
@@ -13,8 +14,9 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from acquisition import ModalData
 from acquisition.errors import StudyError
-from updating import Material, Spec, build_structure
+from updating import Axes, Case, Material, Spec, Tolerances, build_structure, measured_from_modes
 from updating.models import Region
 from updating.models.base import Structure
 from updating.models.decks import cache as deck_cache
@@ -27,6 +29,7 @@ from updating.models.imported import Imported
 from updating.models.reduced import reduce_structure
 from updating.models.state import State
 from updating.models.whole import Whole
+from updating.update import update
 from updating.update.parameters.basis import extended
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
@@ -264,6 +267,22 @@ def test_a_move_of_nodes_has_modulus_and_density_of_what_it_changes(
             assert apart(Sparse(reduced.project(full)), Sparse(own)) < 1e-7
     values, _ = structure_of(model).eigen(4, stiffness=Sparse(found[0]), mass=Sparse(found[1]))
     assert np.sqrt(values) / (2 * np.pi) == pytest.approx(by_ccx(tmp_path, true, 4), rel=2e-6)
+
+
+@needs_ccx
+def test_half_the_modulus_and_a_move_of_nodes_come_back_together(bricks: Bricks, tmp_path: Path) -> None:
+    """From frequencies that CalculiX finds: the slope by E holds what the move adds, too, else E is 1 % off."""
+    model = read_deck_model(written(tmp_path, halves(bricks, "TOP", 0.0, (1, 1), (1, 1))), units="mm-t-s")
+    number = model.parameter("TOP.z")
+    assert number is not None
+    true = 0.9 * number.high
+    found = np.array(by_ccx(tmp_path, halves(bricks, "TOP", true, (0.5, 0.5), (1, 1)), 8))
+    spec = replace(structure_of(model).spec, material=Material(210e9, 7850.0))
+    test = measured_from_modes(ModalData(found, 1e-4 * found), Axes(), spec)
+    result = update(Case("bar", spec, test, None, Tolerances({})), parameters=("E", "TOP.z"))
+    values = {p.name: p for p in result.parameters}
+    assert values["E"].factor == pytest.approx(0.5, rel=3e-3)
+    assert values["TOP.z"].value == pytest.approx(true, rel=0.12)  # coarse bricks, a move of a quarter of one
 
 
 @needs_ccx
