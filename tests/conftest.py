@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import signal
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import ModuleType
 
 os.environ.setdefault(
     "OPENBLAS_NUM_THREADS", "1"
@@ -38,6 +40,27 @@ def own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MODALKIT_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield
+
+
+@pytest.fixture(scope="session")
+def example_of() -> Callable[[Path, str], ModuleType]:
+    """Return a function that imports a script of a folder; folders may have scripts of the same name."""
+    known: dict[Path, dict[str, ModuleType]] = {}
+
+    def load(folder: Path, name: str) -> ModuleType:
+        own = known.setdefault(folder, {})
+        names = [path.stem for path in folder.glob("*.py")]
+        others = {n: sys.modules.pop(n) for n in names if n in sys.modules}
+        sys.modules.update(own)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.syspath_prepend(str(folder))
+            try:
+                return importlib.import_module(name)
+            finally:
+                own.update({n: sys.modules.pop(n) for n in names if n in sys.modules})
+                sys.modules.update(others)
+
+    return load
 
 
 @pytest.fixture

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -23,11 +22,8 @@ needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="no ccx: apt-
 
 
 @pytest.fixture(scope="module")
-def example() -> Iterator[Callable[[str], ModuleType]]:
-    patch = pytest.MonkeyPatch()
-    patch.syspath_prepend(str(EXAMPLES))
-    yield importlib.import_module
-    patch.undo()
+def example(example_of: Callable[[Path, str], ModuleType]) -> Callable[[str], ModuleType]:
+    return lambda name: example_of(EXAMPLES, name)
 
 
 def frequencies(folder: Path, job: str, count: int) -> tuple[int, np.ndarray]:

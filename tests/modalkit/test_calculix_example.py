@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -29,11 +28,8 @@ needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="no ccx: apt-
 
 
 @pytest.fixture(scope="module")
-def example() -> Iterator[Callable[[str], ModuleType]]:
-    patch = pytest.MonkeyPatch()
-    patch.syspath_prepend(str(EXAMPLES))
-    yield importlib.import_module
-    patch.undo()
+def example(example_of: Callable[[Path, str], ModuleType]) -> Callable[[str], ModuleType]:
+    return lambda name: example_of(EXAMPLES, name)
 
 
 @pytest.fixture(scope="module")

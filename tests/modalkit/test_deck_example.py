@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -18,10 +18,8 @@ Run = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture(scope="module")
-def bracket(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(EXAMPLES))
-        return Path(importlib.import_module("bracket").make(tmp_path_factory.mktemp("bracket")))
+def bracket(example_of: Callable[[Path, str], ModuleType], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return Path(example_of(EXAMPLES, "bracket").make(tmp_path_factory.mktemp("bracket")))
 
 
 @needs_ccx
@@ -96,3 +94,11 @@ def test_a_deck_that_does_not_solve_and_a_ccx_that_is_missing(
     code, _, error = run("correlate", study)
     assert code == 2
     assert "needs the program ccx, and there is none" in " ".join(error.split())
+
+
+def test_examples_of_one_name_are_kept_apart(example_of: Callable[[Path, str], ModuleType]) -> None:
+    """Both folders have a bracket.py; which of the two was imported first is nothing to the other."""
+    folders = (EXAMPLES.parent / "calculix", EXAMPLES, EXAMPLES.parent / "calculix")
+    found = [example_of(folder, "bracket") for folder in folders]
+    assert [Path(str(module.__file__)).parent for module in found] == list(folders)
+    assert found[0] is found[2]

@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
-import importlib
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
+from typing import IO
 
 import numpy as np
 import pytest
 from scipy import sparse
 
+from acquisition import ModalData
 from acquisition.errors import StudyError
-from updating import Material, Spec, build_structure
+from updating import Axes, Case, Material, Spec, Tolerances, build_structure, measured_from_modes
+from updating.models import Region
+from updating.models.base import Structure
 from updating.models.decks import cache as deck_cache
 from updating.models.decks import deck_matrices, parameter_matrices, program, read_deck_model
 from updating.models.decks.cards import read_cards
+from updating.models.decks.model import DeckModel
+from updating.models.decks.states import deck_answers, deck_state
 from updating.models.fields import Sparse
 from updating.models.imported import Imported
+from updating.models.reduced import reduce_structure
+from updating.models.state import State
+from updating.models.whole import Whole
+from updating.update import update
+from updating.update.parameters.basis import extended
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 
@@ -29,17 +40,14 @@ Bricks = Callable[..., list[str]]
 
 
 @pytest.fixture(scope="module")
-def bricks() -> Iterator[Bricks]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(EXAMPLES / "deck"))
-        yield importlib.import_module("bricks").brick_deck
+def bricks(example_of: Callable[[Path, str], ModuleType]) -> Bricks:
+    made: Bricks = example_of(EXAMPLES / "deck", "bricks").brick_deck
+    return made
 
 
 @pytest.fixture(scope="module")
-def shells() -> Iterator[ModuleType]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(EXAMPLES / "calculix"))
-        yield importlib.import_module("mesh")
+def shells(example_of: Callable[[Path, str], ModuleType]) -> ModuleType:
+    return example_of(EXAMPLES / "calculix", "mesh")
 
 
 def bar(bricks: Bricks, *more: str, length: float = 200.0, steps: int = 10, kind: str = "C3D20") -> list[str]:
@@ -200,6 +208,105 @@ def test_a_longer_bar_is_a_node_set_moved(bricks: Bricks, tmp_path: Path) -> Non
     assert apart(stiffness, made) < 1e-4
 
 
+def halves(
+    bricks: Bricks, head: str, shift: float, moduli: Sequence[float], densities: Sequence[float]
+) -> list[str]:
+    """Return a bar of two materials, in mm, the nodes of a set on its top moved along z."""
+    lines = (np.linspace(0, 200, 11).tolist(), [0.0, 10.0, 20.0], [0.0, 5.0, 10.0])
+    sets = {
+        "CLAMP": lambda x, y, z: x == 0,
+        "TOP": lambda x, y, z: z == 10 and 70 < x < 130,
+        "RIGHT": lambda x, y, z: z == 10 and x > 110,
+    }
+    deck = bricks(lines, lambda x, y, z: "ROOT" if x < 100 else "TIP", sets, "C3D8I")
+    for i in range(1, next(i for i, line in enumerate(deck) if line.startswith("*ELEMENT"))):
+        number, x, y, z = (float(word) for word in deck[i].split(","))
+        if sets[head](x, y, z):
+            deck[i] = f"{number:.0f}, {x}, {y}, {z + 1e3 * shift:.12g}"
+    for name, modulus, density in zip(("ROOT", "TIP"), moduli, densities, strict=True):
+        deck += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{modulus * 210000.0:.9g}, 0.3"]
+        deck += ["*DENSITY", f"{density * 7.85e-9:.9g}", f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"]
+    return [*deck, "*BOUNDARY", "CLAMP, 1, 3"]
+
+
+def structure_of(model: DeckModel) -> Structure:
+    """Return the structure of a deck with its regions."""
+    regions = tuple(Region(r.name, (0.0, 0.2)) for r in model.division.regions)
+    return build_structure(
+        Spec("matrices", 1, 1, 1, (), (), "imported", Material(1, 1), regions, imported=model.imported)
+    )
+
+
+BESIDE = {
+    "all of the deck": ("TOP", (0.5, 0.5), (0.8, 0.8)),
+    "the region it lies in": ("RIGHT", (1.0, 0.5), (1.0, 0.8)),
+    "one of the two it reaches": ("TOP", (1.0, 0.5), (1.0, 0.8)),
+    "both, each by itself": ("TOP", (1.5, 0.6), (0.9, 1.2)),
+}
+
+
+@needs_ccx
+@pytest.mark.parametrize("case", BESIDE)
+def test_a_move_of_nodes_has_modulus_and_density_of_what_it_changes(
+    case: str, bricks: Bricks, tmp_path: Path
+) -> None:
+    """Against CalculiX's matrices and frequencies of a deck with moved nodes and other materials."""
+    head, moduli, densities = BESIDE[case]
+    model = read_deck_model(written(tmp_path, halves(bricks, head, 0.0, (1, 1), (1, 1))), units="mm-t-s")
+    number = model.parameter(f"{head}.z")
+    assert number is not None
+    shift = number.samples[3]
+    true = halves(bricks, head, shift, moduli, densities)
+    wanted = deck_matrices(written(tmp_path, true, "true.inp"), model)
+    small = reduce_structure(structure_of(model), np.array([[0.2, 0.01, 0.005]]), np.array([[0, 0, 1.0]]))
+    factors = {"E": moduli, "density": densities}
+    beside = State(regional={(i, name): f for name, each in factors.items() for i, f in enumerate(each)})
+    for reduced in (small, Whole.of(small)):
+        found = reduced.matrices(beside.plus(deck_state(reduced, {number: shift}, beside)))
+        for full, own in zip(wanted, found, strict=True):
+            assert apart(Sparse(reduced.project(full)), Sparse(own)) < 1e-7
+    values, _ = structure_of(model).eigen(4, stiffness=Sparse(found[0]), mass=Sparse(found[1]))
+    assert np.sqrt(values) / (2 * np.pi) == pytest.approx(by_ccx(tmp_path, true, 4), rel=2e-6)
+
+
+@needs_ccx
+def test_half_the_modulus_and_a_move_of_nodes_come_back_together(bricks: Bricks, tmp_path: Path) -> None:
+    """From frequencies that CalculiX finds: the slope by E holds what the move adds, too, else E is 1 % off."""
+    model = read_deck_model(written(tmp_path, halves(bricks, "TOP", 0.0, (1, 1), (1, 1))), units="mm-t-s")
+    number = model.parameter("TOP.z")
+    assert number is not None
+    true = 0.9 * number.high
+    found = np.array(by_ccx(tmp_path, halves(bricks, "TOP", true, (0.5, 0.5), (1, 1)), 8))
+    spec = replace(structure_of(model).spec, material=Material(210e9, 7850.0))
+    test = measured_from_modes(ModalData(found, 1e-4 * found), Axes(), spec)
+    result = update(Case("bar", spec, test, None, Tolerances({})), parameters=("E", "TOP.z"))
+    values = {p.name: p for p in result.parameters}
+    assert values["E"].factor == pytest.approx(0.5, rel=3e-3)
+    assert values["TOP.z"].value == pytest.approx(true, rel=0.12)  # coarse bricks, a move of a quarter of one
+
+
+@needs_ccx
+def test_what_a_number_moves_on_a_free_deck_is_no_rigid_motion(bricks: Bricks, tmp_path: Path) -> None:
+    """The answers are what the modes become: with them the reduced model finds the moved one's frequencies."""
+    deck = halves(bricks, "RIGHT", 0.0, (1, 1), (1, 1))[:-2]
+    model = read_deck_model(written(tmp_path, deck), units="mm-t-s")
+    number = model.parameter("RIGHT.z")
+    assert number is not None
+    structure = structure_of(model)
+    small = reduce_structure(structure, np.array([[0.2, 0.01, 0.005]]), np.array([[0, 0, 1.0]]), modes=8)
+    answers = deck_answers(small, number)
+    mass = structure.matrix("mass")
+    rigid = structure.eigen(12)[1][:, :6]
+    assert np.abs(rigid.T @ (mass @ answers)).max() < 1e-9
+    shift = number.samples[-1]
+    true = by_ccx(tmp_path, halves(bricks, "RIGHT", shift, (1, 1), (1, 1))[:-2], 12)[6:10]
+    off = []
+    for reduced in (small, extended(small, answers)):
+        values, _ = reduced.eigen(deck_state(reduced, {number: shift}))
+        off.append(np.abs(np.sqrt(values[6:10]) / (2 * np.pi) / true - 1).max())
+    assert off[1] < 0.1 * off[0]
+
+
 @needs_ccx
 def test_what_was_made_is_kept_and_the_deck_stays(
     bricks: Bricks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -246,6 +353,59 @@ def test_supports_of_steps_stay_and_nothing_else_of_them(tmp_path: Path) -> None
     lines = ["*NODE", "1, 0, 0, 0", "*STEP", "*FREQUENCY", "5", "*BOUNDARY, OP=NEW", "1, 1, 3"]
     lines += ["*BOUNDARY, BASE MOTION=1", "1, 1", "*NODE FILE", "U", "*END STEP"]
     assert [card.head for card in read_cards(written(tmp_path, lines))] == ["*NODE", "*BOUNDARY"]
+
+
+def in_files(folder: Path, lines: list[str]) -> Path:
+    """Write a deck whose every card has its last lines, or all of them, in files of their own."""
+    heads = [i for i, line in enumerate(lines) if line.startswith("*")]
+    written_out = []
+    for number, (start, end) in enumerate(zip(heads, [*heads[1:], len(lines)], strict=True)):
+        kept = start + 1 + (number % 2 if end - start > 2 else 0)
+        written_out += lines[start:kept]
+        if kept < end:
+            written(folder, lines[kept : end - 1] or lines[kept:end], f"{number}.txt")
+            written_out += [
+                f"*INCLUDE, INPUT={number}.txt",
+                *(lines[end - 1 : end] if end - kept > 1 else []),
+            ]
+    return written(folder, written_out, "files.inp")
+
+
+@needs_ccx
+def test_a_file_may_hold_data_of_the_card_before_it(bricks: Bricks, tmp_path: Path) -> None:
+    """CalculiX puts the text of the file in the place of its *INCLUDE: the same supports, rows and frequencies."""
+    lines = bar(bricks)
+    whole, files = read_deck_model(written(tmp_path, lines)), read_deck_model(in_files(tmp_path, lines))
+    assert [(one.head, one.lines) for one in files.cards] == [(one.head, one.lines) for one in whole.cards]
+    assert files.nodes.held == whole.nodes.held
+    assert files.nodes.sets == whole.nodes.sets
+    found = frequencies(files.undivided, 6)
+    assert found == pytest.approx(by_ccx(tmp_path, files.path.read_text().splitlines(), 6), rel=1e-6)
+
+
+def test_what_cannot_be_kept_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk, say: what was made is there all the same."""
+
+    def full(file: IO[bytes], **_: object) -> None:
+        file.write(b"half")
+        raise OSError("no space left on device")
+
+    monkeypatch.setenv(deck_cache.VARIABLE, str(tmp_path))
+    monkeypatch.setattr(np, "savez", full)
+    assert deck_cache.kept("a", lambda: {"a": np.ones(3)})["a"].tolist() == [1, 1, 1]
+    assert list(tmp_path.iterdir()) == []
+
+
+@needs_ccx
+def test_arrays_of_another_version_are_not_read(
+    bricks: Bricks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(deck_cache.VARIABLE, str(tmp_path / "kept"))
+    path = written(tmp_path, bar(bricks))
+    read_deck_model(path).base  # noqa: B018
+    monkeypatch.setattr(program, "ARRAYS", "arrays of another kind")
+    read_deck_model(path).base  # noqa: B018
+    assert len(list((tmp_path / "kept").glob("*.npz"))) == 2
 
 
 REFUSED: dict[str, tuple[Callable[[list[str]], list[str]], list[tuple[str, str]], str]] = {

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -25,10 +24,8 @@ pytestmark = pytest.mark.skipif(shutil.which("ccx") is None, reason="no ccx: apt
 
 
 @pytest.fixture(scope="module")
-def shells() -> Iterator[ModuleType]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(EXAMPLES))
-        yield importlib.import_module("mesh")
+def shells(example_of: Callable[[Path, str], ModuleType]) -> ModuleType:
+    return example_of(EXAMPLES, "mesh")
 
 
 def angle(shells: ModuleType, wall: float = 0.003, spring: float = 2e4, modulus: float = 210e9) -> list[str]:
@@ -96,3 +93,12 @@ def test_a_material_is_all_that_is_made_of_it(shells: ModuleType, tmp_path: Path
     assert result.parameters[0].factor == pytest.approx(1.0, abs=1e-4)
     with pytest.raises(StudyError, match=r"no parameter 'tin.E'; .*of the deck: MATERIAL.E"):
         updated(tmp_path, angle(shells), found, "tin.E")
+
+
+@pytest.mark.parametrize("name", ["sensor_mass.mass", "lumped_mass.mass", "ground_spring.stiffness"])
+def test_an_effect_is_no_number_of_the_deck(name: str, shells: ModuleType, tmp_path: Path) -> None:
+    """Though it ends as those of springs and point masses do: what the library says of it is the answer."""
+    found = by_ccx(tmp_path, angle(shells), 6)
+    with pytest.raises(StudyError) as caught:
+        updated(tmp_path, angle(shells), found, name)
+    assert "ELSET" not in str(caught.value)

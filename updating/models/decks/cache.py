@@ -62,8 +62,13 @@ def _write(path: Path, arrays: Arrays) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as aside:
-            np.savez(aside, allow_pickle=False, **arrays)
-        Path(aside.name).replace(path)
+            try:
+                np.savez(aside, allow_pickle=False, **arrays)
+                aside.close()  # before it is renamed: on some systems an open file cannot be
+                Path(aside.name).replace(path)
+            finally:
+                aside.close()
+                Path(aside.name).unlink(missing_ok=True)
         _make_room(path.parent)
     except OSError:
         return

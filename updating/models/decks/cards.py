@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from acquisition.errors import StudyError
-from updating.models.imported.include import deck_lines
+from updating.models.imported.include import deck_lines, is_include
 
 UNFOLLOWED = {
     "*NODAL THICKNESS": "give the thickness on the *SHELL SECTION",
@@ -107,6 +107,8 @@ def read_cards(path: Path) -> Cards:
                 raise StudyError(f"{here}: {line[:40]!r} stands before any card; is this a CalculiX deck?")
             lines.append(line)
             continue
+        if is_include(line):
+            continue  # its text stands here: the card before it goes on
         if head:
             found.append(card(head, *lines, where=where))
         head, lines, where = line, [], here
@@ -126,5 +128,5 @@ def _model(cards: Iterable[Card]) -> Iterable[Card]:
             in_step = one.name == "*STEP"
         elif in_step and one.name == "*BOUNDARY" and "BASE MOTION" not in one.options:
             yield replace(one, head="*BOUNDARY", options=MappingProxyType({}))
-        elif not in_step and one.name != "*INCLUDE":
+        elif not in_step:
             yield one

@@ -75,10 +75,11 @@ class DeckModel:
         """Return stiffness and mass of a region alone [SI]."""
         return self._in_si(self._same_rows(self.division.part(region), self.division.regions[region].name))
 
-    def region_of(self, parameter: DeckParameter) -> int | None:
-        """Return the region that holds all elements of a thickness, None where there is no one such."""
-        inside = [i for i, r in enumerate(self.division.regions) if parameter.elements <= r.elements]
-        return inside[0] if inside and parameter.elements else None
+    def regions_of(self, parameter: DeckParameter) -> frozenset[int | None]:
+        """Return the regions that a number changes; None among them where it changes what belongs to no region."""
+        shared = [len(parameter.elements & region.elements) for region in self.division.regions]
+        inside = frozenset(i for i, count in enumerate(shared) if count)
+        return inside if parameter.elements and sum(shared) == len(parameter.elements) else inside | {None}
 
     def parameter(self, name: str) -> DeckParameter | None:
         """Return the number of the deck that a name stands for; see :func:`parameter_of`."""
@@ -87,29 +88,35 @@ class DeckModel:
         named = {region.name: region.elements for region in self.division.regions}
         return parameter_of(self.mesh, self.nodes, name, scale, named)
 
-    def matrices(self, values: Mapping[DeckParameter, float]) -> tuple[Sparse, Sparse]:
-        """Return stiffness and mass of the deck with other numbers in it [SI].
+    def matrices(
+        self, values: Mapping[DeckParameter, float], region: int | None = None
+    ) -> tuple[Sparse, Sparse]:
+        """Return stiffness and mass of the deck, or of a region alone, with other numbers in it [SI].
 
         Parameters
         ----------
         values : mapping of DeckParameter to float
             A factor or a shift of each.
+        region : int, optional
+            The region; left out, the deck.
 
         Raises
         ------
         StudyError
             If CalculiX does not solve it.
         """
-        cards, words = self.cards, list[str]()
+        cards, words = self.cards if region is None else self.division.part(region), list[str]()
         for parameter, value in values.items():
             cards = parameter.changed(cards, value)
             words.append(f"{parameter.name} = {parameter.nominal * value:.4g} {parameter.unit}")
         return self._in_si(self._same_rows(cards, ", ".join(words)))
 
-    def change(self, values: Mapping[DeckParameter, float]) -> tuple[Sparse, Sparse]:
-        """Return what other numbers add to stiffness and mass [SI]."""
-        stiffness, mass = self.matrices(values)
-        before = self._in_si(self.base)
+    def change(
+        self, values: Mapping[DeckParameter, float], region: int | None = None
+    ) -> tuple[Sparse, Sparse]:
+        """Return what other numbers add to stiffness and mass of the deck, or of a region alone [SI]."""
+        stiffness, mass = self.matrices(values, region)
+        before = self._in_si(self.base) if region is None else self.part(region)
         return Sparse(stiffness - before[0]), Sparse(mass - before[1])
 
     def _same_rows(self, cards: Cards, what: str) -> Stored:

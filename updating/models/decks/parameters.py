@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.decks.cards import Card, Cards, number_word
-from updating.models.decks.mesh import Mesh, edges_of
+from updating.models.decks.mesh import Mesh, edges_of, family_of
 from updating.models.decks.regions import cells_of
 from updating.models.imported.deck import Deck
 
@@ -26,6 +26,9 @@ exact; they reach from the next gauge down to the next one up, beyond which roun
 SHARE = 0.3
 """How far a node set may be moved, of the distance to the nearest node that stays [-]: at 1 an element is flat; beyond
 a third the shape of the elements, not that of the part, begins to show in the frequencies."""
+
+BY_POSITION = ("*TIE", "*MPC", "*RIGID BODY", "*COUPLING", "*DISTRIBUTING COUPLING")
+"""Constraints whose coefficients follow from where nodes are."""
 
 WIDE = (1e-3, 1e3)
 """Bounds of factors on springs, whose stiffness is often known to no order of magnitude [-]."""
@@ -59,7 +62,7 @@ class DeckParameter:
     changed : callable
         Takes the cards of a deck and a value to cards.
     elements : frozenset of int
-        Elements whose material it goes with: those of a thickness.
+        Elements whose material it goes with: those of a thickness, or those that a move of nodes changes.
     scale : float
         What values are divided by before they are raised to powers [unit].
     """
@@ -161,7 +164,7 @@ def _thickness(mesh: Mesh, name: str, kind: str, elements: frozenset[int], lengt
         GAUGES,
         (-1, 0, 1, 2, 3),
         changed,
-        elements,
+        elements & frozenset[int]().union(*(s.elements for s in own)),
     )
 
 
@@ -215,8 +218,34 @@ def _moved(mesh: Mesh, deck: Deck, name: str, head: str, axis: str, length: floa
 
     samples = tuple((ends * np.array([-1.0, -0.6, 0.0, 0.6, 1.0])).tolist())
     return DeckParameter(
-        name, axis, "m", 1.0, False, -ends, ends, samples, (0, 1, 2, 3, 4), changed, scale=ends
+        name, axis, "m", 1.0, False, -ends, ends, samples, (0, 1, 2, 3, 4), changed,
+        _reshaped(mesh, moved.keys()), scale=ends,
+    )  # fmt: skip
+
+
+def _reshaped(mesh: Mesh, moved: Collection[int]) -> frozenset[int]:
+    """Return the elements whose matrices a move of nodes changes.
+
+    A shell or beam also turns the normals that it shares with its neighbours; constraints by position may change any.
+    """
+    if any(one.name in BY_POSITION for one in mesh.cards):
+        return frozenset(n for n, (kind, _) in mesh.elements.items() if _has_shape(kind))
+    touched = _touching(mesh, frozenset(moved))
+    thin = (mesh.elements[n][1] for n in touched if family_of(mesh.elements[n][0]) in ("S", "B"))
+    around = _touching(mesh, frozenset(node for nodes in thin for node in nodes))
+    return touched | frozenset(n for n in around if family_of(mesh.elements[n][0]) in ("S", "B"))
+
+
+def _touching(mesh: Mesh, nodes: frozenset[int]) -> frozenset[int]:
+    """Return the elements with a shape that have one of some nodes."""
+    return frozenset(
+        n for n, (kind, own) in mesh.elements.items() if _has_shape(kind) and not nodes.isdisjoint(own)
     )
+
+
+def _has_shape(kind: str) -> bool:
+    """Tell whether the matrices of a type of element depend on where its nodes are."""
+    return bool(family_of(kind)) or kind == "SPRINGA"
 
 
 def _with_middles(mesh: Mesh, moved: dict[int, float]) -> dict[int, float]:

@@ -23,6 +23,9 @@ from updating.models.imported.calculix import read_dofs, read_triplets
 STEP = "*STEP\n*FREQUENCY, SOLVER=MATRIXSTORAGE\n1\n*END STEP\n"
 """What makes CalculiX write its matrices and stop before it solves anything."""
 
+ARRAYS = "arrays 1"
+"""What :func:`_packed` keeps, and part of the key: another number where the arrays change, so none are misread."""
+
 TIME_LIMIT = 3600.0
 """After which a run is stopped [s]: a deck of 100 000 degrees of freedom takes a minute."""
 
@@ -89,7 +92,7 @@ def stored(text: str, source: str) -> Stored:
         If CalculiX is missing, or does not solve the deck.
     """
     path = program()
-    key = hashlib.sha256(f"{_version(path)}\n{text}".encode("latin-1", "replace")).hexdigest()
+    key = hashlib.sha256(f"{ARRAYS}\n{_version(path)}\n{text}".encode("latin-1", "replace")).hexdigest()
     arrays = kept(key, lambda: _packed(run(path, text, source)))
     n = len(arrays["node"])
     matrices = [

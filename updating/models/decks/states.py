@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -58,25 +58,26 @@ def deck_state(reduced: Reduced, values: Mapping[DeckParameter, float], beside: 
         return _on_all(reduced, turned, beside)
     stiff, heavy = [], []
     for parameter, value in turned.items():
-        k, m = _sampled(reduced, parameter)
         shares = parameter.weights(value)
-        factors = _factors(deck, parameter, beside)
-        stiff.append(factors[0] * np.tensordot(shares, k, axes=1))
-        heavy.append(factors[1] * np.tensordot(shares, m, axes=1))
+        for region, factors in _factors(deck, (parameter,), beside).items():
+            k, m = _sampled(reduced, parameter, region)
+            stiff.append(factors[0] * np.tensordot(shares, k, axes=1))
+            heavy.append(factors[1] * np.tensordot(shares, m, axes=1))
     return State(stiffness=tuple(stiff), mass=tuple(heavy))
 
 
 def _on_all(reduced: Reduced, turned: Mapping[DeckParameter, float], beside: State) -> State:
-    """Run the deck with all numbers whose elements have the same factors on modulus and density at once."""
+    """Run the deck with all springs and masses at once, and with all else that changes elements at once."""
     deck = deck_of(reduced)
-    together: dict[tuple[float, float], dict[DeckParameter, float]] = {}
-    for parameter, value in turned.items():
-        together.setdefault(_factors(deck, parameter, beside), {})[parameter] = value
+    points = {p: v for p, v in turned.items() if p.kind in ("stiffness", "mass")}
+    others = {p: v for p, v in turned.items() if p not in points}
     stiff, heavy = [], []
-    for (modulus, density), values in together.items():
-        stiffness, mass = deck.change(values)
-        stiff.append(reduced.project(Sparse(modulus * stiffness)))
-        heavy.append(reduced.project(Sparse(density * mass)))
+    for values in (points, others):
+        for region, (modulus, density) in _factors(deck, tuple(values), beside).items():
+            inside = {p: v for p, v in values.items() if region is None or region in deck.regions_of(p)}
+            stiffness, mass = deck.change(inside, region)
+            stiff.append(reduced.project(Sparse(modulus * stiffness)))
+            heavy.append(reduced.project(Sparse(density * mass)))
     return State(stiffness=tuple(stiff), mass=tuple(heavy))
 
 
@@ -95,14 +96,23 @@ def deck_answers(reduced: Reduced, parameter: DeckParameter) -> FloatArray:
             continue
         stiffness, mass = deck.change({parameter: value})
         loads.append(stiffness @ low - (mass @ low) * lam)
-    answers = structure.solve(np.hstack(loads), 0.0)
-    size = np.sqrt(np.einsum("ij,ij->j", answers, structure.matrix("mass") @ answers))
+    answers, rigid, whole = (
+        structure.solve(np.hstack(loads), 0.0),
+        vectors[:, :first],
+        structure.matrix("mass"),
+    )
+    for _ in range(2):  # the answer of a free body is nearly all rigid motion: once leaves its rounding
+        answers = answers - rigid @ (rigid.T @ (whole @ answers))
+    size = np.sqrt(np.einsum("ij,ij->j", answers, whole @ answers))
     return np.asarray(answers[:, size > 0] / size[size > 0])
 
 
-def _sampled(reduced: Reduced, parameter: DeckParameter) -> tuple[FloatArray, FloatArray]:
-    """Return the changes of stiffness and mass at the samples on the basis, each (n, r, r), kept for the next call."""
-    key = ("deck", parameter.name)
+def _sampled(reduced: Reduced, parameter: DeckParameter, region: int | None) -> tuple[FloatArray, FloatArray]:
+    """Return the changes of stiffness and mass of the deck, or of a region, at the samples on the basis.
+
+    Each is (n, r, r), and kept for the next call.
+    """
+    key = ("deck", parameter.name, region)
     if key not in reduced.kept:
         deck = deck_of(reduced)
         r = reduced.basis.shape[1]
@@ -111,20 +121,35 @@ def _sampled(reduced: Reduced, parameter: DeckParameter) -> tuple[FloatArray, Fl
             if value == parameter.start:
                 found.append((np.zeros((r, r)), np.zeros((r, r))))
                 continue
-            stiffness, mass = deck.change({parameter: value})
+            stiffness, mass = deck.change({parameter: value}, region)
             found.append((reduced.project(stiffness), reduced.project(mass)))
         reduced.kept[key] = tuple(np.stack(matrices) for matrices in zip(*found, strict=True))
     stiff, heavy = reduced.kept[key]
     return stiff, heavy
 
 
-def _factors(deck: DeckModel, parameter: DeckParameter, beside: State) -> tuple[float, float]:
-    """Return the factors on modulus and density of what a number changes [-]."""
-    if parameter.kind in ("stiffness", "mass"):
+def _factors(
+    deck: DeckModel, parameters: Sequence[DeckParameter], beside: State
+) -> dict[int | None, tuple[float, float]]:
+    """Return what to add up of what numbers change: factors on stiffness and mass [-] by region, None of all.
+
+    Where all that changes has the same modulus and density, that is one change of the deck; else the regions that
+    differ add their share of it.
+    """
+    regions = frozenset[int | None]().union(*(deck.regions_of(p) for p in parameters))
+    if not regions:
+        return {}
+    of = {region: _beside(region, beside) for region in regions}
+    first = of[None] if None in of else of[min(region for region in of if region is not None)]
+    more = {r: (own[0] - first[0], own[1] - first[1]) for r, own in of.items() if own != first}
+    return {None: first, **more}
+
+
+def _beside(region: int | None, beside: State) -> tuple[float, float]:
+    """Return the factors on modulus and density of a region [-]; what is in none has neither."""
+    if region is None:
         return 1.0, 1.0
-    region = deck.region_of(parameter)
-    of = [
-        beside.factors.get(name, 1.0) * (1.0 if region is None else beside.regional.get((region, name), 1.0))
-        for name in ("E", "density")
-    ]
-    return of[0], of[1]
+    modulus, density = (
+        beside.factors.get(name, 1.0) * beside.regional.get((region, name), 1.0) for name in ("E", "density")
+    )
+    return modulus, density

@@ -12,7 +12,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from updating.models.imported.include import deck_lines
+from updating.models.imported.include import deck_lines, is_include
 from updating.models.imported.numerals import NUMBER
 
 REFUSED = ("*PART", "*INSTANCE", "*NCOPY", "*NGEN")
@@ -95,6 +95,9 @@ def read_deck(path: Path) -> Deck:
     card, options, filled, seen = "", dict[str, str](), True, set[tuple[str, ...]]()
     in_step = False
     for line, where in deck_lines(path):
+        if is_include(line):  # its text stands here: the card before it goes on
+            _check_card(*_card(line), line, where)
+            continue
         if line.startswith("*"):
             _check_filled(card, options, filled, where)
             card, options = _card(line)

@@ -38,6 +38,11 @@ class _Work:
         return text
 
 
+def is_include(line: str) -> bool:
+    """Tell whether a line stands for the text of a file."""
+    return line.split(",", maxsplit=1)[0].rstrip().upper() == "*INCLUDE"
+
+
 def deck_lines(path: Path) -> Iterator[tuple[str, str]]:
     """Yield every card and data line of a deck without blanks around it, and where it stands.
 
@@ -58,7 +63,7 @@ def _lines(path: Path, work: _Work, above: tuple[Path, ...], where: str) -> Iter
         if odd := [c for c in line if c < " " and c != "\t"][:1]:
             raise StudyError(f"{here}: holds the character {odd[0]!r}; the file is damaged")
         yield line, here
-        if line.split(",")[0].rstrip().upper() != "*INCLUDE":
+        if not is_include(line):
             continue
         other = path.parent / line.partition("=")[2].strip().strip("\"'")
         if other.resolve() in chain or len(chain) == DEEPEST:

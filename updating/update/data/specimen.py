@@ -113,11 +113,15 @@ class Specimen:
         if self.affine is not None:
             eigenvalue = (2 * np.pi * at.prediction.frequency) ** 2
             return self.affine.slopes(np.log(values), eigenvalue, at.prediction.vectors)
+        parameters = self.parameter_set.model_parameters
+        alone = all(
+            k.of_deck is None for k in parameters
+        )  # what a deck's number adds goes with a factor, too
         columns = [
             self._analytic(model_parameter, values, i, at)
-            if model_parameter.factor is not None
+            if alone and model_parameter.factor is not None
             else self._difference(i, values)
-            for i, model_parameter in enumerate(self.parameter_set.model_parameters)
+            for i, model_parameter in enumerate(parameters)
         ]
         return np.stack(columns, axis=1)
 

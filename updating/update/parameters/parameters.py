@@ -253,7 +253,7 @@ def _model_parameters(name: str, predictor: Predictor, tolerances: Tolerances) -
     head, _, tail = name.rpartition(".") if "." in name else (name, "", "")
     deck = None if spec.imported is None else spec.imported.deck
     places = tuple(i for i, region in enumerate(spec.regions) if region.name == head)
-    if deck is not None and tail:
+    if deck is not None and tail and head not in LIBRARY:
         if not places and tail in REGIONAL:
             places = deck.division.made_of(head)
         if (number := deck.parameter(name)) is not None:
