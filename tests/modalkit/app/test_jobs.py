@@ -63,6 +63,20 @@ def test_the_result_is_what_the_command_line_writes(beam):
     assert opened(beam).work("update")["result"] == found["result"], "a new server finds it again"
 
 
+def test_what_lies_in_the_current_folder_is_not_run(beam, tmp_path, monkeypatch):
+    """Neither a package of our name beside the study, nor a module that work imports."""
+    there = tmp_path / "there"
+    for name in ("modalkit/__init__.py", "modalkit/app/__init__.py", "modalkit/app/work.py", "scipy.py"):
+        (there / name).parent.mkdir(parents=True, exist_ok=True)
+        (there / name).write_text(f'raise SystemExit("this is {name} of the folder")\n', encoding="utf-8")
+    monkeypatch.chdir(there)
+    bench = opened(beam)
+    bench.start("plan")
+    found = ended(bench, "plan")
+    assert found["job"]["error"] == ""
+    assert found["job"]["state"] == "done"
+
+
 def test_a_result_belongs_to_its_state(beam):
     bench = opened(beam)
     bench.start("update")
