@@ -25,6 +25,7 @@ Progress = Callable[[str], None]
 def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Diagnose a study and write the report."""
     from acquisition.quantities import bare_p, probability
+    from modalkit.app.acceptance import acceptable
     from modalkit.figures.words import answer, parameters
     from modalkit.output.documents import diagnosis_document
     from modalkit.output.summary import answers, separates
@@ -47,6 +48,7 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
                 "probability": probability(row.probability),
                 "parameters": parameters(row),
                 "p": bare_p(row.p_value),
+                "acceptable": acceptable(row.effects),
             }
             for row in found.ranking
         ],
