@@ -11,6 +11,7 @@ from acquisition.errors import InputError, ModalkitError
 from identification import ModalModel
 from modalkit.app.acceptance import accepted_entries
 from modalkit.app.actions import ACTIONS
+from modalkit.app.digests import digest_of
 from modalkit.app.export import Handed, export, free_folder, study_text
 from modalkit.app.history import History, State
 from modalkit.app.jobs import Jobs, report_of, result_of
@@ -60,6 +61,15 @@ class Bench:
         """What it is called."""
         return str(self._history.now.content.get("title") or self._opened.path.name)
 
+    @property
+    def _key(self) -> str:
+        """What results are kept under: the study as it stands, and its files as they are."""
+        return self._history.now.key(digest_of(self.study.inputs()[1:]))
+
+    def _folder(self, kind: str) -> Path:
+        """Return where the results of a kind of work stand."""
+        return self._store.results(kind, self._key)
+
     def state(self) -> dict[str, Any]:
         """Return what the head of the page shows."""
         job = self._jobs.last
@@ -70,7 +80,7 @@ class Bench:
             "is_study": self._opened.is_study,
             "has_model": history.now.content.get("model") is not None,
             "has_files": bool(history.now.content.get("test", {}).get("files")),
-            "key": history.now.key,
+            "key": self._key,
             "position": history.position,
             "undo": history.undo_label,
             "redo": history.redo_label,
@@ -194,14 +204,14 @@ class Bench:
             return None, str(error)
 
     def _result(self, kind: str) -> dict[str, Any] | None:
-        return result_of(self._store.results(kind, self._history.now.key))
+        return result_of(self._folder(kind))
 
     def work(self, kind: str) -> dict[str, Any]:
         """Return how a kind of work on this state stands."""
         if kind not in KINDS:
             raise InputError(f"there is no work called {kind!r}")
         job = self._jobs.last
-        mine = job is not None and job.kind == kind and job.key == self._history.now.key
+        mine = job is not None and job.kind == kind and job.key == self._key
         return {
             "job": job.document() if job is not None and (mine or job.state == "running") else None,
             "result": self._result(kind),
@@ -209,7 +219,7 @@ class Bench:
 
     def report(self, kind: str) -> str | None:
         """Return the report of a finished piece of work on this state."""
-        return report_of(self._store.results(kind, self._history.now.key)) if kind in KINDS else None
+        return report_of(self._folder(kind)) if kind in KINDS else None
 
     def start(self, kind: str) -> dict[str, Any]:
         """Start a piece of work on this state.
@@ -221,10 +231,10 @@ class Bench:
         """
         with self._lock:
             self.study.spec()
-            now = self._history.now
-            folder = self._store.results(kind, now.key)
-            text = study_text(self._opened, now.content, self._name(), folder)
-            self._jobs.start(kind, now.key, text, folder)
+            key = self._key
+            folder = self._store.results(kind, key)
+            text = study_text(self._opened, self._history.now.content, self._name(), folder)
+            self._jobs.start(kind, key, text, folder)
             self._store.trim()
         return self.state()
 
@@ -259,7 +269,7 @@ class Bench:
             handed = Handed(
                 self._workbench.processed(study),
                 self._workbench.modes(study),
-                {kind: self._store.results(kind, now.key) for kind in KINDS},
+                {kind: self._folder(kind) for kind in KINDS},
             )
             folder = free_folder(self._place(), f"{self._opened.path.stem}-{EXPORT}")
             text = study_text(self._opened, now.content, self._name(), folder)

@@ -38,10 +38,9 @@ class State:
         found: dict[str, Any] = json.loads(self.text)
         return found
 
-    @property
-    def key(self) -> str:
-        """What results of this state are kept under."""
-        return hashlib.sha256(self.text.encode()).hexdigest()[:16]
+    def key(self, files: str) -> str:
+        """Return what results of this state are kept under, with a digest of what its files hold."""
+        return hashlib.sha256(f"{files} {self.text}".encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,11 @@ from typing import Any
 
 from acquisition.errors import InputError
 from modalkit.app.work import KINDS, REPORT, RESULT
+from modalkit.module_path import child_environment
 from modalkit.output.whole import write_text
+
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+"""Small matrices are worked on slower by several threads, and the page is to stay quick meanwhile."""
 
 
 @dataclass
@@ -101,14 +105,14 @@ class Jobs:
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(parents=True)
             write_text(folder / "study.toml", study)
-            words = [sys.executable, "-m", "modalkit.app.work", kind, str(folder / "study.toml"), str(folder)]
+            task = ["modalkit.app.work", kind, str(folder / "study.toml"), str(folder)]
             process = subprocess.Popen(
-                words,
+                [sys.executable, "-P", "-m", *task],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
-                env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+                env=os.environ | child_environment() | ONE_THREAD,
             )
             job = Job(kind, key, folder, process, time.monotonic())
             self._job = job

@@ -13,7 +13,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from acquisition.errors import ModalkitError
+from acquisition.errors import InputError, ModalkitError
+from modalkit.app.digests import digest_of
 from modalkit.output.whole import plain, write_text
 
 RESULT, REPORT = "result.json", "report.html"
@@ -24,6 +25,7 @@ Progress = Callable[[str], None]
 def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Diagnose a study and write the report."""
     from acquisition.quantities import bare_p, probability
+    from modalkit.app.acceptance import acceptable
     from modalkit.figures.words import answer, parameters
     from modalkit.output.documents import diagnosis_document
     from modalkit.output.summary import answers, separates
@@ -46,6 +48,7 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
                 "probability": probability(row.probability),
                 "parameters": parameters(row),
                 "p": bare_p(row.p_value),
+                "acceptable": acceptable(row.effects),
             }
             for row in found.ranking
         ],
@@ -107,13 +110,19 @@ KINDS: dict[str, Callable[[Path, Path, Progress], dict[str, Any]]] = {
 
 def run(kind: str, path: Path, folder: Path) -> int:
     """Do one kind of work; an error on purpose is a line as well."""
+    from modalkit.study.read import read_study
 
     def begun(name: str) -> None:
         _line(stage=name)
 
     try:
+        files = read_study(path).inputs()
+        before = digest_of(files)
         result = KINDS[kind](path, folder, begun)
+        if digest_of(files) != before:
+            raise InputError("a file of the study was changed meanwhile; start this again")
     except ModalkitError as error:
+        (folder / REPORT).unlink(missing_ok=True)
         _line(error=str(error))
         return 2
     write_text(folder / RESULT, json.dumps(plain(result), allow_nan=False))

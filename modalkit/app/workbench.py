@@ -9,6 +9,7 @@ from acquisition.modal_data import ModalData
 from identification import ModalModel
 from identification.identify import Provisional
 from identification.pole_reasons import Origins, pole_origins
+from modalkit.app.digests import digest_of
 from modalkit.app.kept import Kept
 from modalkit.study.read import Study, UpdateTable
 from modalkit.workflow.case import Session, modes_in_band, open_study, processing_of
@@ -49,27 +50,26 @@ class Workbench:
         """
         if not study.test.files:
             return None
-        files, processing = self._test_key(study)
+        key = self._test_key(study)
+        files, _, processing = key
+        return self._processed.get(key, lambda: from_content(self._content(*key), files, processing))
 
-        def build() -> Processed:
-            content = self._contents.get(
-                (files, processing.layout), lambda: read_files(files, layout=processing.layout)
-            )
-            return from_content(content, files, processing)
+    def _test_key(self, study: Study) -> tuple[tuple[Path, ...], str, ProcessingOptions]:
+        """Return what the FRFs of a test depend on: its files, what they hold, how they are taken."""
+        processing = processing_of(study, study.test)
+        files = tuple(study.file(name) for name in study.test.files)
+        layout = () if processing.layout is None else (processing.layout,)
+        return files, digest_of((*files, *layout)), processing
 
-        return self._processed.get((files, processing), build)
-
-    def _test_key(self, study: Study) -> tuple[tuple[Path, ...], ProcessingOptions]:
-        """Return what the FRFs of a test depend on."""
-        return tuple(study.file(name) for name in study.test.files), processing_of(study, study.test)
+    def _content(self, files: tuple[Path, ...], digest: str, processing: ProcessingOptions) -> UffContent:
+        layout = processing.layout
+        return self._contents.get((files, layout, digest), lambda: read_files(files, layout=layout))
 
     def content(self, study: Study) -> UffContent | None:
         """Return what the files of a test hold, before anything was left out; None where it has modes alone."""
         if self.processed(study) is None:
             return None
-        files, processing = self._test_key(study)
-        layout = processing.layout
-        return self._contents.get((files, layout), lambda: read_files(files, layout=layout))
+        return self._content(*self._test_key(study))
 
     def modes(self, study: Study) -> ModalModel | Modes:
         """Return the modes of a study's test.
@@ -152,9 +152,10 @@ class Workbench:
         return processed.prepared(band, test.order).provisional(hertz, add=test.add)
 
 
-def _study_key(study: Study) -> str:
-    """Return what test beside model depends on: all of the study but its table of the update."""
-    return study.model_copy(update={"update": UpdateTable()}).model_dump_json()
+def _study_key(study: Study) -> tuple[str, str]:
+    """Return what test beside model depends on: all of the study but its table of the update, and its files."""
+    tables = study.model_copy(update={"update": UpdateTable()}).model_dump_json()
+    return tables, digest_of(study.inputs()[1:])
 
 
 def _existing(study: Study) -> Modes:

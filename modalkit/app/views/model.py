@@ -18,7 +18,8 @@ from modalkit.output.correlation import correlation_document
 from modalkit.study.read import Study
 from updating import LIBRARY
 from updating.correlation.frfs import correlate_frfs
-from updating.effects import accepted_state
+from updating.effects import Effect, Parameter, Variant, accepted_state, names_of
+from updating.effects.limits import PLACES
 from updating.models.state import NOMINAL, State
 from updating.prediction.matching import mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
@@ -102,31 +103,50 @@ def _field(
 
 
 def _sliders(predictor: Predictor) -> list[dict[str, Any]]:
-    """Return the effects that can act on this specimen by numbers alone, with the ranges of their parameters."""
+    """Return the effects that can act on this specimen, with their places and the ranges of their parameters."""
     found = []
     for name, effect in LIBRARY.items():
         if effect.labels or effect.why_not(predictor) is not None:
             continue
-        parameters = effect.parameters(predictor)
-        if parameters:
+        if parameters := effect.parameters(predictor):
             found.append(
                 {
                     "name": name,
                     "summary": effect.summary,
-                    "parameters": [
-                        {
-                            "name": p.name,
-                            "unit": p.unit,
-                            "low": -p.high if p.signed and not p.log and p.low >= 0 else p.low,
-                            "high": p.high,
-                            "log": p.log,
-                            "start": p.default if p.default is not None else p.value(0.5),
-                        }
-                        for p in parameters
-                    ],
+                    "parameters": [_slider(p) for p in parameters],
+                    "forms": _forms(effect, predictor),
                 }
             )
     return found
+
+
+def _slider(p: Parameter) -> dict[str, Any]:
+    low = -p.high if p.signed and not p.log and p.low >= 0 else p.low
+    return {"name": p.name, "unit": p.unit, "low": low, "high": p.high, "log": p.log}
+
+
+def _forms(effect: Effect, predictor: Predictor) -> list[dict[str, Any]]:
+    """Return the places of an effect by their names in the model, and where the sliders there start.
+
+    Of what the names say already, as where a node set is, there is no slider.
+    """
+    names = names_of(effect, predictor.spec)
+    fixed: dict[tuple[tuple[str, Any], ...], dict[str, Any]] = {}
+    for variant in effect.variants(predictor) if names else (Variant(),):
+        place = tuple((key, value) for key, value in variant.values.items() if key in names)
+        fixed[place] = dict(variant.values) | fixed.get(place, {})
+    parameters = effect.parameters(predictor)
+    return [
+        {
+            "names": dict(place),
+            "start": {
+                p.name: known.get(p.name, p.default if p.default is not None else p.value(0.5))
+                for p in parameters
+                if not (p.name in PLACES and "at" in dict(place))
+            },
+        }
+        for place, known in fixed.items()
+    ]
 
 
 def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, index: int) -> dict[str, Any]:

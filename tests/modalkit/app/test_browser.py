@@ -69,6 +69,16 @@ def serve() -> Iterator[Callable[[Path], Served]]:
         one.kill()
 
 
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """Serve the study of a beam to the tests that leave it as they find it."""
+    folder = tmp_path_factory.mktemp("shown")
+    shutil.copytree(Path(__file__).resolve().parents[3] / "sample_data" / "beam_dry", folder / "beam_dry")
+    served = Served(folder / "beam_dry" / "study.toml")
+    yield served
+    served.kill()
+
+
 class Page:
     """A tab, with everything it complained of and every foreign address it asked."""
 
@@ -269,8 +279,8 @@ def export(page: Page) -> Path:
     return folder
 
 
-def test_a_refused_change_says_why_and_changes_nothing(browser, serve, beam):
-    page = Page(browser, serve(beam))
+def test_a_refused_change_says_why_and_changes_nothing(browser, shown):
+    page = Page(browser, shown)
     page.open("modes")
     before = page.modes()
     page.tab.locator("#band-low").fill("400")
@@ -299,10 +309,9 @@ def test_a_file_alone_whose_title_is_a_script(browser, serve, tmp_path):
     assert page.foreign == []
 
 
-@pytest.mark.parametrize("width", [1400, 390])
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_nothing_is_wider_than_the_page_and_everything_has_a_name(browser, serve, beam, width, scheme):
-    page = Page(browser, serve(beam), viewport={"width": width, "height": 850}, color_scheme=scheme)
+@pytest.mark.parametrize(("width", "scheme"), [(1400, "dark"), (390, "light")])
+def test_nothing_is_wider_than_the_page_and_everything_has_a_name(browser, shown, width, scheme):
+    page = Page(browser, shown, viewport={"width": width, "height": 850}, color_scheme=scheme)
     for where in ("hits", "modes", "shapes", "model", "update", "diagnosis"):
         page.open(where)
         page.tab.wait_for_timeout(300)
@@ -319,8 +328,8 @@ NAMELESS = """[...document.querySelectorAll("main button, main input, main selec
 """Controls that a screen reader could not name."""
 
 
-def test_the_keyboard_reaches_hits_and_poles(browser, serve, beam):
-    page = Page(browser, serve(beam))
+def test_the_keyboard_reaches_hits_and_poles(browser, shown):
+    page = Page(browser, shown)
     page.open("hits")
     page.tab.locator('[data-hit="1+Z:1"]').focus()
     page.tab.keyboard.press("Space")

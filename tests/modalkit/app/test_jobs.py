@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import time
 from pathlib import Path
 from typing import Any
@@ -12,7 +14,9 @@ from opening import opened
 
 from acquisition.errors import InputError
 from modalkit.app.bench import Bench
+from modalkit.app.digests import digest_of
 from modalkit.app.store import Store
+from modalkit.app.work import KINDS, REPORT, Progress, run
 from modalkit.output.update import to_json
 from modalkit.output.whole import plain
 from modalkit.study.read import read_study
@@ -20,6 +24,9 @@ from modalkit.workflow.update import update_studies
 
 PATIENCE = 120.0
 """Seconds that a process may take on a machine shared with others."""
+
+FIRST, LOWER = "24.47", "24.23"
+"""The first frequency of the published table, and another one [Hz]."""
 
 
 def ended(bench: Bench, kind: str) -> dict[str, Any]:
@@ -63,6 +70,20 @@ def test_the_result_is_what_the_command_line_writes(beam):
     assert opened(beam).work("update")["result"] == found["result"], "a new server finds it again"
 
 
+def test_what_lies_in_the_current_folder_is_not_run(beam, tmp_path, monkeypatch):
+    """Neither a package of our name beside the study, nor a module that work imports."""
+    there = tmp_path / "there"
+    for name in ("modalkit/__init__.py", "modalkit/app/__init__.py", "modalkit/app/work.py", "scipy.py"):
+        (there / name).parent.mkdir(parents=True, exist_ok=True)
+        (there / name).write_text(f'raise SystemExit("this is {name} of the folder")\n', encoding="utf-8")
+    monkeypatch.chdir(there)
+    bench = opened(beam)
+    bench.start("plan")
+    found = ended(bench, "plan")
+    assert found["job"]["error"] == ""
+    assert found["job"]["state"] == "done"
+
+
 def test_a_result_belongs_to_its_state(beam):
     bench = opened(beam)
     bench.start("update")
@@ -72,6 +93,85 @@ def test_a_result_belongs_to_its_state(beam):
     assert bench.work("update")["result"] is None
     bench.step(back=True)
     assert bench.work("update")["result"] == found
+
+
+def lowered(modes: Path) -> None:
+    """Put a lower first frequency into the table of modes, under the same name, of the same size and time."""
+    before = modes.stat()
+    text = modes.read_text(encoding="utf-8")
+    assert text.count(FIRST) == 1
+    modes.write_text(text.replace(FIRST, LOWER), encoding="utf-8")
+    os.utime(modes, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
+def test_a_result_belongs_to_its_files(samples):
+    """Other data under the same name: shown at once, without the result of those before; theirs with them."""
+    study = samples / "beam_dry" / "published.toml"
+    modes, bench = samples / "beam_dry" / "modes.csv", opened(study)
+    original, table = modes.read_bytes(), plain(bench.modes())["table"]
+    pairs = plain(bench.model())["correlation"]["pairs"]
+    bench.start("update")
+    found = ended(bench, "update")["result"]
+    assert found is not None
+    lowered(modes)
+    again = opened(study)
+    for one in (bench, again):
+        assert one.work("update") == {"job": None, "result": None}
+        assert one.state()["results"] == []
+        shown = plain(one.modes())["table"]
+        assert [row["frequency_hz"] for row in (table[0], shown[0])] == [float(FIRST), float(LOWER)]
+        assert plain(one.model())["correlation"]["pairs"] != pairs
+    modes.write_bytes(original)
+    assert bench.work("update")["result"] == again.work("update")["result"] == found
+
+
+def test_hits_that_are_replaced_while_the_app_runs_are_read_anew(samples, tmp_path):
+    """Those of a beam with a joint in place of those of the dry one."""
+    hits = tmp_path / "hits.uff"
+    shutil.copy(samples / "beam_dry" / "beam_dry.uff", hits)
+    bench = opened(hits)
+    before = plain(bench.modes())["table"]
+    shutil.copy(samples / "beam_joint" / "beam_joint.uff", hits)
+    assert plain(bench.modes())["table"] == plain(opened(hits).modes())["table"] != before
+
+
+def test_a_digest_follows_what_decks_include_and_what_stands_beside_a_matrix(tmp_path):
+    """Each file in turn is changed, and changed back; a deck that includes itself comes to an end."""
+    texts = {
+        "a.inp": "** a part\n*INCLUDE, INPUT=sub/b.inp\n*include,input = c.txt\n",
+        "sub/b.inp": "*NODE\n1, 0, 0, 0\n*INCLUDE, INPUT=../sub/b.inp\n",
+        "c.txt": "*MATERIAL, NAME=STEEL\n",
+        "k.sti": "1 1 1.0\n",
+        "k.dof": "1.3\n",
+    }
+    for name, text in texts.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    named = [tmp_path / "a.inp", tmp_path / "k.sti", tmp_path / "not there"]
+    first = digest_of(named)
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text + "\n", encoding="utf-8")
+        assert digest_of(named) != first, name
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        assert digest_of(named) == first
+    (tmp_path / "not there").write_text("", encoding="utf-8")
+    assert digest_of(named) != first
+
+
+def test_a_file_that_is_changed_while_work_runs_makes_it_void(samples, tmp_path, capsys, monkeypatch):
+    """What came of it is of neither the old file nor the new one."""
+    study, folder = samples / "beam_dry" / "published.toml", tmp_path / "out"
+    folder.mkdir()
+
+    def change(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
+        (folder / REPORT).write_text("half", encoding="utf-8")
+        lowered(path.parent / "modes.csv")
+        return {}
+
+    monkeypatch.setitem(KINDS, "update", change)
+    assert run("update", study, folder) == 2
+    assert "changed meanwhile" in capsys.readouterr().out
+    assert list(folder.iterdir()) == []
 
 
 def test_work_that_cannot_be_done_says_why(beam):

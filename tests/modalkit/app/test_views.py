@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 from opening import FAINT, opened
 
+from acquisition.errors import InputError
 from acquisition.hits.checks import force_bands, pulse_spectrum
 from identification import pole_origins
 from modalkit import read
+from modalkit.app.acceptance import acceptable, accepted_entries
 from modalkit.app.views.curves import POINTS, envelope
 from modalkit.app.views.faces import closed_faces
 from modalkit.app.views.model import Moved
 from modalkit.output.whole import plain
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
 
 
 def test_every_pole_of_the_chart_has_a_reason(faint):
@@ -118,11 +127,81 @@ def test_the_shapes_of_test_and_model_agree_where_their_mac_does(beam):
     assert np.array(page["model"]["surface"]["places"])[:, 0].max() == pytest.approx(0.376)
 
 
+def moves(sliders: list[dict[str, Any]], end: str) -> Iterator[dict[str, Any]]:
+    """Yield every effect at every place that it has sliders for, at an end of each."""
+    for effect in sliders:
+        ranges = {p["name"]: p for p in effect["parameters"]}
+        for form in effect["forms"]:
+            values = {n: v if end == "start" else ranges[n][end] for n, v in form["start"].items()}
+            yield {
+                "name": effect["name"],
+                **form["names"],
+                **{n: v for n, v in values.items() if v is not None},
+            }
+
+
 @pytest.mark.parametrize("end", ["start", "low", "high"])
 def test_every_effect_that_has_sliders_can_be_moved_to_their_ends(beam, end):
     bench = opened(beam)
-    sliders = plain(bench.model())["sliders"]
-    assert len(sliders) > 10
-    for effect in sliders:
-        values = {p["name"]: p[end] for p in effect["parameters"] if p[end] is not None}
-        assert bench.moved(Moved(({"name": effect["name"], **values},)), 0)["model_hz"] is not None
+    entries = list(moves(plain(bench.model())["sliders"], end))
+    assert len(entries) > 10
+    for entry in entries:
+        assert bench.moved(Moved((entry,)), 0)["model_hz"] is not None
+
+
+@pytest.fixture(scope="module")
+def frame(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the study of a frame by matrices, with regions, supports and hypotheses."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(EXAMPLES))
+        return Path(importlib.import_module("frame").make(tmp_path_factory.mktemp("frame")))
+
+
+def test_what_has_a_name_in_the_model_is_moved_there_and_put_into_it(frame):
+    """Regions, supports and node sets: every place answers, and the same entry makes the same model."""
+    bench = opened(frame)
+    page = plain(bench.model())
+    entries = list(moves(page["sliders"], "start"))
+    named = {key for entry in entries for key in ("region", "support") if key in entry}
+    assert named == {"region", "support"}
+    regions = [entry["region"] for entry in entries if entry["name"] == "local_mass"]
+    assert sorted(regions) == sorted(
+        {region["name"] for region in bench.study.model_dump()["model"]["region"]}
+    )
+    shown = [plain(bench.moved(Moved((entry,)), 0))["model_hz"] for entry in entries]
+    soft = {"name": "local_stiffness", "region": "beam_1", "loss": 0.5}
+    moved = plain(bench.moved(Moved((soft,)), 0))["model_hz"]
+    assert moved[0] < page["model_hz"][0]
+    bench.act("accept", {"effects": [soft]})
+    assert plain(bench.model())["model_hz"] == pytest.approx(moved, rel=1e-9)
+    assert len({tuple(one) for one in shown}) > len(regions)
+
+
+def row(*effects: str, **values: Any) -> dict[str, Any]:
+    """Return a row of a ranking as the document of a diagnosis has it."""
+    return {"effects": effects, "parameters": {name: {"value": value} for name, value in values.items()}}
+
+
+def test_a_row_of_the_diagnosis_is_put_where_its_names_say(frame):
+    bench = opened(frame)
+    predictor = bench._workbench.predictor(bench.study)
+    values = {
+        "local_stiffness.region": "beam_2",
+        "local_stiffness.loss": 0.3,
+        "local_stiffness.compliance": 0.43,
+    }
+    entries = accepted_entries(row("local_stiffness", **values), predictor)
+    assert entries == [{"name": "local_stiffness", "region": "beam_2", "loss": 0.3}]
+    bench.act("accept", {"effects": entries})
+    assert bench.study.model.effect[-1] == entries[0]
+
+
+def test_a_hypothesis_is_not_put_into_the_model(frame):
+    bench = opened(frame)
+    predictor = bench._workbench.predictor(bench.study)
+    found = row("local_mass", "joint 3 is loose", **{"joint 3 is loose.amount": 1.0})
+    with pytest.raises(
+        InputError, match=r"'joint 3 is loose' is a hypothesis .* cannot be put into the model"
+    ):
+        accepted_entries(found, predictor)
+    assert [acceptable(names) for names in (found["effects"], (), ("local_mass",))] == [False, False, True]

@@ -83,6 +83,7 @@ export function open(root, app) {
         " opens in a page of its own.",
       ),
     );
+    const ranking = d.cause.ranking.slice(0, 10);
     const accepted = d.cause.verdict === "named" || d.cause.verdict === "class";
     const columns = ["causes", "probability", "share", "parameters", "fit p", "model"].map((name, i) => ({
       name,
@@ -94,13 +95,13 @@ export function open(root, app) {
       table(
         "Explanations, most probable first",
         columns,
-        d.cause.ranking.slice(0, 10).map((row, i) => [
+        ranking.map((row, i) => [
           row.effects.join(" + ") || "tolerances alone",
           found.rows[i].probability,
           h("meter", { min: "0", max: "1", value: String(row.probability), "aria-label": "probability" }),
           found.rows[i].parameters,
           found.rows[i].p,
-          row.effects.length
+          found.rows[i].acceptable
             ? button("Accept", () => app.change("accept", { row: i }), {
                 class: "small",
                 "aria-label": `put ${row.effects.join(" and ")} into the model`,
@@ -109,6 +110,9 @@ export function open(root, app) {
             : "",
         ]),
       ),
+      ranking.some((row, i) => row.effects.length && !found.rows[i].acceptable)
+        ? h("p", { class: "muted" }, "Hypotheses cannot be put into the model; change its deck or matrices.")
+        : null,
       h(
         "p",
         { class: "muted" },

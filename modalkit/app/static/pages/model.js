@@ -42,7 +42,7 @@ export function open(root, app) {
     h("div", { class: "two wide-left" }, drawn, matrix),
     stated,
   );
-  const view = { page: null, frf: 0, effect: "", values: {}, factors: {}, asked: 0, running: false };
+  const view = { page: null, frf: 0, effect: "", form: 0, values: {}, factors: {}, asked: 0, running: false };
 
   async function update() {
     view.page = await get("model");
@@ -146,6 +146,7 @@ export function open(root, app) {
           view.effect,
           (v) => {
             view.effect = v;
+            view.form = 0;
             view.values = {};
             slid();
             app.quiet(moved());
@@ -156,12 +157,28 @@ export function open(root, app) {
       effect
         ? [
             h("p", { class: "muted" }, effect.summary),
-            effect.parameters.map((p) =>
+            effect.forms.length > 1
+              ? field(
+                  "Where",
+                  select(
+                    effect.forms.map((f, i) => [i, Object.values(f.names).join(", ") || "at a point"]),
+                    view.form,
+                    (v) => {
+                      view.form = Number(v);
+                      view.values = {};
+                      slid();
+                      app.quiet(moved());
+                    },
+                    { id: "effect-where" },
+                  ),
+                )
+              : null,
+            movable(effect).map((p) =>
               slider(
                 p.name,
                 p.unit === "-" ? "" : p.unit,
                 p,
-                view.values[p.name] ?? p.start,
+                view.values[p.name] ?? formOf(effect).start[p.name],
                 (v) => {
                   view.values[p.name] = v;
                 },
@@ -189,10 +206,16 @@ export function open(root, app) {
     );
   }
 
-  /** An effect with its values; what is unbounded as long as nobody moves it is left out. */
+  /** Where an effect acts, by the names of the user's own model; a page read anew may have fewer places. */
+  const formOf = (effect) => effect.forms[view.form] ?? effect.forms[0];
+
+  const movable = (effect) => effect.parameters.filter((p) => p.name in formOf(effect).start);
+
+  /** An effect with its place and values; what is unbounded as long as nobody moves it is left out. */
   function entryOf(effect) {
-    const values = effect.parameters.map((p) => [p.name, view.values[p.name] ?? p.start]);
-    return { name: effect.name, ...Object.fromEntries(values.filter(([, value]) => value !== null)) };
+    const { names, start } = formOf(effect);
+    const values = movable(effect).map((p) => [p.name, view.values[p.name] ?? start[p.name]]);
+    return { name: effect.name, ...names, ...Object.fromEntries(values.filter(([, value]) => value !== null)) };
   }
 
   async function put(effect) {
