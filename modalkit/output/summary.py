@@ -40,6 +40,8 @@ def answers(diagnosis: Diagnosis) -> dict[str, str]:
 
 
 def _cause(diagnosis: Diagnosis) -> str:
+    if diagnosis.verdict == "none" and (odd := _odd(diagnosis)):
+        return f"no gap beyond tolerances and noise, once data that stand alone are left out: {odd}"
     if diagnosis.verdict == "none":
         return "no gap beyond tolerances and noise; there is nothing to explain"
     if diagnosis.verdict == "unknown" and not diagnosis.comparable:
@@ -131,6 +133,8 @@ def _at(row: Ranked, index: int) -> str:
 
 def _where(diagnosis: Diagnosis) -> str:
     where = diagnosis.where
+    if diagnosis.verdict == "none" and _odd(diagnosis):
+        return "nowhere else: every other datum agrees"
     if diagnosis.verdict == "none" or where.channel == "none":
         return "nowhere: every channel agrees"
     if diagnosis.verdict == "unknown":
@@ -192,10 +196,18 @@ def _closes(diagnosis: Diagnosis) -> str:
     return text + _left(diagnosis)
 
 
+def _odd(diagnosis: Diagnosis) -> str:
+    """Say which data were taken to be worse than stated, and by how much; nothing where none were."""
+    left = diagnosis.remainder
+    if left is None or not left.significant:
+        return ""
+    return f"{', '.join(left.carried_by[:SHOWN])} (up to {left.sigma:.0f} sigma)"
+
+
 def _left(diagnosis: Diagnosis) -> str:
     """Say what the answer leaves beyond noise, and where; nothing where it leaves nothing, or is none."""
     left = diagnosis.remainder
-    if left is None or not left.significant or diagnosis.verdict == "unknown":
+    if left is None or not left.significant or diagnosis.verdict in ("unknown", "none"):
         return ""
     where = ", ".join(left.carried_by[:SHOWN]) or "all data together"
     return f"; what it leaves is more than noise, {left.sigma:.0f} sigma ({where}), and unexplained"
@@ -232,6 +244,8 @@ def _left_out(diagnosis: Diagnosis) -> str:
 
 
 def _next(diagnosis: Diagnosis) -> str:
+    if diagnosis.verdict == "none" and _odd(diagnosis):
+        return "measure again what stands alone: points and signs there may be mistaken"
     if diagnosis.verdict == "none":
         return "nothing; the model may be used within its tolerances"
     if diagnosis.verdict == "class" and (twin := _twin(diagnosis)):

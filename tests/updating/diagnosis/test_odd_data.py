@@ -11,6 +11,7 @@ from updating_cases import BEAM as FINE
 from updating_cases import case_of, specimen, struck
 
 from modalkit.output.documents import diagnosis_document
+from modalkit.output.summary import summary_text
 from updating import LIBRARY, Diagnosis, diagnose
 from updating.nominal import predictor_of
 from updating.problem.candidate import Candidate
@@ -68,6 +69,7 @@ def test_one_bad_group_of_data_hides_no_cause(seed: int, what: str) -> None:
 @pytest.mark.parametrize("seed", [3, 17])
 def test_one_odd_shape_is_no_gap_and_is_the_remainder(seed: int) -> None:
     found = answer(seed, "one shape")
+    assert "mode 3 shape" in summary_text(found)[0]
     assert found.verdict == "none"
     assert found.remainder is not None
     assert "mode 3 shape" in found.remainder.carried_by
