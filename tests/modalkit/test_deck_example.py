@@ -96,7 +96,7 @@ def test_a_deck_that_does_not_solve_and_a_ccx_that_is_missing(
     assert "needs the program ccx, and there is none" in " ".join(error.split())
 
 
-def test_examples_of_one_name_are_kept_apart(example_of: Callable[[Path, str], ModuleType]) -> None:
+def test_examples_of_one_name_are_modules_of_their_own(example_of: Callable[[Path, str], ModuleType]) -> None:
     """Both folders have a bracket.py; which of the two was imported first is nothing to the other."""
     folders = (EXAMPLES.parent / "calculix", EXAMPLES, EXAMPLES.parent / "calculix")
     found = [example_of(folder, "bracket") for folder in folders]

@@ -143,8 +143,8 @@ def _diagnose(
         closed=None if shrink.closed is None else shrink.closed.value,
         left=left.significant,
     )
-    apart = splits(problem, leader) if verdict == "named" else ()
-    if apart:
+    inconsistent = splits(problem, leader) if verdict == "named" else ()
+    if inconsistent:
         verdict, sets = "unknown", ()
     _stage(progress, "choosing the next test")
     return Diagnosis(
@@ -160,7 +160,7 @@ def _diagnose(
         propose(problem, found, sets, verdict),
         tuple(
             dict.fromkeys(
-                (*warnings, *_notes(problem, found), *_on_fit(leader, apart, significant=significant))
+                (*warnings, *_notes(problem, found), *_on_fit(leader, inconsistent, significant=significant))
             )
         ),
         found.not_examined,
@@ -284,9 +284,9 @@ def _shrink(
     return result if significant else replace(result, closed=None)
 
 
-def _on_fit(leader: Explanation, apart: Sequence[Split], *, significant: bool) -> list[str]:
+def _on_fit(leader: Explanation, inconsistent: Sequence[Split], *, significant: bool) -> list[str]:
     """Return what the reader ought to know about how far the data bear the first set of causes."""
-    notes = [f"{' + '.join(leader.names)}: {split}: it is not named" for split in apart[:1]]
+    notes = [f"{' + '.join(leader.names)}: {split}: it is not named" for split in inconsistent[:1]]
     if not significant:
         return notes
     beyond = len(leader.best.comparison.residual) - len(leader.best.coordinates)

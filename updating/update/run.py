@@ -103,7 +103,7 @@ class Fitted:
         The problem, on reduced models that agree with the full ones at the solution.
     solution : Solution
         Where the iteration came to rest.
-    apart : float or None
+    disagreement : float or None
         How far the frequencies there were from those of the full models, relative, before they were made to agree;
         None where an effect is known to the reduced model alone [-].
     others : Others
@@ -114,7 +114,7 @@ class Fitted:
 
     system: System
     solution: Solution
-    apart: float | None
+    disagreement: float | None
     others: Others
     weights: str
 
@@ -166,8 +166,8 @@ def _exactly(system: System) -> tuple[System, Solution, float | None, Others]:
         ratios = [
             f / evaluation.frequency for (f, _), evaluation in zip(modes, solution.evaluations, strict=True)
         ]
-        apart = float(max(np.abs(ratio - 1).max() for ratio in ratios))
-        near = apart < EXACT
+        disagreement = float(max(np.abs(ratio - 1).max() for ratio in ratios))
+        near = disagreement < EXACT
         if not near and not left:
             break
         vectors = [v for _, v in modes]
@@ -180,7 +180,7 @@ def _exactly(system: System) -> tuple[System, Solution, float | None, Others]:
     return (
         system,
         Solution(solution.theta, evaluations, np.vstack(history), solution.converged),
-        apart,
+        disagreement,
         others,
     )
 
@@ -199,7 +199,7 @@ def _full(system: System, index: int, solution: Solution) -> tuple[FloatArray, F
 
 def report(fitted: Fitted) -> Update:
     """Work out the statistics of an update."""
-    system, solution, apart = fitted.system, fitted.solution, fitted.apart
+    system, solution, disagreement = fitted.system, fitted.solution, fitted.disagreement
     statistics, several = assess_all(fitted)
     jacobian = np.array([_slope(k, t) for k, t in zip(system.model_parameters, solution.theta, strict=True)])
     with_units = statistics.covariance * np.outer(jacobian, jacobian)
@@ -230,8 +230,8 @@ def report(fitted: Fitted) -> Update:
         statistics.dof,
         statistics.inflation,
         history,
-        apart is not None and apart < AGREED,
-        (*_warnings(system, solution, statistics, apart), *statement(system, several)),
+        disagreement is not None and disagreement < AGREED,
+        (*_warnings(system, solution, statistics, disagreement), *statement(system, several)),
         determinability=statistics.determinability,
         data=system.count,
         weights=fitted.weights,
@@ -301,7 +301,9 @@ def _pairs(system: System, solution: Solution) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def _warnings(system: System, solution: Solution, statistics: Statistics, apart: float | None) -> list[str]:
+def _warnings(
+    system: System, solution: Solution, statistics: Statistics, disagreement: float | None
+) -> list[str]:
     found = [*doubts(system, solution, statistics.dof), *(w for s in system.specimens for w in s.warnings)]
     if not solution.converged:
         found.append(f"the parameters still move after {solution.iterations} iterations")
@@ -317,13 +319,13 @@ def _warnings(system: System, solution: Solution, statistics: Statistics, apart:
             f"{system.names[worst]} ends {abs(away[worst]):.0f} tolerances from its nominal value: data and tolerances "
             f"contradict each other; what rests on tolerances is raised by {statistics.strain:.1f}"
         )
-    if apart is None:
+    if disagreement is None:
         found.append(
             "an effect is known to the reduced model alone: the frequencies after the update are its own"
         )
-    elif apart >= AGREED:
+    elif disagreement >= AGREED:
         found.append(
-            f"reduced and full model still differ by {percent(100 * apart)} in a frequency: the update is "
+            f"reduced and full model still differ by {percent(100 * disagreement)} in a frequency: the update is "
             "right to about that; refine the mesh, or narrow the range of what moves nodes"
         )
     return found

@@ -26,24 +26,24 @@ def softer(seed: int) -> Measured:
     return struck(replace(beam, E=0.9 * beam.E), rng)
 
 
-def found_apart(test: Measured) -> tuple[Split, ...]:
+def inconsistent_parameters(test: Measured) -> tuple[Split, ...]:
     problem, _ = pose(case_of(test, BEAM))
     return splits(problem, explain(problem, SOFTER))
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_true_cause_has_one_size_in_all_data(seed: int) -> None:
-    assert found_apart(softer(seed)) == ()
+    assert inconsistent_parameters(softer(seed)) == ()
 
 
 def test_a_size_that_differs_from_the_low_to_the_high_modes_is_found() -> None:
     test = softer(3)
     count = len(test.frequency)
     upper = np.arange(count) >= (count + 1) // 2
-    apart = found_apart(replace(test, frequency=test.frequency * np.where(upper, 1.05, 1.0)))
-    assert apart[0].parameter == "E.factor"
-    assert "the lower and the upper modes" in str(apart[0])
-    assert apart[0].sigma > 3
+    found = inconsistent_parameters(replace(test, frequency=test.frequency * np.where(upper, 1.05, 1.0)))
+    assert found[0].parameter == "E.factor"
+    assert "the lower and the upper modes" in str(found[0])
+    assert found[0].sigma > 3
 
 
 def test_few_data_are_a_warning() -> None:

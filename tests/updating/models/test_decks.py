@@ -78,7 +78,7 @@ def by_ccx(folder: Path, lines: list[str], count: int) -> list[float]:
     return [float(r.split()[3]) for r in rows if len(r.split()) == 5 and r.split()[0].isdigit()]
 
 
-def apart(one: Sparse, other: Sparse) -> float:
+def largest_difference(one: Sparse, other: Sparse) -> float:
     """Return the largest difference of two matrices, relative to their diagonals [-]."""
     scale = sparse.diags_array(1 / np.sqrt(np.abs(one.diagonal())))
     return float(abs(scale @ (one - other) @ scale).max())
@@ -159,8 +159,10 @@ def test_thickness_between_the_runs_is_that_of_a_run(
     other = read_deck_model(written(tmp_path, plate(shells, base * factor, fold), "other.inp"))
     for kind in (0, 1):
         made = sum((s * run[kind] for s, run in zip(shares, runs, strict=True)), 0 * runs[0][kind])
-        assert apart(deck_matrices(other.path, model)[kind], made) < 1e-9
-        assert apart(parameter_matrices(model, "WALL.thickness", base * factor)[kind], made) < 1e-9
+        assert largest_difference(deck_matrices(other.path, model)[kind], made) < 1e-9
+        assert (
+            largest_difference(parameter_matrices(model, "WALL.thickness", base * factor)[kind], made) < 1e-9
+        )
 
 
 @needs_ccx
@@ -205,7 +207,7 @@ def test_a_longer_bar_is_a_node_set_moved(bricks: Bricks, tmp_path: Path) -> Non
     runs = [model.matrices({end: value}) for value in end.samples]
     shares = end.weights(4e-3)
     made = sum((s * run[0] for s, run in zip(shares, runs, strict=True)), 0 * stiffness)
-    assert apart(stiffness, made) < 1e-4
+    assert largest_difference(stiffness, made) < 1e-4
 
 
 def halves(
@@ -264,7 +266,7 @@ def test_a_move_of_nodes_has_modulus_and_density_of_what_it_changes(
     for reduced in (small, Whole.of(small)):
         found = reduced.matrices(beside.plus(deck_state(reduced, {number: shift}, beside)))
         for full, own in zip(wanted, found, strict=True):
-            assert apart(Sparse(reduced.project(full)), Sparse(own)) < 1e-7
+            assert largest_difference(Sparse(reduced.project(full)), Sparse(own)) < 1e-7
     values, _ = structure_of(model).eigen(4, stiffness=Sparse(found[0]), mass=Sparse(found[1]))
     assert np.sqrt(values) / (2 * np.pi) == pytest.approx(by_ccx(tmp_path, true, 4), rel=2e-6)
 

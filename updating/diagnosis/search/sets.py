@@ -12,7 +12,7 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import Point, evaluate, highest, sensitivities
 from updating.diagnosis.search.prior import log_prior
-from updating.diagnosis.search.together import Part, join, once_more, score_tests
+from updating.diagnosis.search.together import Part, join, joined, once_more, score_tests
 from updating.effects import Effect
 from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
@@ -131,7 +131,11 @@ def _best_forms(problem: DiagnosisProblem, chosen: list[_Draft], drafts: list[_D
         near = sorted((d for d in own if np.isfinite(d.near)), key=lambda draft: -draft.near)[:FORMS_TRIED]
         far = sorted((d for d in own if np.isfinite(d.far)), key=lambda draft: -draft.far)[:FORMS_TRIED]
         tried = list(dict.fromkeys([*near, *far]))
-        found[names] = sorted(tried, key=lambda draft: -_climbed(problem, draft)) if len(tried) > 1 else tried
+        found[names] = (
+            sorted(tried, key=lambda draft: -_maximum_after_few_steps(problem, draft))
+            if len(tried) > 1
+            else tried
+        )
     taken = dict.fromkeys(found, 0)
     best = []
     for draft in chosen:
@@ -140,10 +144,10 @@ def _best_forms(problem: DiagnosisProblem, chosen: list[_Draft], drafts: list[_D
     return best
 
 
-def _climbed(problem: DiagnosisProblem, draft: _Draft) -> float:
+def _maximum_after_few_steps(problem: DiagnosisProblem, draft: _Draft) -> float:
     """Return the log-likelihood, with the forms' shares of the prior, that a pair reaches in a few steps."""
     (one, a), (two, b) = ((e.candidate, e.best.coordinates) for e in (draft.first, draft.second))
-    both = Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
+    both = joined(one, two)
     starts = [np.concatenate([a, b]), *draft.places[:1]]
     reached = [highest(problem, both, start, rounds=STEPS_TRIED).marginal.log_likelihood for start in starts]
     return max(reached) + both.log_weight

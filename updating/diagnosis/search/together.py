@@ -40,12 +40,17 @@ def join(
         starts += [np.concatenate([a, own]) for own in problem.starts(two)]
         starts += [np.concatenate([own, b]) for own in problem.starts(one)]
     starts += places
-    both = Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
+    both = joined(one, two)
     unlike = list(
         {tuple(u.tolist()): u for u in starts}.values()
     )  # of an effect without parameters all are alike
     count = CLIMBS if anew else 1 + bool(places)
     return explain(problem, both, starts=unlike, laplace_only=True, maximisations=count, bar=bar)
+
+
+def joined(one: Candidate, two: Candidate) -> Candidate:
+    """Return the effects of two candidates, each in its form, as one."""
+    return Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
 
 
 def once_more(single: Explanation) -> Explanation:
