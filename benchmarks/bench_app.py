@@ -23,7 +23,7 @@ from acquisition import write_uff
 from acquisition.errors import ModalkitError
 from identification import identify
 from modalkit import read
-from modalkit.app.bench import Bench
+from modalkit.app.controller import Controller
 from modalkit.app.opened import open_path
 from modalkit.app.store import Store
 from modalkit.app.views.model import Moved
@@ -48,32 +48,32 @@ def row(name: str, times: list[tuple[float, float]]) -> None:
     )
 
 
-def opened(path: Path) -> Bench:
-    return Bench(open_path(path), Store.beside(path))
+def opened(path: Path) -> Controller:
+    return Controller(open_path(path), Store.beside(path))
 
 
 def picks(folder: Path, rng: np.random.Generator) -> None:
     """Pick anywhere, drop and take back every mode."""
     path = folder / "test.uff"
     write_uff(path, frfs=synthetic(OUTPUTS, LINES, rng))
-    bench, frfs = opened(path), read(path).frfs
-    bench.act("order", {"order": ORDER})
-    modes = [mode["frequency_hz"] for mode in plain(bench.modes())["table"]]
+    controller, frfs = opened(path), read(path).frfs
+    controller.act("order", {"order": ORDER})
+    modes = [mode["frequency_hz"] for mode in plain(controller.modes())["table"]]
     row("identify, from the beginning", [timed(lambda: len(identify(frfs, order=ORDER))) for _ in range(5)])
     row(
         "pick, to its picture",
-        [timed(lambda h=h: bench.provisional(h, 0)) for h in rng.uniform(30, 980, PICKS)],
+        [timed(lambda h=h: controller.provisional(h, 0)) for h in rng.uniform(30, 980, PICKS)],
     )
     dropped, undone, picked = [], [], []
     for hertz in modes:
-        dropped.append(timed(lambda h=hertz: [bench.act("drop", {"hertz": h}), bench.modes()]))
-        undone.append(timed(lambda: [bench.step(back=True), bench.modes()]))
+        dropped.append(timed(lambda h=hertz: [controller.act("drop", {"hertz": h}), controller.modes()]))
+        undone.append(timed(lambda: [controller.step(back=True), controller.modes()]))
     for hertz in rng.uniform(30, 980, PICKS):
         try:
-            picked.append(timed(lambda h=hertz: [bench.act("pick", {"hertz": h}), bench.modes()]))
+            picked.append(timed(lambda h=hertz: [controller.act("pick", {"hertz": h}), controller.modes()]))
         except ModalkitError:  # no mode can be kept there
             continue
-        bench.step(back=True)
+        controller.step(back=True)
     row("pick, to its last digits", picked)
     row("drop, to its last digits", dropped)
     row("undo", undone)
@@ -82,9 +82,9 @@ def picks(folder: Path, rng: np.random.Generator) -> None:
 def sliders(folder: Path) -> None:
     """Move the modulus of a beam."""
     shutil.copytree(SAMPLE, folder / "beam")
-    bench = opened(folder / "beam" / "study.toml")
-    bench.model()
-    moved = [timed(lambda e=e: bench.moved(Moved((), {"E": e}), 0)) for e in np.linspace(0.8, 1.2, 100)]
+    controller = opened(folder / "beam" / "study.toml")
+    controller.model()
+    moved = [timed(lambda e=e: controller.moved(Moved((), {"E": e}), 0)) for e in np.linspace(0.8, 1.2, 100)]
     row("slider: frequencies, MAC and an FRF", moved)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from acquisition.errors import InputError
-from modalkit.app.bench import Bench
+from modalkit.app.controller import Controller
 from modalkit.app.opened import open_path
 from modalkit.app.store import Store
 
@@ -52,13 +52,13 @@ def serve(
     except ImportError as error:
         raise InputError(f"the app needs {error.name}; install the extra: pip install '.[app]'") from error
     opened = open_path(path, layout=layout)
-    bench = Bench(opened, Store.beside(path))
+    controller = Controller(opened, Store.beside(path))
     token = secrets.token_urlsafe(24)
     listener = _listening(port)
     own_port = int(listener.getsockname()[1])
     address = f"http://{LOOPBACK}:{own_port}/{token}/"
     config = uvicorn.Config(
-        application(bench, token=token, port=own_port),
+        application(controller, token=token, port=own_port),
         log_level="error",
         access_log=False,
         server_header=False,
@@ -70,7 +70,7 @@ def serve(
     try:
         uvicorn.Server(config).run(sockets=[listener])
     finally:
-        bench.stop()
+        controller.stop()
         listener.close()
 
 

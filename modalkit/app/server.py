@@ -15,7 +15,7 @@ from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
 from acquisition.errors import InputError, ModalkitError
-from modalkit.app.bench import Bench
+from modalkit.app.controller import Controller
 from modalkit.app.guard import Asgi, Guard
 from modalkit.app.views.model import Moved
 from modalkit.output.whole import plain
@@ -24,44 +24,44 @@ from modalkit.vendor import PLOTLY, THREE, vendored
 SANDBOX = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; font-src data:; sandbox"
 """What a report may do in the page: show itself."""
 
-Answer = Callable[[Bench, Mapping[str, Any]], Any]
+Answer = Callable[[Controller, Mapping[str, Any]], Any]
 
 PAGES: dict[str, Answer] = {
-    "state": lambda bench, a: bench.state(),
-    "hits": lambda bench, a: bench.hits(),
-    "record": lambda bench, a: bench.record(str(a["point"]), int(a["hit"])),
-    "frf": lambda bench, a: bench.frf(int(a["index"])),
-    "modes": lambda bench, a: bench.modes(),
-    "fit": lambda bench, a: bench.fit(int(a["index"])),
-    "provisional": lambda bench, a: bench.provisional(float(a["hertz"]), int(a.get("index", 0))),
-    "shapes": lambda bench, a: bench.shapes(),
-    "model": lambda bench, a: bench.model(),
-    "work": lambda bench, a: bench.work(str(a["kind"])),
+    "state": lambda controller, a: controller.state(),
+    "hits": lambda controller, a: controller.hits(),
+    "record": lambda controller, a: controller.record(str(a["point"]), int(a["hit"])),
+    "frf": lambda controller, a: controller.frf(int(a["index"])),
+    "modes": lambda controller, a: controller.modes(),
+    "fit": lambda controller, a: controller.fit(int(a["index"])),
+    "provisional": lambda controller, a: controller.provisional(float(a["hertz"]), int(a.get("index", 0))),
+    "shapes": lambda controller, a: controller.shapes(),
+    "model": lambda controller, a: controller.model(),
+    "work": lambda controller, a: controller.work(str(a["kind"])),
 }
 """What is asked for, by name; nothing is changed by it."""
 
 CHANGES: dict[str, Answer] = {
-    "act": lambda bench, a: bench.act(str(a["name"]), _mapping(a.get("arguments", {}))),
-    "accept": lambda bench, a: bench.accept(int(a["row"])),
-    "undo": lambda bench, a: bench.step(back=True),
-    "redo": lambda bench, a: bench.step(back=False),
-    "moved": lambda bench, a: bench.moved(
+    "act": lambda controller, a: controller.act(str(a["name"]), _mapping(a.get("arguments", {}))),
+    "accept": lambda controller, a: controller.accept(int(a["row"])),
+    "undo": lambda controller, a: controller.step(back=True),
+    "redo": lambda controller, a: controller.step(back=False),
+    "moved": lambda controller, a: controller.moved(
         Moved(tuple(_mapping(e) for e in a.get("effects", [])), _numbers(a.get("factors", {}))),
         int(a.get("index", 0)),
     ),
-    "start": lambda bench, a: bench.start(str(a["kind"])),
-    "stop": lambda bench, a: bench.stop(),
-    "export": lambda bench, a: bench.export(),
+    "start": lambda controller, a: controller.start(str(a["kind"])),
+    "stop": lambda controller, a: controller.stop(),
+    "export": lambda controller, a: controller.export(),
 }
 """What is sent, by name."""
 
 
-def application(bench: Bench, *, token: str, port: int) -> Asgi:
+def application(controller: Controller, *, token: str, port: int) -> Asgi:
     """Return the app as ASGI has it, behind its guard.
 
     Parameters
     ----------
-    bench : Bench
+    controller : Controller
         The study.
     token : str
         First part of every path.
@@ -76,7 +76,7 @@ def application(bench: Bench, *, token: str, port: int) -> Asgi:
         Route("/report/{kind}", _report),
     ]
     inner = Starlette(routes=routes)
-    inner.state.bench = bench
+    inner.state.controller = controller
     return Guard(inner, token, port)
 
 
@@ -125,13 +125,13 @@ async def _changed(request: Request) -> Response:
 async def _answered(
     request: Request, answers: Mapping[str, Answer], arguments: Mapping[str, Any]
 ) -> Response:
-    """Return what a function of the bench returns, or its error on purpose in a line."""
+    """Return what a function of the controller returns, or its error on purpose in a line."""
     answer = answers.get(request.path_params["name"])
     if answer is None:
         return JSONResponse({"error": "not found"}, 404)
-    bench: Bench = request.app.state.bench
+    controller: Controller = request.app.state.controller
     try:
-        found = await run_in_threadpool(lambda: plain(answer(bench, arguments)))
+        found = await run_in_threadpool(lambda: plain(answer(controller, arguments)))
     except ModalkitError as error:
         return JSONResponse({"error": str(error)}, 422)
     except (KeyError, TypeError, ValueError) as error:
@@ -140,8 +140,8 @@ async def _answered(
 
 
 async def _report(request: Request) -> Response:
-    bench: Bench = request.app.state.bench
-    page = await run_in_threadpool(bench.report, request.path_params["kind"])
+    controller: Controller = request.app.state.controller
+    page = await run_in_threadpool(controller.report, request.path_params["kind"])
     if page is None:
         return Response("there is no report of this state yet", 404)
     return HTMLResponse(page, headers={"content-security-policy": SANDBOX})

@@ -93,3 +93,9 @@ export function warnings(list) {
     ),
   );
 }
+
+/** Return the panel of a page that needs a model where the study has none. */
+export function withoutModel(title, purpose) {
+  const text = `There is no model to ${purpose}: open a study that has one, or write a [model] on the page of the model.`;
+  return h("section", { class: "panel" }, h("h2", {}, title), h("p", {}, text));
+}

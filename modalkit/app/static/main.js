@@ -130,16 +130,26 @@ async function exported() {
   }
 }
 
-const dark = () =>
-  (document.documentElement.dataset.theme ??
-    (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
+const dark = () => document.documentElement.dataset.theme === "dark";
+const system = matchMedia("(prefers-color-scheme: dark)");
+
+/** Take the scheme that the user has chosen here, else that of the system. */
+function themed() {
+  let kept = null;
+  try {
+    kept = localStorage.getItem("theme");
+  } catch {
+    /* a browser without storage */
+  }
+  document.documentElement.dataset.theme = kept ?? (system.matches ? "dark" : "light");
+}
 
 function turned() {
   document.documentElement.dataset.theme = dark() ? "light" : "dark";
   try {
     localStorage.setItem("theme", document.documentElement.dataset.theme);
   } catch {
-    /* a browser without storage */
+    /* as above */
   }
   head();
   app.quiet(show());
@@ -181,17 +191,13 @@ function keys(event) {
 }
 
 async function begin() {
-  try {
-    const kept = localStorage.getItem("theme");
-    if (kept) document.documentElement.dataset.theme = kept;
-  } catch {
-    /* as above */
-  }
+  themed();
   app.state = await app.working("opening", () => get("state"));
   head();
   window.addEventListener("hashchange", () => app.quiet(show()));
   window.addEventListener("keydown", keys);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  system.addEventListener("change", () => {
+    themed();
     head();
     app.quiet(show());
   });

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from acquisition.arrays import AnyArray, FloatArray
+from acquisition.errors import InputError
+from acquisition.frfs.frf import FrfSet
 
 POINTS = 3000
 """Points of a curve at the most: more than a wide screen has columns. Longer ones keep the extremes of every piece, so
@@ -55,3 +57,15 @@ def lines(x: FloatArray, **curves: AnyArray | None) -> dict[str, Any]:
         pieces = [np.arange(a, b) for a, b in pairwise(cuts)]
         keep = np.unique([i for p in pieces for i in (p[first[p].argmin()], p[first[p].argmax()])])
     return {"x": x[keep].tolist()} | {name: values[keep].tolist() for name, values in given.items()}
+
+
+def check_frf(frfs: FrfSet, index: int) -> None:
+    """See that there is such an FRF.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    if not 0 <= index < len(frfs.responses):
+        raise InputError(f"there is no FRF {index + 1}; there are {len(frfs.responses)}")

@@ -9,7 +9,7 @@ import numpy as np
 from acquisition import FrfSet, HitVerdict, InputError, force_range
 from acquisition.hits.checks import pulse_spectrum, upright
 from acquisition.quantities import hertz, number
-from modalkit.app.views.curves import decibels, envelope, lines
+from modalkit.app.views.curves import check_frf, decibels, envelope, lines
 from modalkit.output.documents import hit_document
 from modalkit.study.read import Study
 from modalkit.workflow.identification import Judged, Processed
@@ -99,8 +99,7 @@ def frf_page(processed: Processed, index: int) -> dict[str, Any]:
         If there is no such FRF.
     """
     frfs = processed.frfs
-    if not 0 <= index < len(frfs.responses):
-        raise InputError(f"there is no FRF {index + 1}; there are {len(frfs.responses)}")
+    check_frf(frfs, index)
     coherence = None if frfs.coherence is None else frfs.coherence[index]
     force = force_range(processed.hits)
     return lines(

@@ -11,7 +11,7 @@ from acquisition import InputError
 from identification import ModalModel, auto_mac, cmif, mpc
 from identification.identify import Provisional
 from identification.pole_reasons import Origins
-from modalkit.app.views.curves import lines
+from modalkit.app.views.curves import check_frf, lines
 from modalkit.app.views.hits import frf_names
 from modalkit.study.read import Study
 from modalkit.workflow.existing import Modes
@@ -122,8 +122,7 @@ def fit_page(model: ModalModel, index: int) -> dict[str, Any]:
         If there is no such FRF.
     """
     frfs = model.frfs
-    if not 0 <= index < len(frfs.responses):
-        raise InputError(f"there is no FRF {index + 1}; there are {len(frfs.responses)}")
+    check_frf(frfs, index)
     measured, fitted = frfs.values[index], model.synthesise().values[index]
     noise = None if frfs.variance is None else np.sqrt(frfs.variance[index])
     return lines(

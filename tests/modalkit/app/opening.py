@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from modalkit.app.bench import Bench
+from modalkit.app.controller import Controller
 from modalkit.app.opened import open_path
 from modalkit.app.store import Store
 
@@ -12,6 +12,6 @@ FAINT = 260.0
 """Frequency of a mode that the noise of a fixture all but hides [Hz]."""
 
 
-def opened(path: Path) -> Bench:
+def opened(path: Path) -> Controller:
     """Return it."""
-    return Bench(open_path(path), Store.beside(path))
+    return Controller(open_path(path), Store.beside(path))

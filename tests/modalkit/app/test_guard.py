@@ -139,8 +139,8 @@ def test_files_that_the_study_began_with_may_lie_elsewhere(samples):
     study.write_text(
         '[test]\nfiles = ["../beam_joint/beam_joint.uff"]\nband = [5.0, 500.0]\n', encoding="utf-8"
     )
-    bench = opened(study)
-    assert bench.act("order", {"order": 40})["undo"] == "order 40"
+    controller = opened(study)
+    assert controller.act("order", {"order": 40})["undo"] == "order 40"
 
 
 @pytest.mark.parametrize("body", [b"", b"[]", b"{", b'{"name": "act"}', b'{"name": "hit", "arguments": []}'])

@@ -13,7 +13,7 @@ import pytest
 from opening import opened
 
 from acquisition.errors import InputError
-from modalkit.app.bench import Bench
+from modalkit.app.controller import Controller
 from modalkit.app.digests import digest_of
 from modalkit.app.store import Store
 from modalkit.app.work import KINDS, REPORT, Progress, run
@@ -29,11 +29,11 @@ FIRST, LOWER = "24.47", "24.23"
 """The first frequency of the published table, and another one [Hz]."""
 
 
-def ended(bench: Bench, kind: str) -> dict[str, Any]:
+def ended(controller: Controller, kind: str) -> dict[str, Any]:
     """Return how work stands once it has ended."""
     until = time.monotonic() + PATIENCE
     while time.monotonic() < until:
-        found = bench.work(kind)
+        found = controller.work(kind)
         if found["job"] is None or found["job"]["state"] != "running":
             return found
         time.sleep(0.1)
@@ -41,29 +41,29 @@ def ended(bench: Bench, kind: str) -> dict[str, Any]:
 
 
 def test_a_stop_takes_less_than_a_second_and_leaves_nothing(beam):
-    bench = opened(beam)
-    bench.start("diagnose")
+    controller = opened(beam)
+    controller.start("diagnose")
     with pytest.raises(InputError, match="diagnose is running"):
-        bench.start("update")
+        controller.start("update")
     until = time.monotonic() + PATIENCE
-    while not bench.work("diagnose")["job"]["stages"] and time.monotonic() < until:
+    while not controller.work("diagnose")["job"]["stages"] and time.monotonic() < until:
         time.sleep(0.05)
     begun = time.monotonic()
-    assert bench.stop()["job"]["state"] == "stopped"
+    assert controller.stop()["job"]["state"] == "stopped"
     assert time.monotonic() - begun < 1.0
-    assert ended(bench, "diagnose")["result"] is None
+    assert ended(controller, "diagnose")["result"] is None
     assert not list((Store.beside(beam).folder / "results").iterdir())
-    bench.stop()  # once more is no harm
+    controller.stop()  # once more is no harm
 
 
 def test_the_result_is_what_the_command_line_writes(beam):
-    bench = opened(beam)
-    bench.act("set", {"path": ["update", "parameters"], "value": ["E", "length"]})
-    bench.start("update")
-    found = ended(bench, "update")
+    controller = opened(beam)
+    controller.act("set", {"path": ["update", "parameters"], "value": ["E", "length"]})
+    controller.start("update")
+    found = ended(controller, "update")
     assert found["job"]["state"] == "done"
     assert [stage["name"] for stage in found["job"]["stages"]] == ["reading and identifying", "updating"]
-    folder = Path(bench.export()["folder"])
+    folder = Path(controller.export()["folder"])
     own = plain(to_json(update_studies([read_study(folder / "study.toml")])))
     assert json.loads((folder / "update.json").read_text(encoding="utf-8")) == own
     assert {p["name"] for p in own["parameters"]} == {"E", "length"}
@@ -77,22 +77,22 @@ def test_what_lies_in_the_current_folder_is_not_run(beam, tmp_path, monkeypatch)
         (there / name).parent.mkdir(parents=True, exist_ok=True)
         (there / name).write_text(f'raise SystemExit("this is {name} of the folder")\n', encoding="utf-8")
     monkeypatch.chdir(there)
-    bench = opened(beam)
-    bench.start("plan")
-    found = ended(bench, "plan")
+    controller = opened(beam)
+    controller.start("plan")
+    found = ended(controller, "plan")
     assert found["job"]["error"] == ""
     assert found["job"]["state"] == "done"
 
 
 def test_a_result_belongs_to_its_state(beam):
-    bench = opened(beam)
-    bench.start("update")
-    found = ended(bench, "update")["result"]
+    controller = opened(beam)
+    controller.start("update")
+    found = ended(controller, "update")["result"]
     assert found is not None
-    bench.act("order", {"order": 40})
-    assert bench.work("update")["result"] is None
-    bench.step(back=True)
-    assert bench.work("update")["result"] == found
+    controller.act("order", {"order": 40})
+    assert controller.work("update")["result"] is None
+    controller.step(back=True)
+    assert controller.work("update")["result"] == found
 
 
 def lowered(modes: Path) -> None:
@@ -107,32 +107,32 @@ def lowered(modes: Path) -> None:
 def test_a_result_belongs_to_its_files(samples):
     """Other data under the same name: shown at once, without the result of those before; theirs with them."""
     study = samples / "beam_dry" / "published.toml"
-    modes, bench = samples / "beam_dry" / "modes.csv", opened(study)
-    original, table = modes.read_bytes(), plain(bench.modes())["table"]
-    pairs = plain(bench.model())["correlation"]["pairs"]
-    bench.start("update")
-    found = ended(bench, "update")["result"]
+    modes, controller = samples / "beam_dry" / "modes.csv", opened(study)
+    original, table = modes.read_bytes(), plain(controller.modes())["table"]
+    pairs = plain(controller.model())["correlation"]["pairs"]
+    controller.start("update")
+    found = ended(controller, "update")["result"]
     assert found is not None
     lowered(modes)
     again = opened(study)
-    for one in (bench, again):
+    for one in (controller, again):
         assert one.work("update") == {"job": None, "result": None}
         assert one.state()["results"] == []
         shown = plain(one.modes())["table"]
         assert [row["frequency_hz"] for row in (table[0], shown[0])] == [float(FIRST), float(LOWER)]
         assert plain(one.model())["correlation"]["pairs"] != pairs
     modes.write_bytes(original)
-    assert bench.work("update")["result"] == again.work("update")["result"] == found
+    assert controller.work("update")["result"] == again.work("update")["result"] == found
 
 
 def test_hits_that_are_replaced_while_the_app_runs_are_read_anew(samples, tmp_path):
     """Those of a beam with a joint in place of those of the dry one."""
     hits = tmp_path / "hits.uff"
     shutil.copy(samples / "beam_dry" / "beam_dry.uff", hits)
-    bench = opened(hits)
-    before = plain(bench.modes())["table"]
+    controller = opened(hits)
+    before = plain(controller.modes())["table"]
     shutil.copy(samples / "beam_joint" / "beam_joint.uff", hits)
-    assert plain(bench.modes())["table"] == plain(opened(hits).modes())["table"] != before
+    assert plain(controller.modes())["table"] == plain(opened(hits).modes())["table"] != before
 
 
 def test_a_digest_follows_what_decks_include_and_what_stands_beside_a_matrix(tmp_path):
@@ -175,10 +175,10 @@ def test_a_file_that_is_changed_while_work_runs_makes_it_void(samples, tmp_path,
 
 
 def test_work_that_cannot_be_done_says_why(beam):
-    bench = opened(beam)
-    bench.act("set", {"path": ["update", "parameters"], "value": ["nonsense"]})
-    bench.start("update")
-    found = ended(bench, "update")
+    controller = opened(beam)
+    controller.act("set", {"path": ["update", "parameters"], "value": ["nonsense"]})
+    controller.start("update")
+    found = ended(controller, "update")
     assert found["job"]["state"] == "failed"
     assert "nonsense" in found["job"]["error"]
     assert found["result"] is None

@@ -84,14 +84,14 @@ def test_a_change_that_lacks_something_is_an_error_on_purpose(arguments):
 
 
 def test_the_study_shows_what_the_command_line_gives(beam):
-    bench = opened(beam)
-    bench.act("hit", {"point": "1+Z", "hit": 2, "used": False, "proposed": True})
-    bench.act("order", {"order": 40})
-    bench.act("references", {"names": ["1+Z", "2+Z", "5+Z"]})
-    bench.act("band", {"low": 10, "high": 480})
-    folder = Path(bench.export()["folder"])
+    controller = opened(beam)
+    controller.act("hit", {"point": "1+Z", "hit": 2, "used": False, "proposed": True})
+    controller.act("order", {"order": 40})
+    controller.act("references", {"names": ["1+Z", "2+Z", "5+Z"]})
+    controller.act("band", {"low": 10, "high": 480})
+    folder = Path(controller.export()["folder"])
     _, model = process(read_study(folder / "study.toml"))
-    shown = plain(bench.modes())["table"]
+    shown = plain(controller.modes())["table"]
     assert [row["frequency_hz"] for row in shown] == model.modal.frequency.tolist()
     assert [row["damping_sigma"] for row in shown] == model.modal.damping_sigma.tolist()
     assert len(model.references) == 3
@@ -99,21 +99,21 @@ def test_the_study_shows_what_the_command_line_gives(beam):
 
 
 def test_picks_and_drops_are_those_of_one_identification(faint):
-    bench = opened(faint)
-    before = plain(bench.modes())["table"]
-    bench.provisional(FAINT, 0)
-    bench.act("pick", {"hertz": FAINT})
-    bench.act("drop", {"hertz": before[0]["frequency_hz"]})
-    found = plain(bench.modes())["table"]
+    controller = opened(faint)
+    before = plain(controller.modes())["table"]
+    controller.provisional(FAINT, 0)
+    controller.act("pick", {"hertz": FAINT})
+    controller.act("drop", {"hertz": before[0]["frequency_hz"]})
+    found = plain(controller.modes())["table"]
     from modalkit import read
 
     model = read(faint).identify(add=[FAINT], drop=[before[0]["frequency_hz"]])
     assert [row["frequency_hz"] for row in found] == model.modal.frequency.tolist()
     assert [row["frequency_sigma_hz"] for row in found] == model.modal.frequency_sigma.tolist()
     assert {row["origin"] for row in found} == {"named", "chain"}
-    bench.step(back=True)
-    bench.step(back=True)
-    assert plain(bench.modes())["table"] == before
+    controller.step(back=True)
+    controller.step(back=True)
+    assert plain(controller.modes())["table"] == before
 
 
 REFUSED = [
@@ -134,11 +134,11 @@ REFUSED = [
 
 @pytest.mark.parametrize(("name", "arguments"), REFUSED)
 def test_a_change_that_cannot_be_is_refused_and_nothing_is_changed(beam, name, arguments):
-    bench = opened(beam)
-    state = bench.state()
+    controller = opened(beam)
+    state = controller.state()
     with pytest.raises(ModalkitError):
-        bench.act(name, arguments)
-    assert bench.state() == state
+        controller.act(name, arguments)
+    assert controller.state() == state
     assert opened(beam).state() == state
 
 
@@ -172,10 +172,10 @@ import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[2])
 from opening import opened
-bench = opened(Path(sys.argv[1]))
+controller = opened(Path(sys.argv[1]))
 print("ready", flush=True)
 for order in range(20, 400):
-    bench._keep(bench._history.then({**bench._history.now.content, "note": str(order)}, str(order)))
+    controller._keep(controller._history.then({**controller._history.now.content, "note": str(order)}, str(order)))
     print(order, flush=True)
 """
 
@@ -200,25 +200,25 @@ def test_killed_at_any_time_the_state_is_the_last_or_the_one_before(beam):
 def test_a_folder_that_cannot_be_written_is_left_alone(beam, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "home"))
     monkeypatch.setattr(os, "access", lambda path, mode: "home" in str(path))
-    bench = opened(beam)
-    bench.act("order", {"order": 50})
+    controller = opened(beam)
+    controller.act("order", {"order": 50})
     assert list((tmp_path / "home" / "modalkit").rglob("session.json"))
-    assert str(bench.export()["folder"]).startswith(str(tmp_path / "home"))
+    assert str(controller.export()["folder"]).startswith(str(tmp_path / "home"))
 
 
 def test_pairs_that_are_stated_stand(beam):
-    bench = opened(beam)
-    found = plain(bench.model())["correlation"]["pairs"]
+    controller = opened(beam)
+    found = plain(controller.model())["correlation"]["pairs"]
     assert [(p["test_mode"], p["model_mode"]) for p in found] == [(1, 1), (2, 2), (3, 3)]
-    bench.act("pair", {"hertz": found[1]["test_hz"], "model": 4})
-    stated = plain(bench.model())["correlation"]["pairs"]
+    controller.act("pair", {"hertz": found[1]["test_hz"], "model": 4})
+    stated = plain(controller.model())["correlation"]["pairs"]
     assert (2, 4) in [(p["test_mode"], p["model_mode"]) for p in stated]
-    bench.act("pair", {"hertz": found[1]["test_hz"], "model": 0})
-    without = plain(bench.model())["correlation"]
+    controller.act("pair", {"hertz": found[1]["test_hz"], "model": 0})
+    without = plain(controller.model())["correlation"]
     assert [p["test_mode"] for p in without["pairs"]] == [1, 3]
     assert [u["mode"] for u in without["unpaired_test"]] == [2]
-    bench.act("pair", {"hertz": found[1]["test_hz"], "model": None})
-    assert plain(bench.model())["correlation"]["pairs"] == found
+    controller.act("pair", {"hertz": found[1]["test_hz"], "model": None})
+    assert plain(controller.model())["correlation"]["pairs"] == found
 
 
 def test_files_are_named_from_another_folder(tmp_path):
@@ -232,13 +232,13 @@ def test_files_are_named_from_another_folder(tmp_path):
 
 
 def test_modes_alone_are_shown_and_nothing_else(samples):
-    bench = opened(samples / "beam_dry" / "published.toml")
-    assert bench.hits()["hits"] == []
-    assert bench.modes()["identified"] is False
-    assert bench.shapes()["modes"] == []
-    assert len(plain(bench.model())["correlation"]["pairs"]) >= 3
+    controller = opened(samples / "beam_dry" / "published.toml")
+    assert controller.hits()["hits"] == []
+    assert controller.modes()["identified"] is False
+    assert controller.shapes()["modes"] == []
+    assert len(plain(controller.model())["correlation"]["pairs"]) >= 3
     with pytest.raises(InputError):
-        bench.frf(0)
+        controller.frf(0)
 
 
 def test_without_the_extra_the_command_says_what_to_install(beam, monkeypatch):

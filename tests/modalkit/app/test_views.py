@@ -104,15 +104,15 @@ def test_the_spectrum_in_the_picture_is_the_one_that_is_judged():
 
 def test_a_slider_shows_what_the_study_shows_with_the_same_number(beam):
     """Frequencies of a bending beam follow the root of E; an effect moved is the effect put into the model."""
-    bench = opened(beam)
-    nominal = bench.moved(Moved(), 0)
-    stiffer = bench.moved(Moved((), {"E": 1.1}), 0)
+    controller = opened(beam)
+    nominal = controller.moved(Moved(), 0)
+    stiffer = controller.moved(Moved((), {"E": 1.1}), 0)
     ratio = np.asarray(stiffer["model_hz"]) / np.asarray(nominal["model_hz"])
     assert ratio == pytest.approx(np.sqrt(1.1), rel=1e-6)
     entry = {"name": "sensor_mass", "mass": 0.0086}
-    moved = plain(bench.moved(Moved((entry,)), 0))
-    bench.act("accept", {"effects": [entry]})
-    put = plain(bench.moved(Moved(), 0))
+    moved = plain(controller.moved(Moved((entry,)), 0))
+    controller.act("accept", {"effects": [entry]})
+    put = plain(controller.moved(Moved(), 0))
     assert moved["pairs"] == put["pairs"]
     assert moved["frf"]["model"] == pytest.approx(put["frf"]["model"], rel=1e-9)
 
@@ -142,11 +142,11 @@ def moves(sliders: list[dict[str, Any]], end: str) -> Iterator[dict[str, Any]]:
 
 @pytest.mark.parametrize("end", ["start", "low", "high"])
 def test_every_effect_that_has_sliders_can_be_moved_to_their_ends(beam, end):
-    bench = opened(beam)
-    entries = list(moves(plain(bench.model())["sliders"], end))
+    controller = opened(beam)
+    entries = list(moves(plain(controller.model())["sliders"], end))
     assert len(entries) > 10
     for entry in entries:
-        assert bench.moved(Moved((entry,)), 0)["model_hz"] is not None
+        assert controller.moved(Moved((entry,)), 0)["model_hz"] is not None
 
 
 @pytest.fixture(scope="module")
@@ -159,21 +159,21 @@ def frame(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_what_has_a_name_in_the_model_is_moved_there_and_put_into_it(frame):
     """Regions, supports and node sets: every place answers, and the same entry makes the same model."""
-    bench = opened(frame)
-    page = plain(bench.model())
+    controller = opened(frame)
+    page = plain(controller.model())
     entries = list(moves(page["sliders"], "start"))
     named = {key for entry in entries for key in ("region", "support") if key in entry}
     assert named == {"region", "support"}
     regions = [entry["region"] for entry in entries if entry["name"] == "local_mass"]
     assert sorted(regions) == sorted(
-        {region["name"] for region in bench.study.model_dump()["model"]["region"]}
+        {region["name"] for region in controller.study.model_dump()["model"]["region"]}
     )
-    shown = [plain(bench.moved(Moved((entry,)), 0))["model_hz"] for entry in entries]
+    shown = [plain(controller.moved(Moved((entry,)), 0))["model_hz"] for entry in entries]
     soft = {"name": "local_stiffness", "region": "beam_1", "loss": 0.5}
-    moved = plain(bench.moved(Moved((soft,)), 0))["model_hz"]
+    moved = plain(controller.moved(Moved((soft,)), 0))["model_hz"]
     assert moved[0] < page["model_hz"][0]
-    bench.act("accept", {"effects": [soft]})
-    assert plain(bench.model())["model_hz"] == pytest.approx(moved, rel=1e-9)
+    controller.act("accept", {"effects": [soft]})
+    assert plain(controller.model())["model_hz"] == pytest.approx(moved, rel=1e-9)
     assert len({tuple(one) for one in shown}) > len(regions)
 
 
@@ -183,8 +183,8 @@ def row(*effects: str, **values: Any) -> dict[str, Any]:
 
 
 def test_a_row_of_the_diagnosis_is_put_where_its_names_say(frame):
-    bench = opened(frame)
-    predictor = bench._workbench.predictor(bench.study)
+    controller = opened(frame)
+    predictor = controller._workbench.predictor(controller.study)
     values = {
         "local_stiffness.region": "beam_2",
         "local_stiffness.loss": 0.3,
@@ -192,13 +192,13 @@ def test_a_row_of_the_diagnosis_is_put_where_its_names_say(frame):
     }
     entries = accepted_entries(row("local_stiffness", **values), predictor)
     assert entries == [{"name": "local_stiffness", "region": "beam_2", "loss": 0.3}]
-    bench.act("accept", {"effects": entries})
-    assert bench.study.model.effect[-1] == entries[0]
+    controller.act("accept", {"effects": entries})
+    assert controller.study.model.effect[-1] == entries[0]
 
 
 def test_a_hypothesis_is_not_put_into_the_model(frame):
-    bench = opened(frame)
-    predictor = bench._workbench.predictor(bench.study)
+    controller = opened(frame)
+    predictor = controller._workbench.predictor(controller.study)
     found = row("local_mass", "joint 3 is loose", **{"joint 3 is loose.amount": 1.0})
     with pytest.raises(
         InputError, match=r"'joint 3 is loose' is a hypothesis .* cannot be put into the model"

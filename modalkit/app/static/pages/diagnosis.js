@@ -1,7 +1,7 @@
 // Diagnosis: progress by stages, the answer as in the report, a cause accepted, what to measure next, planning.
 
 import { axis, colour, draw } from "../charts.js";
-import { button, fill, fixed, h, table, warnings } from "../dom.js";
+import { button, fill, fixed, h, table, warnings, withoutModel } from "../dom.js";
 import { worker } from "./work.js";
 
 export function open(root, app) {
@@ -45,19 +45,7 @@ export function open(root, app) {
 
   async function update() {
     if (!app.state.has_model) {
-      fill(
-        root,
-        h(
-          "section",
-          { class: "panel" },
-          h("h2", {}, "Diagnosis"),
-          h(
-            "p",
-            {},
-            "There is no model to diagnose: open a study that has one, or write a [model] on the page of the model.",
-          ),
-        ),
-      );
+      fill(root, withoutModel("Diagnosis", "diagnose"));
       return;
     }
     await work.update();

@@ -37,22 +37,16 @@ export function open(root, app) {
 
   function controlled() {
     const page = view.page;
-    const low = h("input", {
-      type: "text",
-      inputmode: "decimal",
-      value: String(page.band[0]),
-      size: 7,
-      "aria-label": "lowest frequency of the band",
-      id: "band-low",
-    });
-    const high = h("input", {
-      type: "text",
-      inputmode: "decimal",
-      value: String(page.band[1]),
-      size: 7,
-      "aria-label": "highest frequency of the band",
-      id: "band-high",
-    });
+    const limit = (end, value) =>
+      h("input", {
+        type: "text",
+        inputmode: "decimal",
+        value: String(value),
+        size: 7,
+        "aria-label": `${end}est frequency of the band`,
+        id: `band-${end}`,
+      });
+    const [low, high] = [limit("low", page.band[0]), limit("high", page.band[1])];
     const order = h("input", {
       type: "number",
       min: "2",

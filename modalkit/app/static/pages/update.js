@@ -2,7 +2,7 @@
 
 import { get } from "../api.js";
 import { axis, colour, draw } from "../charts.js";
-import { field, fill, fixed, h, select, table, warnings } from "../dom.js";
+import { field, fill, fixed, h, select, table, warnings, withoutModel } from "../dom.js";
 import { worker } from "./work.js";
 
 export function open(root, app) {
@@ -17,19 +17,7 @@ export function open(root, app) {
 
   async function update() {
     if (!app.state.has_model) {
-      fill(
-        root,
-        h(
-          "section",
-          { class: "panel" },
-          h("h2", {}, "Update"),
-          h(
-            "p",
-            {},
-            "There is no model to update: open a study that has one, or write a [model] on the page of the model.",
-          ),
-        ),
-      );
+      fill(root, withoutModel("Update", "update"));
       return;
     }
     const page = await get("model");

@@ -33,7 +33,7 @@ NEEDS_MODES = frozenset({"hit", "pick", "drop", "band", "order", "references", "
 EXPORT = "modalkit-export"
 
 
-class Bench:
+class Controller:
     """The state of the app and what follows from it.
 
     Parameters
@@ -146,11 +146,11 @@ class Bench:
     def modes(self) -> dict[str, Any]:
         """Return the page of the modes."""
         with self._lock:
-            bench, study = self._workbench, self.study
-            processed, content = bench.processed(study), bench.content(study)
-            origins = None if processed is None else bench.origins(study)
+            controller, study = self._workbench, self.study
+            processed, content = controller.processed(study), controller.content(study)
+            origins = None if processed is None else controller.origins(study)
             references = [] if content is None else references_of(content)
-            return modes_page(processed, bench.modes(study), origins, study, references)
+            return modes_page(processed, controller.modes(study), origins, study, references)
 
     def fit(self, index: int) -> dict[str, Any]:
         """Return one FRF with its fit."""
