@@ -9,6 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.effects.base import Parameter, Values
+from updating.models.reduced import Reduced
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 
@@ -98,9 +99,9 @@ def covered(predictor: Predictor, kind: str, inside: FloatArray) -> FloatArray:
     reduced, factors = predictor.reduced, predictor.base.factors
     if predictor.spec.kind == "beam" or reduced.whole:
         return reduced.weighted(kind, inside, factors)
-    cell = _cells(predictor.spec, reduced.fields.points)
-    size = np.bincount(cell, reduced.fields.weights)
-    share = np.bincount(cell, reduced.fields.weights * inside) / size
+    cell, size = _cells(reduced, predictor.spec)
+    chosen = np.flatnonzero(inside)
+    share = np.bincount(cell[chosen], reduced.fields.weights[chosen] * inside[chosen], len(size)) / size
     key = (f"{kind} of cells", *sorted(factors.items()))
     if key not in reduced.kept:
         reduced.kept[key] = _cell_matrices(predictor, kind, cell)
@@ -108,13 +109,17 @@ def covered(predictor: Predictor, kind: str, inside: FloatArray) -> FloatArray:
     return np.asarray(np.tensordot(share[chosen], reduced.kept[key][chosen], axes=1))
 
 
-def _cells(spec: Spec, points: FloatArray) -> IntArray:
-    """Return the cell in which each quadrature point lies, (n_points,)."""
-    groups = max(1, math.ceil(math.sqrt(math.prod(spec.elements) / CELLS)))
-    counts = [math.ceil(n / groups) for n in spec.elements]
-    sides = np.array([spec.length, spec.width]) / np.array(spec.elements) * groups
-    index = np.minimum((points / sides).astype(int), np.array(counts) - 1)
-    return np.asarray(index[:, 0] * counts[1] + index[:, 1])
+def _cells(reduced: Reduced, spec: Spec) -> tuple[IntArray, FloatArray]:
+    """Return the cell in which each quadrature point lies (n_points,), and the cells' areas (n_cells,) [m^2]."""
+    if "cells" not in reduced.kept:
+        groups = max(1, math.ceil(math.sqrt(math.prod(spec.elements) / CELLS)))
+        counts = [math.ceil(n / groups) for n in spec.elements]
+        sides = np.array([spec.length, spec.width]) / np.array(spec.elements) * groups
+        index = np.minimum((reduced.fields.points / sides).astype(int), np.array(counts) - 1)
+        cell = index[:, 0] * counts[1] + index[:, 1]
+        reduced.kept["cells"] = cell, np.bincount(cell, reduced.fields.weights)
+    found: tuple[IntArray, FloatArray] = reduced.kept["cells"]
+    return found
 
 
 def _cell_matrices(predictor: Predictor, kind: str, cell: IntArray) -> FloatArray:

@@ -55,6 +55,10 @@ class Constants(Quantity):
             return np.ones(len(test.frequency))
         return np.asarray(np.sqrt(np.mean(test.constants**2, axis=0)))
 
+    @cached_property
+    def _places(self) -> Places:
+        return Places(self.setting)
+
     def block(self, view: View) -> Block:
         """Return the constants beside a state, the calibration a named doubt where their level is data."""
         test, now, scale = self.setting.measured, view.now, self.scale
@@ -64,11 +68,10 @@ class Constants(Quantity):
         own_errors = (test.constants_sigma / scale) ** 2 + doubt * level**2 + LEAST_CONSTANT_NOISE**2
         variance = own_errors + self._late(view) ** 2
         uneven, louder = self._idealised(predicted, view.doubt.fidelity)
-        places = Places(self.setting)
         own = [
-            places.hits(now.along * level),
-            places.sensors(now.along_seen * level),
-            places.together(now.along * level, now.along_seen * level),
+            self._places.hits(now.along * level),
+            self._places.sensors(now.along_seen * level),
+            self._places.together(now.along * level, now.along_seen * level),
             louder,
         ]
         gain = self._gains(predicted)

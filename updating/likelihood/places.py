@@ -32,14 +32,13 @@ class Places:
         along : (dim, n_frf, n_modes) array
             Derivatives of the constants by the position of the hit, relative to their scale [1/m].
         """
-        test = self.setting.measured
-        return self._by_place(np.where(test.hit < 0, test.seen, test.hit), along)
+        return self._by_place(*self._hit, along)
 
     def sensors(self, along: FloatArray) -> FloatArray:
         """Return one column per sensor and direction: the effect of having mounted it beside its point."""
         if (self.setting.measured.hit < 0).all():
             return np.zeros((along[0].size, 0))
-        return self._by_place(self.setting.measured.seen, along)
+        return self._by_place(*self._seen, along)
 
     def together(self, hit: FloatArray, seen: FloatArray) -> FloatArray:
         """Return a column for where the points as a whole lie along x."""
@@ -60,14 +59,28 @@ class Places:
             return 0.0
         return REGISTRATION_SHARE * self.setting.tolerances.factors.get("length", 0.0) * spec.length
 
-    def _by_place(self, place: IntArray, along: FloatArray) -> FloatArray:
-        """Return one column per point and direction of slopes (dim, n_frf, n_modes), each times the doubt there."""
+    @cached_property
+    def _hit(self) -> tuple[IntArray, FloatArray]:
+        test = self.setting.measured
+        return self._doubted(np.where(test.hit < 0, test.seen, test.hit))
+
+    @cached_property
+    def _seen(self) -> tuple[IntArray, FloatArray]:
+        return self._doubted(self.setting.measured.seen)
+
+    def _doubted(self, place: IntArray) -> tuple[IntArray, FloatArray]:
+        """Return the rank of every FRF's point (n_frf,) among those that occur, and their doubts (n, dim) [m]."""
         points, rank = np.unique(place, return_inverse=True)
+        axes = range(self.setting.measured.points.shape[1])
+        sigma = np.array([[self._sigma(int(p), axis) for axis in axes] for p in points])
+        return rank, sigma.reshape(len(points), len(axes))
+
+    @staticmethod
+    def _by_place(rank: IntArray, sigma: FloatArray, along: FloatArray) -> FloatArray:
+        """Return one column per point and direction of slopes (dim, n_frf, n_modes), each times the doubt there."""
         n_dim, n_frf, n_modes = along.shape
-        columns = np.zeros((n_frf, n_modes, len(points), n_dim))
-        for axis, slope in enumerate(along):
-            sigma = np.array([self._sigma(int(p), axis) for p in points])
-            columns[np.arange(n_frf), :, rank, axis] = sigma[rank, None] * slope
+        columns = np.zeros((n_frf, n_modes, len(sigma), n_dim))
+        columns[np.arange(n_frf), :, rank] = np.moveaxis(along * sigma[rank].T[:, :, None], 0, -1)
         return columns.reshape(n_frf * n_modes, -1)
 
     def _sigma(self, point: int, axis: int) -> float:

@@ -6,6 +6,7 @@ the hysteretic part i eta_k K_k. A region's own coefficient takes the place of t
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -120,8 +121,8 @@ def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[
     own = coefficients(reduced, damping, state)
     n = reduced.ranks[state.released]
     viscous, structural = np.zeros((n, n)), np.zeros((n, n))
-    if any(np.any(values) for values in own.values()):
-        if all(np.ptp(values) == 0 for values in own.values()):
+    if _known(own):
+        if _uniform(own):
             stiffness, mass = reduced.matrices(replace(state, stiffness=(), mass=()))
             viscous += own["alpha"][0] * mass + own["beta"][0] * stiffness
             structural += own["loss_factor"][0] * stiffness
@@ -130,14 +131,73 @@ def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[
             viscous += np.tensordot(own["alpha"], heavy, axes=1) + np.tensordot(own["beta"], stiff, axes=1)
             viscous += own["alpha"][-1] * reduced.point_masses[:n, :n]
             structural += np.tensordot(own["loss_factor"], stiff, axes=1)
-    for added in state.damping:
+    for added in _viscous(state):
         viscous += added[:n, :n]
-    for loss in state.losses:
-        if loss.power == VISCOUS:
-            viscous += loss.matrix[:n, :n]
-        elif loss.power == STRUCTURAL:
-            structural += loss.matrix[:n, :n]
+    for added in _structural(state):
+        structural += added[:n, :n]
     return viscous, structural
+
+
+def modal_damping(
+    reduced: Reduced, damping: Damping, state: State, values: FloatArray, vectors: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return what modes make of :func:`damping_matrices`: phi^T C phi and phi^T D phi.
+
+    Where coefficients are the same all over, phi^T M phi = 1 and phi^T K phi = lambda give them without the matrices:
+    only what effects add, which the coefficients do not damp, comes off.
+
+    Parameters
+    ----------
+    reduced, damping, state
+        As of :func:`damping_matrices`.
+    values : (n_modes,) array
+        Eigenvalues of the state [rad^2/s^2].
+    vectors : (r, n_modes) array
+        Its mass-normalised modes.
+
+    Returns
+    -------
+    viscous, structural : (n_modes,) arrays [1/s, 1/s^2]
+    """
+    own = coefficients(reduced, damping, state)
+    if not _uniform(own):
+        matrices = damping_matrices(reduced, damping, state)
+        viscous, structural = (np.sum(vectors * (matrix @ vectors), axis=0) for matrix in matrices)
+        return viscous, structural
+    viscous = own["alpha"][0] * (1.0 - _share(state.mass, vectors)) + _share(_viscous(state), vectors)
+    structural = _share(_structural(state), vectors)
+    if own["beta"][0] or own["loss_factor"][0]:
+        elastic = values - _share(state.stiffness, vectors)
+        viscous, structural = viscous + own["beta"][0] * elastic, structural + own["loss_factor"][0] * elastic
+    return viscous, structural
+
+
+def _known(own: Mapping[str, FloatArray]) -> bool:
+    """Tell whether any coefficient damps."""
+    return any(np.any(values) for values in own.values())
+
+
+def _uniform(own: Mapping[str, FloatArray]) -> bool:
+    """Tell whether every coefficient is the same all over."""
+    return all(np.ptp(values) == 0 for values in own.values())
+
+
+def _viscous(state: State) -> list[FloatArray]:
+    """Return the damping that effects add, as far as it is viscous."""
+    return [*state.damping, *(loss.matrix for loss in state.losses if loss.power == VISCOUS)]
+
+
+def _structural(state: State) -> list[FloatArray]:
+    """Return the damping that effects add, as far as it is structural."""
+    return [loss.matrix for loss in state.losses if loss.power == STRUCTURAL]
+
+
+def _share(matrices: Sequence[FloatArray], vectors: FloatArray) -> FloatArray:
+    """Return phi^T A phi of every mode, summed over some matrices [SI]."""
+    n, total = len(vectors), np.zeros(vectors.shape[1])
+    for matrix in matrices:
+        total = total + np.sum(vectors * (matrix[:n, :n] @ vectors), axis=0)
+    return total
 
 
 def modal_losses(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:

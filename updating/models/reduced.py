@@ -176,7 +176,7 @@ class Reduced:
         """Return stiffness and mass of a state on the columns its releases admit [SI]."""
         n = self.ranks[state.released]
         total = {"stiffness": np.zeros((n, n)), "mass": self.point_masses[:n, :n].copy()}
-        for term, parts in self._terms(state):
+        for term, parts in self.terms(state):
             scale = term.scale(state.factors)
             total[term.kind] += parts[:n, :n] if scale == 1.0 else parts[:n, :n] * scale
         for kind, added in (("stiffness", state.stiffness), ("mass", state.mass)):
@@ -209,7 +209,7 @@ class Reduced:
         """Matrix of every term over all regions, each (r, r) [SI]."""
         return tuple(p.sum(axis=0) for p in self.parts)
 
-    def _terms(self, state: State) -> list[tuple[Term, FloatArray]]:
+    def terms(self, state: State) -> list[tuple[Term, FloatArray]]:
         """Return every term and change with its matrix, the factors of the whole structure not applied."""
         terms: list[tuple[Term, FloatArray]] = list(
             zip(self.structure.terms, self._totals(state), strict=True)
@@ -231,16 +231,11 @@ class Reduced:
         """Return dK and dM per unit of the logarithm of a factor, at a state [SI]."""
         n = self.ranks[state.released]
         change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
-        for term, parts in self._terms(state):
+        for term, parts in self.terms(state):
             power = term.powers.get(factor, 0.0)
             if power:
                 change[term.kind] += power * term.scale(state.factors) * parts[:n, :n]
         return change["stiffness"], change["mass"]
-
-    def scaled_terms(self, state: State) -> list[tuple[Term, FloatArray]]:
-        """Return every term with its matrix under a state's factors, on the columns its releases admit [SI]."""
-        n = self.ranks[state.released]
-        return [(term, term.scale(state.factors) * whole[:n, :n]) for term, whole in self._terms(state)]
 
     def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return displacement and slopes of the basis at points (n_points, dim) [m], each (n_points, r).

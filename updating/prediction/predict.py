@@ -18,7 +18,14 @@ from acquisition.display import Displayed
 from updating.environment import Environment
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
-from updating.models.damping import Matrices, coupled, damping_matrices, layer_slowing, modal_losses
+from updating.models.damping import (
+    Matrices,
+    coupled,
+    damping_matrices,
+    layer_slowing,
+    modal_damping,
+    modal_losses,
+)
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.shear import sheared
@@ -291,44 +298,35 @@ class Predictor(Displayed):
         places: FloatArray,
     ) -> list[tuple[FloatArray, FloatArray]]:
         """Return derivatives of ln f and of the shapes at the points by the logarithms of factors."""
-        modes = vectors[:, chosen]
-        lam = values[chosen]
-        terms = [
-            (term, (vectors.T @ (matrix @ modes)) * (-lam if term.kind == "mass" else 1.0))
-            for term, matrix in self.reduced.scaled_terms(state)
-        ]
-        gap = lam[None, :] - values[:, None]
-        near = np.abs(gap) < 1e-9 * np.abs(lam).max()
-        inverse_gap = np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
-        n = vectors.shape[0]
-        basis = rows["w"][:, :n] @ vectors
+        modes, lam = vectors[:, chosen], values[chosen]
+        terms = self.reduced.terms(state)
+        sized = np.array([term.scale(state.factors) for term, _ in terms])
+        heavy = np.array([term.kind == "mass" for term, _ in terms])
+        powers = np.array([[term.powers.get(name, 0.0) for term, _ in terms] for name in names])
+        n = len(vectors)
+        forces = np.stack([matrix[:n, :n] @ modes for _, matrix in terms])
+        parts = vectors.T @ (
+            forces * np.where(heavy[:, None], -sized[:, None] * lam, sized[:, None])[:, None]
+        )
+        whole = np.tensordot(powers, parts, axes=1)
         own = np.arange(len(chosen))
-        found = []
-        for name in names:
-            whole = np.zeros((len(values), len(chosen)))
-            heavier = np.zeros(len(chosen))
-            for term, part in terms:
-                if power := term.powers.get(name, 0.0):
-                    whole += power * part
-                    if term.kind == "mass":
-                        heavier -= power * part[chosen, own] / np.where(lam == 0, 1.0, lam)
-            weights = inverse_gap * whole
-            weights[chosen, own] = -0.5 * heavier
-            change = basis @ weights
-            if name == "length":
-                shift = (self.growth - places[:, :1]) * np.ones((1, n))
-                change = change + (shift * rows["wx"][:, :n]) @ modes
-            found.append((whole[chosen, own] / (2 * np.maximum(lam, 1e-12)), change))
-        return found
+        heavier = -(powers * heavy) @ parts[:, chosen, own] / np.where(lam == 0, 1.0, lam)
+        gap = lam - values[:, None]
+        near = np.abs(gap) < 1e-9 * np.abs(lam).max()
+        weights = whole * np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
+        weights[:, chosen, own] = -0.5 * heavier
+        change = (rows["w"][:, :n] @ vectors) @ weights
+        if "length" in names:
+            change[names.index("length")] += ((self.growth - places[:, :1]) * rows["wx"][:, :n]) @ modes
+        return list(zip(whole[:, chosen, own] / (2 * np.maximum(lam, 1e-12)), change, strict=True))
 
     def _damping(self, state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
         """Return modal damping ratios: what is expected of the specimen, plus what the state adds."""
         omega = np.sqrt(np.maximum(values, 1e-12))
         if not self.expects(state):
             return np.asarray(np.full(len(values), np.nan))
-        viscous, structural = self._damping_matrices(state)
-        c = np.sum(vectors * (viscous @ vectors), axis=0)
-        d = np.sum(vectors * (structural @ vectors), axis=0) if structural.any() else np.zeros(len(values))
+        expected = Damping() if state.damping else self.spec.damping
+        c, d = modal_damping(self.reduced, expected, state, values, vectors)
         slow = layer_slowing(state, values, vectors)
         rate = c + modal_losses(state, values, vectors)
         added = d / (2 * omega**2) + self._ratios(state, len(values)) + state.decay / (slow * omega)

@@ -9,9 +9,9 @@ from updating_cases import blank
 
 from updating import Damping, Material, PointMass, Predictor, Region, Spec
 from updating.models.complex_modes import complex_modes
-from updating.models.damping import Matrices, damping_matrices
+from updating.models.damping import Matrices, damping_matrices, modal_damping
 from updating.models.response import receptance
-from updating.models.state import State
+from updating.models.state import Loss, State
 
 STEEL = Material(210e9, 7860.0, 0.3)
 POINTS = np.linspace(0.0, 1.0, 11)
@@ -128,3 +128,19 @@ def test_ratios_by_mode_enter_the_receptance() -> None:
     predictor = Predictor(replace(BEAM, regions=(), damping=Damping(ratios=ratios)), blank(POINTS))
     modes = predictor.complex_modes()
     assert -modes.poles.real[:4] / np.abs(modes.poles[:4]) == pytest.approx(ratios, rel=1e-6)
+
+
+@pytest.mark.parametrize("regions", [(), HALVES], ids=["uniform", "by region"])
+def test_modal_damping_is_that_of_the_damping_matrices(regions: tuple[Region, ...]) -> None:
+    spec = replace(BEAM, regions=regions, damping=Damping(2.0, 3e-6, loss_factor=0.01))
+    reduced = Predictor(spec, blank(POINTS)).reduced
+    row = reduced.rows(np.array([[0.3]]))["w"]
+    body, spring = row.T @ row, 4e3 * row.T @ row
+    added = State(
+        mass=(0.2 * body,), stiffness=(spring,), damping=(0.1 * body,), losses=(Loss(2.0 * body), Loss(spring, -1.0))
+    )  # fmt: skip
+    values, vectors = reduced.eigen(added)
+    matrices = damping_matrices(reduced, spec.damping, added)
+    found = modal_damping(reduced, spec.damping, added, values[2:12], vectors[:, 2:12])
+    for modal, matrix in zip(found, matrices, strict=True):
+        assert modal == pytest.approx(np.diag(vectors.T @ matrix @ vectors)[2:12], rel=1e-9)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -223,12 +224,16 @@ def _unit(predictor: Predictor, values: Values) -> FloatArray:
     extent = values.get("extent", 0.0)
     lines, shares = [], []
     for name, size in _sides(spec):
-        nodes, weights = np.polynomial.legendre.leggauss(DENSE[spec.kind] if extent else 1)
+        nodes, weights = _quadrature(DENSE[spec.kind] if extent else 1)
         low, high = (min(max(values[name] + side * extent / 2, 0.0), size) for side in (-1, 1))
         lines.append((low + high) / 2 + nodes * (high - low) / 2)
         shares.append(weights / 2)
     points = np.array(list(product(*lines)))
     return springs(predictor, points, np.prod(list(product(*shares)), axis=1))
+
+
+_quadrature = cache(np.polynomial.legendre.leggauss)
+"""Gauss's nodes and weights, kept: every stretch asks for the same."""
 
 
 def _sides(spec: Spec) -> list[tuple[str, float]]:
