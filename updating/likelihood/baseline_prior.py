@@ -176,5 +176,7 @@ class Before:
             gain**2 * (self.baseline.constants_sigma[there] ** 2 @ (weights**2).T)
             + (CARRIED_DOUBT * missed[here]) ** 2
         )
-        known[here] = gain[:, :, None] * np.einsum("fkp,mk->fmp", self.prediction.constants_by[there], weights)
+        known[here] = gain[:, :, None] * np.einsum(
+            "fkp,mk->fmp", self.prediction.constants_by[there], weights
+        )
         return missed, variance, known

@@ -12,7 +12,6 @@ from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
 from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
-from updating.prediction.predict import Prediction
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.thresholds import (
     DELAY_FIT_ERROR,
