@@ -64,7 +64,7 @@ def match(
     ratio = np.nan_to_num(ratio, nan=3.0)
     alike = np.nan_to_num(
         mac_of_constants(measured, prediction, trusted)
-    )  # what has lost its stiffness is like nothing
+    )  # what has lost its mass is like nothing
     cost = 1 - alike + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
     if measured.partners is not None:
         columns = _stated(measured, prediction)
