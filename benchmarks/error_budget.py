@@ -97,7 +97,13 @@ def entry(trial: Trial, outcome: Outcome) -> Entry:
             trial.index, trial.truth.kind, "none", said, "alarm", check, datum,
             _score(found.nothing), _score(found.nothing), _score(lead.explanation), found.nothing.p_value,
         )  # fmt: skip
-    true = max((_from_truth(problem, trial, names) for names in trial.truth.accepted), key=_known_score)
+    theories = (False, True) if found.both else (False,)
+    weighed = (
+        _from_truth(problem, trial, names, fuller=fuller)
+        for names in trial.truth.accepted
+        for fuller in theories
+    )
+    true = max(weighed, key=_known_score)
     if true is None:
         return Entry(
             trial.index, trial.truth.kind, label(trial.truth.effects), said, "not examined", "", "",
@@ -135,8 +141,10 @@ def _known_score(explanation: Explanation | None) -> float:
     return -np.inf if explanation is None else _score(explanation)
 
 
-def _from_truth(problem: SpecimenProblem, trial: Trial, names: tuple[str, ...]) -> Explanation | None:
-    """Weigh a set from the values that were put in, on every form and theory; None where it does not apply."""
+def _from_truth(
+    problem: SpecimenProblem, trial: Trial, names: tuple[str, ...], *, fuller: bool
+) -> Explanation | None:
+    """Weigh a set from the values that were put in, in every form, on one theory; None where it does not apply."""
     effects = tuple(LIBRARY[name] for name in names)
     if any(problem.applies(effect) is not None for effect in effects):
         return None
@@ -145,7 +153,7 @@ def _from_truth(problem: SpecimenProblem, trial: Trial, names: tuple[str, ...]) 
     for effect in effects:
         forms = [(*chosen, form) for chosen in forms for form in problem.forms(effect)]
     for chosen in forms:
-        candidate = Candidate(effects, chosen=chosen)
+        candidate = Candidate(effects, fuller=fuller, chosen=chosen)
         known = trial.truth.parameters
         parameters = problem.parameters(candidate)
         stated = {name: float(known[name]) for name, _ in parameters if name in known}

@@ -167,8 +167,8 @@ DOUBTED_FIT = 0.02
 Doubled: pairs are tried in one test in 25 that needs none."""
 
 WELL_FITTED = 0.1
-"""Where a single effect fits better than this sets of several are not weighed [-]: what they gain then is what the
-idealisation of the single one leaves. Doubled: twice as many tests weigh sets."""
+"""Where a single effect fits better than this a second cause is sought beside the best of each alone, and not from no
+effect at all [-]; nor are its odd data. Doubled: twice as many tests take the longer search, some 3 s on a beam."""
 
 PROBABLE_BEHIND = 6.0
 """Explanations whose logarithm of the probability lies further behind the best have no say in whether one fits [-]:

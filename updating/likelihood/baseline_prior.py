@@ -9,15 +9,16 @@ that mixes two of the baseline takes its share of each.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.models.state import NOMINAL
+from updating.models.state import NOMINAL, State
 from updating.prediction.matching import match
 from updating.prediction.predict import Prediction, Predictor
+from updating.test_data.chain import measurement_chain
 from updating.test_data.measured import Measured
 from updating.test_data.same_places import same_rows
 from updating.thresholds import CARRIED_DOUBT, UNREACHED_MODE_DOUBT
@@ -126,8 +127,25 @@ class Before:
         """Rows of the test and of the baseline with the same two points, in either order."""
         return same_rows(self.measured, self.baseline)
 
-    def shapes(self, now: Prediction) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _read(self, state: State) -> tuple[IntArray, IntArray]:
+        """Return rows of the test and of the baseline that really join the same two points, labels exchanged or not."""
+        if not state.exchanged:
+            return self._rows
+        true = measurement_chain(self.measured, State(exchanged=state.exchanged))
+        return same_rows(replace(self.measured, seen=true.seen, hit=true.hit), self.baseline)
+
+    def shapes(self, now: Prediction, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return what the baseline says the present constants miss.
+
+        It is the structure that the model misses, so that the present measurement reads what is missed as it reads the
+        rest: at the points where it really is, with its own signs and levels.
+
+        Parameters
+        ----------
+        now : Prediction
+            The present modes.
+        state : State
+            Of the present measurement.
 
         Returns
         -------
@@ -138,23 +156,27 @@ class Before:
         known : (n_frf, n_modes, n_factors) array
             Sensitivities already known [1/kg].
         """
-        here, there = self._rows
+        here, there = self._read(state)
         missed, variance = np.zeros_like(now.constants), np.zeros_like(now.constants)
         known = np.zeros_like(now.constants_by)
         if not (self.measured.absolute and self.baseline.absolute and len(here)):
             return missed, variance, known
+        gain = measurement_chain(self.measured, state).gain[here, None]
         predicted = self.prediction.constants[there]
         error = self.baseline.constants[there] - predicted
         # of a mode that was not predicted to be seen, its sensor on a node, what was missed is all there is
         unseen = np.sum(self.baseline.constants[there] ** 2, axis=0)
         level = np.sqrt(
-            (np.sum(now.constants[here] ** 2, axis=0)[:, None] + unseen)
+            (np.sum((now.constants[here] / gain) ** 2, axis=0)[:, None] + unseen)
             / (np.sum(predicted**2, axis=0) + unseen)
         )
         weights = self.shares(now) * level
-        missed[here] = error @ weights.T
+        missed[here] = gain * (error @ weights.T)
         variance[here] = (
-            self.baseline.constants_sigma[there] ** 2 @ (weights**2).T + (CARRIED_DOUBT * missed[here]) ** 2
+            gain**2 * (self.baseline.constants_sigma[there] ** 2 @ (weights**2).T)
+            + (CARRIED_DOUBT * missed[here]) ** 2
         )
-        known[here] = np.einsum("fkp,mk->fmp", self.prediction.constants_by[there], weights)
+        known[here] = gain[:, :, None] * np.einsum(
+            "fkp,mk->fmp", self.prediction.constants_by[there], weights
+        )
         return missed, variance, known

@@ -12,7 +12,6 @@ from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
 from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
-from updating.prediction.predict import Prediction
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.thresholds import (
     DELAY_FIT_ERROR,
@@ -62,7 +61,7 @@ class Constants(Quantity):
     def block(self, view: View) -> Block:
         """Return the constants beside a state, the calibration a named doubt where their level is data."""
         test, now, scale = self.setting.measured, view.now, self.scale
-        constants, by, doubt = self._corrected(now)
+        constants, by, doubt = self._corrected(view)
         level = self._level(constants, view)
         predicted, by = constants * level, by * level[:, :, None]
         own_errors = (test.constants_sigma / scale) ** 2 + doubt * level**2 + LEAST_CONSTANT_NOISE**2
@@ -88,11 +87,12 @@ class Constants(Quantity):
             np.repeat(np.arange(len(predicted)), predicted.shape[1]),
         )
 
-    def _corrected(self, now: Prediction) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return predicted constants, their sensitivities and their variance, what a baseline has said put in."""
+        now = view.now
         if self.setting.before is None:
             return now.constants, now.constants_by, np.zeros_like(now.constants)
-        missed, doubt, known = self.setting.before.shapes(now)
+        missed, doubt, known = self.setting.before.shapes(now, view.state)
         return now.constants + missed, now.constants_by - known, doubt
 
     def _level(self, constants: FloatArray, view: View) -> FloatArray:

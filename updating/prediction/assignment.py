@@ -62,7 +62,10 @@ def match(
     trusted = measured.trusted if trusted is None else trusted
     ratio = np.abs(np.log(measured.frequency[:, None] / prediction.frequency[None, :]))
     ratio = np.nan_to_num(ratio, nan=3.0)
-    cost = 1 - mac_of_constants(measured, prediction, trusted) + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
+    alike = np.nan_to_num(
+        mac_of_constants(measured, prediction, trusted)
+    )  # what has lost its mass is like nothing
+    cost = 1 - alike + FREQUENCY_WEIGHT * np.minimum(ratio, 3.0)
     if measured.partners is not None:
         columns = _stated(measured, prediction)
         rows = np.flatnonzero((columns >= 0) & (columns < cost.shape[1]))

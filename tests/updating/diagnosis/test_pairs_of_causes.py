@@ -7,9 +7,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from updating_cases import BEAM, blank, case_of, specimen, struck
+from updating_cases import BEAM, POINTS, blank, case_of, specimen, struck
 
-from updating import LIBRARY, Case, Diagnosis, Measured, diagnose
+from updating import LIBRARY, Case, Diagnosis, Measured, Predictor, diagnose
+from updating.problem.candidate import Candidate
+from updating.thresholds import WELL_FITTED
 
 FREE = replace(BEAM, length=0.5, clamped=()).with_elements(20)
 PLACES = np.linspace(0.0, 0.5, 7)
@@ -107,3 +109,26 @@ def test_what_may_be_there_again_stays_in_the_library_when_one_is_accepted() -> 
     assert diagnose(replace(case, accepted=(known, other)), library=library).verdict == "none"
     modulus = diagnose(replace(case, accepted=(("E", {"factor": 0.9}),)), library=library)
     assert all("E" not in row.effects for row in modulus.ranking)
+
+
+def test_that_one_cause_fits_hides_no_second_one() -> None:
+    """How far the sketch of a fluid may be off lets it fit what a clamp that gives way has changed as well."""
+    effects = some("fluid_added_mass", "clamp_translation")
+    seen, rng = Predictor(BEAM.with_elements(20), blank(POINTS)), np.random.default_rng(4)
+    both = Candidate(tuple(effects))
+    true = {"fluid_added_mass.fluid_density": 998.0, "clamp_translation.stiffness": 1e7}
+    now = seen.predict(both.state(seen, both.coordinates(seen, true)), count=5)
+    sigma = 0.01 * np.sqrt(np.mean(now.constants**2, axis=0)) * np.ones_like(now.constants)
+    test = replace(
+        blank(POINTS),
+        frequency=now.frequency * (1 + 2e-4 * rng.standard_normal(5)),
+        frequency_sigma=1e-4 * now.frequency,
+        damping=np.full(5, np.nan),
+        damping_sigma=np.full(5, np.nan),
+        constants=now.constants + sigma * rng.standard_normal(now.constants.shape),
+        constants_sigma=sigma,
+    )
+    found = diagnose(case_of(test, BEAM.with_elements(20)), library=[*effects, *some("E", "density")])
+    single = next(row for row in found.ranking if row.effects == ("fluid_added_mass",))
+    assert single.p_value > WELL_FITTED
+    assert (found.verdict, {frozenset(s) for s in found.sets}) == ("named", {frozenset(both.names)})

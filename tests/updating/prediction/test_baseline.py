@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from updating_cases import BEAM, POINTS, blank, specimen, struck
+from updating_cases import BEAM, POINTS, blank, case_of, specimen, struck
 
 from acquisition.errors import EstimationError
 from updating import LIBRARY, Damping, Measured, Predictor
+from updating.diagnosis.diagnose import pose
+from updating.likelihood.gaussian import marginal
 from updating.models.state import State
 from updating.prediction.baseline import correct, modal_mass
+from updating.test_data.chain import measurement_chain
 
 LOOK = Predictor(BEAM, blank(POINTS))
 SOUND = LOOK.predict(count=5)
@@ -131,3 +134,33 @@ def test_modes_with_the_sensor_on_a_node_say_nothing_of_the_mass() -> None:
     state = correct(middle.for_test(test), test, np.arange(6))
     found = middle.for_test(test, (lambda _: state,)).predict(count=8)
     assert found.frequency == pytest.approx(middle.predict(count=8).frequency, rel=0.002)
+
+
+@pytest.mark.parametrize(
+    "state",
+    [
+        State(exchanged=(("hit", 1, 3),)),
+        State(point_gains={("hit", 3): -1.0}),
+        State(point_gains={("hit", 3): 0.8}),
+    ],
+    ids=["two labels exchanged", "a sign reversed", "a level off"],
+)
+def test_what_the_model_misses_is_read_as_the_measurement_reads_the_rest(state: State) -> None:
+    """A chain off by 30 % in both tests; what the second got wrong besides, undone, fits as if it had not."""
+    rng = np.random.default_rng(5)
+    beam = specimen(rng)
+    before, after = (
+        replace(quiet, constants=0.7 * quiet.constants) for quiet in (struck(beam, rng), struck(beam, rng))
+    )
+    chain = measurement_chain(after, state)
+    row = np.array([int(np.flatnonzero(after.hit == point)[0]) for point in chain.hit])
+    wrong = replace(
+        after,
+        constants=chain.gain[:, None] * after.constants[row],
+        constants_sigma=np.abs(chain.gain[:, None]) * after.constants_sigma[row],
+    )
+    fits = [
+        marginal(pose(replace(case_of(test, BEAM), baseline=before))[0].compare(undone)).chi2
+        for test, undone in ((after, State()), (wrong, state))
+    ]
+    assert fits[1] == pytest.approx(fits[0], rel=0.02)

@@ -123,6 +123,13 @@ def test_another_structure_altogether_is_refused() -> None:
         )
 
 
+def test_a_state_that_has_lost_its_mass_predicts_nothing_and_ends_no_search() -> None:
+    """Effects that each can be there may leave nothing together."""
+    lost = LOOK.predict(State(mass=(-1.5 * LOOK.reduced.matrices(State())[1],)), count=6)
+    assert np.isnan(lost.frequency).all()
+    assert sorted(match(seen_as(MODEL), lost, np.arange(6)).tolist()) == list(range(6))
+
+
 def test_a_uniform_change_keeps_all_pairs() -> None:
     soft = LOOK.predict(State(factors={"E": 0.6}), count=6)
     for shapes in (True, False):

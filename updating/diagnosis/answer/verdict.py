@@ -104,19 +104,24 @@ def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
     """Return the fewest rows that hold the certainty asked for, and those that fit as well as the first.
 
     A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
-    widely they may range, and that is no measurement. A part of the first that fits by itself stays, too: that there is
-    something beside it is the more probable, and not sure.
+    widely they may range, and that is no measurement. A part of the first that fits by itself stays, too, unless the
+    whole is better by as much as shows a gap: that there is something beside it is the more probable, and not sure.
     """
     total = sum(row.probability for row in rows)
     sets: list[tuple[str, ...]] = []
     held = 0.0
     for row in rows:
         alike = _close(rows[0], row) and _as_good(rows[0], row)
-        part = row is not rows[0] and holds(rows[0].names, row.names) and row.as_stated >= DOUBTED_FIT
-        if held < CREDIBLE_SHARE or alike or part:
+        if held < CREDIBLE_SHARE or alike or _part_left(rows[0], row):
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
     return tuple(sets)
+
+
+def _part_left(first: Compared, row: Compared) -> bool:
+    """Tell whether a set is a part of the first that fits by itself, and not much worse."""
+    part = row is not first and holds(first.names, row.names) and row.as_stated >= DOUBTED_FIT
+    return part and first.explanation.log_evidence - row.explanation.log_evidence < FAR_BETTER
 
 
 def _as_good(first: Compared, row: Compared) -> bool:

@@ -1,4 +1,7 @@
-"""Which candidates are weighed: singles first, pairs where no single explains the data well, then one cause more.
+"""Which candidates are weighed: singles first, then pairs that may be better, then one cause more where none fits.
+
+That a single effect fits does not end the search: its own idealisation may leave so much in doubt that anything fits,
+and a second cause be plain in what is left. Where it fits well, a second is sought beside the best of each alone.
 
 An effect may come in several forms (which point, which sign); each is weighed by itself, with its share of the
 effect's prior, and their evidence is added up.
@@ -134,10 +137,13 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     if both and _beneath(problem):
         nothing = _either(nothing, explain(problem, Candidate(fuller=True)))
     found = _with_odd(problem, [], [nothing, *_singles(problem, effects, nothing, both=both)])
-    if not _explained(problem, found, well=True):
-        plain = _as_stated(found)
-        pairs = pairs_of(problem, plain, least=not _explained(problem, plain))
-        found = _with_odd(problem, found, pairs)
+    pairs = pairs_of(
+        problem,
+        _as_stated(found),
+        least=not _explained(problem, found),
+        far=not _explained(problem, found, well=True),
+    )
+    found = _with_odd(problem, found, pairs)
     for causes in range(3, len(COUNT_PRIOR)):
         if not _explained(problem, found):
             found = _with_odd(problem, found, one_more(problem, _as_stated(found), causes))

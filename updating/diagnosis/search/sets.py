@@ -29,7 +29,9 @@ from updating.thresholds import (
 )
 
 
-def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool) -> list[Explanation]:
+def pairs_of(
+    problem: DiagnosisProblem, found: list[Explanation], *, least: bool, far: bool = True
+) -> list[Explanation]:
     """Weigh the pairs that promise the most, from the best of either effect alone and from no effect at all.
 
     Parameters
@@ -41,6 +43,9 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
     least : bool
         Whether the most promising are weighed in any case: no single effect explains the data. Else only those are
         that promise to come near the best.
+    far : bool
+        Whether pairs are tested from no effect at all, too, about every starting place of either: an evaluation of
+        each, and some for its sensitivities.
     """
     singles = [e for e in found if e.names]
     possible = [e for e in singles if e.best.possible]
@@ -52,16 +57,17 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, least: bool
     nominal = next(e.best for e in found if not e.names)
     allowed = _allowed(problem, possible)
     reached = score_tests(problem, possible)
-    reaches = [_reaches(problem, nominal, e.candidate) for e in possible]
+    reaches = [_reaches(problem, nominal, e.candidate) for e in possible] if far else []
+    both: list[Together] = _together(nominal, reaches, allowed) if far else [[]] * len(allowed)
     drafts = []
-    for (i, j), together in zip(allowed, _together(nominal, reaches, allowed), strict=True):
+    for (i, j), together in zip(allowed, both, strict=True):
         first, second = possible[i], possible[j]
         second = once_more(second) if first.names == second.names else second
         cost = log_prior(2, examined) - volume[i] - volume[j]
         near = max(reached[i, j], reached[j, i]) if i != j else -np.inf
-        far = together[0][0] if together else -np.inf
-        if least or max(near, far) + cost > best - SET_MARGIN:
-            drafts.append(_Draft(first, second, near + cost, far + cost, [u for _, u in together]))
+        away = together[0][0] if together else -np.inf
+        if least or max(near, away) + cost > best - SET_MARGIN:
+            drafts.append(_Draft(first, second, near + cost, away + cost, [u for _, u in together]))
     pairs: list[tuple[Explanation, list[FloatArray]]] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)
     chosen = _promising(drafts)
