@@ -38,6 +38,8 @@ class Bricks:
         Tells whether it is of another elasticity.
     elastic_there : str
         That elasticity.
+    clamped : bool
+        Whether all nodes at x = 0 are held.
     """
 
     x: Sequence[float]
@@ -47,6 +49,7 @@ class Bricks:
     density: float
     place: Callable[[float, float], bool] = lambda x, y: False
     elastic_there: str = ""
+    clamped: bool = True
 
     @property
     def grid(self) -> tuple[np.ndarray, np.ndarray]:
@@ -83,6 +86,8 @@ class Bricks:
                 lines += [f"*ELEMENT, TYPE=C3D20R, ELSET={name}", *elements]
                 lines += [f"*MATERIAL, NAME=M{name}", self.elastic_there if name == "PLACE" else self.elastic]
                 lines += ["*DENSITY", f"{self.density}", f"*SOLID SECTION, ELSET={name}, MATERIAL=M{name}"]
+        if not self.clamped:
+            return lines
         return [*lines, "*BOUNDARY", *(f"{n}, 1, 3, 0." for (i, _, _), n in numbers.items() if i == 0)]
 
 
@@ -122,9 +127,36 @@ def body(bricks: Bricks, at: tuple[float, float], mass: float, height: float) ->
 
 def frequencies(folder: Path, bricks: Bricks, count: int, more: Sequence[str] = ()) -> np.ndarray:
     """Return the lowest frequencies that CalculiX finds, (count,) [Hz]."""
+    return _frequencies(_solve(folder, bricks, [*more, "*STEP", "*FREQUENCY", f"{count}", "*END STEP"]))[
+        :count
+    ]
+
+
+def modes(
+    folder: Path, bricks: Bricks, count: int, points: np.ndarray, more: Sequence[str] = ()
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest frequencies (count,) [Hz] and the mass-normalised shapes across, (n_points, count) [kg^-1/2].
+
+    Points (n_points, 2) [m] are where corners of elements meet; the shapes are those of the upper face.
+    """
+    nodes = [bricks.column(*at)[2] for at in points]
+    wanted = ["*NSET, NSET=POINTS", *(f"{n}," for n in nodes), *more, "*STEP", "*FREQUENCY", f"{count}"]
+    text = _solve(folder, bricks, [*wanted, "*NODE PRINT, NSET=POINTS", "U", "*END STEP"])
+    blocks = text.split("displacements (vx,vy,vz) for set POINTS")[1:]
+    rows = [re.findall(r"^\s+(\d+)\s+\S+\s+\S+\s+(\S+)\s*$", block, flags=re.MULTILINE) for block in blocks]
+    across = [dict(row[: len(nodes)]) for row in rows]
+    return _frequencies(text)[:count], np.array([[float(own[str(n)]) for own in across] for n in nodes])
+
+
+def _solve(folder: Path, bricks: Bricks, more: Sequence[str]) -> str:
+    """Run a deck, and return what is printed."""
     deck = folder / "flat.inp"
-    deck.write_text("\n".join([*bricks.lines(), *more, "*STEP", "*FREQUENCY", f"{count}", "*END STEP", ""]))
-    subprocess.run(["ccx", deck.stem], cwd=folder, check=True, capture_output=True, timeout=120)
-    table = (folder / "flat.dat").read_text().split("P A R T I C I P A T I O N")[0]
+    deck.write_text("\n".join([*bricks.lines(), *more, ""]))
+    subprocess.run(["ccx", deck.stem], cwd=folder, check=True, capture_output=True, timeout=300)
+    return (folder / "flat.dat").read_text()
+
+
+def _frequencies(text: str) -> np.ndarray:
+    table = text.split("P A R T I C I P A T I O N", maxsplit=1)[0]
     rows = re.findall(r"^\s+\d+((?:\s+[-\d.E+]+){4})\s*$", table, flags=re.MULTILINE)
-    return np.array([float(row.split()[2]) for row in rows])[:count]
+    return np.array([float(row.split()[2]) for row in rows])

@@ -106,16 +106,26 @@ def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
     A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
     widely they may range, and that is no measurement. A part of the first that fits by itself stays, too, unless the
     whole is better by as much as shows a gap: that there is something beside it is the more probable, and not sure.
+    What adds to the first a cause that shows in no datum says of the data what the first says, and counts for it.
     """
     total = sum(row.probability for row in rows)
+    faint = [row for row in rows[1:] if _adds_nothing(rows[0], row)]
     sets: list[tuple[str, ...]] = []
-    held = 0.0
+    held = sum(row.probability for row in faint) / max(total, 1e-300)
     for row in rows:
+        if row in faint:
+            continue
         alike = _close(rows[0], row) and _as_good(rows[0], row)
         if held < CREDIBLE_SHARE or alike or _part_left(rows[0], row):
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
     return tuple(sets)
+
+
+def _adds_nothing(first: Compared, row: Compared) -> bool:
+    """Tell whether a set is the first with more causes, and fits no better."""
+    gain = row.explanation.best.marginal.log_likelihood - first.explanation.best.marginal.log_likelihood
+    return holds(row.names, first.names) and 2 * gain < CLOSE_FITS
 
 
 def _part_left(first: Compared, row: Compared) -> bool:

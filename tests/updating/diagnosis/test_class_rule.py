@@ -1,0 +1,46 @@
+"""Which sets stand in the answer, decided on likelihoods, fits and probabilities put in by hand."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from updating.diagnosis.answer.verdict import decide
+
+
+def row(names: str, probability: float, log_likelihood: float, *, fits: float = 0.5) -> Any:
+    """Return a set that was weighed, its parameters in the middle of their priors and determined."""
+    marginal = SimpleNamespace(log_likelihood=log_likelihood)
+    size = len(names.split())
+    explanation = SimpleNamespace(
+        names=tuple(names.split()),
+        log_evidence=log_likelihood - 5,
+        best=SimpleNamespace(marginal=marginal, coordinates=np.full(size, 0.5)),
+        samples=np.full((2, size), 0.5),
+        weights=np.array([0.5, 0.5]),
+    )
+    share = {"probability": probability, "p_value": fits, "as_stated": fits, "rejected": False}
+    return SimpleNamespace(names=explanation.names, explanation=explanation, **share)
+
+
+def answer(*rows: Any) -> tuple[str, tuple[tuple[str, ...], ...]]:
+    """Return the verdict where the empty set is far behind."""
+    empty = row("", 0.0, -1000.0)
+    return decide(SimpleNamespace(compared=rows, empty=empty), significant=True)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("gain", "verdict"), [(0.5, "named"), (6.0, "class")])
+def test_a_second_cause_that_no_datum_shows_is_no_rival(gain: float, verdict: str) -> None:
+    found, sets = answer(row("E", 0.9, 100.0), row("E taper", 0.1, 100.0 + gain))
+    assert found == verdict
+    assert sets[0] == ("E",)
+
+
+def test_another_cause_that_holds_the_rest_is_a_rival() -> None:
+    assert answer(row("E", 0.9, 100.0), row("density", 0.1, 90.0))[0] == "class"
+
+
+def test_a_faint_second_cause_beside_a_rival_does_not_make_the_rival_go() -> None:
+    _, sets = answer(row("E", 0.6, 100.0), row("density", 0.3, 99.8), row("E taper", 0.1, 100.5))
+    assert sets == (("E",), ("density",))
