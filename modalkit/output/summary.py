@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from itertools import combinations
 
+import numpy as np
+
 from acquisition.quantities import number, p_value, percent, place, probability
 from updating import Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
 from updating.diagnosis.answer.verdict import NAME
 from updating.effects import Lack, Twin, in_a_set, twin_of
 from updating.effects.regions import PLACED
-from updating.thresholds import BELIEVED_DOUBT
+from updating.thresholds import BELIEVED_DOUBT, BEYOND_NOTHING
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
 """Parameters that the line on the place tells."""
@@ -44,15 +46,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         return f"no gap beyond tolerances and noise, once data that stand alone are left out: {odd}"
     if diagnosis.verdict == "none":
         return "no gap beyond tolerances and noise; there is nothing to explain"
-    if diagnosis.verdict == "unknown" and not diagnosis.comparable:
-        return (
-            "unknown: most measured modes have no partner in the model, and the few that have one name no cause; check "
-            "axes, points, signs and boundary conditions first"
-        )
     if diagnosis.verdict == "unknown":
-        return (
-            "unknown: the gap is real, and nothing in the library explains it, alone or in the pairs weighed"
-        )
+        return f"unknown: {_unknown(diagnosis)}"
     if diagnosis.verdict == "named":
         names = diagnosis.sets[0]
         library = diagnosis.known
@@ -62,6 +57,26 @@ def _cause(diagnosis: Diagnosis) -> str:
     statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     twin = _twin(diagnosis)
     return f"{statement}; {twin.why}" if twin else statement
+
+
+def _unknown(diagnosis: Diagnosis) -> str:
+    """Say what the most probable set lacks to be an answer."""
+    if not diagnosis.comparable:
+        return (
+            "most measured modes have no partner in the model, and the few that have one name no cause; check axes, "
+            "points, signs and boundary conditions first"
+        )
+    if diagnosis.lacks in (None, "fit") or not diagnosis.ranking:
+        return "the gap is real, and nothing in the library explains it, alone or in the sets weighed"
+    first = " + ".join(diagnosis.ranking[0].effects)
+    if diagnosis.lacks == "closing":
+        return f"the gap is real; {first} comes nearest, closes too little of it and leaves more than noise"
+    if diagnosis.lacks == "one size":
+        return f"the gap is real; {first} comes nearest, and parts of the data want another size of it each"
+    odds = f"{np.exp(BEYOND_NOTHING):.0f} times as likely"
+    return (
+        f"{first} would explain the gap, and is not {odds} as that tolerances or noise are worse than stated"
+    )
 
 
 def _stated(diagnosis: Diagnosis, effect: str) -> dict[str, object]:

@@ -16,7 +16,7 @@ from updating.diagnosis.answer.consistency import Split, splits
 from updating.diagnosis.answer.remainder import remainder_of
 from updating.diagnosis.answer.result import Diagnosis, Gap, Shrink, Verdict, Where
 from updating.diagnosis.answer.shrink import shrinkage
-from updating.diagnosis.answer.verdict import decide, included, is_significant, rank
+from updating.diagnosis.answer.verdict import decide, included, is_significant, rank, shortcoming
 from updating.diagnosis.answer.where import locate
 from updating.diagnosis.next_test import propose
 from updating.diagnosis.problem.doubtful import notes_on_doubtful
@@ -33,6 +33,7 @@ from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
 from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction, theory_error
 from updating.problem.specimen import SpecimenProblem
+from updating.problem.width import on_width
 from updating.test_data.same_places import unmatched
 from updating.thresholds import FEWEST_DATA
 
@@ -136,16 +137,12 @@ def _diagnose(
     shrink = _shrink(problem, found, draws, significant=significant)
     leader = next((row.explanation for row in found.compared if row.names), found.nothing)
     left = remainder_of(problem, titles, leader if significant else found.empty.explanation, shrink)
-    verdict, sets = decide(
-        found,
-        significant=significant,
-        comparable=comparable,
-        closed=None if shrink.closed is None else shrink.closed.value,
-        left=left.significant,
-    )
+    closed = None if shrink.closed is None else shrink.closed.value
+    lacks = shortcoming(found, comparable=comparable, closed=closed, left=left.significant)
+    verdict, sets = decide(found, lacks, significant=significant)
     inconsistent = splits(problem, leader) if verdict == "named" else ()
     if inconsistent:
-        verdict, sets = "unknown", ()
+        verdict, sets, lacks = "unknown", (), "one size"
     _stage(progress, "choosing the next test")
     return Diagnosis(
         " and ".join(titles),
@@ -168,6 +165,7 @@ def _diagnose(
         left if significant or found.empty.explanation.candidate.outliers else None,
         included(found),
         own,
+        lacks if verdict == "unknown" else None,
     )
 
 
@@ -310,6 +308,7 @@ def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:
         notes += notes_on_doubtful(one)
         if one.theory_error is not None:
             notes += notes_on(one.theory_error, one.measured, one.predictor.spec)
+        notes += on_width(one.predictor.spec, one.order, one.measured)
         notes += on_reduction(one.predictor, len(one.measured.frequency))
         notes += on_modes(one.measured, one.predictor.predict(at_least=one.reach).frequency, one.order)
         wet = one.predictor.environment.fluid_density is not None

@@ -115,7 +115,7 @@ def _records(tests: Sequence[HammerTest], sets: Sequence[FrfSet]) -> Iterator[Re
 
 
 def _window(decay: float) -> str:
-    return f"exponential window decay {decay!r} 1/s" if decay else "NONE"
+    return f"exponential window decay {float(decay)!r} 1/s" if decay else "NONE"
 
 
 def _hits(test: HammerTest) -> Iterator[Record58]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from acquisition import InputError, layout_from
 from acquisition.uff.functions.id_lines import averages_of, decay_of
+from acquisition.uff.writing import write
 
 
 @pytest.mark.parametrize(
@@ -49,3 +51,7 @@ def test_a_layout_has_no_window_that_grows(decay: float) -> None:
     column = {"name": "F", "quantity": "force", "node": 1}
     with pytest.raises(InputError, match="decay = "):
         layout_from({"rate": 1000.0, "decay": decay, "column": [column]})
+
+
+def test_a_window_that_is_written_is_read_again() -> None:
+    assert decay_of([write._window(np.float64(3.25))]) == (3.25, "")

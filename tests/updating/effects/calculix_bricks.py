@@ -99,7 +99,7 @@ def _halved(ends: Sequence[float]) -> np.ndarray:
 
 def isotropic(E: float, poisson: float) -> str:
     """Return the lines of an isotropic elasticity [Pa]."""
-    return f"*ELASTIC\n{E!r}, {poisson!r}"
+    return f"*ELASTIC\n{float(E)!r}, {float(poisson)!r}"
 
 
 def spring(bricks: Bricks, at: tuple[float, float], stiffness: float) -> list[str]:
@@ -109,7 +109,7 @@ def spring(bricks: Bricks, at: tuple[float, float], stiffness: float) -> list[st
         f"90001, {bricks.column(*at)[1]}",
         "*SPRING, ELSET=HELD",
         "3",
-        f"{stiffness!r}",
+        f"{float(stiffness)!r}",
     ]
 
 
@@ -117,11 +117,15 @@ def body(bricks: Bricks, at: tuple[float, float], mass: float, height: float) ->
     """Return a point mass [kg] so far above the middle of the thickness [m], on a rigid stalk that is normal to it."""
     low, _, top = bricks.column(*at)
     share = 0.5 + height / bricks.thickness
-    lines = ["*NODE", f"90001, {at[0]!r}, {at[1]!r}, {height!r}", "*ELEMENT, TYPE=MASS, ELSET=BODY"]
-    lines += ["90001, 90001", "*MASS, ELSET=BODY", f"{mass!r}", "*EQUATION"]
+    lines = [
+        "*NODE",
+        f"90001, {float(at[0])!r}, {float(at[1])!r}, {float(height)!r}",
+        "*ELEMENT, TYPE=MASS, ELSET=BODY",
+    ]
+    lines += ["90001, 90001", "*MASS, ELSET=BODY", f"{float(mass)!r}", "*EQUATION"]
     for axis in (1, 2, 3):
         up, down = (share, 1 - share) if axis < 3 else (0.5, 0.5)
-        lines += ["3", f"90001, {axis}, -1., {top}, {axis}, {up!r}, {low}, {axis}, {down!r}"]
+        lines += ["3", f"90001, {axis}, -1., {top}, {axis}, {float(up)!r}, {low}, {axis}, {float(down)!r}"]
     return lines
 
 

@@ -25,6 +25,12 @@ from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
 
 Verdict = Literal["named", "class", "unknown", "none"]
+
+Shortcoming = Literal["fit", "closing", "evidence", "partners", "one size"]
+"""What the most probable set lacks where none is an answer: it is rejected, closes too little and leaves more than
+noise, is not clearly more likely than tolerances further off, most modes have no partner, or parts of the data want
+another size of it each."""
+
 Metric = Literal["frequency", "damping", "frf", "combined"]
 Place = tuple[float, float, float]
 
@@ -346,6 +352,8 @@ class Diagnosis(Displayed):
         Probability of each effect that it is among the causes [-].
     own : dict of str to Effect
         The study's hypotheses.
+    lacks : str, optional
+        What the most probable set lacks, where the verdict is unknown.
     """
 
     title: str
@@ -364,6 +372,7 @@ class Diagnosis(Displayed):
     remainder: Remainder | None = None
     included: Mapping[str, float] = field(default_factory=dict)
     own: Mapping[str, Effect] = field(default_factory=dict)
+    lacks: Shortcoming | None = None
 
     @property
     def effects(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from acquisition.arrays import FloatArray
-from updating.diagnosis.answer.result import ParameterEstimate, Ranked, Verdict
+from updating.diagnosis.answer.result import ParameterEstimate, Ranked, Shortcoming, Verdict
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.prior import holds
@@ -61,12 +61,7 @@ def _by_chance(found: Search) -> float:
 
 
 def decide(
-    found: Search,
-    *,
-    significant: bool,
-    comparable: bool = True,
-    closed: float | None = None,
-    left: bool = False,
+    found: Search, lacks: Shortcoming | None = None, *, significant: bool
 ) -> tuple[Verdict, tuple[tuple[str, ...], ...]]:
     """Return the verdict and the sets of effects it rests on.
 
@@ -74,8 +69,28 @@ def decide(
     ----------
     found : Search
         What was weighed, most probable first.
+    lacks : str, optional
+        What :func:`shortcoming` says.
     significant : bool
         Whether there is a gap.
+    """
+    if not significant:
+        return "none", ()
+    if lacks:
+        return "unknown", ()
+    sets = _credible(_better(found))
+    return ("class", sets) if len(sets) > 1 else ("named", sets)
+
+
+def shortcoming(
+    found: Search, *, comparable: bool = True, closed: float | None = None, left: bool = False
+) -> Shortcoming | None:
+    """Return what the most probable set lacks to be an answer, the first that holds; None where it lacks nothing.
+
+    Parameters
+    ----------
+    found : Search
+        What was weighed, most probable first.
     comparable : bool
         Whether most measured modes have a partner: the rest alone names no cause.
     closed : float, optional
@@ -83,21 +98,22 @@ def decide(
     left : bool
         Whether the first set leaves more than noise.
     """
-    if not significant:
-        return "none", ()
     rows = [row for row in found.compared if row.names]
     if not rows or rows[0].rejected:
-        return "unknown", ()
+        return "fit"
     if left and closed is not None and closed < CLOSES_NEARLY_ALL:
-        return "unknown", ()
-    least = found.empty.explanation.log_evidence + BEYOND_NOTHING
-    better = [row for row in rows if not row.rejected and row.explanation.log_evidence > least]
+        return "closing"
+    better = _better(found)
     if not better:
-        return "unknown", ()
-    sets = _credible(better)
-    if len(sets) > 1:
-        return "class", sets
-    return ("named", sets) if comparable else ("unknown", ())
+        return "evidence"
+    return None if comparable or len(_credible(better)) > 1 else "partners"
+
+
+def _better(found: Search) -> list[Compared]:
+    """Return the sets that fit and whose evidence is beyond that of the empty one."""
+    least = found.empty.explanation.log_evidence + BEYOND_NOTHING
+    rows = [row for row in found.compared if row.names and not row.rejected]
+    return [row for row in rows if row.explanation.log_evidence > least]
 
 
 def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:

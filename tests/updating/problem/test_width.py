@@ -1,0 +1,57 @@
+"""What beams miss of a plate's bending: against the energy of a strip, and bricks that CalculiX solved."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from calculix_bricks import Bricks, isotropic, modes, needs_ccx
+from updating_cases import blank
+
+from updating import Material, Predictor, Spec
+from updating.problem.width import on_width, stiffening
+
+
+def beam(width: float, *, poisson: float = 0.3, clamped: tuple[str, ...] = ("x0",)) -> Spec:
+    return Spec("beam", 0.4, width, 0.002, (30,), clamped, "timoshenko", Material(200e9, 7800.0, poisson))
+
+
+@pytest.mark.parametrize("width", [0.02, 0.03, 0.05])
+@pytest.mark.parametrize("poisson", [0.2, 0.3])
+def test_a_clamp_shortens_a_beam_by_a_share_of_its_width(width: float, poisson: float) -> None:
+    lowest = stiffening(beam(width, poisson=poisson), np.arange(1))[0]
+    shorter = poisson**2 * width * np.sqrt((1 - poisson) / 6)
+    assert lowest == pytest.approx(2 * shorter / 0.4, rel=0.1)
+
+
+def test_a_free_beam_misses_more_the_higher_the_mode_and_nothing_without_poisson() -> None:
+    found = stiffening(beam(0.03, clamped=()), np.arange(5))
+    assert np.all(np.diff(found) > 0)
+    assert 0 < found[0] < 1e-3
+    assert not stiffening(beam(0.03, poisson=0.0), np.arange(5)).any()
+
+
+def test_a_plate_misses_nothing() -> None:
+    plate = Spec("plate", 0.4, 0.03, 0.002, (30, 4), ("x0",), "mindlin", Material(200e9, 7800.0, 0.3))
+    assert not stiffening(plate, np.arange(3)).any()
+
+
+@needs_ccx
+def test_bricks_are_as_much_stiffer(tmp_path: Path) -> None:
+    length, width, thickness = 0.437, 0.05, 0.004
+    near = thickness * np.array([0.25, 0.5, 1.0, 2.0])
+    along = np.unique(np.concatenate([np.linspace(0, length, 33), near]))
+    bricks = Bricks(tuple(along), tuple(np.linspace(0, width, 7)), thickness, isotropic(205e9, 0.3), 7850.0)
+    points = np.array([[x, width / 2] for x in along[8::6]])
+    frequency, shapes = modes(tmp_path, bricks, 14, points)
+    bending = frequency[np.abs(shapes).max(axis=0) > 0.2 * np.abs(shapes).max()][:4]
+    spec = Spec("beam", length, width, thickness, (40,), ("x0",), "timoshenko", Material(205e9, 7850.0, 0.3))
+    own = Predictor(spec, blank(np.array([length]))).predict(count=4).frequency
+    assert np.log(bending / own) == pytest.approx(stiffening(spec, np.arange(4)), abs=1e-3)
+
+
+def test_it_is_told_where_it_is_more_than_the_noise() -> None:
+    test = blank(np.array([0.4]))
+    assert test.repeatability < 1e-3
+    (note,) = on_width(beam(0.04), np.arange(len(test.frequency)), test)
+    assert 'type = "plate" has both' in note
+    assert on_width(beam(0.001), np.arange(len(test.frequency)), test) == []

@@ -1,0 +1,79 @@
+"""What no theory of beams has: that a beam has a width across which it bends, too.
+
+Poisson's ratio curves the section of a bent beam the other way. Where the wavelength is not long beside the width it
+can do so only in part, and a clamp forbids it: both stiffen, the clamp as if the beam were shorter by nu^2 b sqrt((1 -
+nu) / 6), some 0.03 of its width b (from the energy of a strip whose anticlastic curvature dies out towards the clamp).
+A plate of the same outline knows both, and says by how much.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from acquisition.quantities import percent
+from updating.models.build import build_structure
+from updating.models.spec import Spec
+from updating.test_data.measured import Measured
+
+LENGTHWISE, ACROSS = 40, 4
+"""Most elements of the plate along the beam, and its elements across: frequencies are good to 1e-3 of the shift."""
+
+ON_THE_LINE = 0.1
+"""Modes of the plate that move the middle line by less than this share of what the liveliest does twist it [-]."""
+
+
+def stiffening(spec: Spec, order: IntArray) -> FloatArray:
+    """Return by how much bending across the width raises a beam's frequencies.
+
+    Parameters
+    ----------
+    spec : Spec
+        The model; its regions and masses are left aside.
+    order : (n_modes,) int array
+        Rank of each mode among the elastic modes.
+
+    Returns
+    -------
+    (n_modes,) array
+        ln(frequency of the plate / frequency of the beam); 0 where the model is no beam.
+    """
+    if spec.kind != "beam" or spec.material.poisson == 0:
+        return np.zeros(len(order))
+    count = int(order.max()) + 1
+    outline = (spec.length, spec.width, spec.thickness)
+    cells = min(spec.elements[0], LENGTHWISE)
+    thick = spec.theory == "timoshenko"
+    plate = Spec(
+        "plate", *outline, (cells, ACROSS), spec.clamped, "mindlin" if thick else "kirchhoff", spec.material
+    )  # fmt: skip
+    beam = Spec("beam", *outline, (cells,), spec.clamped, spec.theory, spec.material)
+    found, own = _bending(plate, count), _bending(beam, count)
+    shift = np.zeros(count)
+    shift[: len(found)] = np.log(found / own[: len(found)])
+    return np.asarray(shift[order])
+
+
+def _bending(spec: Spec, count: int) -> FloatArray:
+    """Return the lowest frequencies of modes that move the middle line (count,) [rad/s]."""
+    structure = build_structure(spec)
+    first = structure.rigid_modes
+    values, vectors = structure.eigen(first + (3 * count + 4 if spec.kind == "plate" else count))
+    line = np.linspace(0.0, spec.length, 8 * count + 1)
+    points = np.stack([line, np.full_like(line, spec.width / 2)], axis=1)[:, : spec.dim]
+    moved = np.abs(structure.rows(points)["w"] @ vectors[:, first:]).max(axis=0)
+    return np.asarray(np.sqrt(values[first:][moved > ON_THE_LINE * moved.max()][:count]))
+
+
+def on_width(spec: Spec, order: IntArray, measured: Measured) -> list[str]:
+    """Return a remark where that is more than the noise of the frequencies."""
+    missed = stiffening(spec, order)
+    noise = np.hypot(measured.frequency_sigma / measured.frequency, measured.repeatability)
+    worst = int(np.argmax(missed / noise))
+    if missed[worst] <= noise[worst]:
+        return []
+    return [
+        f"a theory of beams leaves out that a section bends across its width, and that clamps hinder it: "
+        f"{percent(100 * missed[worst])} in mode {worst + 1}, more than the noise of {percent(100 * noise[worst])}; "
+        'type = "plate" has both'
+    ]
