@@ -70,6 +70,9 @@ class Truth:
     left_visible : float or None
         Standard deviations of the change that the best single effect of the library leaves, linearised; None where
         the library has all that is hidden [-].
+    beside : tuple of float
+        Where several effects are hidden, the standard deviations by which each of them moves the data off what the
+        tolerances allow once the others are there; empty for one [-].
     """
 
     kind: str
@@ -87,6 +90,7 @@ class Truth:
     calibrated: bool
     gap_percent: float
     left_visible: float | None = None
+    beside: tuple[float, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """Return the truth as JSON can carry it."""
@@ -97,8 +101,8 @@ class Truth:
     def from_json(cls, document: Mapping[str, Any]) -> Self:
         """Return the truth that ``to_json`` gave."""
         fields = dict(document)
-        for name in ("effects", "without", "size"):
-            fields[name] = tuple(fields[name])
+        for name in ("effects", "without", "size", "beside"):
+            fields[name] = tuple(fields.get(name, ()))
         for name in ("accepted", "places"):
             fields[name] = tuple(tuple(entry) for entry in fields[name])
         return cls(**fields)
@@ -215,7 +219,23 @@ def _truth(
         calibrated=setup.calibrated,
         gap_percent=gap_percent(scene),
         left_visible=None if in_library and not without else seen.left(without),
+        beside=_each_beside_the_others(scene, before, named),
     )
+
+
+def _each_beside_the_others(
+    scene: Scene, before: Scene, named: Sequence[tuple[HiddenEffect, Values]]
+) -> tuple[float, ...]:
+    """Return how plainly each of several effects stands in the data beside the others [-]."""
+    if len(named) < 2:
+        return ()
+    without = []
+    for i, one in enumerate(named):
+        rest = _plain(before, [one[0]])
+        for effect, drawn in (*named[:i], *named[i + 1 :]):
+            rest = effect.act(rest, drawn)
+        without.append(rest)
+    return tuple(shown(scene, rest).length for rest in without)
 
 
 def _plain(before: Scene, hidden_effects: Sequence[HiddenEffect]) -> Scene:

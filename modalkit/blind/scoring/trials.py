@@ -71,7 +71,7 @@ def _row(outcome: Outcome) -> dict[str, Any]:
         "severity": truth.severity,
         "visibility": truth.visibility,
         "left_visible": np.nan if truth.left_visible is None else truth.left_visible,
-        "faint": bool(truth.effects) and truth.visibility < VISIBLE,
+        "faint": bool(truth.effects) and min(truth.visibility, *truth.beside, np.inf) < VISIBLE,
         "visible": is_visible(truth),
         "baseline": truth.baseline,
         "calibrated": truth.calibrated,
@@ -82,9 +82,12 @@ def _row(outcome: Outcome) -> dict[str, Any]:
 
 
 def is_visible(truth: Truth) -> bool:
-    """Tell whether the data show an effect; of one that the library lacks, whether they show that it does."""
+    """Tell whether the data show what is hidden: of several effects each beside the others.
+
+    Of one that the library lacks, whether they show that it does.
+    """
     enough = truth.left_visible is None or truth.left_visible >= LEFT_VISIBLE
-    return truth.visibility >= VISIBLE and enough
+    return min(truth.visibility, *truth.beside, np.inf) >= VISIBLE and enough
 
 
 def _statement(answer: Answer, truth: Truth) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from modalkit.blind.scoring.trials import is_visible
 from modalkit.blind.trial import draw_trial
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
@@ -93,3 +94,15 @@ def test_named_effects_are_paired_among_themselves() -> None:
     plan = replace(PAIRS, effects=("E", "lumped_mass", "polarity", "taper"))
     for index in range(5):
         assert set(draw_trial(3, index, plan=plan).truth.effects) < {"E", "lumped_mass", "polarity"}
+
+
+def test_each_of_two_is_counted_by_what_it_adds_to_the_other() -> None:
+    """What one cause hides of the other is no answer that the data could give."""
+    for index in range(4):
+        truth = draw_trial(5, index, plan=PAIRS).truth
+        assert len(truth.beside) == 2
+        # one of them moved nothing beside the other: the whole is the other, up to what noise changes
+        assert truth.visibility > 0.3 * max(truth.beside)
+    assert is_visible(replace(truth, visibility=9.0, beside=(8.0, 4.0)))
+    assert not is_visible(replace(truth, visibility=9.0, beside=(8.0, 1.0)))
+    assert draw_trial(5, 0, plan=replace(PAIRS, pairs=0.0)).truth.beside == ()
