@@ -74,15 +74,7 @@ def study() -> str:
             if (model.__name__, name) in told
         ]
         if rows:
-            text = _paragraphs(model.__doc__ or "").partition(":")[2].strip()
-            out += [
-                f"## {header or 'Beside the tables'}",
-                "",
-                text,
-                "",
-                _table(("key", "default", "meaning"), rows),
-                "",
-            ]
+            out += [f"## {header or 'The file'}", "", _table(("key", "default", "meaning"), rows), ""]
     return "\n".join(out)
 
 
@@ -140,17 +132,32 @@ def _attribute_docs(module: ModuleType) -> dict[tuple[str, str], str]:
 
 
 def effects() -> str:
-    """Return the library of effects: the table of ``modalkit effects --table``, with sentences and priors below."""
-    from modalkit.output.library import effects_document, effects_table
+    """Return the library of effects: a row for each, with sentences and priors below."""
+    from modalkit.output.library import effects_document
 
-    document = effects_document()
-    out = [effects_table(document)]
-    for effect in document["effects"]:
-        out += [f"## {effect['name']}", "", f"{effect['summary']} *Footprint*: {effect['footprint']}", ""]
-        rows = [(f"`{p['name']}`", _range(p), p["why"]) for p in effect["parameters"]]
-        if rows:
-            out += [_table(("parameter", "prior", "why this range"), rows), ""]
+    library = effects_document()["effects"]
+    rows = [
+        (f"[`{e['name']}`](#{_anchor(e['name'])})", e["channel"], ", ".join(e["models"]), _names(e))
+        for e in library
+    ]
+    out = [_table(("effect", "acts on", "models", "mistaken for"), rows), ""]
+    for effect in library:
+        out += [f"({_anchor(effect['name'])})=", f"## {effect['name']}", ""]
+        out += [f"{effect['summary']} {effect['footprint']} *Separated by*: {effect['separated_by']}.", ""]
+        priors = [(f"`{p['name']}`", _range(p), p["why"]) for p in effect["parameters"]]
+        priors += [(f"`{label}`", "node numbers", "") for label in effect["labels"]]
+        priors += [(f"`{label}`", "a name, on matrices and decks", "") for label in effect["names"]]
+        if priors:
+            out += [_table(("parameter", "prior", "why this range"), priors), ""]
     return "\n".join(out)
+
+
+def _anchor(name: str) -> str:
+    return f"effect-{name.lower().replace('_', '-')}"
+
+
+def _names(effect: dict[str, Any]) -> str:
+    return ", ".join(f"`{name}`" for name in effect["equivalent_to"]) or "nothing"
 
 
 def _range(parameter: dict[str, Any]) -> str:

@@ -1,6 +1,9 @@
 """How the figures of the explanations look: on white, whatever the page."""
 
+import matplotlib
 from matplotlib.figure import Figure
+
+matplotlib.rcParams["font.size"] = 8
 
 COLOURS = ("#999999", "#e69f00", "#0072b2", "#000000")
 

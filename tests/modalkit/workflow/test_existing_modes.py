@@ -14,7 +14,7 @@ import pytest
 
 import modalkit as mk
 from acquisition import Dof, FrfSet, Geometry, InputError, ModalData, read_modes
-from modalkit.cli.demonstrate import sample
+from modalkit.samples import sample_file
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -87,7 +87,7 @@ def test_two_tests_are_compared_by_shape(tmp_path: Path) -> None:
 
 
 def test_a_study_reads_the_table_that_identify_writes(tmp_path: Path, run: Run) -> None:
-    source = sample("beam_dry")
+    source = sample_file("beam_dry/study.toml")
     data = source.parent / "beam_dry.uff"
     target = tmp_path / "modes.csv"
     code, out, _ = run("identify", data, "--band", "5", "500", "-o", target)
