@@ -1,12 +1,14 @@
 """The site's settings: ``uv run --group docs sphinx-build -W -b html docs build/site``."""
 
 import logging
+import os
 import sys
 from importlib.metadata import version as version_of
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 
+os.environ.update(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")  # of the notebooks' kernels
 logging.getLogger("skfem").setLevel(logging.WARNING)
 
 project = "modalkit"

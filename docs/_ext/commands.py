@@ -63,6 +63,9 @@ def pages(root: Path = ROOT) -> list[Path]:
 
 def run_pages(chosen: Iterable[Path], *, slow: bool = False, workers: int = 2) -> list[Outcome]:
     """Run pages, each in a process of its own."""
+    os.environ.pop(
+        "PYTHONDONTWRITEBYTECODE", None
+    )  # a command takes seconds longer where it must compile anew
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
         jobs = [pool.submit(run_page, page, slow=slow) for page in chosen]
         return [outcome for job in jobs for outcome in job.result()]
@@ -77,6 +80,7 @@ def run_page(page: Path, *, slow: bool = False) -> list[Outcome]:
     _prepare(folder)
     os.chdir(folder)
     os.environ.update(_environment(folder))
+    sys.dont_write_bytecode = False
     sys.path.insert(0, str(folder))
     names: dict[str, object] = {"__name__": "page"}
     return [outcome for block in _with_printed(found) for outcome in _run(page, block, names, slow=slow)]
