@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import time
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -71,9 +72,16 @@ def _inserted(path: Path) -> str:
 
 
 def _console(found: re.Match[str]) -> str:
-    """Let long lines of words wrap; tables keep their lines."""
-    longest = max(len(line) for line in found[1].splitlines())
-    return found[0] if longest <= LONG_LINE else f":::{{container}} wrapped\n{found[0]}\n:::"
+    """Let paragraphs with long lines wrap; tables keep their lines."""
+    fences = []
+    for wraps, paragraphs in groupby(re.split(r"\n{2,}", found[1].rstrip("\n")), _is_long):
+        fence = "```console\n" + "\n\n".join(paragraphs) + "\n```"
+        fences.append(f":::{{container}} wrapped\n{fence}\n:::" if wraps else fence)
+    return "\n\n".join(fences)
+
+
+def _is_long(paragraph: str) -> bool:
+    return max(len(line) for line in paragraph.splitlines()) > LONG_LINE
 
 
 def plain_bars(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:
