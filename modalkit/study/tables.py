@@ -102,7 +102,7 @@ class MeasurementTable(Strict):
     window: Rate = 0.0
     """Decay rate of a further window, applied here [1/s]."""
     estimator: Literal["H1", "H2", "Hv"] = "H1"
-    """``H1``, ``H2`` or ``Hv``."""
+    """How FRFs are averaged from hits."""
     use: list[tuple[str, int]] = []
     """Hits to use against the proposal, as ``[["12+Z", 3]]``; a point's hits are numbered through all runs
     and files.
