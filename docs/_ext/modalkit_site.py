@@ -59,15 +59,17 @@ def _list(outcomes: list[Outcome]) -> str:
 def complete(app: Sphinx, docname: str, source: list[str]) -> None:
     """Put in what is made: reference, files that commands of a page wrote, a word on long commands."""
     text = re.sub(r"^<!-- made: (.*) -->$", lambda m: MAKERS[m[1]](), source[0], flags=re.MULTILINE)
-    text = re.sub(r"^<!-- insert: (.*) -->$", lambda m: _inserted(MADE / m[1]), text, flags=re.MULTILINE)
+    text = re.sub(r"^<!-- insert: (.*) -->$", lambda m: _inserted(app, MADE / m[1]), text, flags=re.MULTILINE)
     text = re.sub(r"^<!-- hidden -->\n```\w+\n.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
     text = re.sub(r"^<!-- (?:needs \w+, )?slow -->\n", lambda _: SLOW, text, flags=re.MULTILINE)
     text = re.sub(r"^<!-- (printed|shown|file: .*|needs .*) -->\n", "", text, flags=re.MULTILINE)
     source[0] = re.sub(r"^```console\n(.*?)^```$", _console, text, flags=re.MULTILINE | re.DOTALL)
 
 
-def _inserted(path: Path) -> str:
-    """Return a page that a command wrote, its headings under ours, without what it says of files."""
+def _inserted(app: Sphinx, path: Path) -> str:
+    """Return a page that a command wrote, without what it says of files."""
+    if not int(app.config.run_pages) and not path.exists():
+        return "*Made where the build runs the pages.*"
     return re.sub(r"^figure: .*\n", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
 
 
