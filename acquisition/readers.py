@@ -32,7 +32,7 @@ def read_test(
     paths : path or sequence of paths
         The files. UFF files are read together as one test, and so are files of column text.
     layout : Layout or path, optional
-        Rate, units and points of column text; see docs/readers.md. It makes any file without a reader of its
+        Rate, units and points of column text; see docs/howto/column_text.md. It makes any file without a reader of its
         own column text.
     readers : mapping of str to function, optional
         Further readers by file ending (``{".abc": read_abc}``); they come before all others.
@@ -110,8 +110,8 @@ def written_as_uff(path: Path | str) -> bool:
 
 def _advice(path: Path, own: Mapping[str, Reader]) -> str:
     if path.suffix.lower() == ".mat":
-        return "a MATLAB file needs a layout file with a table [mat] that names its variables; see docs/readers.md"
+        return "a MATLAB file needs a layout file with a table [mat] that names its variables; see docs/howto/matlab.md"
     if path.suffix.lower() in COLUMNS:
-        return "column text needs a layout file with rate, units and points; see docs/readers.md"
+        return "column text needs a layout file with rate, units and points; see docs/howto/column_text.md"
     known = ", ".join(sorted({*UFF, *COLUMNS, ".mat", *own}))
-    return f"no reader for {path.suffix or 'files without ending'}; known are {known}; see docs/readers.md"
+    return f"no reader for {path.suffix or 'files without ending'}; known are {known}; see docs/howto/own_reader.md"

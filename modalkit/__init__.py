@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from modalkit import figures
     from modalkit.figures import draw
     from modalkit.output.modes import write_modes
+    from modalkit.samples import sample_file
     from modalkit.simulation.simulate import simulate_test
     from modalkit.study.read import Study, read_study
     from modalkit.workflow.case import Session, open_study
@@ -66,7 +67,7 @@ if TYPE_CHECKING:
     from updating import Case, Diagnosis, diagnose, register
     from updating.correlation.correlate import correlate
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "Case",
@@ -106,6 +107,7 @@ __all__ = [
     "reciprocity",
     "register",
     "remove_sensor_mass",
+    "sample_file",
     "simulate_test",
     "split_hits",
     "update_studies",
@@ -132,6 +134,7 @@ load_on_demand(
         ".workflow.case": "Session open_study",
         ".workflow.identification": "Processed read",
         ".output.modes": "write_modes",
+        ".samples": "sample_file",
         ".simulation.simulate": "simulate_test",
         ".study.read": "Study read_study",
         "updating": "Case Diagnosis diagnose register",

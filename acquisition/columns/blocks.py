@@ -181,7 +181,8 @@ def read_text(path: Path) -> list[str]:
             ) from error
     if len(raw.rstrip(b"\x1a").translate(None, _CONTROL)) < len(raw.rstrip(b"\x1a")):
         raise InputError(
-            f"{path}: damaged, or binary, no column text; export it as text, or write a reader (docs/readers.md)"
+            f"{path}: damaged, or binary, no column text; export it as text, or write a reader "
+            "(docs/howto/own_reader.md)"
         )
     try:
         return raw.decode("utf-8-sig").splitlines()

@@ -173,7 +173,7 @@ def dof_of(node: int, direction: str) -> Dof:
 
 
 def read_layout(path: Path | str) -> Layout:
-    """Read a layout file (TOML); see docs/readers.md.
+    """Read a layout file (TOML); see docs/howto/column_text.md.
 
     Raises
     ------

@@ -50,7 +50,7 @@ def read_columns(
     paths : path or sequence of paths
         CSV files, tab- or blank-separated text, LabVIEW ``.lvm``.
     layout : Layout or path
-        Which column is what; see docs/readers.md.
+        Which column is what; see docs/howto/column_text.md.
     geometry : Geometry, optional
         Nodes of the test; left out: those of the layout.
 

@@ -31,7 +31,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
         The files; all on one frequency axis.
     layout : Layout or path
         Which column is what: ``frequency_column``, and for every FRF two columns, "real" and "imag" or
-        "magnitude" and "phase" [degrees]; see docs/readers.md.
+        "magnitude" and "phase" [degrees]; see docs/howto/column_text.md.
 
     Raises
     ------

@@ -30,7 +30,7 @@ def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalDat
         The file, of version 5 to 7.2.
     layout : Layout or path
         Its ``[mat]`` says which variable is what; ``[nodes]`` and ``decay`` count too, and of FRFs ``[[file]]``, which
-        places their one reference. See docs/readers.md.
+        places their one reference. See docs/howto/matlab.md.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalDat
     plan = layout if isinstance(layout, Layout) else read_layout(layout)
     if plan.mat is None:
         raise InputError(
-            f"{path}: {plan.source} has no table [mat] that names the variables; see docs/readers.md"
+            f"{path}: {plan.source} has no table [mat] that names the variables; see docs/howto/matlab.md"
         )
     if plan.mat.frfs:
         return read_mat_frfs(path, _placed(plan, Path(path)), geometry=plan.nodes, decay=plan.decay)

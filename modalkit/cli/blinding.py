@@ -30,7 +30,7 @@ _DOCUMENTS = {"": "blind", "STUDY": "plan", "--real": "real", "--check": "blind"
 """What is written as JSON."""
 
 OwnStudy = Annotated[
-    Path | None, typer.Argument(help="your own study: what can its test tell apart? (docs/planning.md)")
+    Path | None, typer.Argument(help="your own study: what can its test tell apart? (docs/tutorials/plan.md)")
 ]
 Trials = Annotated[int | None, typer.Option(help="number of trials; left out: 60, with a STUDY none")]
 Seed = Annotated[int | None, typer.Option(help="seed of the run; left out: drawn, and said at the end")]

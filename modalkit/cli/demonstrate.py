@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from acquisition.errors import InputError
 from modalkit.cli.common import check_folder, out, show_figures, show_table, working
 from modalkit.cli.diagnosing import diagnosis_figures, show_diagnosis
+from modalkit.samples import sample_file
 from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from updating import diagnose as examine
@@ -20,27 +20,12 @@ def add_commands(app: typer.Typer) -> None:
     app.command()(demo)
 
 
-def sample(name: str) -> Path:
-    """Return the study file of a shipped sample.
-
-    Raises
-    ------
-    InputError
-        If the samples were not installed with the package.
-    """
-    home = Path(__file__).resolve().parents[1]
-    for folder in (home / "_sample_data", home.parent / "sample_data"):
-        if (folder / name / "study.toml").exists():
-            return folder / name / "study.toml"
-    raise InputError(f"the sample study {name!r} is not installed; clone the repository and run it there")
-
-
 def demo(
     figures: Annotated[Path | None, typer.Option("--figures", help="folder for the figures")] = None,
 ) -> None:
     """Run the main job on shipped data: hits to modes to the cause of the gap."""
     check_folder(figures)
-    study = read_study(sample("beam_wet"))
+    study = read_study(sample_file("beam_wet/study.toml"))
     out.print(f"Study: {study.name}\n", style="bold", markup=False)
     with working("hits to FRFs to modes"):
         session = open_study(study)

@@ -32,7 +32,7 @@ def quantity(unit: str) -> Callable[[object], object]:
 
 Files = Annotated[list[Path], typer.Argument(help="file(s) of one test: UFF, or column text with --layout")]
 Figures = Annotated[Path | None, typer.Option("--figures", help="folder for figures")]
-Layout = Annotated[Path | None, typer.Option(help="layout of column text (docs/readers.md)")]
+Layout = Annotated[Path | None, typer.Option(help="layout of column text (docs/howto/column_text.md)")]
 Decay = Annotated[
     float,
     typer.Option(

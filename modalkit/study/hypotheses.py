@@ -30,12 +30,21 @@ class HypothesisTable(Strict):
     """``[[hypothesis]]``."""
 
     name: str = Field(min_length=1, max_length=80)
+    """The user's own cause; no ``.``, ``#``, ``+``, ``(``, and no name of an effect."""
     stiffness: str | None = None
+    """The whole stiffness matrix if it were so; the model is K0 + amount (K1 - K0), the answer
+    ``NAME.amount``.
+    """
     mass: str | None = None
+    """The whole mass matrix if it were so."""
     deck: str | None = None
+    """In their place, for ``calculix``: the deck if it were so, on the same mesh and supports."""
     parameter: str | None = None
+    """In their place: ``E``, ``density``, ``REGION.E``, ``REGION.density``; the answer is ``NAME.value``."""
     range: Annotated[list[float | str], Field(min_length=2, max_length=2)] | None = None
+    """How far towards it, 0 being the model as it stands; of a parameter from, to in its unit, and needed."""
     why: str = ""
+    """For people."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -56,7 +56,9 @@ class Study(Strict):
     """
 
     title: str = ""
+    """For people."""
     note: str = ""
+    """For people."""
     test: MeasurementTable
     baseline: MeasurementTable | None = None
     model: ModelTable | None = None

@@ -73,36 +73,76 @@ class AxesTable(Strict):
     """Model axes in test coordinates."""
 
     origin: Place = (0.0, 0.0, 0.0)
+    """Where the model's origin lies, in the coordinates of the test [m]."""
     x: Vector = (1.0, 0.0, 0.0)
+    """Direction of the model's x axis there [-]."""
     y: Vector = (0.0, 1.0, 0.0)
+    """Direction of its y axis [-]; z completes them right-handed."""
 
 
 class MeasurementTable(Strict):
     """``[test]`` and ``[baseline]``: where the data are and how they were taken."""
 
     files: list[str] = []
+    """UFF files of raw hits or FRFs, or column text; several are one test."""
     modes: str | None = None
+    """In their place, modes: a CSV table, UFF 55 or 2414, the JSON of ``identify --json``, or a ``.mat`` file
+    with its ``layout``.
+    """
     band: tuple[Annotated[float, in_unit("Hz"), Field(ge=0)], Hertz] | None = None
+    """Band looked at [Hz]. Left out: all; of hits, to where the force is 20 dB down. Cut, with a warning, to
+    where force and coherence leave information.
+    """
     exponential_window: Rate = 0.0
+    """Decay rate of a window applied before the file was written [1/s]; another one stated in the file is an
+    error.
+    """
     window_on: Literal["both", "responses"] | None = None
+    """What that window was applied to. Left out: what the noise of the force shows."""
     window: Rate = 0.0
+    """Decay rate of a further window, applied here [1/s]."""
     estimator: Literal["H1", "H2", "Hv"] = "H1"
+    """How FRFs are averaged from hits."""
     use: list[tuple[str, int]] = []
+    """Hits to use against the proposal, as ``[["12+Z", 3]]``; a point's hits are numbered through all runs
+    and files.
+    """
     leave: list[tuple[str, int]] = []
+    """Hits to leave out, in the same form."""
     add: list[Hertz] = []
+    """Modes to keep whatever the statistics say [Hz]."""
     drop: list[Hertz] = []
+    """Modes that are none [Hz]."""
     order: Annotated[int, Field(ge=2, le=400)] | None = None
+    """Highest model order [-]. Left out: 60."""
     references: list[str] = []
+    """Degrees of freedom hit whose FRFs are used, as ``["1+Z"]``. Left out: all."""
     pairs: list[tuple[Hertz, Annotated[int, Field(ge=0)]]] = []
+    """Partners stated by hand, as ``[[153.9, 3]]``: the mode measured at 153.9 Hz is the model's third; 0: it
+    has none.
+    """
     layout: str | None = None
+    """Layout of column text, or of a ``.mat`` file."""
     sensor_masses: dict[str, Mass] = {}
+    """Accelerometers whose mass is taken out of the FRFs [kg], as ``{ "25+Z" = 0.0086 }``; each must have
+    been hit at its own place.
+    """
     calibration: Annotated[float, in_unit(""), Field(gt=0.0)] = 0.02
+    """Relative 1-sigma of the level of the FRFs [-]."""
     repeatability: Share = 0.0005
+    """Relative 1-sigma of the frequencies from one mounting to the next [-]. From re-mounting, never from
+    what a fit leaves.
+    """
     position_sigma: Annotated[float, in_unit("m"), Field(ge=0.0, lt=LARGEST_ASTRAY)] = 0.001
+    """1-sigma of the points hit, and of where a sensor sits [m]."""
     points: list[Length] = []
+    """Of a test that is only planned: where along a beam it will be hit [m]. Left out: eight, evenly."""
     sensor: Length | None = None
+    """Of a test that is only planned: where the sensor will sit [m]. Left out: the free end."""
     hits: int | None = Field(None, ge=1)
+    """Of a test that is only planned: how often each point is hit. Left out: 5."""
     axes: AxesTable = AxesTable()
+    """The model's axes in the coordinates of the test."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -116,7 +156,7 @@ class MeasurementTable(Strict):
         if of_mat and self.layout is None:
             raise ValueError(
                 f'modes = {self.modes!r} is a MATLAB file: layout = "layout.toml" has to say which of its variables is '
-                "what (docs/readers.md)"
+                "what (docs/howto/matlab.md)"
             )
         useless = [key for key in OF_RECORDS if not (of_mat and key == "layout")]
         stated = [key for key in useless if getattr(self, key) != type(self).model_fields[key].default]
@@ -149,42 +189,64 @@ class MaterialTable(Strict):
     """``[model.material]``."""
 
     E: Modulus
+    """Young's modulus [Pa]."""
     density: Density
+    """Density [kg/m3]."""
     poisson: Annotated[float, in_unit(""), Field(ge=0.0, lt=0.5)] = 0.3
+    """Poisson's ratio [-]."""
 
 
 class DampingTable(Strict):
     """``[model.damping]``."""
 
     alpha: Alpha | None = None
+    """C = alpha M [1/s]."""
     beta: Beta | None = None
+    """C = beta K [s]."""
     loss_factor: LossFactor | None = None
+    """K (1 + i eta) [-]."""
     ratios: Annotated[list[Share], Field(min_length=1)] | None = None
+    """Damping ratio of each mode [-]. All left out: unknown."""
 
 
 class MassTable(Strict):
     """``[[model.mass]]``."""
 
     at: Annotated[list[Length], Field(min_length=1, max_length=3)]
+    """Where it sits [m]."""
     mass: Mass
+    """A mass that the modeller knows of [kg]."""
     inertia: Inertia = 0.0
+    """Its rotary inertia [kg m2]."""
 
 
 class RegionTable(Strict):
     """``[[model.region]]``."""
 
     name: str = Field(min_length=1)
+    """Its name; regions of one name are updated as one."""
     set: str | None = None
+    """``calculix``: the element set or material, where that has another name."""
     x: Span | None = None
+    """From, to along x [m]."""
     y: Span | None = None
+    """From, to across, of plates [m]."""
     E: Modulus | None = None
+    """Its own, in place of the model's [Pa]."""
     density: Density | None = None
+    """Likewise [kg/m3]."""
     thickness: Size | None = None
+    """Likewise [m]."""
     area: Area | None = None
+    """Of beams [m2]."""
     inertia: SecondMoment | None = None
+    """Second moment of area, of beams [m4]."""
     alpha: Alpha | None = None
+    """As under damping [1/s]."""
     beta: Beta | None = None
+    """As under damping [s]."""
     loss_factor: LossFactor | None = None
+    """As under damping [-]."""
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
@@ -198,44 +260,71 @@ class ModelTable(Strict):
     """``[model]``."""
 
     type: Literal["beam", "plate", "matrices", "calculix"]
+    """``beam``, ``plate``, ``matrices``, or ``calculix``."""
     units: Literal["m-kg-s", "mm-t-s", "in-lbf-s"] | None = None
+    """What matrices or deck are written in. Left out: ``m-kg-s``."""
     length: Length | None = None
+    """Along x [m]."""
     width: Length | None = None
+    """Along y [m]."""
     thickness: Length | None = None
+    """Along z, the direction of hitting [m]."""
     elements: int | list[int] | None = None
+    """Of beams a number (40), of plates two (38, 20); refined until the model stands."""
     clamped: list[str] = []
+    """Of ``x0``, ``x1``, and for plates ``y0``, ``y1``."""
     theory: str | None = None
+    """Beams: ``euler-bernoulli`` (taken if left out), ``rayleigh``, ``timoshenko``; plates: ``kirchhoff``,
+    ``mindlin``.
+    """
     deck: str | None = None
+    """``calculix``: the input deck."""
     stiffness: str | None = None
+    """``matrices``: file of the stiffness matrix."""
     mass_matrix: str | None = None
+    """``matrices``: file of the mass matrix; may be written ``mass`` where there is no ``[[model.mass]]``."""
     stiffness_parts: list[str] = []
+    """``matrices``: one file for each region, in their order."""
     mass_parts: list[str] = []
+    """``matrices``: likewise."""
     nodes: str | None = None
+    """``matrices``: node table (CSV), or the deck they come from."""
     material: MaterialTable | None = None
     damping: DampingTable = DampingTable()
     mass: list[MassTable] = []
     region: list[RegionTable] = []
     effect: list[dict[str, Any]] = []
+    """Accepted effects, each with ``name`` and its parameters: put into the model, the rest is diagnosed."""
 
 
 class TolerancesTable(Strict):
     """``[tolerances]``: the modeller's own doubts, relative standard deviations."""
 
     E: Share = 0.01
+    """The modeller's own doubt [-]."""
     density: Share = 0.003
+    """Likewise [-]."""
     thickness: Share = 0.005
+    """Likewise [-]."""
     length: Share = 0.002
+    """Likewise [-]."""
     width: Share = 0.002
+    """Likewise [-]."""
     damping: Doubt = Field(0.3, ge=1e-6)
+    """Doubt in the expected damping: of its level, and again of each mode [-]."""
 
 
 class EnvironmentTable(Strict):
     """``[environment]``."""
 
     fluid_density: Fluid | None = None
+    """Of a fluid around the structure [kg/m3]. Left out: a broad prior."""
     free_surface: Size | None = None
+    """Above the structure (+z) [m]."""
     bottom: Size | None = None
+    """Below it [m]."""
     walls: tuple[Length, Length, Length, Length] | None = None
+    """``[x0, x1, y0, y1]`` in model axes [m]. Left out: unbounded, beside the wall of a clamp."""
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
@@ -250,11 +339,19 @@ class UpdateTable(Strict):
     """``[update]``."""
 
     method: Literal["eigenvalue", "frf"] = "eigenvalue"
+    """By frequencies and shapes, or by FRFs."""
     parameters: list[str] | None = None
+    """What is turned. Left out: ``["E"]``."""
     weights: Literal["covariance", "relative", "eigenvalue"] | list[Weight] = "covariance"
+    """Of ``eigenvalue``: a rule, or a weight for each mode."""
     lines: Annotated[int, Field(ge=1)] | list[Hertz] | None = None
+    """Of ``frf``: how many frequency lines a stage compares, or which [Hz]. Left out: 100."""
     stages: list[list[str]] | None = None
+    """Of ``frf``: lists of parameters settled one after the other, in place of ``parameters``. Left out: mass
+    and stiffness, then damping.
+    """
     data: list[Literal["frequencies", "shapes", "constants"]] = ["frequencies"]
+    """Of ``eigenvalue``: add ``"shapes"``, or ``"constants"`` for shapes with their level."""
 
     @field_validator("parameters", "stages")
     @classmethod

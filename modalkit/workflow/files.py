@@ -132,7 +132,7 @@ def _modes(path: Path, layout: Layout | None) -> ModalData:
             raise
         raise InputError(
             f"{error}; if it is column text of hits or FRFs, give its layout file with rate, units and points "
-            "(docs/readers.md)"
+            "(docs/howto/column_text.md)"
         ) from error
 
 

@@ -126,7 +126,7 @@ PRIVATE = {
     ),
     *("leftover", "overrule", "remark", "remarks", "handling", "grams"),
 }
-"""Words of which docs/nomenclature.md says what the field calls them."""
+"""Words of which docs/reference/nomenclature.md says what the field calls them."""
 
 
 @pytest.mark.parametrize("room", ROOMS)

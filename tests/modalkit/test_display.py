@@ -16,7 +16,7 @@ import modalkit
 import updating
 from acquisition.display import Displayed, described, named_files
 from modalkit import figures
-from modalkit.cli.demonstrate import sample
+from modalkit.samples import sample_file
 from updating import Diagnosis
 
 LONGEST = 2500  # characters: some 25 lines of a terminal
@@ -24,12 +24,12 @@ LONGEST = 2500  # characters: some 25 lines of a terminal
 
 @pytest.fixture(scope="module")
 def session() -> modalkit.Session:
-    return modalkit.open_study(str(sample("beam_dry")))
+    return modalkit.open_study(str(sample_file("beam_dry/study.toml")))
 
 
 @pytest.fixture(scope="module")
 def diagnosis() -> Diagnosis:
-    return modalkit.diagnose_studies([str(sample("beam_wet"))])
+    return modalkit.diagnose_studies([str(sample_file("beam_wet/study.toml"))])
 
 
 def parts(result: Any, depth: int = 0) -> Iterator[Any]:
@@ -153,10 +153,10 @@ def _functions(name: str, thing: Any) -> Iterator[tuple[str, Any]]:
 
 
 def test_strings_are_taken_as_paths(tmp_path: Any, session: modalkit.Session) -> None:
-    study = str(sample("beam_dry"))
+    study = str(sample_file("beam_dry/study.toml"))
     assert modalkit.read_study(study).name == session.study.name
     processing = modalkit.ProcessingOptions(layout=study)
-    assert processing.layout == sample("beam_dry")
+    assert processing.layout == sample_file("beam_dry/study.toml")
     test = modalkit.simulate_test(study)
     test.write(str(tmp_path / "t.uff"))
     assert modalkit.read(str(tmp_path / "t.uff")).hits

@@ -21,7 +21,10 @@ from .operator import AddedMassOperator
 from .section import mapped_sides
 
 LAYER = 0.0083
-"""Reach of a sharp edge in depths of the layer, when that is thin: limit of the viscous strip (docs/fluid.md) [-]."""
+"""Reach of a sharp edge in depths of the layer, when that is thin: limit of the viscous strip [-].
+
+See docs/explain/fluid.md.
+"""
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(300)
 

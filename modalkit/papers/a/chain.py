@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from acquisition import InputError
-from modalkit.module_path import HOME
 from modalkit.papers.a.printed import TABLES, Printed, PrintedTable
+from modalkit.samples import sample_file
 from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
 from updating import Case
@@ -18,17 +18,8 @@ from updating.update import Update, update
 
 
 def sample_folder() -> Path:
-    """Return the folder of the sample studies, in the clone or in the installed package.
-
-    Raises
-    ------
-    InputError
-        If the samples were not installed.
-    """
-    for folder in (Path(HOME) / "modalkit" / "_sample_data", Path(HOME) / "sample_data"):
-        if (folder / "beam_dry" / "study.toml").exists():
-            return folder
-    raise InputError("the sample studies are not installed; clone the repository and run the command there")
+    """Return the folder of the sample studies, in the clone or in the installed package."""
+    return sample_file("beam_dry/study.toml").parents[1]
 
 
 @dataclass(frozen=True, eq=False)

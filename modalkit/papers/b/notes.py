@@ -35,8 +35,8 @@ DAMPER_NOTES = (
 DAMPING_NOTES = (
     "The initial column is that of the section already updated (first stage) with the estimated alpha and beta, "
     "and beta_2 = 1e-7 s; on the original section mode 1 would have 0.95 %.",
-    "Of the forms of damping that the program knows, alpha and beta are not the best: see docs/tables.md for a "
-    "loss factor.",
+    "Of the forms of damping that the program knows, alpha and beta are not the best: see "
+    "docs/tutorials/papers.md for a loss factor.",
     "Damping of the model is identified from the model's own FRFs at the eleven points, as the paper does it.",
     "Erratum: the header of the error columns has (test - model) / test; all twelve printed values have the "
     "opposite sign, (model - test) / test, which is used here.",

@@ -1,4 +1,4 @@
-"""Any kind of file through one door; the examples of docs/readers.md run."""
+"""Any kind of file through one door; the examples of the how-tos run."""
 
 from __future__ import annotations
 
@@ -21,17 +21,18 @@ from acquisition import (
 from acquisition.columns import layout_from
 from acquisition.readers import read_test
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "readers.md"
+HOWTO = Path(__file__).resolve().parents[3] / "docs" / "howto"
+PAGES = [HOWTO / name for name in ("arrays.md", "own_reader.md")]
 
 
 def examples():
-    text = PAGE.read_text(encoding="utf-8")
-    return re.findall(r"<!-- executed -->\n```python\n(.*?)```", text, flags=re.DOTALL)
+    text = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    return re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
 
 
 def run(code):
     names: dict[str, object] = {}
-    exec(compile(code, str(PAGE), "exec"), names)
+    exec(compile(code, "howto", "exec"), names)
     return names
 
 

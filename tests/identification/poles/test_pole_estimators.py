@@ -125,11 +125,13 @@ def test_says_when_there_are_too_few_lines(name):
 
 
 def test_the_estimator_on_the_page_identifies(monkeypatch, rng):
-    page = (Path(__file__).resolve().parents[3] / "docs" / "identification.md").read_text(encoding="utf-8")
+    page = (Path(__file__).resolve().parents[3] / "docs" / "howto" / "own_estimator.md").read_text(
+        encoding="utf-8"
+    )
     (block,) = (b for b in re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL) if "ESTIMATORS[" in b)
     assert len([line for line in block.splitlines() if line.strip()]) <= 20
     monkeypatch.setitem(ESTIMATORS, "htls", ESTIMATORS["lsce"])  # it is gone again after the test
-    exec(compile(block, "docs/identification.md", "exec"), {})
+    exec(compile(block, "docs/howto/own_estimator.md", "exec"), {})
     truth = bench()
     frfs = truth.frfs(lines(low=250.0, high=700.0), column(), noise=0.003, rng=rng)
     wanted = truth.poles[truth.within(250, 700)]

@@ -312,7 +312,9 @@ def test_markdown_file_is_made_or_filled_between_its_marks(tmp_path: Path) -> No
 
 
 def test_docs_have_the_marks_for_the_released_score() -> None:
-    page = (Path(__file__).resolve().parents[3] / "docs" / "blind.md").read_text(encoding="utf-8")
+    page = (Path(__file__).resolve().parents[3] / "docs" / "trust" / "blind_score.md").read_text(
+        encoding="utf-8"
+    )
     assert page.count(BEGIN) == page.count(END) == 1
 
 

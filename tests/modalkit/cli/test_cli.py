@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from modalkit.cli.demonstrate import sample
+from modalkit.samples import sample_file
 
 Run = Callable[..., tuple[int, str, str]]
 
 
 def beam(name: str = "beam_dry.uff") -> Path:
-    return sample("beam_dry").parent / name
+    return sample_file("beam_dry/study.toml").parent / name
 
 
 def test_inspect_lists_what_is_usable(run: Run) -> None:
@@ -95,7 +95,7 @@ def test_options_for_hits_are_refused_for_frfs(run: Run, tmp_path: Path) -> None
 
 def test_diagnose_writes_the_contract(run: Run, tmp_path: Path) -> None:
     target, figures = tmp_path / "d.json", tmp_path / "figures"
-    code, out, _ = run("diagnose", sample("beam_wet"), "--json", target, "--figures", figures)
+    code, out, _ = run("diagnose", sample_file("beam_wet/study.toml"), "--json", target, "--figures", figures)
     assert code == 0
     answer = [line.split(":")[0] for line in out.splitlines()[1:6]]
     assert answer == ["Cause", "Where", "Closes", "Sure", "Next"]
@@ -108,7 +108,7 @@ def test_diagnose_writes_the_contract(run: Run, tmp_path: Path) -> None:
 
 
 def test_correlate_and_update_print_their_tables(run: Run, tmp_path: Path) -> None:
-    study = sample("beam_dry")
+    study = sample_file("beam_dry/study.toml")
     assert "MAC" in run("correlate", study)[1]
     target = tmp_path / "u.json"
     assert run("update", study, "--json", target)[0] == 0

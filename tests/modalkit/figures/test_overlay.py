@@ -12,9 +12,9 @@ import pytest
 
 from acquisition import Dof, FrfSet
 from modalkit.cli import main
-from modalkit.cli.demonstrate import sample
 from modalkit.figures import overlay_figure
 from modalkit.figures.overlay import chosen_frfs
+from modalkit.samples import sample_file
 from updating.correlation.frfs import CorrelatedFrfs
 
 
@@ -62,7 +62,7 @@ def test_correlate_writes_record_and_figure(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     target = tmp_path / "out.json"
-    study = sample("beam_dry")
+    study = sample_file("beam_dry/study.toml")
     arguments = ["modalkit", "correlate", str(study), "--json", str(target), "--figures", str(tmp_path)]
     monkeypatch.setattr(sys, "argv", arguments)
     with pytest.raises(SystemExit) as ended:

@@ -156,12 +156,7 @@ def test_the_command_writes_tables_and_figures(
     assert len(list(folder.glob("*.png"))) == 6
 
 
-def test_the_docs_show_every_table_and_figure(made: dict[object, PaperTable], worked: Work) -> None:
-    docs = Path(__file__).resolve().parents[3] / "docs"
-    text = (docs / "tables.md").read_text(encoding="utf-8")
-    for table in made.values():
-        assert f"## {table.heading}" in text
-        assert all(note in text for note in table.notes)
-    for name in worked.figures():
-        assert f"figures/{name}.png" in text
-        assert (docs / "figures" / f"{name}.png").exists()
+def test_the_docs_show_every_figure(worked: Work) -> None:
+    page = Path(__file__).resolve().parents[3] / "docs" / "reference" / "papers.md"
+    text = page.read_text(encoding="utf-8")
+    assert not [name for name in worked.figures() if f"/figures/{name}.png" not in text]

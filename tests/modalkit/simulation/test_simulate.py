@@ -12,7 +12,7 @@ import pytest
 
 from acquisition import Dof, read_uff, write_uff
 from acquisition.errors import InputError, StudyError
-from modalkit.cli.demonstrate import sample
+from modalkit.samples import sample_file
 from modalkit.simulation.planned import spaced
 from modalkit.simulation.setup import Options
 from modalkit.simulation.simulate import prepare, simulate_test
@@ -23,7 +23,7 @@ from modalkit.workflow.identification import read
 from updating import LIBRARY, Damping, Material, Measured, Predictor, Spec
 
 Run = Callable[..., tuple[int, str, str]]
-STUDY = sample("beam_dry")
+STUDY = sample_file("beam_dry/study.toml")
 TABLE = """
 [model]
 type = "{kind}"
@@ -179,7 +179,7 @@ def test_points_with_different_responses_are_different_tests(tmp_path: Path) -> 
 
 def test_a_study_with_modes_alone_says_where_it_hits(run: Run, tmp_path: Path) -> None:
     target = tmp_path / "out.uff"
-    published = sample("beam_dry").parent / "published.toml"
+    published = sample_file("beam_dry/study.toml").parent / "published.toml"
     code, out, _ = run(
         "simulate", published, "--points", "4", "--hits", "2", "--samples", "2048", "-o", target
     )
@@ -377,7 +377,7 @@ def test_nothing_is_left_where_nothing_can_be_written(run: Run, tmp_path: Path) 
 
 
 def test_a_beam_in_water_sounds_lower(tmp_path: Path) -> None:
-    study = read_study(sample("beam_wet"))
+    study = read_study(sample_file("beam_wet/study.toml"))
     effect = [parse_effect("fluid_added_mass:fluid_density=998")]
     dry, wet = (simulate_test(study, e, options=Options(hits=1)).table() for e in ([], effect))
     count = min(len(dry), len(wet))

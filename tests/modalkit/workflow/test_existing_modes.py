@@ -14,7 +14,7 @@ import pytest
 
 import modalkit as mk
 from acquisition import Dof, FrfSet, Geometry, InputError, ModalData, read_modes
-from modalkit.cli.demonstrate import sample
+from modalkit.samples import sample_file
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -87,7 +87,7 @@ def test_two_tests_are_compared_by_shape(tmp_path: Path) -> None:
 
 
 def test_a_study_reads_the_table_that_identify_writes(tmp_path: Path, run: Run) -> None:
-    source = sample("beam_dry")
+    source = sample_file("beam_dry/study.toml")
     data = source.parent / "beam_dry.uff"
     target = tmp_path / "modes.csv"
     code, out, _ = run("identify", data, "--band", "5", "500", "-o", target)
@@ -251,13 +251,11 @@ def test_what_has_no_figures_is_said() -> None:
 
 def test_the_page_on_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     root = Path(__file__).resolve().parents[3]
-    parts = re.findall(
-        r"<!-- executed -->\n```python\n(.*?)```", (root / "docs" / "python.md").read_text(), re.DOTALL
-    )
-    assert len(parts) == 2
+    page = (root / "docs" / "howto" / "python.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sample_data").symlink_to(root / "sample_data")
     names: dict[str, object] = {}
-    exec("".join(parts), names)
+    exec(code, names)
     assert (tmp_path / "figures" / "auto_mac.png").exists() and (tmp_path / "modes.csv").exists()
     assert set(names["figures"]) == {"frf", "stabilisation", "auto_mac", "shapes"}  # type: ignore[call-overload]

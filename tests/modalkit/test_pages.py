@@ -1,0 +1,93 @@
+"""What compares the blocks of a page with what they print: it has to see a change, and none where there is none."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+
+@pytest.fixture(scope="module")
+def pages() -> ModuleType:
+    """Return the module that knows the blocks of a page."""
+    path = Path(__file__).resolve().parents[2] / "docs" / "_ext" / "blocks.py"
+    spec = importlib.util.spec_from_file_location("pages_blocks", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize(
+    ("written", "printed", "alike"),
+    [
+        ("mode 1: 24.4701 Hz", "mode 1: 24.4702 Hz", True),
+        ("mode 1: 24.4701 Hz", "mode 1: 24.4703 Hz", False),
+        ("p = 5e-09", "p = 6e-09", True),
+        ("p = 5e-09", "p = 5e-08", False),
+        ("75 hits, 0 left out", "75 hits, 1 left out", False),
+        ("a    24.47   b", "a 24.47 b", True),
+        ("named: length", "named: density", False),
+        ("beam_2 0.5", "beam_3 0.5", False),
+        ("closes 100 % (97 to 100)", "closes 100 % (96 to 100)", False),
+    ],
+)
+def test_a_line_is_the_same_to_one_unit_of_a_last_digit(
+    pages: ModuleType, written: str, printed: str, alike: bool
+) -> None:
+    assert pages.alike(written, printed) is alike
+
+
+def test_dots_stand_for_any_lines(pages: ModuleType) -> None:
+    printed = "a\nb\nc\nd\n"
+    assert (
+        pages.same("a\n...\n", printed)
+        and pages.same("...\nd\n", printed)
+        and pages.same("a\n...\nc\n...", printed)
+    )
+    assert not pages.same("a\nb\nc\n", printed)
+    assert not pages.same("a\n...\nx\n...", printed)
+    assert not pages.same("b\n...", printed)
+
+
+def test_what_is_renewed_keeps_its_shape(pages: ModuleType) -> None:
+    printed = "head 2\none 1.5\ntwo 2.5\n[[Table]]\nrow 7.5\nmore\n"
+    assert (
+        pages.renewed("head 1\n...\n[[Table]]\nrow 9.1\n...\n", printed)
+        == "head 2\n...\n[[Table]]\nrow 7.5\n...\n"
+    )
+    assert pages.renewed("old\n", printed) == printed
+    assert pages.renewed(printed, printed) == printed
+
+
+def test_the_blocks_of_a_page(pages: ModuleType) -> None:
+    text = """# A page
+```sh
+not run
+```
+<!-- file: a.toml -->
+```toml
+x = 1
+```
+<!-- slow -->
+```console
+$ modalkit one
+1
+$ modalkit two
+```
+<!-- printed -->
+```text
+3
+```
+"""
+    toml, console, printed = pages.blocks(text)
+    assert toml.file == "a.toml" and printed.mark == "printed"
+    assert console.commands() == [("modalkit one", "1\n"), ("modalkit two", "")]
+    assert not console.runs(slow=False) and console.runs(slow=True)
+    assert (
+        text[slice(*console.span)] == console.body and text.splitlines()[console.line - 1] == "$ modalkit one"
+    )
