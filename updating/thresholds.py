@@ -236,6 +236,10 @@ CLOSES_NEARLY_ALL = 90.0
 """A cause that leaves more than noise is named where it closes so much of what can be closed, on modes held out [%].
 Doubling what is left out of it, to 80, names a part of the cause as if it were nearly all."""
 
+LIKELY_ALL_THE_SAME = 0.8
+"""From this probability on that there is some cause, the summary says which, though chance might make the gap [-].
+Doubled: never."""
+
 BEYOND_NOTHING = 3.0
 """By how much the log evidence of an answer exceeds that of no effect at all [-]: odds of 20."""
 
@@ -259,6 +263,17 @@ THEORY_BEYOND_NOISE = 0.3
 """A fuller theory is weighed beside the model's own where it moves a frequency, or the constants of a mode on average,
 by more than this part of the noise [-]: less adds a tenth to the variance. Doubled: a bias of half a sigma goes
 unseen."""
+
+STRIP_ALONG = 40
+"""Most elements along the plate that says what a theory of beams leaves out [-]: a clamp's hold on the section is
+resolved for beams wider than a thirtieth of their length. Doubled: twice the work for a remark."""
+
+STRIP_ACROSS = 4
+"""Elements across that plate [-]: frequencies are good to a thousandth of the shift. Doubled: four times the work."""
+
+TWIST_ALONE = 0.1
+"""Modes of that plate that move the middle line by less than this share of what the liveliest does are twist [-].
+Doubled: a bending mode that the line's ends alone see may be missed."""
 
 WITHIN_REACH = 7.0
 """Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]: a draft's

@@ -45,7 +45,8 @@ def _cause(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none" and (odd := _odd(diagnosis)):
         return f"no gap beyond tolerances and noise, once data that stand alone are left out: {odd}"
     if diagnosis.verdict == "none":
-        return "no gap beyond tolerances and noise; there is nothing to explain"
+        sure = "" if diagnosis.suspected is None else "that is sure to be "
+        return f"no gap {sure}beyond tolerances and noise; {_suspected(diagnosis.suspected)}"
     if diagnosis.verdict == "unknown":
         return f"unknown: {_unknown(diagnosis)}"
     if diagnosis.verdict == "named":
@@ -57,6 +58,13 @@ def _cause(diagnosis: Diagnosis) -> str:
     statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     twin = _twin(diagnosis)
     return f"{statement}; {twin.why}" if twin else statement
+
+
+def _suspected(row: Ranked | None) -> str:
+    """Name what is probable though chance might make the gap; nothing where no cause is."""
+    if row is None:
+        return "there is nothing to explain"
+    return f"should there be one, {' + '.join(row.effects)} is its likeliest cause ({probability(row.probability)})"
 
 
 def _unknown(diagnosis: Diagnosis) -> str:
@@ -255,12 +263,14 @@ def _left_out(diagnosis: Diagnosis) -> str:
     lacking = [why for why in diagnosis.not_examined.values() if why.lack is Lack.DATA]
     if not lacking:
         return ""
-    return f"; {len(lacking)} effects could not be examined for want of data (listed below)"
+    return f"; {len(lacking)} effect{'s' * (len(lacking) > 1)} could not be examined for want of data (listed below)"
 
 
 def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none" and _odd(diagnosis):
         return "measure again what stands alone: points and signs there may be mistaken"
+    if diagnosis.suspected:
+        return "test again, with more hits and points and narrower tolerances, if it matters"
     if diagnosis.verdict == "none":
         return "nothing; the model may be used within its tolerances"
     if diagnosis.verdict == "class" and (twin := _twin(diagnosis)):

@@ -15,12 +15,7 @@ from acquisition.quantities import percent
 from updating.models.build import build_structure
 from updating.models.spec import Spec
 from updating.test_data.measured import Measured
-
-LENGTHWISE, ACROSS = 40, 4
-"""Most elements of the plate along the beam, and its elements across: frequencies are good to 1e-3 of the shift."""
-
-ON_THE_LINE = 0.1
-"""Modes of the plate that move the middle line by less than this share of what the liveliest does twist it [-]."""
+from updating.thresholds import STRIP_ACROSS, STRIP_ALONG, TWIST_ALONE
 
 
 def stiffening(spec: Spec, order: IntArray) -> FloatArray:
@@ -42,10 +37,10 @@ def stiffening(spec: Spec, order: IntArray) -> FloatArray:
         return np.zeros(len(order))
     count = int(order.max()) + 1
     outline = (spec.length, spec.width, spec.thickness)
-    cells = min(spec.elements[0], LENGTHWISE)
+    cells = min(spec.elements[0], STRIP_ALONG)
     thick = spec.theory == "timoshenko"
     plate = Spec(
-        "plate", *outline, (cells, ACROSS), spec.clamped, "mindlin" if thick else "kirchhoff", spec.material
+        "plate", *outline, (cells, STRIP_ACROSS), spec.clamped, "mindlin" if thick else "kirchhoff", spec.material
     )  # fmt: skip
     beam = Spec("beam", *outline, (cells,), spec.clamped, spec.theory, spec.material)
     found, own = _bending(plate, count), _bending(beam, count)
@@ -62,7 +57,7 @@ def _bending(spec: Spec, count: int) -> FloatArray:
     line = np.linspace(0.0, spec.length, 8 * count + 1)
     points = np.stack([line, np.full_like(line, spec.width / 2)], axis=1)[:, : spec.dim]
     moved = np.abs(structure.rows(points)["w"] @ vectors[:, first:]).max(axis=0)
-    return np.asarray(np.sqrt(values[first:][moved > ON_THE_LINE * moved.max()][:count]))
+    return np.asarray(np.sqrt(values[first:][moved > TWIST_ALONE * moved.max()][:count]))
 
 
 def on_width(spec: Spec, order: IntArray, measured: Measured) -> list[str]:

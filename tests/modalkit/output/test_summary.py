@@ -8,7 +8,16 @@ import pytest
 
 from modalkit.output.summary import separated, summary_text
 from updating import LIBRARY, Diagnosis
-from updating.diagnosis.answer.result import Closed, Gap, NextTest, ParameterEstimate, Ranked, Shrink, Where
+from updating.diagnosis.answer.result import (
+    Closed,
+    Gap,
+    NextTest,
+    ParameterEstimate,
+    Ranked,
+    Shortcoming,
+    Shrink,
+    Where,
+)
 
 HEADS = ["Cause:", "Where:", "Closes:", "Sure:", "Next:"]
 MASS = ParameterEstimate(0.0123, "kg", 0.0119, 0.0127, False)
@@ -50,6 +59,7 @@ NONE = replace(
     sets=(),
     where=Where("none", {"none": 0.9, "mass": 1.0}, None, (), (), ()),
     shrink=replace(NAMED.shrink, closed=None, held_runner_up=None),
+    ranking=tuple(replace(row, probability=0.1) for row in NAMED.ranking),
 )
 
 
@@ -91,6 +101,27 @@ def test_the_summary_states_that_most_modes_have_no_partner() -> None:
     message = lines(replace(UNKNOWN, comparable=False))["Cause"]
     assert "most measured modes have no partner" in message
     assert "nothing in the library" not in message
+
+
+@pytest.mark.parametrize(
+    ("lacks", "words"),
+    [
+        ("fit", "nothing in the library"),
+        ("closing", "closes too little"),
+        ("evidence", "20 times"),
+        ("one size", "another size"),
+    ],
+)
+def test_unknown_says_what_the_nearest_set_lacks(lacks: Shortcoming, words: str) -> None:
+    message = lines(replace(UNKNOWN, lacks=lacks))["Cause"]
+    assert words in message
+    assert ("sensor_mass" in message) == (lacks != "fit")
+
+
+def test_a_likely_cause_of_a_gap_that_chance_might_make_is_told() -> None:
+    message = lines(replace(NONE, ranking=NAMED.ranking))
+    assert "should there be one, sensor_mass is its likeliest cause" in message["Cause"]
+    assert "test again" in message["Next"]
 
 
 def test_a_named_cause_says_its_size_its_place_and_its_test() -> None:

@@ -23,6 +23,7 @@ from acquisition.quantities import (
 )
 from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
+from updating.thresholds import LIKELY_ALL_THE_SAME
 
 Verdict = Literal["named", "class", "unknown", "none"]
 
@@ -373,6 +374,12 @@ class Diagnosis(Displayed):
     included: Mapping[str, float] = field(default_factory=dict)
     own: Mapping[str, Effect] = field(default_factory=dict)
     lacks: Shortcoming | None = None
+
+    @property
+    def suspected(self) -> Ranked | None:
+        """What would most probably explain the data where some cause is likely, though chance might make the gap."""
+        likely = sum(row.probability for row in self.ranking) >= LIKELY_ALL_THE_SAME
+        return self.ranking[0] if self.verdict == "none" and likely else None
 
     @property
     def effects(self) -> tuple[str, ...]:
