@@ -26,7 +26,7 @@ from modalkit import read
 from modalkit.app.controller import Controller
 from modalkit.app.opened import open_path
 from modalkit.app.store import Store
-from modalkit.app.views.model import Moved
+from modalkit.app.model_page import Moved
 from modalkit.output.whole import plain
 
 OUTPUTS, LINES, ORDER, PICKS = 25, 1025, 100, 100

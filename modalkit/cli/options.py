@@ -32,6 +32,7 @@ def quantity(unit: str) -> Callable[[object], object]:
 
 Files = Annotated[list[Path], typer.Argument(help="file(s) of one test: UFF, or column text with --layout")]
 Figures = Annotated[Path | None, typer.Option("--figures", help="folder for figures")]
+Report = Annotated[Path | None, typer.Option("--report", help="file for a report as HTML, figures in it")]
 Layout = Annotated[Path | None, typer.Option(help="layout of column text (docs/readers.md)")]
 Decay = Annotated[
     float,

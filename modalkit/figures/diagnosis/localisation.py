@@ -52,6 +52,9 @@ ROW = 0.34
 FAR = 10.0
 """Standard deviations at which the colour of a cell is full."""
 
+NAMED = 4
+"""Most sets of effects that a title names; of more, it says how many [-]."""
+
 MOST = 20
 """Most modes in the table: those that add the most."""
 
@@ -71,7 +74,7 @@ def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figur
     Figure
     """
     where = diagnosis.where
-    title, note = _title(diagnosis), _note(diagnosis)
+    title, note = localisation_title(diagnosis), _note(diagnosis)
     columns = _columns(diagnosis)
     above, low = caption_height(title, note), ROW * (len(columns) + 1)
     top = above + 0.75
@@ -97,13 +100,16 @@ def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figur
     return figure
 
 
-def _title(diagnosis: Diagnosis) -> str:
+def localisation_title(diagnosis: Diagnosis) -> str:
+    """Say where the gap sits, as far as the answer's own sets of effects tell."""
     where = diagnosis.where
     if where.channel == "none":
         return "There is no gap beyond tolerances and noise"
     top = max(where.zones, key=lambda z: z.probability, default=None)
     if diagnosis.verdict == "unknown" and top is not None:
         return f"Nothing explains the gap; a change of {top.name} alone would come nearest"
+    if _in_doubt(diagnosis):
+        return "Whether the gap sits in the measurement or in the structure, these data cannot tell"
     if spans(diagnosis):
         points = f" of point{'s' * (len(where.points) > 1)} {', '.join(map(str, where.points))}"
         inside = (
@@ -120,7 +126,20 @@ def _title(diagnosis: Diagnosis) -> str:
         if diagnosis.verdict == "class" and leader:
             return f"If it is {phrase(leader)}: {located(diagnosis)}{more}"
         return f"The gap sits {located(diagnosis)}{more}"
-    return f"The gap has no single place: it is one of {where.channel} all over the structure"
+    if diagnosis.verdict not in ("named", "class"):
+        return "Nothing explains the gap, and it has no single place"
+    listed = [phrase(names) for names in diagnosis.sets[:NAMED]]
+    if len(diagnosis.sets) > NAMED:
+        listed.append(f"{len(diagnosis.sets) - NAMED} others")
+    whole = listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} or {listed[-1]}"
+    return f"The gap has no single place: {whole} acts all over the structure"
+
+
+def _in_doubt(diagnosis: Diagnosis) -> bool:
+    """Tell whether some sets of the answer lie in the measurement alone and others do not."""
+    acting = [{diagnosis.known[n].channel for n in names if n in diagnosis.known} for names in diagnosis.sets]
+    alone = [channels == {"measurement"} for channels in acting]
+    return diagnosis.verdict == "class" and any(alone) and not all(alone)
 
 
 def _note(diagnosis: Diagnosis) -> str:
@@ -232,4 +251,4 @@ def _cells(axes: Axes, values: FloatArray, left: float, y: float, cell: float) -
         )
 
 
-__all__ = ["localisation_figure"]
+__all__ = ["localisation_figure", "localisation_title"]

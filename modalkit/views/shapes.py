@@ -10,7 +10,7 @@ import numpy as np
 from acquisition import ModalData
 from acquisition.arrays import ComplexArray, FloatArray
 from identification import mpc
-from modalkit.app.views.faces import closed_faces
+from modalkit.views.faces import closed_faces
 from modalkit.workflow.case import Session
 from updating.correlation.correlate import Correlation
 from updating.prediction.predict import Predictor

@@ -1,0 +1,43 @@
+"""FRFs cut to what a file can carry: the same lines for all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition import FrfSet
+from acquisition.arrays import IntArray
+
+BUDGET = 60_000
+"""Numbers that the FRFs of a test may take, half a megabyte; doubled, a report of a large test is no longer mailed [-]."""
+
+FEWEST, MOST = 300, 1200
+"""Lines of an FRF at least and at the most: a phone has fewer columns than the first, a screen hardly more than the
+second [-]."""
+
+LARGEST = 120
+"""Most FRFs in a file; all of them are in `modalkit app` [-]."""
+
+
+def common_lines(frfs: FrfSet, curves: int) -> tuple[IntArray, int]:
+    """Return the lines that are kept, and of how many FRFs.
+
+    Of every piece of the axis those lines are kept where the sum of all FRFs is highest and lowest, so that no peak of it
+    is lost.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs.
+    curves : int
+        Curves that are drawn of each [-].
+    """
+    count = min(len(frfs.responses), LARGEST)
+    wanted = int(np.clip(BUDGET / (curves * count), FEWEST, MOST))
+    lines = len(frfs.frequency)
+    if lines <= wanted:
+        return np.arange(lines), count
+    total = np.abs(frfs.values).sum(axis=0)
+    cuts = np.linspace(0, lines, wanted // 2 + 1).astype(int)
+    pieces = [np.arange(a, b) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+    keep = {int(p[pick(total[p])]) for p in pieces for pick in (np.argmin, np.argmax)}
+    return np.array(sorted(keep | {0, lines - 1}), dtype=np.int64), count
