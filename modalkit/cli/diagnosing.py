@@ -81,9 +81,7 @@ def _draw(diagnosis: Diagnosis, sessions: list[Session], report: Path | None, fi
     if report is not None:
         from modalkit.report import diagnosis_report
 
-        save_report(
-            report, lambda: diagnosis_report(diagnosis, sessions, when=now(), command=this_command())
-        )
+        save_report(report, lambda: diagnosis_report(diagnosis, sessions, when=now(), command=this_command()))
     show_figures(figures, lambda: diagnosis_figures(diagnosis, *sessions))
 
 

@@ -65,7 +65,12 @@ def identified_report(
     if study is None:
         basis = Basis(now(), this_command(), files=files)
         return identification_report(
-            processed, modes, basis, named=named, warnings=warnings, title=title or ", ".join(p.name for p in files)
+            processed,
+            modes,
+            basis,
+            named=named,
+            warnings=warnings,
+            title=title or ", ".join(p.name for p in files),
         )
     both = ([*study.test.add, *named[0]], [*study.test.drop, *named[1]])
     basis = Basis(now(), this_command(), [study])

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from modalkit.figures.diagnosis import fitted, mode_errors, overlaid
+from modalkit.figures.diagnosis.localisation import localisation_title
 from modalkit.figures.words import answer
 from modalkit.report.charts.causes import causes_chart, closing_chart
 from modalkit.report.charts.frfs import overlaid_chart
@@ -26,7 +27,6 @@ from modalkit.report.sections import (
     the_summary,
     the_warnings,
 )
-from modalkit.figures.diagnosis.localisation import localisation_title
 from modalkit.report.tested import session_sections
 from modalkit.views.structure import structure_page
 from modalkit.workflow.case import Session

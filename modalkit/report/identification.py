@@ -75,13 +75,17 @@ def _answer(processed: Processed | None, modes: ModalModel | Modes) -> Raw:
         stated["Band"] = f"{modes.band[0]:g} to {modes.band[1]:g} Hz"
     if processed is not None and processed.hits:
         left = sum(not hit.used for hit in processed.hits)
-        stated["Hits"] = f"{len(processed.hits)}, {left} left out" if left else f"{len(processed.hits)}, all used"
+        stated["Hits"] = (
+            f"{len(processed.hits)}, {left} left out" if left else f"{len(processed.hits)}, all used"
+        )
     stated["Shapes"] = _shapes(modes)
     relative = modal.frequency_sigma / modal.frequency if len(modal) else None
     if relative is not None and (relative > 0).any():
         stated["Known to"] = f"frequencies to {percent(100 * float(relative.max()))} or better (1σ)"
     return joined(
-        element("p", f"{counted(len(modal), 'mode')} of the test, with what is known of them.", class_="answer"),
+        element(
+            "p", f"{counted(len(modal), 'mode')} of the test, with what is known of them.", class_="answer"
+        ),
         definitions(stated, class_="letter"),
     )
 
@@ -118,7 +122,9 @@ def modes_table(modes: ModalModel | Modes) -> Raw:
         ]
         for r in range(len(modal))
     ]
-    return table("Frequencies and damping ratios with one standard deviation; MPC is 1 for a real mode.", columns, rows)
+    return table(
+        "Frequencies and damping ratios with one standard deviation; MPC is 1 for a real mode.", columns, rows
+    )
 
 
 def _left_out(processed: Processed | None, modes: ModalModel | Modes) -> Raw:

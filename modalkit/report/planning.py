@@ -76,17 +76,16 @@ def separations_chart(found: Forecast) -> Chart:
     written = ["" if math.isnan(v) else f"{v:.1f}" if v < 10 else "10+" for v in sigma.ravel()]
     pairs = now.pairs
     least = min(pairs, key=lambda pair: pairs[pair])
-    title = f"{sum(v >= SEEN for v in pairs.values())} of {len(pairs)} pairs are {SEEN:g}σ apart or more; {least[0]} and "
-    title += f"{least[1]} are nearest, {pairs[least]:.1f}σ"
+    count = f"{sum(v >= SEEN for v in pairs.values())} of {len(pairs)} pairs"
+    title = f"{count} are {SEEN:g}σ apart or more; {' and '.join(least)} are nearest, {pairs[least]:.1f}σ"
     text = (
-        f"Standard deviations between an effect (row), as strong as asked about, and the most that another (column) can do "
-        f"of it; full colour from {SURE:g}σ on."
+        "Standard deviations between an effect (row), as strong as asked about, and the most that another (column) can "
+        f"do of it; full colour from {SURE:g}σ on."
     )
-    chart = matrix_chart(
+    return matrix_chart(
         "separations", title, text, np.minimum(sigma / SURE, 1.0), names, columns,
         axes=("effect", "against"), written=written, quantity="σ",
     )  # fmt: skip
-    return chart
 
 
 def thresholds_chart(found: Forecast) -> Chart:
@@ -96,12 +95,14 @@ def thresholds_chart(found: Forecast) -> Chart:
     shares = {n: (limits[n].seen / limits[n].clear, limits[n].separated / limits[n].clear) for n in names}
     rows = {n: i for i, n in enumerate(names)}
     series = []
-    for k, (said, colour, hollow) in enumerate((("seen from", "ink", True), ("told from all others", "blue", False))):
+    for k, (meaning, colour, hollow) in enumerate(
+        (("seen from", "ink", True), ("told from all others", "blue", False))
+    ):
         known = [n for n in names if math.isfinite(shares[n][k]) and shares[n][k] > 0]
-        text = [f"{n}\n{said} {100 * shares[n][k]:.3g} % of what is asked about" for n in known]
+        text = [f"{n}\n{meaning} {100 * shares[n][k]:.3g} % of what is asked about" for n in known]
         more = {"text": text, "hollow": hollow, "size": 4.5}
         at = [100 * shares[n][k] for n in known]
-        series.append(Series(said, "points", at, [rows[n] for n in known], colour, more))
+        series.append(Series(meaning, "points", at, [rows[n] for n in known], colour, more))
     never = sum(not math.isfinite(shares[n][1]) for n in names)
     early = sum(shares[n][1] <= 1 for n in names)
     return Chart(
@@ -117,7 +118,9 @@ def thresholds_chart(found: Forecast) -> Chart:
 
 def thresholds_table(document: dict[str, Any]) -> Raw:
     """Return the severities in words."""
-    columns = [Column(n) for n in ("effect", "seen from", "told from", "surely from", "asked about", "nearest")]
+    columns = [
+        Column(n) for n in ("effect", "seen from", "told from", "surely from", "asked about", "nearest")
+    ]
     columns.append(Column("σ from it", lambda v: f"{v:.1f}"))
     keys = ("effect", "seen_from", "separated_from", "sure_from", "asked", "nearest")
     rows: list[list[Cell | Raw]] = [
@@ -136,7 +139,12 @@ def changes_table(found: Forecast) -> Raw:
         Column("pairs told apart", lambda v: f"{100 * v:.0f} %"),
     ]
     rows: list[list[Cell | Raw]] = [
-        [one.change.measure, some(separated(one.separates)) or "nothing", one.factor, one.after.separated_share]
+        [
+            one.change.measure,
+            some(separated(one.separates)) or "nothing",
+            one.factor,
+            one.after.separated_share,
+        ]
         for one in found.advice
     ]
     return table("Changes of the test that were tried, the most worth first.", columns, rows)
@@ -147,10 +155,19 @@ def _trials(checked: Check | None) -> Raw:
         return Raw("")
     frame = checked.table
     columns = [Column(str(name)) for name in frame.columns]
-    rows: list[list[Cell | Raw]] = [["" if v is None else str(v) for v in row] for row in frame.to_numpy().tolist()]
-    return joined(bullets(list(checked.summary)), table("Each trial: what was forecast and what was answered.", columns, rows))
+    rows: list[list[Cell | Raw]] = [
+        ["" if v is None else str(v) for v in row] for row in frame.to_numpy().tolist()
+    ]
+    return joined(
+        bullets(list(checked.summary)),
+        table("Each trial: what was forecast and what was answered.", columns, rows),
+    )
 
 
 def _left_out(found: Forecast) -> Raw:
-    left = [*found.known_test.left_out, *(f"{key}: {why}" for key, why in NOT_FORECAST.items()), "pairs of effects"]
+    left = [
+        *found.known_test.left_out,
+        *(f"{key}: {why}" for key, why in NOT_FORECAST.items()),
+        "pairs of effects",
+    ]
     return bullets(left)

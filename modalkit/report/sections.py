@@ -10,13 +10,16 @@ from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
 from modalkit.figures.words import METRICS
 from modalkit.output.summary import answers, separates
-from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
+from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
 from updating import Diagnosis, Effect
 from updating.diagnosis.answer.result import Ranked
 from updating.thresholds import REJECTED_FIT
 
 ROWS = 8
 """Most explanations in the table, beside those of the answer."""
+
+LEAST = 0.01
+"""Explanations under this probability are listed without their parameters [-]."""
 
 ALIKE = 0.01
 """Zones whose probabilities differ by less are not listed [-]."""
@@ -142,9 +145,10 @@ def _zones(diagnosis: Diagnosis) -> Raw:
     columns = [Column("zone"), Column("centre [m]"), Column("probability", probability)]
     used = [k for k in range(3) if any(zone.center[k] for zone in where.zones)]
     centre = [", ".join(f"{'xyz'[k]} = {_signed(z.center[k], 3)}" for k in used) for z in where.zones]
-    return table(
-        statement, columns, [[z.name, c, z.probability] for z, c in zip(where.zones, centre, strict=True)]
-    )
+    rows: list[list[Cell | Raw]] = [
+        [z.name, c, z.probability] for z, c in zip(where.zones, centre, strict=True)
+    ]
+    return folded(f"All {len(rows)} zones", table(statement, columns, rows))
 
 
 def _modes(diagnosis: Diagnosis) -> Raw:
@@ -175,11 +179,18 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         Column("probability", probability),
         Column("fits with p", bare_p),
         Column("verdict"),
-        Column("parameters, with 95 % intervals"),
+        Column("parameters, with 95 % intervals", wide=True),
         Column("not told apart from"),
     ]
-    cells: list[list[Cell | Raw]] = [_explanation(row, _why(row, diagnosis)) for row in shown]
-    cells.append(["(tolerances and noise alone)", alone, diagnosis.p_value, _why_not_alone(diagnosis), "", ""])
+    cells: list[list[Cell | Raw]] = [
+        _explanation(
+            row, _why(row, diagnosis), shown=row.probability >= LEAST or row.effects in diagnosis.sets
+        )
+        for row in shown
+    ]
+    cells.append(
+        ["(tolerances and noise alone)", alone, diagnosis.p_value, _why_not_alone(diagnosis), "", ""]
+    )
     marked = [r.effects in diagnosis.sets for r in shown]
     statement = {
         "named": "The shaded row is the answer.",
@@ -187,7 +198,11 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         "unknown": "None of them explains the gap.",
         "none": "There is no gap that would need one of them.",
     }[diagnosis.verdict]
-    parts = [table(f"Explanations, most probable first. {statement}", columns, cells, marked=marked)]
+    if not any(row[-1] for row in cells):
+        columns, cells = columns[:-1], [row[:-1] for row in cells]
+    left_out = f"Parameters of those under {probability(LEAST)} are left out."
+    words = f"Explanations, most probable first. {statement} {left_out}"
+    parts = [table(words, columns, cells, marked=marked)]
     if len(rows) > len(shown):
         left = sum(r.probability for r in rows if r not in shown)
         parts.append(
@@ -222,7 +237,7 @@ def _why_not_alone(diagnosis: Diagnosis) -> str:
     return "rejected: they would not make such a gap"
 
 
-def _explanation(row: Ranked, why: str) -> list[Cell | Raw]:
+def _explanation(row: Ranked, why: str, *, shown: bool) -> list[Cell | Raw]:
     stated = []
     for name, estimate in row.parameters.items():
         if estimate.low95 is None and isinstance(estimate.value, int | float) and ".point" not in name:
@@ -235,7 +250,14 @@ def _explanation(row: Ranked, why: str) -> list[Cell | Raw]:
     near = [" + ".join(names) for names in row.equivalents[:3]]
     if len(row.equivalents) > len(near):
         near.append(f"{len(row.equivalents) - len(near)} more")
-    return [" + ".join(row.effects), row.probability, row.p_value, why, "\n".join(stated), "\n".join(near)]
+    return [
+        " + ".join(row.effects),
+        row.probability,
+        row.p_value,
+        why,
+        "\n".join(stated) if shown else "",
+        "\n".join(near),
+    ]
 
 
 def _known(effect: Effect) -> Raw:
@@ -283,11 +305,15 @@ def the_remainder(diagnosis: Diagnosis) -> Raw:
         return element("p", "There is no gap, so nothing is left of one.")
     whose = " + ".join(diagnosis.ranking[0].effects) if diagnosis.ranking else "the tolerances"
     if not left.significant:
-        worst = f" The largest residual is {left.sigma:.1f} standard deviations." if math.isfinite(left.sigma) else ""
+        worst = (
+            f" The largest residual is {left.sigma:.1f} standard deviations."
+            if math.isfinite(left.sigma)
+            else ""
+        )
         return element("p", f"Nothing beyond noise, once {whose} is in the model.{worst}")
     statement = (
-        f"{whose} leaves {percent(left.percent)} beyond noise, {left.sigma:.0f} standard deviations where it is largest. "
-        "Something else is there, or something was measured worse than stated. It is carried by:"
+        f"{whose} leaves {percent(left.percent)} beyond noise, {left.sigma:.0f} standard deviations where it is "
+        "largest. Something else is there, or something was measured worse than stated. It is carried by:"
     )
     return joined(element("p", statement), bullets(list(left.carried_by) or ["all data together"]))
 

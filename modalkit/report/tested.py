@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 from acquisition import HitVerdict, ModalData
 from acquisition.display import counted
-from acquisition.errors import ModalkitError
+from acquisition.errors import InputError, ModalkitError
 from acquisition.quantities import hertz
 from identification import ModalModel, pole_origins
 from modalkit.report.charts.matrix import matrix_chart
 from modalkit.report.charts.test import auto_mac_chart, cmif_chart, frfs_chart, hits_chart, poles_chart
 from modalkit.report.document import Moving, Section
-from modalkit.report.html import Cell, Column, Raw, joined, table
+from modalkit.report.html import Cell, Column, Raw, folded, table
 from modalkit.views.chart import Chart
 from modalkit.views.shapes import Beside, shapes_page
 from modalkit.workflow.case import Session, modes_in_band
@@ -73,7 +73,9 @@ def sections_of_test(
         fit = [frfs_chart(identified, f"frf{mark}"), poles_chart(identified, origins, f"poles{mark}")]
         sections.append(Section(f"FRFs and poles{whose}", [*fit, cmif_chart(identified.frfs, f"cmif{mark}")]))
     if modal is not None:
-        sections.append(Section(f"How alike the modes are{whose}", [auto_mac_chart(modal, f"auto-mac{mark}")]))
+        sections.append(
+            Section(f"How alike the modes are{whose}", [auto_mac_chart(modal, f"auto-mac{mark}")])
+        )
     return sections
 
 
@@ -88,10 +90,11 @@ def hits_table(hits: Sequence[HitVerdict]) -> Raw:
         Column("-20 dB at [Hz]".replace("-", "−"), lambda v: f"{v:.0f}"),
     ]
     rows: list[list[Cell | Raw]] = [
-        [str(h.point), h.hit, "used" if h.used else "left out", "; ".join(h.reasons), h.peak, h.band20] for h in hits
+        [str(h.point), h.hit, "used" if h.used else "left out", "; ".join(h.reasons), h.peak, h.band20]
+        for h in hits
     ]
     shown = table("What is thought of every hit.", columns, rows)
-    return joined(Raw(f"<details><summary>All {len(hits)} verdicts</summary>"), shown, Raw("</details>"))
+    return folded(f"All {len(hits)} verdicts", shown)
 
 
 def modal_of(session: Session) -> ModalData | None:
@@ -100,10 +103,15 @@ def modal_of(session: Session) -> ModalData | None:
         return session.identified.modal
     if session.study.test.modes is None:
         return None
-    return modes_in_band(session.study, session.study.test, "test")[0]
+    try:
+        return modes_in_band(session.study, session.study.test, "test")[0]
+    except InputError:  # the file is not there any more, which the provenance states
+        return None
 
 
-def shapes_section(modal: ModalData | None, session: Session | None, number: int = 1, whose: str = "") -> Section:
+def shapes_section(
+    modal: ModalData | None, session: Session | None, number: int = 1, whose: str = ""
+) -> Section:
     """Return the shapes in motion, test beside model, and the MAC between them."""
     mark, title = "" if number == 1 else f"-{number}", f"Shapes in motion{whose}"
     if modal is None or modal.shapes is None:
@@ -112,16 +120,20 @@ def shapes_section(modal: ModalData | None, session: Session | None, number: int
     page = shapes_page(modal, beside)
     if not page["modes"]:
         return Section(title)
-    moving = Moving(f"shapes{mark}", _moving(modal, page["model"] is not None), _turn(page["placed"]), page | {"no_model": why})
+    moving = Moving(
+        f"shapes{mark}",
+        _moving(modal, page["model"] is not None),
+        _turn(page["placed"]),
+        page | {"no_model": why},
+    )
     return Section(title, [moving, None if beside is None else mac_chart(beside, f"mac{mark}")])
 
 
 def _moving(modal: ModalData, both: bool) -> str:
     points = len({dof.node for dof in modal.dofs})
     beside = ", test beside model" if both else ""
-    return (
-        f"{counted(len(modal), 'mode')} at {counted(points, 'point')}, {counted(len(modal.dofs), 'direction')}{beside}"
-    )
+    where = f"{counted(points, 'point')}, {counted(len(modal.dofs), 'direction')}"
+    return f"{counted(len(modal), 'mode')} at {where}{beside}"
 
 
 def _turn(placed: bool) -> str:
@@ -146,8 +158,8 @@ def mac_chart(beside: Beside, name: str = "mac") -> Chart | None:
         return None
     test = beside.session.case.measured.frequency
     model = beside.predictor.predict().frequency
-    rows = [f"{i}: {hertz(test[i - 1])}" for i in matrix.index]
-    columns = [f"{i}: {hertz(model[i - 1])}" for i in matrix.columns]
+    rows = [f"{i}: {hertz(test[i - 1])}" for i in map(int, matrix.index)]
+    columns = [f"{i}: {hertz(model[i - 1])}" for i in map(int, matrix.columns)]
     pairs = beside.correlation.table
     least = pairs["MAC"].min()
     title = f"{counted(len(pairs), 'pair')} of test and model, the least alike with a MAC of {least:.2f}"

@@ -57,7 +57,9 @@ def update_report(result: Update, sessions: Sequence[Session], *, when: datetime
             joined(element("h1", title), _answer(result)),
             [
                 Section("How far it closes", [*_errors(result), pairs_table(result)]),
-                Section("Parameters", [factors_chart(result), parameters_table(result), _correlations(result)]),
+                Section(
+                    "Parameters", [factors_chart(result), parameters_table(result), _correlations(result)]
+                ),
                 Section("What the data do not determine", [_undetermined(result)]),
                 Section("FRAC", [frac]),
                 Section("How the parameters moved", list(course_charts(result))),
@@ -122,7 +124,14 @@ def pairs_table(result: Update) -> Raw:
 def _pair(row: pd.Series) -> list[Cell | Raw]:
     left = 100 * (float(row["after_hz"]) / float(row["test_hz"]) - 1)
     numbers = [float(row[name]) for name in ("mac", "test_hz", "before_hz", "after_hz")]
-    return [str(row["study"]), int(row["test_mode"]), int(row["model_mode"]), *numbers, left, "yes" if row["used"] else "no"]
+    return [
+        str(row["study"]),
+        int(row["test_mode"]),
+        int(row["model_mode"]),
+        *numbers,
+        left,
+        "yes" if row["used"] else "no",
+    ]
 
 
 def parameters_table(result: Update) -> Raw:
@@ -140,10 +149,14 @@ def parameters_table(result: Update) -> Raw:
     ]
     rows: list[list[Cell | Raw]] = []
     for name, p in zip(result.names, result.parameters, strict=True):
-        careful = ["at the end of its range"] * p.at_bound + ["not determined by the data"] * (name in result.undetermined)
+        careful = ["at the end of its range"] * p.at_bound + ["not determined by the data"] * (
+            name in result.undetermined
+        )
         sigma = p.sigma if np.isfinite(p.sigma) else None
         limits = f"{p.low:.4g} to {p.high:.4g}"
-        rows.append([p.name, p.study or "shared", p.value, sigma, p.unit, p.factor, limits, ", ".join(careful)])
+        rows.append(
+            [p.name, p.study or "shared", p.value, sigma, p.unit, p.factor, limits, ", ".join(careful)]
+        )
     return table("What was updated, with one standard deviation.", columns, rows)
 
 
@@ -155,7 +168,9 @@ def _correlations(result: Update) -> Chart | None:
     values = np.asarray(result.correlations, dtype=float)
     apart = np.abs(values - np.diag(np.diag(values)))
     i, j = sorted(int(k) for k in np.unravel_index(int(np.nanargmax(apart)), apart.shape))
-    title = f"The most correlated parameters: {names[i]} and {names[j]}, {values[i, j]:+.2f}".replace("-", "−")
+    title = f"The most correlated parameters: {names[i]} and {names[j]}, {values[i, j]:+.2f}".replace(
+        "-", "−"
+    )
     text = "Correlation of the estimates in hundredths; blue rises together, orange against one another."
     return matrix_chart("correlations", title, text, values, names, names, quantity="correlation")
 

@@ -77,7 +77,12 @@ class Series:
 
     def data(self) -> dict[str, Any]:
         """Return what is drawn."""
-        found: dict[str, Any] = {"name": self.name, "kind": self.kind, "y": rounded(self.y), "colour": self.colour}
+        found: dict[str, Any] = {
+            "name": self.name,
+            "kind": self.kind,
+            "y": rounded(self.y),
+            "colour": self.colour,
+        }
         if self.x is not None:
             found["x"] = rounded(self.x)
         return found | {k: rounded(v) if k in _NUMBERS else v for k, v in self.more.items() if v is not None}
@@ -107,7 +112,11 @@ class Choices:
     def data(self) -> dict[str, Any]:
         """Return what is drawn."""
         items = [{"name": name, "series": [one.data() for one in series]} for name, series in self.items]
-        return {"name": self.name, "items": items, "x": None if self.x is None else rounded(self.x, DIGITS + 2)}
+        return {
+            "name": self.name,
+            "items": items,
+            "x": None if self.x is None else rounded(self.x, DIGITS + 2),
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,8 +138,8 @@ class Chart:
     choices : Choices, optional
         Further series of which one set is shown.
     more : dict
-        ``lines``: places of dotted lines upright; ``zero``: an axis at 0; ``equal``: height over width of what is drawn in
-        true proportion; ``bare``: no axes; ``row``: height of a row [px].
+        ``lines``: places of dotted lines upright; ``zero``: an axis at 0; ``equal``: height over width of what is drawn
+        in true proportion; ``bare``: no axes; ``row``: height of a row, ``cell``: width of a column at the most [px].
     """
 
     name: str
@@ -159,7 +168,9 @@ class Chart:
 
 def rounded(values: Any, digits: int = DIGITS) -> list[float | None]:
     """Return numbers in a few digits; what is not finite becomes None."""
-    return [_rounded(value, digits) for value in (values.tolist() if isinstance(values, np.ndarray) else values)]
+    return [
+        _rounded(value, digits) for value in (values.tolist() if isinstance(values, np.ndarray) else values)
+    ]
 
 
 def _rounded(value: float | None, digits: int) -> float | None:

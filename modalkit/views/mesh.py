@@ -19,7 +19,10 @@ to four; solids have 26 and more, most of them diagonals through the inside [-].
 LARGEST = 20_000
 """Nodes of a mesh that is drawn whole; of a larger one the skin is, too, but no couplings are looked for [-]."""
 
-QUADS = {4: ((0, 1, 2, 3),), 8: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))}
+QUADS = {
+    4: ((0, 1, 2, 3),),
+    8: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+}
 WEDGE = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5))
 TETRAHEDRON = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (2, 0, 3))
 
@@ -87,7 +90,9 @@ def _skin(
 def _faces(kind: str, count: int) -> tuple[tuple[int, ...], ...]:
     """Return the faces of an element by its corner nodes; none of a kind that is not drawn."""
     if kind.startswith("C3D"):
-        return {4: TETRAHEDRON, 10: TETRAHEDRON, 6: WEDGE, 15: WEDGE, 8: QUADS[8], 20: QUADS[8]}.get(count, ())
+        return {4: TETRAHEDRON, 10: TETRAHEDRON, 6: WEDGE, 15: WEDGE, 8: QUADS[8], 20: QUADS[8]}.get(
+            count, ()
+        )
     if kind.startswith(("S", "CPS", "CPE", "M3D")) and not kind.startswith("SPRING"):
         return QUADS[4] if count in (4, 8) else ((0, 1, 2),) if count in (3, 6) else ()
     return ()

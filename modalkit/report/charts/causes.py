@@ -85,9 +85,15 @@ def closing_chart(diagnosis: Diagnosis) -> Chart:
         Series("on modes held out", "points", held, known, "blue", {"text": text, "size": 6}),
     ]  # fmt: skip
     if diagnosis.ranking:
-        inside = {"hollow": True, "size": 6, "text": [f"{rows[-1][0]}\non fitted data: {shrink.size(shrink.after)}"]}
+        inside = {
+            "hollow": True,
+            "size": 6,
+            "text": [f"{rows[-1][0]}\non fitted data: {shrink.size(shrink.after)}"],
+        }
         series.append(
-            Series("on fitted data", "points", [max(shrink.after, LEAST) / whole], [len(rows) - 1], "ink", inside)
+            Series(
+                "on fitted data", "points", [max(shrink.after, LEAST) / whole], [len(rows) - 1], "ink", inside
+            )
         )
     return Chart(
         "closing",

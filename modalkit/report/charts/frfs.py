@@ -31,7 +31,14 @@ def overlaid_chart(both: Overlaid, name: str = "frfs") -> Chart:
     for i in np.argsort(shown.frac, kind="stable")[:count].tolist():
         series = [
             Series("measured", "line", None, size(test.values[i], keep), "ink"),
-            Series("model as it stands", "line", None, size(before.model.values[i], keep), "orange", {"dash": True}),
+            Series(
+                "model as it stands",
+                "line",
+                None,
+                size(before.model.values[i], keep),
+                "orange",
+                {"dash": True},
+            ),
         ]
         if after is not None:
             series.append(

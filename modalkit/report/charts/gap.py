@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from acquisition.arrays import FloatArray
@@ -49,14 +51,16 @@ def gap_chart(errors: ModeErrors, name: str = "gap", *, after: str = "after") ->
 
 
 def gap_title(errors: ModeErrors, after: str = "after") -> str:
-    """Say how many modes are outside their bands, before and after; without bands, the r.m.s."""
+    """Say how many modes are outside their bands, before and after; without bands, how far they are off."""
     name = "all data" if errors.channel == "combined" else METRICS[errors.channel]
     quantity = f"{name[:1].upper()}{name[1:]} of {counted(len(errors.frequency), 'mode')}"
     band = errors.doubt if errors.doubt is not None else errors.floor
     if band is None:
         write = sigmas if errors.channel == "combined" else percent
-        sizes = [write(_rms(v)) for v in (errors.before, errors.after) if v is not None]
-        return f"{quantity}: {' before, '.join([*sizes, ''][: len(sizes)])} {after if len(sizes) > 1 else 'r.m.s.'}"
+        spans = [_span(v, write) for v in (errors.before, errors.after) if v is not None]
+        return f"{quantity}: off by {spans[0]}" + (
+            f" before, by {spans[1]} {after}" if len(spans) > 1 else ""
+        )
     what = "noise and tolerances" if errors.doubt is not None else "noise"
     counts = [int(np.sum(np.abs(v) > band)) for v in (errors.before, errors.after) if v is not None]
     if len(counts) == 1:
@@ -65,9 +69,11 @@ def gap_title(errors: ModeErrors, after: str = "after") -> str:
     return f"{quantity}: {counts[0]} outside what {what} make (2σ) before, {counts[1] or 'none'} {after}"
 
 
-def _rms(values: FloatArray) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
+def _span(values: FloatArray, write: Callable[[float], str]) -> str:
+    """Return the smallest and the largest size."""
+    known = np.abs(values[np.isfinite(values)])
+    low, high = (write(float(v)) for v in (known.min(), known.max())) if len(known) else ("–", "–")
+    return low if low == high else f"{low} to {high}"
 
 
 def _text(errors: ModeErrors, after: str) -> str:
@@ -94,7 +100,9 @@ def _dots(
 ) -> Series:
     unit = "σ" if errors.channel == "combined" else "%"
     text = [
-        "\n".join([f"mode {i + 1}, {hertz(f)}", f"{name}: {_signed(v, unit, errors.signed)}", *_bands(errors, i)])
+        "\n".join(
+            [f"mode {i + 1}, {hertz(f)}", f"{name}: {_signed(v, unit, errors.signed)}", *_bands(errors, i)]
+        )
         for i, (f, v) in enumerate(zip(errors.frequency, values, strict=True))
     ]
     more = {"text": text, "hollow": hollow, "size": 5}

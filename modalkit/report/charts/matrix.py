@@ -9,6 +9,9 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from modalkit.views.chart import Axis, Chart, Series
 
+WIDEST = 68
+"""Width of a cell at the most: a matrix of three modes is not to fill the page [px]."""
+
 
 def matrix_chart(
     name: str,
@@ -40,12 +43,13 @@ def matrix_chart(
         What a cell is, for who points at it.
     """
     i, j = (index.ravel() for index in np.indices(values.shape))
+    pairs = list(zip(i.tolist(), j.tolist(), strict=True))
     flat = values.ravel()
     shown = [_hundredths(v) for v in flat] if written is None else list(written)
     exact = [f"{v:.3f}" if np.isfinite(v) else "not known" for v in flat] if written is None else shown
     text_of = [
-        f"{axes[0]} {rows[a]}\n{axes[1]} {columns[b]}\n{quantity} {said}".strip()
-        for a, b, said in zip(i, j, exact, strict=True)
+        f"{axes[0]} {rows[a]}\n{axes[1]} {columns[b]}\n{quantity} {exactly}".strip()
+        for (a, b), exactly in zip(pairs, exact, strict=True)
     ]
     cells = Series(
         quantity, "cells", j, i, "blue",
@@ -55,7 +59,13 @@ def matrix_chart(
         },
     )  # fmt: skip
     return Chart(
-        name, title, text, Axis(axes[1], names=tuple(columns)), Axis(axes[0], names=tuple(rows)), [cells]
+        name,
+        title,
+        text,
+        Axis(axes[1], names=tuple(columns)),
+        Axis(axes[0], names=tuple(rows)),
+        [cells],
+        more={"cell": WIDEST},
     )
 
 

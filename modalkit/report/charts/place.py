@@ -30,15 +30,19 @@ def place_chart(diagnosis: Diagnosis, case: Case) -> Chart | None:
     across = np.full(len(body.points), tall / 2) if beam else body.points[:, 1]
     text = [f"test point {n}" for n in case.measured.nodes]
     series.append(
-        Series("test point", "points", body.points[:, 0], across, "ink", {"hollow": True, "text": text, "size": 3.5})
+        Series(
+            "test point",
+            "points",
+            body.points[:, 0],
+            across,
+            "ink",
+            {"hollow": True, "text": text, "size": 3.5},
+        )
     )
     if len(body.sensors):
-        series.append(
-            Series(
-                "sensor", "points", body.sensors[:, 0], np.full(len(body.sensors), tall / 2) if beam else body.sensors[:, 1],
-                "ink", {"symbol": "square", "size": 5, "hollow": True},
-            )
-        )  # fmt: skip
+        along, own = body.sensors[:, 0], np.full(len(body.sensors), tall / 2) if beam else body.sensors[:, 1]
+        more = {"symbol": "square", "size": 5, "hollow": True, "text": ["sensor"] * len(body.sensors)}
+        series.append(Series("sensor", "points", along, own, "ink", more))
     if diagnosis.verdict in ("named", "class") and diagnosis.where.locations:
         series.append(_places(diagnosis, body, tall))
     series += _clamps(body, tall)
@@ -72,11 +76,17 @@ def _zones(diagnosis: Diagnosis, case: Case, body: Outline, tall: float) -> Seri
 def _places(diagnosis: Diagnosis, body: Outline, tall: float) -> Series:
     flat = [body.flat(at) for at in diagnosis.where.locations]
     text = [
-        f"place {i + 1}\nx = {x:.4g} m" + (f", y = {y:.4g} m" if body.width else "") for i, (x, y) in enumerate(flat)
+        f"place {i + 1}\nx = {x:.4g} m" + (f", y = {y:.4g} m" if body.width else "")
+        for i, (x, y) in enumerate(flat)
     ]
     more = {"text": text, "symbol": "diamond", "size": 6}
     return Series(
-        "place found", "points", [x for x, _ in flat], [y if body.width else tall for _, y in flat], "orange", more
+        "place found",
+        "points",
+        [x for x, _ in flat],
+        [y if body.width else tall for _, y in flat],
+        "orange",
+        more,
     )
 
 
@@ -88,12 +98,15 @@ def _clamps(body: Outline, tall: float) -> list[Series]:
         "y1": ((0.0, body.length), (tall, tall)),
     }
     return [
-        Series("clamped edge", "line", *edges[name], "clamp", {"unnamed": i > 0}) for i, name in enumerate(body.clamped)
+        Series("clamped edge", "line", *edges[name], "clamp", {"unnamed": i > 0})
+        for i, name in enumerate(body.clamped)
     ]
 
 
 def _text(diagnosis: Diagnosis, body: Outline) -> str:
-    size = f"{body.length:.4g} m long" + (f", {body.width:.4g} m wide" if body.width else "; drawn thicker than it is")
+    size = f"{body.length:.4g} m long" + (
+        f", {body.width:.4g} m wide" if body.width else "; drawn thicker than it is"
+    )
     if diagnosis.verdict == "none":
         return f"The structure with its test points, {size}. Nothing is to be placed."
     by = (

@@ -1,4 +1,4 @@
-"""What a test holds: its hits, its FRFs with the fit, the chart of the poles, the indicator functions, how alike modes are."""
+"""What a test holds: hits, FRFs with the fit, the chart of the poles, indicator functions, how alike the modes are."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from acquisition import FrfSet, HitVerdict, InputError, ModalData
-from acquisition.display import counted
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.display import counted
 from acquisition.quantities import hertz, percent
 from identification import ModalModel, auto_mac, cmif
 from identification.pole_reasons import Origins
@@ -40,17 +40,18 @@ ORIGINS = {
 def hits_chart(hits: Sequence[HitVerdict], name: str = "hits") -> Chart:
     """Return the peak force of every hit in the order of the test, those left out as crosses with the reason."""
     series = []
-    for used, symbol, colour, said in ((True, "dot", "blue", "used"), (False, "cross", "red", "left out")):
+    for used, symbol, colour, meaning in ((True, "dot", "blue", "used"), (False, "cross", "red", "left out")):
         rows = [i for i, hit in enumerate(hits) if hit.used is used]
         text = [
-            "\n".join([f"{hits[i].point}, hit {hits[i].hit}: {said}", f"{hits[i].peak:.4g} N, {hertz(hits[i].band20)} "
+            "\n".join([f"{hits[i].point}, hit {hits[i].hit}: {meaning}",
+                       f"{hits[i].peak:.4g} N, {hertz(hits[i].band20)} "
                        "(-20 dB)".replace("-", "−"), *hits[i].reasons])
             for i in rows
         ]  # fmt: skip
         peaks = [hits[i].peak for i in rows]
         more = {"text": text, "symbol": symbol, "size": 4}
         if rows:
-            series.append(Series(said, "points", [i + 1 for i in rows], peaks, colour, more))
+            series.append(Series(meaning, "points", [i + 1 for i in rows], peaks, colour, more))
     left = sum(not hit.used for hit in hits)
     title = f"{counted(len(hits), 'hit')}, " + (f"{left} left out" if left else "all used")
     return Chart(
@@ -115,7 +116,7 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
     keep, _ = common_lines(model.frfs, 60)
     total = size(np.abs(model.frfs.values).sum(axis=0), keep)
     series = [Series("sum of the FRFs", "line", model.frfs.frequency[keep], total, "faint", {"right": True})]
-    for which, (said, symbol, colour, radius) in KINDS.items():
+    for which, (meaning, symbol, colour, radius) in KINDS.items():
         rows = np.flatnonzero(near & (kind == which))
         text = [
             f"{chart.frequency[i]:.3f} Hz, damping {100 * chart.damping[i]:.3f} %, order {order[i]}\n"
@@ -124,18 +125,18 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
         ]
         more = {"text": text, "symbol": symbol, "size": radius}
         if len(rows):
-            series.append(Series(said, "points", chart.frequency[rows], order[rows], colour, more))
+            series.append(Series(meaning, "points", chart.frequency[rows], order[rows], colour, more))
     top = 1.06 * float(chart.orders.max())
-    for which, (said, symbol, colour) in ORIGINS.items():
+    for which, (meaning, symbol, colour) in ORIGINS.items():
         modes = [r for r, origin in enumerate(origins.modes) if origin == which]
         hz = [float(model.modal.frequency[r]) for r in modes]
-        text = [f"mode {r + 1}: {model.modal.frequency[r]:.3f} Hz\n{said}" for r in modes]
+        text = [f"mode {r + 1}: {model.modal.frequency[r]:.3f} Hz\n{meaning}" for r in modes]
         more = {"text": text, "symbol": symbol, "size": 5}
         if modes:
-            series.append(Series(said, "points", hz, [top] * len(hz), colour, more))
+            series.append(Series(meaning, "points", hz, [top] * len(hz), colour, more))
     return Chart(
         name,
-        poles_title(origins, np.sum(near)),
+        poles_title(origins, int(np.sum(near))),
         "Every pole of every order by what became of it; modes stand above, dotted below.",
         Axis("frequency [Hz]", range=(low - edge, high + edge)),
         Axis("model order", range=(0.0, 1.04 * top)),
@@ -149,9 +150,9 @@ def poles_title(origins: Origins, shown: int) -> str:
     """Say how many modes there are and where they come from, and what became of stable poles that are none."""
     stable = sum(origin == "chain" for origin in origins.modes)
     parts = [f"{counted(stable, 'mode')} of {shown} poles"]
-    for origin, said in (("refinement", "added by the refinement"), ("named", "picked by hand")):
+    for origin, meaning in (("refinement", "added by the refinement"), ("named", "picked by hand")):
         if count := sum(o == origin for o in origins.modes):
-            parts.append(f"{count} {said}")
+            parts.append(f"{count} {meaning}")
     left = [reason.kind for reason in origins.reasons if reason.kind in ("pruned", "background", "dropped")]
     if left:
         parts.append(f"{counted(len(left), 'stable column')} not taken, with the reason")
@@ -170,7 +171,11 @@ def cmif_chart(frfs: FrfSet, name: str = "cmif") -> Chart | None:
     shades = ("ink", "orange", "blue", "muted")
     series = [
         Series(
-            f"CMIF {k}", "line", table.index[keep].to_numpy(float), _positive(table[k].to_numpy(float)[keep]), colour
+            f"CMIF {k}",
+            "line",
+            table.index[keep].to_numpy(float),
+            _positive(table[k].to_numpy(float)[keep]),
+            colour,
         )
         for k, colour in zip(table.columns, shades, strict=False)
     ]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from acquisition import FrfSet
 from acquisition.arrays import IntArray
 
 BUDGET = 60_000
-"""Numbers that the FRFs of a test may take, half a megabyte; doubled, a report of a large test is no longer mailed [-]."""
+"""Numbers that the FRFs of a test may take, half a megabyte; doubled, a large test is hard to mail [-]."""
 
 FEWEST, MOST = 300, 1200
 """Lines of an FRF at least and at the most: a phone has fewer columns than the first, a screen hardly more than the
@@ -21,8 +23,8 @@ LARGEST = 120
 def common_lines(frfs: FrfSet, curves: int) -> tuple[IntArray, int]:
     """Return the lines that are kept, and of how many FRFs.
 
-    Of every piece of the axis those lines are kept where the sum of all FRFs is highest and lowest, so that no peak of it
-    is lost.
+    Of every piece of the axis those lines are kept where the sum of all FRFs is highest and lowest: no peak of it is
+    lost.
 
     Parameters
     ----------
@@ -38,6 +40,6 @@ def common_lines(frfs: FrfSet, curves: int) -> tuple[IntArray, int]:
         return np.arange(lines), count
     total = np.abs(frfs.values).sum(axis=0)
     cuts = np.linspace(0, lines, wanted // 2 + 1).astype(int)
-    pieces = [np.arange(a, b) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+    pieces = [np.arange(a, b) for a, b in pairwise(cuts.tolist())]
     keep = {int(p[pick(total[p])]) for p in pieces for pick in (np.argmin, np.argmax)}
     return np.array(sorted(keep | {0, lines - 1}), dtype=np.int64), count

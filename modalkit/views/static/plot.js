@@ -3,7 +3,7 @@
 import { s, mark } from "./marks.js";
 import { minus, scale } from "./scales.js";
 
-const LETTER = 6.6; // mean width of a letter [px]
+const LETTER = 6.9; // mean width of a letter [px]
 
 /** Draw the picture. Returns the drawing, its series and scales, and what can be pointed at. */
 export function plot(place, given, chosen) {
@@ -12,7 +12,7 @@ export function plot(place, given, chosen) {
     x: one.x ?? given.choices?.x,
   }));
   const width = Math.max(260, place.clientWidth);
-  const box = framed(given, series, width);
+  const box = framed(given, width);
   const { left, right, top, bottom, height } = box;
   const title = `${given.title}. ${given.text} Arrow keys read the numbers.`;
   const svg = s("svg", {
@@ -24,7 +24,7 @@ export function plot(place, given, chosen) {
   });
   const scales = {
     x: scale(given.x, of(series, "x", ["low", "high"]), left, width - right),
-    y: scale(given.y, of(series, "y", ["bottom", "top"], "error"), given.y.names ? top : height - bottom, given.y.names ? height - bottom : top),
+    y: upright(given.y, of(series, "y", ["bottom", "top"], "error"), top, height - bottom, box.above),
   };
   axes(svg, given, scales, { ...box, width });
   const cut = `cut-${given.name}`;
@@ -45,6 +45,11 @@ export function plot(place, given, chosen) {
   place.prepend(svg);
   const curves = series.filter((one) => one.kind === "line" && !one.right && one.name && one.colour !== "clamp");
   return { svg, series, scales, targets, curves, from: left, to: width - right };
+}
+
+/** Return the scale of the upright axis: names from above to below, numbers from below to above. */
+function upright(axis, values, top, base, above) {
+  return axis.names ? scale({ ...axis, above }, values, top, base) : scale(axis, values, base, top);
 }
 
 /** Return the scale of the curves behind, which has no ticks. */
@@ -70,35 +75,39 @@ function of(series, key, pair, error) {
 }
 
 /** Return margins and height: what the names of the axes need. */
-function framed(given, series, width) {
-  const narrow = width < 520;
+function framed(given, width) {
   const names = given.y.names ?? [];
-  const most = narrow ? 0.36 * width : 240;
-  const left = names.length ? Math.min(most, 14 + LETTER * Math.max(...names.map((t) => t.length))) + (given.y.title ? 16 : 0) : 62;
-  const below = given.x.names && slanted(given, width - left) ? 14 + 5 * Math.min(16, Math.max(...given.x.names.map((t) => t.length))) : 20;
-  const bottom = below + (given.x.title ? 22 : 4);
-  const rows = names.length ? names.length * (given.row ?? 26) : 0;
+  const name = given.y.title ? 16 : 0;
+  const beside = names.length ? 14 + LETTER * longest(names) : 62;
+  const most = 0.38 * width;
+  const above = names.length > 0 && !given.cell && beside > most; // long names stand above their rows
+  const left = above ? 12 : (given.cell ? Math.min(beside, most) : beside) + name;
   const space = width - left - 12;
-  const equal = given.equal ? space * given.equal : 0;
-  const body = rows || equal || (narrow ? Math.min(given.height, 260) : given.height);
-  return { left, right: 12, top: 12, bottom, height: 12 + body + bottom };
+  const room = given.cell ? Math.min(space, given.cell * given.x.names.length) : space;
+  const slant = given.x.names && given.x.names.length * (LETTER * longest(given.x.names) + 8) > room;
+  const below = slant ? 14 + 5 * Math.min(16, longest(given.x.names)) : given.bare ? 0 : 20;
+  const bottom = below + (given.x.title ? 22 : 4);
+  const tall = width < 520 ? Math.min(given.height, 260) : given.height;
+  const body = names.length * ((given.row ?? 26) + (above ? 18 : 0)) || (given.equal ?? 0) * space || tall;
+  const right = width - left - room;
+  return { left: given.bare ? 12 : left, right, top: 12, bottom, height: 12 + body + bottom, slant, above };
 }
 
-const slanted = (given, room) => given.x.names.length * (LETTER * Math.max(...given.x.names.map((t) => t.length)) + 8) > room;
+const longest = (names) => Math.max(...names.map((text) => text.length));
 
-function axes(svg, given, { x, y }, { left, right, top, bottom, width, height }) {
+function axes(svg, given, { x, y }, { left, right, top, bottom, width, height, slant, above }) {
   const base = height - bottom;
   const quiet = given.bare ? [] : y.ticks;
   for (const tick of quiet) {
     if (!tick.name) svg.append(s("path", { d: `M${left},${tick.at}H${width - right}`, class: "grid" }));
-    label(svg, tick, { x: left - 6, y: tick.at + 4, "text-anchor": "end" }, left - 8 - (given.y.title ? 16 : 0));
+    if (above) label(svg, tick, { x: left, y: tick.name - 3 }, width - 20);
+    else label(svg, tick, { x: left - 6, y: tick.at + 4, "text-anchor": "end" }, left - 4 - (given.y.title ? 16 : 0));
   }
-  const slant = given.x.names && slanted(given, width - left);
   for (const tick of given.bare ? [] : x.ticks) {
     if (!tick.name) svg.append(s("path", { d: `M${tick.at},${top}V${base}`, class: "grid" }));
     const turned = slant
       ? { x: tick.at + 4, y: base + 12, "text-anchor": "end", transform: `rotate(-60 ${tick.at + 4} ${base + 12})` }
-      : { x: tick.at, y: base + 16, "text-anchor": "middle" };
+      : { x: Math.min(tick.at, width - 14), y: base + 16, "text-anchor": "middle" };
     label(svg, tick, turned, slant ? 100 : 999);
   }
   if (!given.bare && !given.y.names) svg.append(s("path", { d: `M${left},${top}V${base}`, class: "axis" }));

@@ -21,8 +21,10 @@ export function scale(axis, values, from, to) {
 
 function named(axis, from, to) {
   const step = (to - from) / axis.names.length;
-  const at = (v) => from + (v + 0.5) * step;
-  return { at, step: Math.abs(step), ticks: axis.names.map((text, i) => ({ at: at(i), text, name: true })) };
+  const at = (v) => from + (v + (axis.above ? 0.7 : 0.5)) * step;
+  const room = Math.abs(step) * (axis.above ? 0.6 : 1);
+  const ticks = axis.names.map((text, i) => ({ at: at(i), text, name: from + (i + 0.4) * step }));
+  return { at, step: room, ticks };
 }
 
 function linear(axis, low, high, from, to) {

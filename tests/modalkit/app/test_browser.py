@@ -264,7 +264,7 @@ def report_opens(page: Page, answer: str) -> None:
     report = opened.value
     report.wait_for_load_state()
     assert answer in report.locator("header").inner_text()
-    assert report.locator("figure svg").count() >= 3
+    report.locator("figure svg.drawn").nth(3).wait_for(state="attached")
     report.close()
 
 
