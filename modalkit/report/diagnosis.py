@@ -51,11 +51,10 @@ def diagnosis_report(
         What repeats it.
     """
     basis = Basis(when, command, [session.study for session in sessions])
-    several = len(sessions) > 1
     tests = [
         section
         for i, session in enumerate(sessions, start=1)
-        for section in session_sections(session, number=i, several=several)
+        for section in session_sections(session, number=i, tests=len(sessions))
     ]
     return page(
         Document(
@@ -90,7 +89,9 @@ def _answer(diagnosis: Diagnosis, sessions: Sequence[Session]) -> list[Section]:
             gaps.append(element("h3", session.case.title))
         gaps.append(gap_chart(mode_errors(diagnosis, session.case, best=best), f"gap{mark}", after=after))
         if session.identified is not None:
-            frfs.append(overlaid_chart(overlaid(session.identified.frfs, best), f"frfs{mark}"))
+            frfs.append(
+                overlaid_chart(overlaid(session.identified.frfs, best), f"frfs{mark}", tests=len(sessions))
+            )
     first = sessions[0].case
     return [
         Section("How large the gap is", [*gaps, the_gap(diagnosis)]),

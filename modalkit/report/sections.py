@@ -227,7 +227,7 @@ def _why(row: Ranked, diagnosis: Diagnosis) -> str:
     if not row.plausible:
         return "rejected: fits at a size that is hardly believable"
     times = best / max(row.probability, 1e-300)
-    much = f"{times:.2g} times" if times < 1000 else "more than 1000 times"
+    much = f"{times:.{0 if times >= 10 else 1}f} times" if times < 1000 else "more than 1000 times"
     return f"fits, but is {much} less probable"
 
 

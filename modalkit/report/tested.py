@@ -21,7 +21,7 @@ from updating.correlation.correlate import correlate
 from updating.nominal import predictor_of
 
 
-def session_sections(session: Session, *, number: int = 1, several: bool = False) -> list[Section]:
+def session_sections(session: Session, *, number: int = 1, tests: int = 1) -> list[Section]:
     """Return the sections of a study's test, with the model as it stands beside the shapes.
 
     Parameters
@@ -30,14 +30,16 @@ def session_sections(session: Session, *, number: int = 1, several: bool = False
         The study worked out.
     number : int
         Which of several it is, from 1; its charts bear it.
-    several : bool
-        Whether headings name the study.
+    tests : int
+        How many there are; of several, headings name the study.
     """
-    whose = f" of {session.case.title}" if several else ""
+    whose = f" of {session.case.title}" if tests > 1 else ""
     modal = modal_of(session)
     test = session.study.test
     return [
-        *sections_of_test(session.processed, session.identified, modal, (test.add, test.drop), number, whose),
+        *sections_of_test(
+            session.processed, session.identified, modal, (test.add, test.drop), number, whose, tests
+        ),
         shapes_section(modal, session, number, whose),
     ]
 
@@ -49,6 +51,7 @@ def sections_of_test(
     named: tuple[Sequence[float], Sequence[float]] = ((), ()),
     number: int = 1,
     whose: str = "",
+    tests: int = 1,
 ) -> list[Section]:
     """Return hits, FRFs and modes of a test; what it does not have is left out.
 
@@ -62,6 +65,8 @@ def sections_of_test(
         Put behind the names of the charts, from 2 on.
     whose : str
         Put behind the headings.
+    tests : int
+        How many share the file [-].
     """
     mark = "" if number == 1 else f"-{number}"
     sections = []
@@ -70,7 +75,10 @@ def sections_of_test(
         sections.append(Section(f"Hits{whose}", [chart, hits_table(processed.hits)]))
     if identified is not None:
         origins = pole_origins(identified, add=named[0], drop=named[1])
-        fit = [frfs_chart(identified, f"frf{mark}"), poles_chart(identified, origins, f"poles{mark}")]
+        fit = [
+            frfs_chart(identified, f"frf{mark}", tests=tests),
+            poles_chart(identified, origins, f"poles{mark}"),
+        ]
         sections.append(Section(f"FRFs and poles{whose}", [*fit, cmif_chart(identified.frfs, f"cmif{mark}")]))
     if modal is not None:
         sections.append(

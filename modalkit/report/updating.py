@@ -47,7 +47,7 @@ def update_report(result: Update, sessions: Sequence[Session], *, when: datetime
     tests = [
         section
         for i, session in enumerate(sessions, start=1)
-        for section in session_sections(session, number=i, several=len(sessions) > 1)
+        for section in session_sections(session, number=i, tests=len(sessions))
     ]
     frac = frac_chart(result) if isinstance(result, FrfUpdate) else None
     return page(

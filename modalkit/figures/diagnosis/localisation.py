@@ -125,7 +125,8 @@ def localisation_title(diagnosis: Diagnosis) -> str:
         leader = diagnosis.ranking[0].effects if diagnosis.ranking else ()
         if diagnosis.verdict == "class" and leader:
             return f"If it is {phrase(leader)}: {located(diagnosis)}{more}"
-        return f"The gap sits {located(diagnosis)}{more}"
+        whole = "Part of the gap" if diagnosis.sets and len(diagnosis.sets[0]) > 1 else "The gap"
+        return f"{whole} sits {located(diagnosis)}{more}"
     if diagnosis.verdict not in ("named", "class"):
         return "Nothing explains the gap, and it has no single place"
     listed = [phrase(names) for names in diagnosis.sets[:NAMED]]

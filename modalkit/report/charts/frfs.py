@@ -12,7 +12,7 @@ from modalkit.views.chart import Axis, Chart, Choices, Series
 from modalkit.views.hits import frf_names
 
 
-def overlaid_chart(both: Overlaid, name: str = "frfs") -> Chart:
+def overlaid_chart(both: Overlaid, name: str = "frfs", *, tests: int = 1) -> Chart:
     """Return measured FRFs and the model's, the worst first.
 
     Parameters
@@ -21,11 +21,13 @@ def overlaid_chart(both: Overlaid, name: str = "frfs") -> Chart:
         The FRFs.
     name : str
         Of the chart.
+    tests : int
+        Tests that share the file [-].
     """
     before, after = both.before, both.after
     shown = before if after is None else after
     test = before.measured
-    keep, count = common_lines(test, 3)
+    keep, count = common_lines(test, 3, tests=tests)
     names = frf_names(test)
     items = []
     for i in np.argsort(shown.frac, kind="stable")[:count].tolist():

@@ -65,28 +65,32 @@ def hits_chart(hits: Sequence[HitVerdict], name: str = "hits") -> Chart:
     )
 
 
-def frfs_chart(model: ModalModel, name: str = "frf") -> Chart:
-    """Return magnitude of every FRF with its fit and what that leaves, one shown at a time."""
+def frfs_chart(model: ModalModel, name: str = "frf", *, tests: int = 1) -> Chart:
+    """Return magnitude of every FRF with its fit and what that leaves, one shown at a time, the worst first."""
     frfs, fitted = model.frfs, model.synthesise().values
-    keep, count = common_lines(frfs, 3)
+    keep, count = common_lines(frfs, 3, tests=tests)
     names = frf_names(frfs)
+    left = np.sum(np.abs(frfs.values - fitted) ** 2, axis=1) / np.maximum(
+        np.sum(np.abs(frfs.values) ** 2, axis=1), 1e-300
+    )
+    worst = np.argsort(-left, kind="stable")[:count].tolist()
     items = [
         (
-            names[i],
+            f"{names[i]}, {percent(100 * float(np.sqrt(left[i])))} left",
             [
                 Series("what the fit leaves", "line", None, size(frfs.values[i] - fitted[i], keep), "faint"),
                 Series("measured", "line", None, size(frfs.values[i], keep), "ink"),
                 Series("fit", "line", None, size(fitted[i], keep), "blue", {"dash": True}),
             ],
         )
-        for i in range(count)
+        for i in worst
     ]
     misfit = np.sqrt(np.sum(np.abs(frfs.values - fitted) ** 2) / np.sum(np.abs(frfs.values) ** 2))
-    left = f" {len(names) - count} further ones are not in this file." if count < len(names) else ""
+    rest = f" {len(names) - count} better ones are not in this file." if count < len(names) else ""
     return Chart(
         name,
         f"{counted(len(names), 'FRF')}, {counted(len(model), 'mode')}: the fit leaves {percent(100 * misfit)} r.m.s.",
-        f"Magnitude, the fit, and what it leaves. Dotted: the modes.{left}",
+        f"Magnitude, the fit, and what it leaves, the worst first. Dotted: the modes.{rest}",
         Axis("frequency [Hz]", range=ends(frfs)),
         Axis(f"|H| [{frfs.unit}]", log=True),
         choices=Choices("FRF", items, frfs.frequency[keep]),

@@ -16,11 +16,12 @@ FEWEST, MOST = 300, 1200
 """Lines of an FRF at least and at the most: a phone has fewer columns than the first, a screen hardly more than the
 second [-]."""
 
-LARGEST = 120
-"""Most FRFs in a file; all of them are in `modalkit app` [-]."""
+LARGEST = 60
+"""Most FRFs in a file, the worst; all of them are in `modalkit app`. Doubled, a report of a large test with its model
+takes three megabytes [-]."""
 
 
-def common_lines(frfs: FrfSet, curves: int) -> tuple[IntArray, int]:
+def common_lines(frfs: FrfSet, curves: int, *, tests: int = 1) -> tuple[IntArray, int]:
     """Return the lines that are kept, and of how many FRFs.
 
     Of every piece of the axis those lines are kept where the sum of all FRFs is highest and lowest: no peak of it is
@@ -32,9 +33,11 @@ def common_lines(frfs: FrfSet, curves: int) -> tuple[IntArray, int]:
         The FRFs.
     curves : int
         Curves that are drawn of each [-].
+    tests : int
+        Tests that share the file [-].
     """
-    count = min(len(frfs.responses), LARGEST)
-    wanted = int(np.clip(BUDGET / (curves * count), FEWEST, MOST))
+    count = min(len(frfs.responses), max(1, LARGEST // tests))
+    wanted = int(np.clip(BUDGET / (tests * curves * count), FEWEST, MOST))
     lines = len(frfs.frequency)
     if lines <= wanted:
         return np.arange(lines), count

@@ -35,7 +35,9 @@ def factors_chart(result: Update) -> Chart | None:
     change = f"{100 * (factor[far] - 1):+.3g} %".replace("-", "−")
     return Chart(
         "factors",
-        f"{counted(len(known), 'factor')}; {known[far][0]} moved most, by {change}",
+        f"{known[far][0]} moved by {change}"
+        if len(known) == 1
+        else f"{counted(len(known), 'factor')}; {known[far][0]} moved most, by {change}",
         "Over the nominal values, with two standard deviations. Dotted: 1, where they began.",
         Axis("factor on the nominal value [-]"),
         Axis(names=tuple(name for name, _, _ in known)),

@@ -11,13 +11,13 @@ class Standing extends Stage {
     this.scene.clear();
     const group = new THREE.Group();
     const still = page.places.map(() => [0, 0, 0]);
-    const dots = !page.lines.length && !page.faces.length;
-    const body = new Body(group, page.places, { lines: page.lines, faces: page.faces, dots, opacity: 0.9, size: 5 });
+    const dots = !page.faces.length; // bars are a pixel thick: their nodes carry the colour
+    const body = new Body(group, page.places, { lines: page.lines, faces: page.faces, dots, opacity: 0.9, size: 11 });
     const shade = (name) => new THREE.Color(this.colours[name]);
     const shades = { low: shade("middle"), middle: shade("middle"), high: shade("blue") };
     body.move(still, null, 1, 0, 0, (i) => Math.max(0, page.values[i] ?? 0), shades);
     this.measure([...page.places, ...page.points.map((p) => p.place)]);
-    this.add(group, page.points.map((p) => p.place), "ink", 7);
+    this.add(group, page.points.map((p) => p.place), "ink", 4);
     this.add(group, page.found, "orange", 13);
     for (const point of page.points.filter((p) => p.to)) group.add(this.arrow(point));
     this.scene.add(group);
@@ -33,7 +33,7 @@ class Standing extends Stage {
   }
 
   arrow({ place, to }) {
-    const [long, head, wide] = [0.07, 0.024, 0.014].map((part) => part * this.size);
+    const [long, head, wide] = [0.045, 0.012, 0.007].map((part) => part * this.size);
     return new THREE.ArrowHelper(
       new THREE.Vector3(...to).normalize(),
       new THREE.Vector3(...place),
