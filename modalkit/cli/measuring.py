@@ -48,7 +48,7 @@ from modalkit.cli.options import (
     WindowOn,
     processing,
 )
-from modalkit.cli.reporting import identified_report, report_wanted, save_report
+from modalkit.cli.reporting import identified_report, named_by_hand, report_wanted, save_report
 from modalkit.cli.showing import (
     save_modes,
     show_hits,
@@ -249,7 +249,7 @@ def identify(
     show_warnings(warnings)
     save_modes(processed, model, warnings, json, output)
     save_report(report, lambda: identified_report(files, processed, model, (add or (), drop or ()), warnings))
-    show_figures(figures, lambda: _drawn(*(() if processed is None else (processed,)), model))
+    show_figures(figures, lambda: _identified_drawn(files, processed, model, (add or (), drop or ())))
 
 
 def _identified(
@@ -277,6 +277,22 @@ def _identified(
             f"{found.source}: holds modes; --order, --add and --drop are for FRFs that are identified"
         )
     return None, found.identify(band=band)
+
+
+def _identified_drawn(
+    files: list[Path],
+    processed: Processed | None,
+    model: ModalModel | Modes,
+    named: tuple[Sequence[float], Sequence[float]],
+) -> dict[str, Any]:
+    """Draw an identification; its chart states which modes were added and dropped by hand."""
+    from modalkit.figures import stabilisation_figure
+
+    found = _drawn(*(() if processed is None else (processed,)), model)
+    if not isinstance(model, Modes):
+        add, drop = named_by_hand(files, named)
+        found["stabilisation"] = stabilisation_figure(model, add=add, drop=drop)
+    return found
 
 
 def _drawn(*results: Processed | ModalModel | Modes) -> dict[str, Any]:

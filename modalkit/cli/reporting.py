@@ -61,6 +61,7 @@ def identified_report(
     from modalkit.report import Basis, identification_report
 
     study = _study(files)
+    named = named_by_hand(files, named)
     title = "" if processed is None else processed.content.title
     if study is None:
         basis = Basis(now(), this_command(), files=files)
@@ -72,12 +73,21 @@ def identified_report(
             warnings=warnings,
             title=title or ", ".join(p.name for p in files),
         )
-    both = ([*study.test.add, *named[0]], [*study.test.drop, *named[1]])
     basis = Basis(now(), this_command(), [study])
     session = _session(study, processed, modes)
     return identification_report(
-        processed, modes, basis, named=both, session=session, warnings=warnings, title=study.name
+        processed, modes, basis, named=named, session=session, warnings=warnings, title=study.name
     )
+
+
+def named_by_hand(
+    files: Sequence[Path], named: tuple[Sequence[float], Sequence[float]]
+) -> tuple[Sequence[float], Sequence[float]]:
+    """Return the frequencies added and dropped by options and, of a study, by its own table [Hz]."""
+    study = _study(files)
+    if study is None:
+        return named
+    return [*study.test.add, *named[0]], [*study.test.drop, *named[1]]
 
 
 def _study(files: Sequence[Path]) -> Study | None:

@@ -66,7 +66,7 @@ def diagnosis_report(
                 the_summary(diagnosis),
             ),
             [
-                *_answer(diagnosis, sessions),
+                *answer_sections(diagnosis, sessions),
                 *tests,
                 Section("What was not examined", [not_examined(diagnosis)]),
                 Section("Warnings", [the_warnings([*diagnosis.warnings, *warnings_of(sessions)])]),
@@ -76,32 +76,47 @@ def diagnosis_report(
     )
 
 
-def _answer(diagnosis: Diagnosis, sessions: Sequence[Session]) -> list[Section]:
-    """Return how large, where, what, what is left, how far, what next, FRFs before and after."""
-    alone = len(sessions) == 1
-    bests = [fitted(diagnosis, session.case, alone=alone) for session in sessions]
-    gaps: list[Part] = []
-    frfs: list[Part] = []
-    after = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
-    for i, (session, best) in enumerate(zip(sessions, bests, strict=True), start=1):
-        mark = "" if i == 1 else f"-{i}"
-        if not alone:
-            gaps.append(element("h3", session.case.title))
-        gaps.append(gap_chart(mode_errors(diagnosis, session.case, best=best), f"gap{mark}", after=after))
-        if session.identified is not None:
-            frfs.append(
-                overlaid_chart(overlaid(session.identified.frfs, best), f"frfs{mark}", tests=len(sessions))
-            )
-    first = sessions[0].case
+def answer_sections(diagnosis: Diagnosis, sessions: Sequence[Session]) -> list[Section]:
+    """Return how large, where, what, what is left, how far, what next, FRFs before and after.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The answer.
+    sessions : sequence of Session
+        What was diagnosed; without, only what the diagnosis itself holds is drawn.
+    """
+    gaps, frfs = _by_session(diagnosis, sessions)
+    if not sessions:
+        gaps = [gap_chart(mode_errors(diagnosis))]
+    where = [_where(diagnosis, sessions[0].case)] if sessions else []
     return [
         Section("How large the gap is", [*gaps, the_gap(diagnosis)]),
-        Section("Where it sits", [_where(diagnosis, first), the_place(diagnosis)]),
+        Section("Where it sits", [*where, the_place(diagnosis)]),
         Section("What causes it", [causes_chart(diagnosis), the_causes(diagnosis)]),
         Section("What is left", [the_remainder(diagnosis)]),
         Section("How far it closes", [closing_chart(diagnosis), the_shrinkage(diagnosis)]),
         Section("What to measure next", [the_next_test(diagnosis)]),
         Section("FRFs before and after", frfs),
     ]
+
+
+def _by_session(diagnosis: Diagnosis, sessions: Sequence[Session]) -> tuple[list[Part], list[Part]]:
+    """Return the gaps and the FRFs of each specimen."""
+    alone = len(sessions) == 1
+    gaps: list[Part] = []
+    frfs: list[Part] = []
+    after = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
+    for i, session in enumerate(sessions, start=1):
+        best, mark = fitted(diagnosis, session.case, alone=alone), "" if i == 1 else f"-{i}"
+        if not alone:
+            gaps.append(element("h3", session.case.title))
+        errors = mode_errors(diagnosis, session.case, best=best)
+        gaps.append(gap_chart(errors, f"gap{mark}", after=after))
+        if session.identified is not None:
+            both = overlaid(session.identified.frfs, best)
+            frfs.append(overlaid_chart(both, f"frfs{mark}", tests=len(sessions)))
+    return gaps, frfs
 
 
 def _where(diagnosis: Diagnosis, case: Case) -> Part | None:

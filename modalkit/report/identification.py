@@ -53,7 +53,7 @@ def identification_report(
         Document(
             title or "Identification",
             "modes",
-            joined(element("h1", title or "Identification"), _answer(processed, modes)),
+            joined(element("h1", title or "Identification"), modes_answer(processed, modes)),
             [
                 Section("Modes", [modes_table(modes)]),
                 Section("Left out", [_left_out(processed, modes)]),
@@ -66,7 +66,7 @@ def identification_report(
     )
 
 
-def _answer(processed: Processed | None, modes: ModalModel | Modes) -> Raw:
+def modes_answer(processed: Processed | None, modes: ModalModel | Modes) -> Raw:
     """Return what was found, in a few lines."""
     modal = modes.modal
     span = f"{hertz(modal.frequency.min())} to {hertz(modal.frequency.max())}" if len(modal) else "none"

@@ -49,21 +49,13 @@ def update_report(result: Update, sessions: Sequence[Session], *, when: datetime
         for i, session in enumerate(sessions, start=1)
         for section in session_sections(session, number=i, tests=len(sessions))
     ]
-    frac = frac_chart(result) if isinstance(result, FrfUpdate) else None
     return page(
         Document(
             title,
             "update",
-            joined(element("h1", title), _answer(result)),
+            joined(element("h1", title), update_answer(result)),
             [
-                Section("How far it closes", [*_errors(result), pairs_table(result)]),
-                Section(
-                    "Parameters", [factors_chart(result), parameters_table(result), _correlations(result)]
-                ),
-                Section("What the data do not determine", [_undetermined(result)]),
-                Section("FRAC", [frac]),
-                Section("How the parameters moved", list(course_charts(result))),
-                Section("The whole statement", [element("pre", result.report())]),
+                *update_sections(result),
                 *tests,
                 Section("Warnings", [the_warnings([*result.warnings, *warnings_of(sessions)])]),
                 Section("What this rests on", [provenance(basis)]),
@@ -72,7 +64,21 @@ def update_report(result: Update, sessions: Sequence[Session], *, when: datetime
     )
 
 
-def _answer(result: Update) -> Raw:
+def update_sections(result: Update) -> list[Section]:
+    """Return errors, parameters, what is not determined, how all moved, and the statement of the fit."""
+    frac = frac_chart(result) if isinstance(result, FrfUpdate) else None
+    return [
+        Section("How far it closes", [*_errors(result), pairs_table(result)]),
+        Section("Parameters", [factors_chart(result), parameters_table(result), _correlations(result)]),
+        Section("What the data do not determine", [_undetermined(result)]),
+        Section("FRAC", [frac]),
+        Section("How the parameters moved", list(course_charts(result))),
+        Section("The whole statement", [element("pre", result.report())]),
+    ]
+
+
+def update_answer(result: Update) -> Raw:
+    """Return how far it closes, in a few lines."""
     before, after = (percent(result.rms_percent(when)) for when in ("before", "after"))
     state = "converged" if result.converged else "NOT converged"
     stated = {

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating import Case
 from updating.models.imported import Imported
+from updating.models.spec import Spec
 
 FEW = 6.0
 """Mean number of nodes that a node is coupled with, up to which couplings of matrices are drawn as lines: bars have two
@@ -50,9 +50,9 @@ class Mesh:
     region: IntArray
 
 
-def mesh_of(case: Case) -> Mesh | None:
+def mesh_of(spec: Spec) -> Mesh | None:
     """Return the mesh of matrices or of a deck; None for beams and plates, which have no nodes of the user's."""
-    imported = case.spec.imported
+    imported = spec.imported
     if imported is None:
         return None
     number, first = np.unique(imported.nodes.node, return_index=True)

@@ -20,7 +20,7 @@ def structure_page(diagnosis: Diagnosis, case: Case) -> dict[str, Any] | None:
     case : Case
         What was diagnosed.
     """
-    mesh = mesh_of(case)
+    mesh = mesh_of(case.spec)
     if mesh is None:
         return None
     found = {zone.name: zone.probability for zone in diagnosis.where.zones}

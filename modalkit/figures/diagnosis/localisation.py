@@ -37,8 +37,8 @@ from updating.diagnosis.answer.contributions import columns_of
 LEFT, RIGHT = 7.1, 3.6
 """Widths of the structure and of the list of zones [in]."""
 
-TALL, FLAT = 2.7, 2.0
-"""Height of both for a plate, and for a beam [in]."""
+TALL, FLAT, DEEP = 2.7, 2.0, 4.4
+"""Height of both for a plate, for a beam, and in space [in]."""
 
 ALIKE = 0.01
 """Zones whose probabilities differ by less are in no order [-]."""
@@ -78,7 +78,7 @@ def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figur
     columns = _columns(diagnosis)
     above, low = caption_height(title, note), ROW * (len(columns) + 1)
     top = above + 0.75
-    tall = TALL if outline(diagnosis, case).width else FLAT
+    tall = _tall(diagnosis, case)
     figure = new_figure(top + tall + (0.8 + low + 0.35 if columns else 0.3))
     caption(figure, title, note)
     structure = place(figure, MARGIN, top, LEFT, tall, name="where")
@@ -98,6 +98,13 @@ def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figur
         table = place(figure, MARGIN, under, WIDTH - 2 * MARGIN, low, name="modes")
         _table(table, diagnosis, columns, low)
     return figure
+
+
+def _tall(diagnosis: Diagnosis, case: Case | None) -> float:
+    """Return the height of the structure [in]."""
+    if case is not None and case.spec.imported is not None:
+        return DEEP
+    return TALL if outline(diagnosis, case).width else FLAT
 
 
 def localisation_title(diagnosis: Diagnosis) -> str:
@@ -159,6 +166,8 @@ def _concerned(axes: Axes, diagnosis: Diagnosis, case: Case | None, tall: float)
     """Fill the test points concerned and write their nodes."""
     if case is None or not diagnosis.where.points or diagnosis.verdict == "unknown":
         return
+    if case.spec.imported is not None:
+        return  # drawn in space, where a name would stand over others
     body = outline(diagnosis, case)
     frame = Frame.fit(body, LEFT, tall)
     for node in diagnosis.where.points:
@@ -190,7 +199,8 @@ def _list(axes: Axes, diagnosis: Diagnosis, tall: float) -> None:
         return
     alike = np.ptp([z.probability for z in diagnosis.where.zones] or [0.0]) < ALIKE
     zones = sorted(diagnosis.where.zones, key=lambda z: 0.0 if alike else -z.probability)
-    left, right = 1.1, 0.75
+    longest = max((text_width(zone.name, SMALL) for zone in zones[:LISTED]), default=0.0) / 72
+    left, right = min(max(1.1, longest + 0.2), 1.9), 0.75
     full = RIGHT - left - right
     for i, zone in enumerate(zones[:LISTED]):
         y = -(i + 0.5) * height / (LISTED + 1)

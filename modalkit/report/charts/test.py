@@ -13,6 +13,7 @@ from acquisition.quantities import hertz, percent
 from identification import ModalModel, auto_mac, cmif
 from identification.pole_reasons import Origins
 from modalkit.figures.shapes.matrix import alike
+from modalkit.figures.test.stabilisation import poles_title
 from modalkit.report.charts.matrix import matrix_chart
 from modalkit.report.charts.thin import common_lines
 from modalkit.views.chart import Axis, Chart, Choices, Series
@@ -148,19 +149,6 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
         360.0,
         more={"lines": [float(f) for f in model.modal.frequency]},
     )
-
-
-def poles_title(origins: Origins, shown: int) -> str:
-    """Say how many modes there are and where they come from, and what became of stable poles that are none."""
-    stable = sum(origin == "chain" for origin in origins.modes)
-    parts = [f"{counted(stable, 'mode')} of {shown} poles"]
-    for origin, meaning in (("refinement", "added by the refinement"), ("named", "picked by hand")):
-        if count := sum(o == origin for o in origins.modes):
-            parts.append(f"{count} {meaning}")
-    left = [reason.kind for reason in origins.reasons if reason.kind in ("pruned", "background", "dropped")]
-    if left:
-        parts.append(f"{counted(len(left), 'stable column')} not taken, with the reason")
-    return "; ".join(parts)
 
 
 def cmif_chart(frfs: FrfSet, name: str = "cmif") -> Chart | None:
