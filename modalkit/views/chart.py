@@ -177,4 +177,6 @@ def _rounded(value: float | None, digits: int) -> float | None:
     if value is None or not math.isfinite(value):
         return None
     short = float(f"{value:.{digits}g}")
+    if not math.isfinite(short):  # the largest there is, rounded up
+        return value
     return int(short) if short == int(short) and abs(short) < 1e15 else short

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
+from acquisition.display import counted
 from acquisition.quantities import hertz, probability
 from modalkit.figures.diagnosis.where import Frame, draw_where, outline, spans
 from modalkit.figures.style import (
@@ -138,7 +139,7 @@ def localisation_title(diagnosis: Diagnosis) -> str:
         return "Nothing explains the gap, and it has no single place"
     listed = [phrase(names) for names in diagnosis.sets[:NAMED]]
     if len(diagnosis.sets) > NAMED:
-        listed.append(f"{len(diagnosis.sets) - NAMED} others")
+        listed.append(counted(len(diagnosis.sets) - NAMED, "other"))
     whole = listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} or {listed[-1]}"
     return f"The gap has no single place: {whole} acts all over the structure"
 
