@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from figure_cases import case_of, hammered, model_of, verdicts_of
+from glider import make_glider
 from hypothesis import given
 from hypothesis import strategies as st
 from test_localisation_figure import diagnosis_with
@@ -26,6 +27,10 @@ from modalkit.report.charts.test import auto_mac_chart, cmif_chart, frfs_chart, 
 from modalkit.report.charts.thin import FEWEST, LARGEST, common_lines
 from modalkit.report.scripts import scripts
 from modalkit.views.chart import Chart, rounded
+from modalkit.views.shapes import Beside, shapes_page
+from modalkit.workflow.case import open_study
+from updating.correlation.correlate import correlate
+from updating.nominal import predictor_of
 
 BEFORE = np.array([3.0, -0.4, 0.1, 2.0])
 AFTER = np.array([0.2, 0.1, -0.1, 0.7])
@@ -201,3 +206,18 @@ def test_the_page_asks_for_nothing_that_is_not_in_the_package() -> None:
         assert not re.search(r"\bfetch\(|XMLHttpRequest|https?://(?!www\.w3\.org)|innerHTML|eval\(", text), (
             path
         )
+
+
+def test_the_mesh_of_a_users_own_model_moves_as_its_test_points_do(tmp_path: Path) -> None:
+    session = open_study(make_glider(tmp_path / "glider"))
+    assert session.identified is not None
+    beside = Beside(session, predictor_of(session.case), correlate(session.case))
+    page = shapes_page(session.identified.modal, beside)
+    surface = page["model"]["surface"]
+    row = {tuple(np.round(place, 6)): i for i, place in enumerate(surface["places"])}
+    for shape in filter(None, page["model"]["modes"]):
+        size = float(np.abs(shape["at_points"]).max())
+        for node, place in enumerate(page["places"]):
+            measured = shape["at_points"][node] != 0
+            own = shape["surface"][row[tuple(np.round(place, 6))]]
+            assert own[measured] == pytest.approx(shape["at_points"][node][measured], abs=1e-6 * size)
