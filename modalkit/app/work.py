@@ -7,6 +7,7 @@ JSON for every stage. A process can be stopped at once; what it had not finished
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from collections.abc import Callable
 from datetime import datetime
@@ -38,7 +39,8 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     session = open_study(read_study(path))
     found = diagnose_studies([session], progress=progress)
     progress("writing the report")
-    page = diagnosis_report(found, [session], when=datetime.now().astimezone())
+    repeated = shlex.join(["modalkit", "diagnose", path.name])
+    page = diagnosis_report(found, [session], when=datetime.now().astimezone(), command=repeated)
     write_text(folder / REPORT, page)
     return {
         "answer": answer(found),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import fields
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -64,7 +65,7 @@ def identified_report(
     named = named_by_hand(files, named)
     title = "" if processed is None else processed.content.title
     if study is None:
-        basis = Basis(now(), this_command(), files=files)
+        basis = Basis(now(), this_command(), files=files, settings=_settings(processed, modes))
         return identification_report(
             processed,
             modes,
@@ -73,11 +74,26 @@ def identified_report(
             warnings=warnings,
             title=title or ", ".join(p.name for p in files),
         )
-    basis = Basis(now(), this_command(), [study])
+    basis = Basis(now(), this_command(), [study], settings=_settings(processed, modes))
     session = _session(study, processed, modes)
     return identification_report(
         processed, modes, basis, named=named, session=session, warnings=warnings, title=study.name
     )
+
+
+def _settings(processed: Processed | None, modes: ModalModel | Modes) -> dict[str, str]:
+    """Return how the test was treated, as far as it is not by default."""
+    stated = {} if isinstance(modes, Modes) else {"band": f"{modes.band[0]:g} to {modes.band[1]:g} Hz"}
+    if not isinstance(modes, Modes):
+        stated["highest model order"] = str(int(modes.chart.orders.max()))
+    if processed is None:
+        return stated
+    options = processed.processing
+    for one in fields(options):
+        value = getattr(options, one.name)
+        if value != one.default and value not in ((), None):
+            stated[one.name.replace("_", " ")] = str(value)
+    return stated
 
 
 def named_by_hand(
