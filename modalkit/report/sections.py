@@ -42,8 +42,8 @@ def the_gap(diagnosis: Diagnosis) -> Raw:
     """Return the table of the modes, one for each study."""
     gap = diagnosis.gap
     words = (
-        f"{percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}; chance alone, with the tolerances "
-        f"stated, makes a gap like this with {p_value(diagnosis.p_value)}."
+        f"Frequencies differ by {percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}. Chance "
+        f"alone, with the tolerances stated, makes a gap like this in all data with {p_value(diagnosis.p_value)}."
     )
     studies = list(dict.fromkeys(gap.modes["study"]))
     tables = [_mode_table(gap.modes[gap.modes["study"] == name], name, len(studies) > 1) for name in studies]

@@ -13,29 +13,25 @@ from acquisition.quantities import hertz, percent
 from identification import ModalModel, auto_mac, cmif
 from identification.pole_reasons import Origins
 from modalkit.figures.shapes.matrix import alike
-from modalkit.figures.test.stabilisation import poles_title
+from modalkit.figures.test import stabilisation
 from modalkit.report.charts.matrix import matrix_chart
 from modalkit.report.charts.thin import common_lines
 from modalkit.views.chart import Axis, Chart, Choices, Series
 from modalkit.views.hits import frf_names
 
 KINDS = {
-    "new": ("new at its order", "cross", "faint", 2.6),
-    "short": ("chain too short", "dot", "faint", 2.6),
-    "outside": ("outside the band", "up", "muted", 3.0),
-    "pruned": ("struck off by the fit", "square", "orange", 3.0),
-    "background": ("not told by the data", "diamond", "orange", 3.0),
-    "dropped": ("dropped by you", "cross", "red", 4.0),
-    "mode": ("a mode", "dot", "blue", 2.6),
+    "new": ("cross", "faint", 2.6),
+    "short": ("dot", "faint", 2.6),
+    "outside": ("up", "muted", 3.0),
+    "pruned": ("square", "orange", 3.0),
+    "background": ("diamond", "orange", 3.0),
+    "dropped": ("cross", "red", 4.0),
+    "mode": ("dot", "blue", 2.6),
 }
-"""What became of a pole: in words, and how it is drawn."""
+"""How poles are drawn by what became of them; the words are those of the figure."""
 
-ORIGINS = {
-    "chain": ("mode", "down", "blue"),
-    "refinement": ("mode added by the refinement", "diamond", "orange"),
-    "named": ("mode picked by hand", "square", "green"),
-}
-"""Where a mode comes from, in the row above the chart."""
+ORIGINS = {"chain": ("down", "blue"), "refinement": ("diamond", "orange"), "named": ("square", "green")}
+"""How modes are drawn above the chart by where they come from."""
 
 
 def hits_chart(hits: Sequence[HitVerdict], name: str = "hits") -> Chart:
@@ -121,7 +117,7 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
     keep, _ = common_lines(model.frfs, 60)
     total = size(np.abs(model.frfs.values).sum(axis=0), keep)
     series = [Series("sum of the FRFs", "line", model.frfs.frequency[keep], total, "faint", {"right": True})]
-    for which, (meaning, symbol, colour, radius) in KINDS.items():
+    for which, (symbol, colour, radius) in KINDS.items():
         rows = np.flatnonzero(near & (kind == which))
         text = [
             f"{chart.frequency[i]:.3f} Hz, damping {100 * chart.damping[i]:.3f} %, order {order[i]}\n"
@@ -130,18 +126,23 @@ def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Cha
         ]
         more = {"text": text, "symbol": symbol, "size": radius}
         if len(rows):
-            series.append(Series(meaning, "points", chart.frequency[rows], order[rows], colour, more))
+            series.append(
+                Series(
+                    stabilisation.KINDS[which][0], "points", chart.frequency[rows], order[rows], colour, more
+                )
+            )
     top = 1.06 * float(chart.orders.max())
-    for which, (meaning, symbol, colour) in ORIGINS.items():
+    for which, (symbol, colour) in ORIGINS.items():
         modes = [r for r, origin in enumerate(origins.modes) if origin == which]
         hz = [float(model.modal.frequency[r]) for r in modes]
+        meaning = stabilisation.ORIGINS[which][0]
         text = [f"mode {r + 1}: {model.modal.frequency[r]:.3f} Hz\n{meaning}" for r in modes]
         more = {"text": text, "symbol": symbol, "size": 5}
         if modes:
             series.append(Series(meaning, "points", hz, [top] * len(hz), colour, more))
     return Chart(
         name,
-        poles_title(origins, int(np.sum(near))),
+        stabilisation.poles_title(origins, int(np.sum(near))),
         "Every pole of every order by what became of it; modes stand above, dotted below.",
         Axis("frequency [Hz]", range=(low - edge, high + edge)),
         Axis("model order", range=(0.0, 1.04 * top)),

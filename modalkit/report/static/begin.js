@@ -4,7 +4,10 @@
   const address = (name) => {
     if (!addresses.has(name)) {
       const text = document.querySelector(`script[data-module="${name}"]`).textContent;
-      const linked = text.replace(/(\bfrom\s*|\bimport\s*)"\.\/([^"]+)"/g, (_, word, other) => `${word}"${address(other)}"`);
+      const linked = text.replace(
+        /(\bfrom\s*|\bimport\s*)"\.\/([^"]+)"/g,
+        (_, word, other) => `${word}"${address(other)}"`,
+      );
       addresses.set(name, URL.createObjectURL(new Blob([linked], { type: "text/javascript" })));
     }
     return addresses.get(name);

@@ -29,7 +29,9 @@ export function plot(place, given, chosen) {
   axes(svg, given, scales, { ...box, width });
   const cut = `cut-${given.name}`;
   const clip = s("clipPath", { id: cut });
-  clip.append(s("rect", { x: left - 6, y: top - 6, width: width - left - right + 12, height: height - top - bottom + 12 }));
+  clip.append(
+    s("rect", { x: left - 6, y: top - 6, width: width - left - right + 12, height: height - top - bottom + 12 }),
+  );
   const inner = s("g", { "clip-path": `url(#${cut})` });
   svg.append(clip, inner);
   for (const one of given.lines ?? []) {
@@ -114,11 +116,21 @@ function axes(svg, given, { x, y }, { left, right, top, bottom, width, height, s
   if (!given.bare) svg.append(s("path", { d: `M${left},${base}H${width - right}`, class: "axis" }));
   if (given.zero) svg.append(s("path", { d: `M${x.at(0)},${top}V${base}`, class: "axis" }));
   if (given.x.title)
-    svg.append(s("text", { x: (left + width - right) / 2, y: height - 4, class: "name", "text-anchor": "middle" }, given.x.title));
+    svg.append(
+      s(
+        "text",
+        { x: (left + width - right) / 2, y: height - 4, class: "name", "text-anchor": "middle" },
+        given.x.title,
+      ),
+    );
   if (given.y.title) {
     const middle = (top + base) / 2;
     svg.append(
-      s("text", { x: 13, y: middle, class: "name", "text-anchor": "middle", transform: `rotate(-90 13 ${middle})` }, given.y.title),
+      s(
+        "text",
+        { x: 13, y: middle, class: "name", "text-anchor": "middle", transform: `rotate(-90 13 ${middle})` },
+        given.y.title,
+      ),
     );
   }
 }
@@ -131,4 +143,5 @@ function label(svg, tick, at, room) {
   svg.append(text);
 }
 
-const cut = (text, room) => (LETTER * text.length <= room ? text : `${text.slice(0, Math.max(1, Math.floor(room / LETTER) - 1))}…`);
+const cut = (text, room) =>
+  LETTER * text.length <= room ? text : `${text.slice(0, Math.max(1, Math.floor(room / LETTER) - 1))}…`;

@@ -51,10 +51,12 @@ function logarithmic(low, high, from, to, padded) {
   const every = Math.max(1, Math.ceil((b - a) / Math.max(2, Math.abs(to - from) / 36)));
   const ticks = [];
   for (let k = Math.ceil(a); k <= b; k += every) ticks.push({ at: at(10 ** k), power: k });
-  if (ticks.length < 2)
+  if (ticks.length < 2) {
+    ticks.length = 0;
     for (let k = Math.floor(a); k <= b; k += 1)
-      for (const m of [2, 5])
+      for (const m of [1, 2, 5])
         if (m * 10 ** k >= 10 ** a && m * 10 ** k <= 10 ** b)
           ticks.push({ at: at(m * 10 ** k), text: written(m * 10 ** k, 3) });
+  }
   return { at: (v) => (v > 0 ? at(v) : NaN), ticks, step: 0 };
 }

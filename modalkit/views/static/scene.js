@@ -44,7 +44,11 @@ export class Scene extends Stage {
     this.test = new Body(this.group, page.places, { lines: page.lines, faces: page.faces, opacity: 0.75 });
     const surface = page.model?.surface;
     this.fem = surface
-      ? new Body(this.beside, surface.places, surface.shape ? mesh(surface.shape) : { ...surface, dots: false, opacity: 0.4 })
+      ? new Body(
+          this.beside,
+          surface.places,
+          surface.shape ? mesh(surface.shape) : { ...surface, dots: false, opacity: 0.4 },
+        )
       : page.model
         ? new Body(this.beside, page.places, { lines: page.lines, faces: page.faces, opacity: 0.4, size: 4 })
         : null;
@@ -79,7 +83,9 @@ export class Scene extends Stage {
     this.surfaceShape = null;
     if (model && this.fem) {
       const along = this.page.model.surface?.along;
-      this.surfaceShape = along ? model.surface.map((w) => along.map((a) => a * w)) : (model.surface ?? model.at_points);
+      this.surfaceShape = along
+        ? model.surface.map((w) => along.map((a) => a * w))
+        : (model.surface ?? model.at_points);
     }
     this.aim();
     this.dirty = true;

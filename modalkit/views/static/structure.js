@@ -17,7 +17,12 @@ class Standing extends Stage {
     const shades = { low: shade("middle"), middle: shade("middle"), high: shade("blue") };
     body.move(still, null, 1, 0, 0, (i) => Math.max(0, page.values[i] ?? 0), shades);
     this.measure([...page.places, ...page.points.map((p) => p.place)]);
-    this.add(group, page.points.map((p) => p.place), "ink", 4);
+    this.add(
+      group,
+      page.points.map((p) => p.place),
+      "ink",
+      4,
+    );
     this.add(group, page.found, "orange", 13);
     for (const point of page.points.filter((p) => p.to)) group.add(this.arrow(point));
     this.scene.add(group);
@@ -29,7 +34,15 @@ class Standing extends Stage {
     if (!places.length) return;
     const colour = new THREE.Color(this.colours[name]);
     const one = { low: colour, middle: colour, high: colour };
-    new Body(group, places, { size }).move(places.map(() => [0, 0, 0]), null, 1, 0, 0, () => 0, one);
+    new Body(group, places, { size }).move(
+      places.map(() => [0, 0, 0]),
+      null,
+      1,
+      0,
+      0,
+      () => 0,
+      one,
+    );
   }
 
   arrow({ place, to }) {
@@ -62,7 +75,8 @@ export function structure(root, options) {
   const canvas = h("canvas", {
     tabindex: "0",
     role: "img",
-    "aria-label": "the structure, its regions coloured by probability; arrow keys turn it, plus and minus bring it near",
+    "aria-label":
+      "the structure, its regions coloured by probability; arrow keys turn it, plus and minus bring it near",
   });
   const tip = h("div", { class: "tip", hidden: true });
   const frame = h("div", { class: "canvas" }, canvas, tip);

@@ -148,16 +148,7 @@ export function viewer(root, { kept = false } = {}) {
   };
 }
 
-const COLUMNS = [
-  "mode",
-  "test [Hz]",
-  "MPC",
-  "model mode",
-  "model [Hz]",
-  "error [%]",
-  "MAC",
-  "largest difference [%]",
-];
+const COLUMNS = ["mode", "test [Hz]", "MPC", "model mode", "model [Hz]", "error [%]", "MAC", "largest difference [%]"];
 
 function row(mode, model) {
   const own = [mode.mode, fixed(mode.frequency_hz, 3), fixed(mode.mpc, 3)];

@@ -47,7 +47,7 @@ def test_modes_named_by_hand_are_so_in_report_and_figure(call: Call, tmp_path: P
     code, _, error = call("identify", BEAM / "study.toml", "--drop", "154", "--report", page)
     assert code == 0, error
     charts = {chart["name"]: chart for chart in data_of(page.read_text(encoding="utf-8"))["charts"]}
-    assert "dropped by you" in {one["name"] for one in charts["poles"]["series"]}
+    assert "dropped by hand" in {one["name"] for one in charts["poles"]["series"]}
 
 
 def test_update_reports_what_it_prints(call: Call, tmp_path: Path) -> None:
