@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,6 +67,14 @@ def mesh_of(spec: Spec) -> Mesh | None:
             _, nodes = imported.deck.mesh.elements[element]
             region[[row[n] for n in nodes if n in row]] = k
     return Mesh(number, places, lines, faces, region)
+
+
+def edges_of(faces: Sequence[Sequence[int]]) -> list[tuple[int, int]]:
+    """Return the edges of faces, each once."""
+    pairs = (
+        (min(a, b), max(a, b)) for face in faces for a, b in zip(face, [*face[1:], face[0]], strict=True)
+    )
+    return list(dict.fromkeys(pairs))
 
 
 def _skin(

@@ -12,7 +12,7 @@ from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.errors import ModalkitError
 from identification import mpc
 from modalkit.views.faces import closed_faces
-from modalkit.views.mesh import mesh_of
+from modalkit.views.mesh import edges_of, mesh_of
 from modalkit.workflow.case import Session
 from updating.correlation.correlate import Correlation
 from updating.prediction.predict import Predictor
@@ -207,7 +207,7 @@ def _own_mesh(beside: Beside, count: int) -> dict[str, Any] | None:
         "places": mesh.places[used] @ axes.rotation + np.asarray(axes.origin),
         "along": None,
         "shape": None,
-        "lines": [[place[i] for i in pair] for pair in mesh.lines],
+        "lines": [[place[i] for i in pair] for pair in (*mesh.lines, *edges_of(mesh.faces))],
         "faces": [[place[i] for i in face] for face in mesh.faces],
         "rows": np.asarray(rows).reshape(len(used), 3, -1),
     }

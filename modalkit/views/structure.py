@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from modalkit.views.mesh import mesh_of
+from modalkit.views.mesh import edges_of, mesh_of
 from updating import Case, Diagnosis
 
 
@@ -33,6 +33,7 @@ def structure_page(diagnosis: Diagnosis, case: Case) -> dict[str, Any] | None:
         "places": mesh.places,
         "lines": mesh.lines,
         "faces": mesh.faces,
+        "edges": edges_of(mesh.faces),
         "values": [held[k] if 0 <= k < len(held) else None for k in mesh.region],
         "regions": [names[k] if 0 <= k < len(names) else "" for k in mesh.region],
         "points": [

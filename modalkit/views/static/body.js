@@ -54,6 +54,7 @@ export class Body {
             side: THREE.DoubleSide,
             transparent: opacity < 1,
             opacity,
+            depthWrite: opacity === 1, // what is seen through hides nothing, in whatever order it is drawn
             polygonOffset: true,
             polygonOffsetFactor: 1,
             polygonOffsetUnits: 1,

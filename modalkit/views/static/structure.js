@@ -12,10 +12,11 @@ class Standing extends Stage {
     const group = new THREE.Group();
     const still = page.places.map(() => [0, 0, 0]);
     const dots = !page.faces.length; // bars are a pixel thick: their nodes carry the colour
-    const body = new Body(group, page.places, { lines: page.lines, faces: page.faces, dots, opacity: 0.9, size: 11 });
+    const body = new Body(group, page.places, { lines: page.lines, faces: page.faces, dots, opacity: 1, size: 11 });
     const shade = (name) => new THREE.Color(this.colours[name]);
     const shades = { low: shade("middle"), middle: shade("middle"), high: shade("blue") };
     body.move(still, null, 1, 0, 0, (i) => Math.max(0, page.values[i] ?? 0), shades);
+    this.add(group, page.places, "muted", 1, { lines: page.edges, dots: false });
     this.measure([...page.places, ...page.points.map((p) => p.place)]);
     this.add(
       group,
@@ -30,11 +31,11 @@ class Standing extends Stage {
     this.dirty = true;
   }
 
-  add(group, places, name, size) {
+  add(group, places, name, size, more = {}) {
     if (!places.length) return;
     const colour = new THREE.Color(this.colours[name]);
     const one = { low: colour, middle: colour, high: colour };
-    new Body(group, places, { size }).move(
+    new Body(group, places, { size, ...more }).move(
       places.map(() => [0, 0, 0]),
       null,
       1,
