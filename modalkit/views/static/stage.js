@@ -84,6 +84,11 @@ export class Stage {
   }
   pose() {}
 
+  /** Return how many pixels a point stands back where it lies with others. */
+  behind() {
+    return 0;
+  }
+
   /** Return the index of the point under the mouse, with its place on the canvas; null over none. */
   pick(event) {
     const box = this.canvas.getBoundingClientRect();
@@ -92,7 +97,7 @@ export class Stage {
     this.seen().forEach((p, index) => {
       at.set(...p).project(this.camera);
       const [x, y] = [((at.x + 1) * box.width) / 2, ((1 - at.y) * box.height) / 2];
-      const distance = Math.hypot(x - (event.clientX - box.left), y - (event.clientY - box.top));
+      const distance = this.behind(index) + Math.hypot(x - (event.clientX - box.left), y - (event.clientY - box.top));
       if (at.z < 1 && distance < (best?.distance ?? NEAR)) best = { index, x, y, distance };
     });
     return best;

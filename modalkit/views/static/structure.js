@@ -66,6 +66,10 @@ class Standing extends Stage {
     this.aimAt(this.centre, [...this.page.places, ...this.page.points.map((p) => p.place)], 0.05 * this.size);
   }
 
+  behind(index) {
+    return index < this.page.points.length + this.page.found.length ? 0 : 4;
+  }
+
   seen() {
     return this.page ? [...this.page.points.map((p) => p.place), ...this.page.found, ...this.page.places] : [];
   }

@@ -59,6 +59,8 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         pages[name] = identification_report(
             processed, processed.identify(band=test.band), Basis(NOON), title=processed.content.title
         )
+    own = open_study(folder / "glider" / "study.toml")
+    pages["standing"] = diagnosis_report(complete(diagnosis_with("beam", "none")), [own], when=NOON)
     for name, page in pages.items():
         (folder / f"{name}.html").write_text(page, encoding="utf-8")
     return {name: folder / f"{name}.html" for name in pages}
@@ -144,6 +146,22 @@ def test_a_point_of_the_shapes_says_where_it_is(browser: Any, reports: dict[str,
         if tip.is_visible():
             break
     assert re.match(r"point \d+ at [-\d.e]+, [-\d.e]+, [-\d.e]+ m: ", tip.inner_text())
+    tab.close()
+
+
+def test_a_structure_of_the_users_own_stands_in_space(browser: Any, reports: dict[str, Path]) -> None:
+    tab = Tab(browser, reports["standing"])
+    place = tab.page.locator("#place")
+    place.scroll_into_view_if_needed()
+    canvas = place.locator("canvas[data-fps], canvas")
+    canvas.wait_for(timeout=60_000)
+    tab.page.wait_for_timeout(500)
+    box, tip = canvas.bounding_box(), place.locator(".tip")
+    for x, y in [(i / 30, k / 30) for i in range(4, 27) for k in range(4, 27)]:
+        canvas.hover(position={"x": x * box["width"], "y": y * box["height"]})
+        if tip.is_visible():
+            break
+    assert re.match(r"point \d+ at ", tip.inner_text())
     tab.close()
 
 
