@@ -23,7 +23,7 @@ function disc() {
 
 /** One set of points that moves, with what joins them. */
 export class Body {
-  constructor(group, places, { lines = [], faces = [], dots = true, opacity = 0.5, size = 8 } = {}) {
+  constructor(group, places, { lines = [], faces = [], dots = true, opacity = 0.5, size = 8, through = false } = {}) {
     this.places = places;
     this.count = places.length;
     this.positions = new Float32Array(3 * this.count);
@@ -74,6 +74,7 @@ export class Body {
             vertexColors: true,
             map: disc(),
             alphaTest: 0.5,
+            depthTest: !through, // or it is seen through all that stands before it
           }),
         ),
       );

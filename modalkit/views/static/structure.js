@@ -24,7 +24,7 @@ class Standing extends Stage {
       "ink",
       4,
     );
-    this.add(group, page.found, "orange", 13);
+    this.add(group, page.found, "orange", 13, { through: true });
     for (const point of page.points.filter((p) => p.to)) group.add(this.arrow(point));
     this.scene.add(group);
     this.resize();
