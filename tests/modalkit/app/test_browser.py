@@ -274,7 +274,7 @@ def export(page: Page) -> Path:
     folder = page.served.path.parent / "study-modalkit-export"
     assert {p.name for p in folder.iterdir()} == {
         *("study.toml", "modes.json", "modes.csv", "modes.uff", "frfs.uff"),
-        *("update.json", "diagnose.json", "diagnose.html"),
+        *("update.json", "update.html", "diagnose.json", "diagnose.html"),
     }
     return folder
 
