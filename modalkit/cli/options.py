@@ -32,7 +32,6 @@ def quantity(unit: str) -> Callable[[object], object]:
 
 Files = Annotated[list[Path], typer.Argument(help="file(s) of one test: UFF, or column text with --layout")]
 Figures = Annotated[Path | None, typer.Option("--figures", help="folder for figures")]
-Report = Annotated[Path | None, typer.Option("--report", help="file for a report as HTML, figures in it")]
 Layout = Annotated[Path | None, typer.Option(help="layout of column text (docs/readers.md)")]
 Decay = Annotated[
     float,
@@ -64,6 +63,7 @@ SensorMass = Annotated[
         "--sensor-mass", help="take an accelerometer's mass out, in kg, as 25+Z=0.0086 or 25+Z=8.6g; repeat"
     ),
 ]
+Report = Annotated[Path | None, typer.Option("--report", help="file for a report as HTML, figures in it")]
 
 
 def processing(
