@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from html import escape
 from numbers import Number
 from typing import TYPE_CHECKING, Any
 
+from acquisition.errors import InputError
 from acquisition.warned import in_order
 
 if TYPE_CHECKING:
@@ -24,6 +26,8 @@ ITEMS = 4
 
 LONGEST = 400
 """Characters of the line that describes a result."""
+
+_FACE: list[str] = []  # the module that draws, none before modalkit is imported
 
 
 class Displayed:
@@ -62,6 +66,55 @@ class Displayed:
         rows = self._frame()
         table = "" if rows is None or not len(rows) else _html(rows)
         return f"<div>{line}{table}{_warnings(getattr(self, 'warnings', ()))}</div>"
+
+
+class Shown(Displayed):
+    """A result that the face draws as a page of its own, in a notebook for instance."""
+
+    def show(self, *sessions: Any) -> Any:
+        """Return its drawings with the numbers on them; a notebook shows them.
+
+        Parameters
+        ----------
+        *sessions : Session
+            The studies it rests on, where it rests on some: with them the page has structure, FRFs and shapes.
+
+        Raises
+        ------
+        InputError
+            If ``modalkit``, which draws, was not imported.
+        """
+        return _face().show(self, *sessions)
+
+
+class Animated(Displayed):
+    """Modes that the face sets in motion."""
+
+    def animate(self, session: Any = None) -> Any:
+        """Return the shapes in motion; a notebook shows them.
+
+        Parameters
+        ----------
+        session : Session, optional
+            The study, whose model is drawn beside them.
+
+        Raises
+        ------
+        InputError
+            If there are no shapes, or ``modalkit``, which draws, was not imported.
+        """
+        return _face().animate(self, session)
+
+
+def draw_by(module: str) -> None:
+    """Name the module that draws results; it is loaded once something is drawn."""
+    _FACE[:] = [module]
+
+
+def _face() -> Any:
+    if not _FACE:
+        raise InputError("results are drawn by modalkit; import modalkit first")
+    return importlib.import_module(_FACE[0])
 
 
 def described(result: Any) -> str:

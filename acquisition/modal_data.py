@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, frozen_array
-from acquisition.display import Displayed, counted
+from acquisition.display import Animated, Shown, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.geometry import Geometry
@@ -18,7 +18,7 @@ DOUBTFUL_DAMPING = 0.2
 
 
 @dataclass(frozen=True, eq=False)
-class ModalData(Displayed):
+class ModalData(Shown, Animated):
     """Frequencies, damping ratios and shapes with their standard deviations.
 
     Parameters

@@ -24,9 +24,9 @@ from acquisition.errors import ModalkitError
 from identification import identify
 from modalkit import read
 from modalkit.app.controller import Controller
+from modalkit.app.model_page import Moved
 from modalkit.app.opened import open_path
 from modalkit.app.store import Store
-from modalkit.app.views.model import Moved
 from modalkit.output.whole import plain
 
 OUTPUTS, LINES, ORDER, PICKS = 25, 1025, 100, 100

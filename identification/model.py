@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import ComplexArray, FloatArray, frozen_array
-from acquisition.display import Displayed
+from acquisition.display import Animated, Shown
 from acquisition.dof import Dof
 from acquisition.frfs.frf import FrfSet
 from acquisition.modal_data import ModalData
@@ -19,7 +19,7 @@ from identification.poles.stabilisation import StabilisationChart
 
 
 @dataclass(frozen=True, eq=False)
-class ModalModel(Displayed):
+class ModalModel(Shown, Animated):
     """Modes of a structure with their uncertainty, and the fit they come from.
 
     The receptance between two degrees of freedom is

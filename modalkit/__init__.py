@@ -28,7 +28,10 @@ def _check_rooms() -> None:
 
 _check_rooms()
 
+from acquisition.display import draw_by  # noqa: E402
 from acquisition.lazy import load_on_demand  # noqa: E402
+
+draw_by("modalkit.notebook")
 
 if TYPE_CHECKING:
     from acquisition import (

@@ -15,15 +15,15 @@ from modalkit.app.digests import digest_of
 from modalkit.app.export import Handed, export, free_folder, study_text
 from modalkit.app.history import History, State
 from modalkit.app.jobs import Jobs, report_of, result_of
+from modalkit.app.model_page import Moved, model_page, moved_page
 from modalkit.app.opened import Opened
 from modalkit.app.store import Store
-from modalkit.app.views.hits import frf_page, hits_page, record_page
-from modalkit.app.views.model import Moved, model_page, moved_page
-from modalkit.app.views.modes import fit_page, modes_page, provisional_page
-from modalkit.app.views.shapes import Beside, shapes_page
 from modalkit.app.work import KINDS
 from modalkit.app.workbench import Workbench
 from modalkit.study.read import Study
+from modalkit.views.hits import frf_page, hits_page, record_page
+from modalkit.views.modes import fit_page, modes_page, provisional_page
+from modalkit.views.shapes import Beside, shapes_page
 from modalkit.workflow.identification import Processed
 from modalkit.workflow.references import references_of
 

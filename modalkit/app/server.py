@@ -6,6 +6,7 @@ import json
 import mimetypes
 from collections.abc import Callable, Mapping
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from typing import Any
 
 from starlette.applications import Starlette
@@ -17,12 +18,17 @@ from starlette.routing import Route
 from acquisition.errors import InputError, ModalkitError
 from modalkit.app.controller import Controller
 from modalkit.app.guard import Asgi, Guard
-from modalkit.app.views.model import Moved
+from modalkit.app.model_page import Moved
 from modalkit.output.whole import plain
 from modalkit.vendor import PLOTLY, THREE, vendored
+from modalkit.views.static import shared
 
-SANDBOX = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; font-src data:; sandbox"
-"""What a report may do in the page: show itself."""
+SANDBOX = (
+    "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'; img-src data: blob:; "
+    "sandbox allow-scripts allow-downloads"
+)
+"""What a report may do: draw itself and hand over its numbers. It has no origin here, and can ask for nothing; its own
+policy lets no script run but its own."""
 
 Answer = Callable[[Controller, Mapping[str, Any]], Any]
 
@@ -87,22 +93,19 @@ async def _page(request: Request) -> Response:
 async def _static(request: Request) -> Response:
     """Serve one of the files of the page, by its exact name."""
     name = request.path_params["name"]
-    if name in (PLOTLY, *THREE):
-        content = vendored(name).read_bytes()
-    elif name in SERVED:
-        content = files("modalkit.app").joinpath("static", *name.split("/")).read_bytes()
-    else:
+    if name not in SERVED:
         return Response("not found", 404)
+    content = SERVED[name].read_bytes()
     kind = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0]
     return Response(content, media_type=kind)
 
 
-def _served() -> frozenset[str]:
-    """Return the names of the files of the page."""
-    root = files("modalkit.app").joinpath("static")
-    names = [entry.name for entry in root.iterdir() if entry.is_file()]
-    names += [f"pages/{entry.name}" for entry in root.joinpath("pages").iterdir() if entry.is_file()]
-    return frozenset(names)
+def _served() -> dict[str, Traversable]:
+    """Return the files of the page by their names: its own, those it shares with the report, and the libraries."""
+    own = files("modalkit.app").joinpath("static")
+    folders = {"": own, "pages/": own.joinpath("pages")}
+    found = {f"{at}{e.name}": e for at, folder in folders.items() for e in folder.iterdir() if e.is_file()}
+    return found | shared() | {name: vendored(name) for name in (PLOTLY, *THREE)}
 
 
 SERVED = _served()

@@ -7,6 +7,7 @@ JSON for every stage. A process can be stopped at once; what it had not finished
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from collections.abc import Callable
 from datetime import datetime
@@ -38,7 +39,8 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     session = open_study(read_study(path))
     found = diagnose_studies([session], progress=progress)
     progress("writing the report")
-    page = diagnosis_report(found, [session], when=datetime.now().astimezone())
+    repeated = shlex.join(["modalkit", "diagnose", path.name])
+    page = diagnosis_report(found, [session], when=datetime.now().astimezone(), command=repeated)
     write_text(folder / REPORT, page)
     return {
         "answer": answer(found),
@@ -66,9 +68,10 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
 
 
 def update(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
-    """Update the model of a study."""
+    """Update the model of a study and write the report."""
     from acquisition.quantities import percent
     from modalkit.output.update import to_json
+    from modalkit.report import update_report
     from modalkit.study.read import read_study
     from modalkit.workflow.case import open_study
     from modalkit.workflow.update import update_studies
@@ -77,6 +80,10 @@ def update(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     session = open_study(read_study(path), with_baseline=False)
     progress("updating")
     found = update_studies([session])
+    progress("writing the report")
+    repeated = shlex.join(["modalkit", "update", path.name])
+    page = update_report(found, [session], when=datetime.now().astimezone(), command=repeated)
+    write_text(folder / REPORT, page)
     before, after = (percent(found.rms_percent(when)) for when in ("before", "after"))
     state = "converged" if found.converged else "NOT converged"
     return {

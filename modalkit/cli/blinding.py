@@ -14,7 +14,8 @@ from acquisition.display import counted
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, DrawRanges, check_store, run_blind, score
 from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, show_figures
-from modalkit.cli.options import Figures
+from modalkit.cli.options import Figures, Report
+from modalkit.cli.reporting import report_wanted
 from modalkit.cli.scores import MARKDOWN, score_figures, show_score, write_markdown
 from modalkit.output.destinations import check_outputs, json_of, store_of
 from modalkit.output.whole import write_json
@@ -22,7 +23,7 @@ from modalkit.output.whole import write_json
 _SEED_BITS = 63
 _MOST_TRIALS = 10_000_000  # their numbers alone take 80 MB
 _USED = {
-    "STUDY": ("--trials", "--seed", "--json", "--figures"),
+    "STUDY": ("--trials", "--seed", "--json", "--figures", "--report"),
     "--real": ("--json",),
     "--check": ("--seed",),
 }
@@ -77,22 +78,26 @@ def blind(
     check: Check = None,
     json: Json = None,
     markdown: Markdown = None,
+    report: Report = None,
     figures: Figures = None,
 ) -> None:
     """Hide effects in simulated rigs, diagnose them without telling, and score the answers."""
     given = {
         "--trials": trials, "--seed": seed, "--scheduler": scheduler, "--store": store, "--resume": resume,
         "--kinds": kinds, "--effects": effects, "--leave-out": leave_out, "--json": json, "--markdown": markdown,
-        "--figures": figures,
+        "--figures": figures, "--report": report,
     }  # fmt: skip
     asked = {"STUDY": study is not None, "--real": real or data is not None, "--check": check is not None}
     job = _only_one([name for name, is_asked in asked.items() if is_asked])
+    if report is not None and job != "STUDY":
+        raise InputError("--report: is of a STUDY; name one, or use --markdown and --json")
     _check_together(job, [name for name, value in given.items() if _is_given(value)])
     _check_numbers(trials, seed, workers, least=0 if study is not None else 1)
     check_outputs(
         (json, json_of(f"modalkit.{_DOCUMENTS[job]}/1")),
         (markdown, MARKDOWN),
         (store, store_of("modalkit.blindrun/2")),
+        *report_wanted(report),
         reads=read_by([study] if study is not None else []),
     )
     check_folder(figures)
@@ -106,7 +111,15 @@ def blind(
         from modalkit.cli.planning import plan_study
 
         seed = 1 if seed is None else seed
-        plan_study(study, trials=trials or 0, seed=seed, workers=workers, json=json, figures=figures)
+        plan_study(
+            study,
+            trials=trials or 0,
+            seed=seed,
+            workers=workers,
+            json=json,
+            figures=figures,
+            report=report,
+        )
     else:
         plan = DrawRanges(
             kinds=_names(kinds) or DrawRanges().kinds, effects=_names(effects), leave_out=leave_out

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,7 +12,6 @@ from acquisition.quantities import percent
 from modalkit.cli.common import (
     check_folder,
     check_once,
-    drawing,
     out,
     read_by,
     show_figures,
@@ -21,7 +19,8 @@ from modalkit.cli.common import (
     show_warnings,
     working,
 )
-from modalkit.cli.options import Figures
+from modalkit.cli.options import Figures, Report
+from modalkit.cli.reporting import now, report_wanted, save_report, this_command
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.documents import diagnosis_document
 from modalkit.output.library import effects_document, effects_table
@@ -49,7 +48,7 @@ def diagnose(
         str, typer.Option(help="effects to leave out, as if the library did not know them, comma-separated")
     ] = "",
     json: Annotated[Path | None, typer.Option("--json", help="file for the diagnosis as JSON")] = None,
-    report: Annotated[Path | None, typer.Option(help="file for a report as HTML, figures in it")] = None,
+    report: Report = None,
     figures: Figures = None,
 ) -> None:
     """Say where the gap between test and model lies, what causes it, and how far it closes."""
@@ -73,26 +72,17 @@ def _names(listed: str) -> tuple[str, ...]:
 
 def _check_places(studies: list[Path], json: Path | None, report: Path | None, figures: Path | None) -> None:
     """See that the results have places of their own, before work begins that would be lost."""
-    wanted = [(json, json_of("modalkit.diagnosis/1"))]
-    if report is not None:
-        from modalkit.report import REPORT
-
-        wanted.append((report, REPORT))
-    check_outputs(*wanted, reads=read_by(studies))
+    check_outputs((json, json_of("modalkit.diagnosis/1")), *report_wanted(report), reads=read_by(studies))
     check_folder(figures)
 
 
 def _draw(diagnosis: Diagnosis, sessions: list[Session], report: Path | None, figures: Path | None) -> None:
-    """Write the report and the figures, drawn once."""
-    from modalkit.report import diagnosis_report, drawings, write_report
+    """Write the report and the figures."""
+    if report is not None:
+        from modalkit.report import diagnosis_report
 
-    with drawing():
-        drawn = drawings(diagnosis, sessions)
-        if report is not None:
-            page = diagnosis_report(diagnosis, sessions, when=datetime.now().astimezone(), drawn=drawn)
-            write_report(report, page)
-            out.print(f"report: {report}", markup=False)
-    show_figures(figures, lambda: {name: one.figure for name, one in drawn.items()})
+        save_report(report, lambda: diagnosis_report(diagnosis, sessions, when=now(), command=this_command()))
+    show_figures(figures, lambda: diagnosis_figures(diagnosis, *sessions))
 
 
 def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:

@@ -41,12 +41,14 @@ from modalkit.cli.options import (
     Files,
     Layout,
     Leave,
+    Report,
     SensorMass,
     Use,
     Window,
     WindowOn,
     processing,
 )
+from modalkit.cli.reporting import identified_report, named_by_hand, report_wanted, save_report
 from modalkit.cli.showing import (
     save_modes,
     show_hits,
@@ -212,11 +214,15 @@ def identify(
         Path | None, typer.Option("--output", "-o", help="file for the modes: .uff, .csv or .json")
     ] = None,
     check: Annotated[bool, typer.Option("--check", help="also show the poles of sdypy-EMA")] = False,
+    report: Report = None,
     figures: Figures = None,
 ) -> None:
     """Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already."""
     check_outputs(
-        (json, json_of("modalkit.modes/1")), (output, modes_kind(output)), reads=read_by(files, layout)
+        (json, json_of("modalkit.modes/1")),
+        (output, modes_kind(output)),
+        *report_wanted(report),
+        reads=read_by(files, layout),
     )
     check_folder(figures)
     statement = processing(
@@ -242,7 +248,8 @@ def identify(
     warnings = in_order([*(() if processed is None else processed.warnings), *model.warnings])
     show_warnings(warnings)
     save_modes(processed, model, warnings, json, output)
-    show_figures(figures, lambda: _drawn(*(() if processed is None else (processed,)), model))
+    save_report(report, lambda: identified_report(files, processed, model, (add or (), drop or ()), warnings))
+    show_figures(figures, lambda: _identified_drawn(files, processed, model, (add or (), drop or ())))
 
 
 def _identified(
@@ -270,6 +277,22 @@ def _identified(
             f"{found.source}: holds modes; --order, --add and --drop are for FRFs that are identified"
         )
     return None, found.identify(band=band)
+
+
+def _identified_drawn(
+    files: list[Path],
+    processed: Processed | None,
+    model: ModalModel | Modes,
+    named: tuple[Sequence[float], Sequence[float]],
+) -> dict[str, Any]:
+    """Draw an identification; its chart states which modes were added and dropped by hand."""
+    from modalkit.figures import stabilisation_figure
+
+    found = _drawn(*(() if processed is None else (processed,)), model)
+    if not isinstance(model, Modes):
+        add, drop = named_by_hand(files, named)
+        found["stabilisation"] = stabilisation_figure(model, add=add, drop=drop)
+    return found
 
 
 def _drawn(*results: Processed | ModalModel | Modes) -> dict[str, Any]:

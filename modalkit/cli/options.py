@@ -63,6 +63,7 @@ SensorMass = Annotated[
         "--sensor-mass", help="take an accelerometer's mass out, in kg, as 25+Z=0.0086 or 25+Z=8.6g; repeat"
     ),
 ]
+Report = Annotated[Path | None, typer.Option("--report", help="file for a report as HTML, figures in it")]
 
 
 def processing(

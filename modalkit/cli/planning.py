@@ -12,6 +12,7 @@ import pandas as pd
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from modalkit.cli.common import out, progress, show_figures, show_table, working
+from modalkit.cli.reporting import now, save_report, this_command
 from modalkit.output.whole import write_json
 from modalkit.planning import DesignForecast, Forecast, KnownTest, forecast
 from modalkit.planning.document import family_of, statement, to_json
@@ -21,7 +22,7 @@ from modalkit.planning.note import followed, note, separated, some
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check, check
 from modalkit.planning.writing import noise_for, write_case
-from modalkit.study.read import read_study
+from modalkit.study.read import Study, read_study
 
 
 def plan_study(
@@ -32,6 +33,7 @@ def plan_study(
     workers: int = 1,
     json: Path | None = None,
     figures: Path | None = None,
+    report: Path | None = None,
 ) -> None:
     """Forecast what the test of a study tells apart, and check it by blind trials on that very rig.
 
@@ -43,7 +45,7 @@ def plan_study(
         Blind trials before and as many after the first advice is followed; 0 for the forecast alone [-].
     seed, workers : int
         Of the trials [-].
-    json, figures : Path, optional
+    json, figures, report : Path, optional
         Where to write.
     """
     own = read_study(study)
@@ -53,7 +55,7 @@ def plan_study(
         found = forecast(known_test)
     show_note(own.name, found)
     show_tables(found)
-    document = to_json(found)
+    document, checked = to_json(found), None
     if trials:
         checked = _checked(found, trials, 1 if seed is None else seed, workers)
         show_check(checked)
@@ -61,7 +63,14 @@ def plan_study(
     if json is not None:
         write_json(json, document)
         out.print(f"written: {json}", markup=False)
+    save_report(report, lambda: _report(own, found, checked))
     show_figures(figures, lambda: _figures(found))
+
+
+def _report(study: Study, found: Forecast, checked: Check | None) -> str:
+    from modalkit.report import plan_report
+
+    return plan_report(study, found, when=now(), command=this_command(), checked=checked)
 
 
 def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:

@@ -18,12 +18,13 @@ from modalkit.cli.common import (
     show_warnings,
     working,
 )
-from modalkit.cli.options import Figures
+from modalkit.cli.options import Figures, Report
+from modalkit.cli.reporting import now, report_wanted, save_report, this_command
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.update import to_json
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
-from modalkit.workflow.case import open_study
+from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.update import update_studies
 from updating.frf_update import FrfUpdate
 from updating.update import Update
@@ -47,10 +48,11 @@ def update(
     ] = 0,
     seed: Annotated[int, typer.Option(min=0, help="of the draws")] = 0,
     json: Annotated[Path | None, typer.Option("--json", help="file for the result as JSON")] = None,
+    report: Report = None,
     figures: Figures = None,
 ) -> None:
     """Update the parameters named in the study's update table, by eigenvalues or by FRFs."""
-    check_outputs((json, json_of("modalkit.update/1")), reads=read_by(studies))
+    check_outputs((json, json_of("modalkit.update/1")), *report_wanted(report), reads=read_by(studies))
     check_folder(figures)
     check_once(studies)
     with working("reading and identifying"):
@@ -76,7 +78,14 @@ def update(
     if json is not None:
         write_json(json, to_json(result))
         out.print(f"written: {json}", markup=False)
+    save_report(report, lambda: _report(result, sessions))
     show_figures(figures, lambda: _figures(result))
+
+
+def _report(result: Update, sessions: list[Session]) -> str:
+    from modalkit.report import update_report
+
+    return update_report(result, sessions, when=now(), command=this_command())
 
 
 def _figures(result: Update) -> dict[str, Any]:

@@ -44,7 +44,7 @@ def parameters(row: Ranked) -> str:
 def answer(diagnosis: Diagnosis) -> str:
     """Say the answer in one sentence."""
     if diagnosis.verdict == "none":
-        return f"No gap to explain: tolerances and noise account for every difference ({p_value(diagnosis.p_value)})"
+        return f"No gap to explain: tolerances and noise make differences like these ({p_value(diagnosis.p_value)})"
     if diagnosis.verdict == "unknown" and not diagnosis.comparable:
         return (
             "Most measured modes have no partner in the model: nothing can be named by the few that have one"

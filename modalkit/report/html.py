@@ -25,10 +25,13 @@ class Column:
         Its heading.
     write : function, optional
         How a number is written; columns with it are numbers, to the right.
+    wide : bool
+        Whether it holds long texts.
     """
 
     name: str
     write: Callable[[float], str] | None = None
+    wide: bool = False
 
 
 @dataclass(frozen=True)
@@ -99,8 +102,13 @@ def definitions(items: Mapping[str, str], *, class_: str = "") -> Raw:
     return element("dl", *pairs, class_=class_)
 
 
+def folded(summary: str, inside: Raw) -> Raw:
+    """Return what is shown once it is asked for; print shows it as the reader left it."""
+    return element("details", element("summary", summary), inside)
+
+
 def _class(column: Column) -> str:
-    return "n" if column.write is not None else ""
+    return "n" if column.write is not None else "wide" if column.wide else ""
 
 
 def _cell(value: Cell | Raw, column: Column, *, first: bool) -> Raw:

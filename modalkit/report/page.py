@@ -1,103 +1,79 @@
-"""A diagnosis as one HTML page that needs no other file and no network."""
+"""A report as the text of one HTML file that needs no other file and no network."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from datetime import datetime
 from html import escape
 from importlib.resources import files
+from typing import Any
 
-from modalkit.figures.words import answer
-from modalkit.report.drawings import Drawing, drawings
+from modalkit.report.document import Document, Moving, Part, Section, Standing
 from modalkit.report.html import Raw, element, joined
 from modalkit.report.place import BEGIN
-from modalkit.report.provenance import provenance
-from modalkit.report.sections import (
-    not_examined,
-    the_causes,
-    the_gap,
-    the_next_test,
-    the_place,
-    the_shrinkage,
-    the_summary,
-    the_warnings,
-)
-from modalkit.report.svg import inline_svg
-from modalkit.workflow.case import Session
-from modalkit.workflow.diagnosis import warnings_of
-from updating import Diagnosis
+from modalkit.report.scripts import scripts
+from modalkit.views.chart import Chart
 
 
-def diagnosis_report(
-    diagnosis: Diagnosis,
-    sessions: Sequence[Session],
-    *,
-    when: datetime,
-    drawn: Mapping[str, Drawing] | None = None,
-) -> str:
-    """Return the report of a diagnosis as the text of an HTML file.
+def page(document: Document) -> str:
+    """Return a report as the text of an HTML file.
 
     Parameters
     ----------
-    diagnosis : Diagnosis
-        The answer.
-    sessions : sequence of Session
-        What was diagnosed, in the order of the diagnosis.
-    when : datetime
-        Date of the report.
-    drawn : mapping of str to Drawing, optional
-        The figures of :func:`drawings`, where they are drawn already.
+    document : Document
+        What is reported.
     """
-    shown = dict(drawings(diagnosis, sessions) if drawn is None else drawn)
-    body = joined(
-        element(
-            "header",
-            element("h1", diagnosis.title or "Diagnosis"),
-            element("p", answer(diagnosis), class_="answer"),
-            the_summary(diagnosis),
-        ),
-        _section("How large the gap is", _figures(shown, "gap"), the_gap(diagnosis)),
-        _section("Where it sits", _figures(shown, "localisation"), the_place(diagnosis)),
-        _section("What causes it", the_causes(diagnosis)),
-        _section("How far it closes", _figures(shown, "shrink"), the_shrinkage(diagnosis)),
-        _frfs(shown),
-        _section("What to measure next", the_next_test(diagnosis)),
-        _section("What was not examined", not_examined(diagnosis)),
-        _section("Warnings", the_warnings([*diagnosis.warnings, *warnings_of(sessions)])),
-        _section("What this rests on", provenance(sessions, when)),
-    )
-    return _page(diagnosis.title or "Diagnosis", body)
-
-
-def _page(title: str, body: Raw) -> str:
-    style = files("modalkit.report").joinpath("style.css").read_text(encoding="utf-8")
+    parts = list(document.parts())
+    in_space = [part for part in parts if isinstance(part, Moving | Standing)]
+    data: dict[str, Any] = {
+        "charts": [part.data() for part in parts if isinstance(part, Chart)],
+        "space": {part.name: {"kind": _kind(part), "page": part.page} for part in in_space},
+    }
+    own, policy = scripts(data, space=bool(in_space))
+    style = files("modalkit.report").joinpath("static", "style.css").read_text(encoding="utf-8")
+    body = joined(element("header", document.head), _contents(document), *map(_section, document.shown))
     return "\n".join(
         (
             BEGIN,
             '<meta charset="utf-8">',
+            f'<meta http-equiv="Content-Security-Policy" content="{escape(policy, quote=True)}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{escape(title)}: diagnosis</title>",
+            '<meta name="color-scheme" content="light dark">',
+            f"<title>{escape(f'{document.title}: {document.kind}')}</title>",
             f"<style>\n{style}</style></head>",
-            f"<body><main>\n{body.markup}\n</main></body></html>\n",
+            f"<body><main>\n{body.markup}\n</main>\n{own}</body></html>\n",
         )
     )
 
 
-def _section(title: str, *parts: Raw) -> Raw:
-    return element("section", element("h2", title), *parts)
+def _kind(part: Moving | Standing) -> str:
+    return "moving" if isinstance(part, Moving) else "standing"
 
 
-def _frfs(shown: Mapping[str, Drawing]) -> Raw:
-    found = _figures(shown, "frfs")
-    return _section("FRFs before and after", found) if found.markup else Raw("")
+def _contents(document: Document) -> Raw:
+    """Return links to the sections, and what is said where no script runs."""
+    links = [element("li", element("a", s.title, href=f"#{_anchor(s)}")) for s in document.shown]
+    quiet = element(
+        "noscript", element("p", "The figures need scripts, which are switched off here; the tables do not.")
+    )
+    return joined(element("nav", element("ul", *links), aria_label="Contents"), quiet)
 
 
-def _figures(shown: Mapping[str, Drawing], name: str) -> Raw:
-    """Return a figure, and those of its kind of further specimens."""
-    chosen = [n for n in shown if n == name or n.startswith(f"{name}_")]
-    return joined(*(_figure(n, shown[n]) for n in chosen))
+def _anchor(section: Section) -> str:
+    return "-".join("".join(c if c.isalnum() else " " for c in section.title.lower()).split())
 
 
-def _figure(name: str, drawing: Drawing) -> Raw:
-    picture = Raw(inline_svg(drawing.figure, name, drawing.caption))
-    return element("figure", picture, element("figcaption", drawing.caption))
+def _section(section: Section) -> Raw:
+    return element("section", element("h2", section.title), *map(_part, section.shown), id=_anchor(section))
+
+
+def _part(part: Part) -> Raw:
+    if isinstance(part, Raw):
+        return part
+    if isinstance(part, Chart):
+        return _figure(part.name, part.title, part.text, "plot")
+    return _figure(part.name, part.title, part.text, "space")
+
+
+def _figure(name: str, title: str, text: str, kind: str) -> Raw:
+    head = element("figcaption", element("strong", title), element("span", text), id=f"{name}-title")
+    place = element("div", class_=kind)
+    return element("figure", head, place, id=name, role="group", aria_labelledby=f"{name}-title")

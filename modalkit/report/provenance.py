@@ -4,34 +4,59 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from modalkit.report.html import Cell, Column, Raw, element, joined, table
+from modalkit.report.html import Cell, Column, Raw, definitions, element, joined, table
 from modalkit.study.read import Study
-from modalkit.workflow.case import Session
 
 PACKAGES = ("modalkit-ema", "numpy", "scipy", "sdypy-EMA", "pyuff")
-"""Packages whose versions are told."""
+"""Packages whose versions are stated."""
 
 
-def provenance(sessions: Sequence[Session], when: datetime) -> Raw:
-    """Return files, versions, date and study texts.
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """What a report rests on.
 
     Parameters
     ----------
-    sessions : sequence of Session
-        What was diagnosed.
     when : datetime
         Date of the report.
+    command : str
+        What repeats it; "" for none.
+    studies : sequence of Study
+        The studies.
+    files : sequence of Path
+        Files that no study names.
+    settings : mapping of str to str
+        What was stated beside the studies, in words.
     """
-    statement = f"Written {when.isoformat(sep=' ', timespec='seconds')} by {_versions()}."
+
+    when: datetime
+    command: str = ""
+    studies: Sequence[Study] = ()
+    files: Sequence[Path] = ()
+    settings: Mapping[str, str] = field(default_factory=dict)
+
+
+def provenance(basis: Basis) -> Raw:
+    """Return the command, settings, files with their fingerprints, versions, date and study texts."""
+    statement = f"Written {basis.when.isoformat(sep=' ', timespec='seconds')} by {_versions()}."
     parts = [element("p", statement)]
-    for session in sessions:
-        study = session.study
-        parts += [_files(study), element("h3", f"The study file {study.path.name}"), _text(study.path)]
+    if basis.command:
+        parts += [element("h3", "To repeat it"), element("pre", basis.command)]
+    if basis.settings:
+        parts.append(definitions(basis.settings, class_="settings"))
+    if basis.files:
+        files = [(path.name, path) for path in basis.files]
+        parts.append(_files("Files, as they are on the day of this report.", files))
+    for study in basis.studies:
+        names = [(_named(study, path), path) for path in dict.fromkeys(study.inputs())]
+        parts.append(_files(f"Files of {study.name}, as they are on the day of this report.", names))
+        parts += [element("h3", f"The study file {study.path.name}"), _text(study.path)]
     return joined(*parts)
 
 
@@ -45,17 +70,17 @@ def _versions() -> str:
     return ", ".join([*found, f"Python {platform.python_version()}"])
 
 
-def _files(study: Study) -> Raw:
+def _files(caption: str, files: Sequence[tuple[str, Path]]) -> Raw:
     rows: list[list[Cell | Raw]] = []
-    for path in dict.fromkeys(study.inputs()):
+    for name, path in files:
         try:
             size, digest = path.stat().st_size, fingerprint(path)
         except OSError:
-            rows.append([_named(study, path), None, "not there any more"])
+            rows.append([name, None, "not there any more"])
             continue
-        rows.append([_named(study, path), size, element("code", digest)])
+        rows.append([name, size, element("code", digest)])
     columns = [Column("file"), Column("bytes", lambda value: f"{value:.0f}"), Column("sha256")]
-    return table(f"Files of {study.name}, as they are on the day of this report.", columns, rows)
+    return table(caption, columns, rows)
 
 
 def _named(study: Study, path: Path) -> str:

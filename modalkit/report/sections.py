@@ -10,12 +10,16 @@ from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
 from modalkit.figures.words import METRICS
 from modalkit.output.summary import answers, separates
-from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
+from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
 from updating import Diagnosis, Effect
 from updating.diagnosis.answer.result import Ranked
+from updating.thresholds import REJECTED_FIT
 
 ROWS = 8
 """Most explanations in the table, beside those of the answer."""
+
+LEAST = 0.01
+"""Explanations under this probability are listed without their parameters [-]."""
 
 ALIKE = 0.01
 """Zones whose probabilities differ by less are not listed [-]."""
@@ -38,8 +42,8 @@ def the_gap(diagnosis: Diagnosis) -> Raw:
     """Return the table of the modes, one for each study."""
     gap = diagnosis.gap
     words = (
-        f"{percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}; chance alone, with the tolerances "
-        f"stated, makes a gap like this with {p_value(diagnosis.p_value)}."
+        f"Frequencies differ by {percent(gap.rms_percent)} r.m.s. over {counted(len(gap.modes), 'mode')}. Chance "
+        f"alone, with the tolerances stated, makes a gap like this in all data with {p_value(diagnosis.p_value)}."
     )
     studies = list(dict.fromkeys(gap.modes["study"]))
     tables = [_mode_table(gap.modes[gap.modes["study"] == name], name, len(studies) > 1) for name in studies]
@@ -141,9 +145,10 @@ def _zones(diagnosis: Diagnosis) -> Raw:
     columns = [Column("zone"), Column("centre [m]"), Column("probability", probability)]
     used = [k for k in range(3) if any(zone.center[k] for zone in where.zones)]
     centre = [", ".join(f"{'xyz'[k]} = {_signed(z.center[k], 3)}" for k in used) for z in where.zones]
-    return table(
-        statement, columns, [[z.name, c, z.probability] for z, c in zip(where.zones, centre, strict=True)]
-    )
+    rows: list[list[Cell | Raw]] = [
+        [z.name, c, z.probability] for z, c in zip(where.zones, centre, strict=True)
+    ]
+    return folded(f"All {len(rows)} zones", table(statement, columns, rows))
 
 
 def _modes(diagnosis: Diagnosis) -> Raw:
@@ -173,11 +178,19 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         Column("effects"),
         Column("probability", probability),
         Column("fits with p", bare_p),
-        Column("parameters, with 95 % intervals"),
+        Column("verdict"),
+        Column("parameters, with 95 % intervals", wide=True),
         Column("not told apart from"),
     ]
-    cells: list[list[Cell | Raw]] = [_explanation(row) for row in shown]
-    cells.append(["(tolerances and noise alone)", alone, diagnosis.p_value, "", ""])
+    cells: list[list[Cell | Raw]] = [
+        _explanation(
+            row, _why(row, diagnosis), shown=row.probability >= LEAST or row.effects in diagnosis.sets
+        )
+        for row in shown
+    ]
+    cells.append(
+        ["(tolerances and noise alone)", alone, diagnosis.p_value, _why_not_alone(diagnosis), "", ""]
+    )
     marked = [r.effects in diagnosis.sets for r in shown]
     statement = {
         "named": "The shaded row is the answer.",
@@ -185,7 +198,11 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
         "unknown": "None of them explains the gap.",
         "none": "There is no gap that would need one of them.",
     }[diagnosis.verdict]
-    parts = [table(f"Explanations, most probable first. {statement}", columns, cells, marked=marked)]
+    if not any(row[-1] for row in cells):
+        columns, cells = columns[:-1], [row[:-1] for row in cells]
+    left_out = f"Parameters of those under {probability(LEAST)} are left out."
+    words = f"Explanations, most probable first. {statement} {left_out}"
+    parts = [table(words, columns, cells, marked=marked)]
     if len(rows) > len(shown):
         left = sum(r.probability for r in rows if r not in shown)
         parts.append(
@@ -196,7 +213,31 @@ def the_causes(diagnosis: Diagnosis) -> Raw:
     return joined(*parts)
 
 
-def _explanation(row: Ranked) -> list[Cell | Raw]:
+def _why(row: Ranked, diagnosis: Diagnosis) -> str:
+    """Say whether a row is the answer, and if not, why."""
+    if row.effects in diagnosis.sets:
+        return "the answer" if len(diagnosis.sets) == 1 else "one of the answer"
+    if row.p_value < REJECTED_FIT:
+        return f"rejected: does not fit (p = {bare_p(row.p_value)})".replace("p = <", "p <")
+    best = max((r.probability for r in diagnosis.ranking), default=row.probability)
+    if diagnosis.verdict == "none":
+        return "not needed: there is no gap"
+    if diagnosis.verdict == "unknown":
+        return "fits, but hardly better than a discrepancy without any effect"
+    if not row.plausible:
+        return "rejected: fits at a size that is hardly believable"
+    times = best / max(row.probability, 1e-300)
+    much = f"{times:.{0 if times >= 10 else 1}f} times" if times < 1000 else "more than 1000 times"
+    return f"fits, but is {much} less probable"
+
+
+def _why_not_alone(diagnosis: Diagnosis) -> str:
+    if diagnosis.verdict == "none":
+        return "the answer"
+    return "rejected: they would not make such a gap"
+
+
+def _explanation(row: Ranked, why: str, *, shown: bool) -> list[Cell | Raw]:
     stated = []
     for name, estimate in row.parameters.items():
         if estimate.low95 is None and isinstance(estimate.value, int | float) and ".point" not in name:
@@ -209,7 +250,14 @@ def _explanation(row: Ranked) -> list[Cell | Raw]:
     near = [" + ".join(names) for names in row.equivalents[:3]]
     if len(row.equivalents) > len(near):
         near.append(f"{len(row.equivalents) - len(near)} more")
-    return [" + ".join(row.effects), row.probability, row.p_value, "\n".join(stated), "\n".join(near)]
+    return [
+        " + ".join(row.effects),
+        row.probability,
+        row.p_value,
+        why,
+        "\n".join(stated) if shown else "",
+        "\n".join(near),
+    ]
 
 
 def _known(effect: Effect) -> Raw:
@@ -248,6 +296,26 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
     if shrink.closed is not None and diagnosis.verdict in {"named", "class"}:
         parts.append(element("p", f"Of what can be closed, {shrink.closed} closes, with 95 % in brackets."))
     return joined(*parts)
+
+
+def the_remainder(diagnosis: Diagnosis) -> Raw:
+    """Return what the best explanation leaves beyond noise, and which data carry it."""
+    left = diagnosis.remainder
+    if left is None:
+        return element("p", "There is no gap, so nothing is left of one.")
+    whose = " + ".join(diagnosis.ranking[0].effects) if diagnosis.ranking else "the tolerances"
+    if not left.significant:
+        worst = (
+            f" The largest residual is {left.sigma:.1f} standard deviations."
+            if math.isfinite(left.sigma)
+            else ""
+        )
+        return element("p", f"Nothing beyond noise, once {whose} is in the model.{worst}")
+    statement = (
+        f"{whose} leaves {percent(left.percent)} beyond noise, {left.sigma:.0f} standard deviations where it is "
+        "largest. Something else is there, or something was measured worse than stated. It is carried by:"
+    )
+    return joined(element("p", statement), bullets(list(left.carried_by) or ["all data together"]))
 
 
 def the_next_test(diagnosis: Diagnosis) -> Raw:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from acquisition import ModalData, StudyError, Windows, read_mat, read_modes
-from acquisition.display import Displayed
+from acquisition.display import Animated
 from acquisition.warned import prefixed
 from identification import ModalModel, frf_health, level_dependence
 from modalkit.study.read import MeasurementTable, Study, read_study
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Session(Displayed):
+class Session(Animated):
     """A study with everything that was worked out on the way to a case.
 
     Parameters

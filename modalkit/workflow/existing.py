@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from acquisition import InputError, ModalData
-from acquisition.display import Displayed, named_files
+from acquisition.display import Animated, Shown, named_files
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
-class Modes(Displayed):
+class Modes(Shown, Animated):
     """Modes of a test as a file holds them: data sets 55 and 2414, a table, our own JSON, a .mat with a layout.
 
     Parameters

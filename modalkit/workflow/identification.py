@@ -25,7 +25,7 @@ from acquisition import (
     split_hits,
     state_window,
 )
-from acquisition.display import Displayed, named_files
+from acquisition.display import Displayed, Shown, named_files
 from acquisition.quantities import hertz
 from acquisition.warned import Consequential, in_order
 from modalkit.workflow.existing import Modes, existing
@@ -75,7 +75,7 @@ class Judged(Displayed):
 
 
 @dataclass(frozen=True, eq=False)
-class Processed(Displayed):
+class Processed(Shown):
     """A test, turned into FRFs.
 
     Parameters

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.arrays import FloatArray
-from acquisition.display import Displayed, counted
+from acquisition.display import Shown, counted
 from acquisition.quantities import percent
 from updating.update.estimate import Estimate
 from updating.update.statistics.identifiability import Determinability
@@ -16,7 +16,7 @@ from updating.update.text import report_text
 
 
 @dataclass(frozen=True, eq=False)
-class Update(Displayed):
+class Update(Shown):
     """An updated model.
 
     Parameters

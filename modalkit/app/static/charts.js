@@ -1,5 +1,9 @@
 // Charts in the colours of the page; plotly is loaded when the first is drawn.
 
+import { colour } from "./dom.js";
+
+export { colour };
+
 let loading = null;
 
 function plotly() {
@@ -11,11 +15,6 @@ function plotly() {
     document.head.append(script);
   });
   return loading;
-}
-
-/** Return a colour of the page by its name in style.css. */
-export function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
 export function axis(title, more = {}) {

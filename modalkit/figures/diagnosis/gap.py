@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from acquisition.display import counted
@@ -55,7 +56,7 @@ def _title(diagnosis: Diagnosis, errors: ModeErrors, *, of_several: bool) -> str
     name = "all data" if errors.channel == "combined" else METRICS[errors.channel]
     modes = counted(len(errors.frequency), "mode")
     if diagnosis.verdict == "none":
-        return f"{_capital(name)}, {modes}: what is off stays within tolerances and noise"
+        return f"{_capital(name)}, {modes}: {_outside(errors)}"
     if errors.after is None:
         return f"{_capital(name)} is what gives the gap away ({modes})"
     shrink = diagnosis.shrink
@@ -64,6 +65,16 @@ def _title(diagnosis: Diagnosis, errors: ModeErrors, *, of_several: bool) -> str
     left = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
     before, after = shrink.size(shrink.before), shrink.size(shrink.after)
     return f"{_capital(name)} of {modes}: {before} r.m.s. before, {after} {left}"
+
+
+def _outside(errors: ModeErrors) -> str:
+    """Say how many modes lie outside the band of noise and tolerances that is drawn."""
+    band = errors.doubt if errors.doubt is not None else errors.floor
+    if band is None:
+        return "no more off than tolerances and noise make"
+    what = "noise and tolerances" if errors.doubt is not None else "noise"
+    count = int(np.sum(np.abs(errors.before) > band))
+    return f"{count or 'none'} outside what {what} make (2σ)"
 
 
 def _capital(text: str) -> str:

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
+from acquisition.display import counted
 from acquisition.quantities import hertz, probability
 from modalkit.figures.diagnosis.where import Frame, draw_where, outline, spans
 from modalkit.figures.style import (
@@ -37,8 +38,8 @@ from updating.diagnosis.answer.contributions import columns_of
 LEFT, RIGHT = 7.1, 3.6
 """Widths of the structure and of the list of zones [in]."""
 
-TALL, FLAT = 2.7, 2.0
-"""Height of both for a plate, and for a beam [in]."""
+TALL, FLAT, DEEP = 2.7, 2.0, 4.4
+"""Height of both for a plate, for a beam, and in space [in]."""
 
 ALIKE = 0.01
 """Zones whose probabilities differ by less are in no order [-]."""
@@ -51,6 +52,9 @@ ROW = 0.34
 
 FAR = 10.0
 """Standard deviations at which the colour of a cell is full."""
+
+NAMED = 4
+"""Most sets of effects that a title names; of more, it says how many [-]."""
 
 MOST = 20
 """Most modes in the table: those that add the most."""
@@ -71,11 +75,11 @@ def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figur
     Figure
     """
     where = diagnosis.where
-    title, note = _title(diagnosis), _note(diagnosis)
+    title, note = localisation_title(diagnosis), _note(diagnosis)
     columns = _columns(diagnosis)
     above, low = caption_height(title, note), ROW * (len(columns) + 1)
     top = above + 0.75
-    tall = TALL if outline(diagnosis, case).width else FLAT
+    tall = _tall(diagnosis, case)
     figure = new_figure(top + tall + (0.8 + low + 0.35 if columns else 0.3))
     caption(figure, title, note)
     structure = place(figure, MARGIN, top, LEFT, tall, name="where")
@@ -97,13 +101,23 @@ def localisation_figure(diagnosis: Diagnosis, case: Case | None = None) -> Figur
     return figure
 
 
-def _title(diagnosis: Diagnosis) -> str:
+def _tall(diagnosis: Diagnosis, case: Case | None) -> float:
+    """Return the height of the structure [in]."""
+    if case is not None and case.spec.imported is not None:
+        return DEEP
+    return TALL if outline(diagnosis, case).width else FLAT
+
+
+def localisation_title(diagnosis: Diagnosis) -> str:
+    """Say where the gap sits, as far as the answer's own sets of effects tell."""
     where = diagnosis.where
     if where.channel == "none":
         return "There is no gap beyond tolerances and noise"
     top = max(where.zones, key=lambda z: z.probability, default=None)
     if diagnosis.verdict == "unknown" and top is not None:
         return f"Nothing explains the gap; a change of {top.name} alone would come nearest"
+    if _in_doubt(diagnosis):
+        return "Whether the gap sits in the measurement or in the structure, these data cannot tell"
     if spans(diagnosis):
         points = f" of point{'s' * (len(where.points) > 1)} {', '.join(map(str, where.points))}"
         inside = (
@@ -119,8 +133,22 @@ def _title(diagnosis: Diagnosis) -> str:
         leader = diagnosis.ranking[0].effects if diagnosis.ranking else ()
         if diagnosis.verdict == "class" and leader:
             return f"If it is {phrase(leader)}: {located(diagnosis)}{more}"
-        return f"The gap sits {located(diagnosis)}{more}"
-    return f"The gap has no single place: it is one of {where.channel} all over the structure"
+        whole = "Part of the gap" if diagnosis.sets and len(diagnosis.sets[0]) > 1 else "The gap"
+        return f"{whole} sits {located(diagnosis)}{more}"
+    if diagnosis.verdict not in ("named", "class"):
+        return "Nothing explains the gap, and it has no single place"
+    listed = [phrase(names) for names in diagnosis.sets[:NAMED]]
+    if len(diagnosis.sets) > NAMED:
+        listed.append(counted(len(diagnosis.sets) - NAMED, "other"))
+    whole = listed[0] if len(listed) == 1 else f"{', '.join(listed[:-1])} or {listed[-1]}"
+    return f"The gap has no single place: {whole} acts all over the structure"
+
+
+def _in_doubt(diagnosis: Diagnosis) -> bool:
+    """Tell whether some sets of the answer lie in the measurement alone and others do not."""
+    acting = [{diagnosis.known[n].channel for n in names if n in diagnosis.known} for names in diagnosis.sets]
+    alone = [channels == {"measurement"} for channels in acting]
+    return diagnosis.verdict == "class" and any(alone) and not all(alone)
 
 
 def _note(diagnosis: Diagnosis) -> str:
@@ -139,6 +167,8 @@ def _concerned(axes: Axes, diagnosis: Diagnosis, case: Case | None, tall: float)
     """Fill the test points concerned and write their nodes."""
     if case is None or not diagnosis.where.points or diagnosis.verdict == "unknown":
         return
+    if case.spec.imported is not None:
+        return  # drawn in space, where a name would stand over others
     body = outline(diagnosis, case)
     frame = Frame.fit(body, LEFT, tall)
     for node in diagnosis.where.points:
@@ -170,7 +200,8 @@ def _list(axes: Axes, diagnosis: Diagnosis, tall: float) -> None:
         return
     alike = np.ptp([z.probability for z in diagnosis.where.zones] or [0.0]) < ALIKE
     zones = sorted(diagnosis.where.zones, key=lambda z: 0.0 if alike else -z.probability)
-    left, right = 1.1, 0.75
+    longest = max((text_width(zone.name, SMALL) for zone in zones[:LISTED]), default=0.0) / 72
+    left, right = min(max(1.1, longest + 0.2), 1.9), 0.75
     full = RIGHT - left - right
     for i, zone in enumerate(zones[:LISTED]):
         y = -(i + 0.5) * height / (LISTED + 1)
@@ -232,4 +263,4 @@ def _cells(axes: Axes, values: FloatArray, left: float, y: float, cell: float) -
         )
 
 
-__all__ = ["localisation_figure"]
+__all__ = ["localisation_figure", "localisation_title"]

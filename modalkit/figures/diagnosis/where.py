@@ -11,6 +11,7 @@ from matplotlib.patches import Rectangle
 
 from acquisition.arrays import FloatArray
 from acquisition.quantities import probability
+from modalkit.figures.diagnosis.structure import draw_structure
 from modalkit.figures.style import (
     BLUE,
     FAINT,
@@ -150,6 +151,9 @@ def draw_where(axes: Axes, diagnosis: Diagnosis, case: Case | None, *, width: fl
     bare(axes)
     axes.set_xlim(0, width)
     axes.set_ylim(0, height)
+    if case is not None and case.spec.imported is not None:
+        draw_structure(axes, diagnosis, case, width=width, height=height)
+        return
     body = outline(diagnosis, case)
     frame = Frame.fit(body, width, height)
     coloured = not body.even and diagnosis.where.channel != "none"

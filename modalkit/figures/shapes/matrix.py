@@ -136,11 +136,11 @@ def auto_mac_figure(modal: ModalData) -> Figure:
     count = len(modal.dofs)
     note = f"auto-MAC, shapes at {count} degree{'s' if count != 1 else ''} of freedom"
     return mac_figure(
-        matrix, names, names, title=_alike(matrix), note=note, row_name="mode", column_name="mode"
+        matrix, names, names, title=alike(matrix), note=note, row_name="mode", column_name="mode"
     )
 
 
-def _alike(matrix: FloatArray) -> str:
+def alike(matrix: FloatArray) -> str:
     """Say which modes look most alike."""
     if len(matrix) < 2:
         return "One mode"

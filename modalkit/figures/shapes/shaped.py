@@ -40,6 +40,8 @@ class Shapes:
         Pairs of points that the test's geometry joins.
     names : tuple of str
         Names of the points, where they are not placed.
+    left_out : tuple of str
+        Degrees of freedom that are not drawn.
     """
 
     frequency: FloatArray
@@ -52,6 +54,7 @@ class Shapes:
     placed: bool = True
     lines: IntArray | None = None
     names: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
 
 
 def from_modal(modal: ModalData) -> Shapes:
@@ -77,7 +80,10 @@ def from_modal(modal: ModalData) -> Shapes:
     lines = _lines(modal.geometry, nodes) if placed else None
     names = () if placed else tuple(str(modal.dofs[i]) for i in rows)
     scaled = values / size, sigma / np.abs(size)
-    return Shapes(modal.frequency, points, *scaled, placed=placed, lines=lines, names=names)
+    left_out = tuple(str(dof) for i, dof in enumerate(modal.dofs) if i not in set(rows.tolist()))
+    return Shapes(
+        modal.frequency, points, *scaled, placed=placed, lines=lines, names=names, left_out=left_out
+    )
 
 
 def _lines(geometry: Geometry, nodes: list[int]) -> IntArray | None:
@@ -113,7 +119,7 @@ def from_measured(measured: Measured, predictor: Predictor | None) -> Shapes:
         if predictor.spec.imported is None:
             fine, shape = _evaluate(predictor, prediction.vectors)
         frequency = prediction.frequency
-    rows, place_of = _rows(measured)
+    rows, place_of = common_rows(measured)
     values, sigma = measured.constants[rows], np.abs(measured.constants_sigma[rows])
     size = _sizes(values)
     values, sigma, points = values / size, sigma / np.abs(size), measured.points[place_of]
@@ -123,35 +129,11 @@ def from_measured(measured: Measured, predictor: Predictor | None) -> Shapes:
         level = np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300)
         w, shape = w * level, None if shape is None else shape * level
     if points.shape[1] > 2:
-        return _in_space(measured, place_of, values, sigma, w, frequency)
+        return Shapes(measured.frequency, principal(points), values, sigma, None, None, frequency)
     return Shapes(measured.frequency, points, values, sigma, fine, shape, frequency)
 
 
-def _in_space(
-    measured: Measured,
-    place_of: IntArray,
-    values: FloatArray,
-    sigma: FloatArray,
-    model: FloatArray | None,
-    frequency: FloatArray | None,
-) -> Shapes:
-    """Draw points of imported matrices on their plane; point by point if they lie or move in several directions."""
-    points = measured.points[place_of]
-    along = np.zeros((1, 3)) if measured.directions is None else measured.directions[place_of]
-    strength = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    if np.ptp(along, axis=0).max() < 0.1 and (len(strength) < 3 or strength[2] < 1e-3 * strength[0]):
-        return Shapes(measured.frequency, principal(points), values, sigma, None, None, frequency)
-    names = tuple(
-        f"{measured.nodes[i]}{'XYZ'[int(np.abs(d).argmax())]}" for i, d in zip(place_of, along, strict=True)
-    )
-    number = np.arange(1.0, len(points) + 1)
-    return Shapes(
-        measured.frequency, number[:, None], values, sigma, None if model is None else (number,), model, frequency,
-        placed=False, names=names,
-    )  # fmt: skip
-
-
-def _rows(measured: Measured) -> tuple[IntArray, IntArray]:
+def common_rows(measured: Measured) -> tuple[IntArray, IntArray]:
     """Return the FRFs that share the point with the most of them, and the other point of each."""
     if np.all(measured.hit < 0):
         return np.arange(len(measured.seen)), measured.seen

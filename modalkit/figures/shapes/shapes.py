@@ -14,6 +14,7 @@ from acquisition import ModalData
 from acquisition.display import counted
 from acquisition.quantities import hertz
 from modalkit.figures.shapes.shaped import Shapes, from_measured, from_modal
+from modalkit.figures.shapes.space import in_space, spatial_figure, spatial_measured, spatial_modes
 from modalkit.figures.shapes.surfaces import grid_values, spans
 from modalkit.figures.style import (
     BLUE,
@@ -36,7 +37,7 @@ from updating import Measured, Predictor
 
 
 def shapes_figure(source: ModalData | Measured, predictor: Predictor | None = None) -> Figure:
-    """Draw the mode shapes at the test points: curves along a beam, maps over a plate.
+    """Draw the mode shapes at the test points: curves along a beam, maps over a plate, all else in space.
 
     Parameters
     ----------
@@ -54,6 +55,10 @@ def shapes_figure(source: ModalData | Measured, predictor: Predictor | None = No
     InputError
         If there are no shapes.
     """
+    if isinstance(source, ModalData) and source.shapes is not None and in_space(source):
+        return spatial_figure(spatial_modes(source))
+    if isinstance(source, Measured) and (found := spatial_measured(source, predictor)) is not None:
+        return spatial_figure(found)
     shapes = from_modal(source) if isinstance(source, ModalData) else from_measured(source, predictor)
     return _draw(shapes) if len(shapes.points) > 1 else _nothing(shapes)
 
@@ -80,6 +85,8 @@ def _draw(shapes: Shapes) -> Figure:
             if flat
             else "; the curve is the model's, scaled to fit"
         )
+    if shapes.left_out:
+        note += f"; not drawn, as they move along other axes and have no coordinates: {', '.join(shapes.left_out)}"
     top = caption_height(title, note) + 0.25
     gap, left = (0.25, MARGIN) if flat else (0.35, MARGIN + 0.65)
     width = min((WIDTH - left - MARGIN - gap * (columns - 1)) / columns, 5.0)

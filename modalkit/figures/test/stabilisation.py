@@ -1,6 +1,8 @@
-"""The stabilisation chart over the summed FRFs."""
+"""The stabilisation chart over the summed FRFs: what became of every pole, and where every mode comes from."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,16 +10,20 @@ from matplotlib.figure import Figure
 
 from acquisition.arrays import BoolArray
 from acquisition.display import counted
-from acquisition.quantities import bare_hertz
-from identification import ModalModel, StabilisationChart
+from acquisition.quantities import bare_hertz, hertz
+from identification import ModalModel, pole_origins
+from identification.pole_reasons import Origins
 from modalkit.figures.style import (
     BLUE,
     FAINT,
     GREEN,
+    INK,
     MARGIN,
     MUTED,
+    ORANGE,
     SMALL,
     WIDTH,
+    broken,
     caption,
     caption_height,
     new_figure,
@@ -27,48 +33,126 @@ from modalkit.figures.style import (
 from modalkit.figures.test.modes import mark_modes
 
 LISTED = 24
-"""Frequencies of so many modes are listed; of more, the first and the last."""
+"""Frequencies of so many modes are listed; of more, the first and the last [-]."""
 
-NEAR = 0.01
-"""Poles of two orders within this relative distance are taken for stable in frequency."""
+KINDS = {
+    "new": ("new at its order", "x", 14, FAINT),
+    "short": ("chain too short", "o", 9, FAINT),
+    "outside": ("outside the band", "^", 14, MUTED),
+    "pruned": ("struck off by the fit", "s", 13, ORANGE),
+    "background": ("not told by the data", "D", 13, ORANGE),
+    "dropped": ("dropped by hand", "P", 20, INK),
+    "mode": ("a mode", "o", 11, BLUE),
+}
+"""What became of a pole: in words, and how it is drawn."""
+
+ORIGINS = {
+    "chain": ("mode from the chart", "v", BLUE),
+    "refinement": ("mode added by the refinement", "D", ORANGE),
+    "named": ("mode picked by hand", "s", GREEN),
+}
+"""Where a mode comes from, in the row above the orders."""
+
+LINE = 0.19
+"""Height of a line under the chart [in]."""
 
 
-def stabilisation_figure(model: ModalModel) -> Figure:
-    """Draw every pole of every order over the summed magnitude of the FRFs, and the modes selected.
+def stabilisation_figure(
+    model: ModalModel, *, add: Sequence[float] = (), drop: Sequence[float] = ()
+) -> Figure:
+    """Draw every pole of every order over the summed magnitude, with the reason of every column that is no mode.
 
     Parameters
     ----------
     model : ModalModel
         The identification.
+    add, drop : sequence of float
+        The frequencies that were added and dropped by hand [Hz].
 
     Returns
     -------
     Figure
     """
-    title = f"{counted(len(model), 'mode')} selected from {counted(len(model.chart.poles), 'pole')}"
-    listed = [bare_hertz(f) for f in model.modal.frequency]
-    few = len(listed) <= LISTED
-    note = f"{', '.join(listed)} Hz" if few else f"{listed[0]} to {listed[-1]} Hz"
-    top = caption_height(title, note) + 0.55
-    figure = new_figure(top + 4.9)
+    origins = pole_origins(model, add=add, drop=drop)
+    title, note = poles_title(origins, int(_shown(model).sum())), _note(model)
+    columns = rejected_columns(model, origins)
+    lines = [line for i, column in enumerate(columns) for line in _reason(i, column)]
+    top = caption_height(title, note) + 0.85
+    figure = new_figure(top + 4.9 + LINE * len(lines) + 0.15 * bool(lines))
     caption(figure, title, note)
     width = WIDTH - 2 * MARGIN - 1.45
     box = (MARGIN + 0.7, top, width, 4.2)
     behind = place(figure, *box, name="sum")
     front = place(figure, *box, name="chart")
     _sum(behind, model)
-    _poles(front, model)
+    _poles(front, model, origins)
     low, high = _limits(model)
     for axes in (behind, front):
         axes.set_xlim(low, high)
+    _modes(front, model, origins)
     mark_modes(front, model.modal.frequency, width=width)
+    _letters(front, model, columns)
+    tall = figure.get_size_inches()[1]
+    for k, line in enumerate(lines):
+        figure.text(
+            MARGIN / WIDTH, 1 - (top + 4.9 + LINE * k) / tall, line, fontsize=SMALL, color=MUTED, va="top"
+        )
     return figure
+
+
+def poles_title(origins: Origins, shown: int) -> str:
+    """Say how many modes there are and where they come from, and how many stable columns are none."""
+    stable = sum(origin == "chain" for origin in origins.modes)
+    parts = [f"{counted(len(origins.modes), 'mode')}: {stable} of {counted(shown, 'pole')}"]
+    for origin, meaning in (("refinement", "added by the refinement"), ("named", "picked by hand")):
+        if count := sum(o == origin for o in origins.modes):
+            parts.append(f"{count} {meaning}")
+    if len(parts) == 1:
+        parts = [f"{counted(stable, 'mode')} of {counted(shown, 'pole')}"]
+    left = sum(reason.kind in ("pruned", "background", "dropped") for reason in origins.reasons)
+    if left:
+        parts.append(f"{counted(left, 'stable column')} not taken")
+    return "; ".join(parts)
+
+
+def rejected_columns(model: ModalModel, origins: Origins) -> list[tuple[float, str]]:
+    """Return frequency [Hz] and reason of every stable column in the band that is no mode, rising."""
+    low, high = model.band
+    found = []
+    for chain, reason in enumerate(origins.reasons):
+        if reason.kind in ("pruned", "background", "dropped"):
+            middle = float(np.median(model.chart.frequency[origins.chain == chain]))
+            if low <= middle <= high:
+                found.append((middle, reason.text))
+    return sorted(found)
+
+
+def _reason(i: int, column: tuple[float, str]) -> list[str]:
+    text = f"{_letter(i)}   {hertz(column[0])}: {column[1]}"
+    return broken(text, 72 * (WIDTH - 2 * MARGIN), SMALL)
+
+
+def _letter(i: int) -> str:
+    """Return a, b, ... z, aa, ab, ..."""
+    return (_letter(i // 26 - 1) if i >= 26 else "") + chr(ord("a") + i % 26)
+
+
+def _note(model: ModalModel) -> str:
+    listed = [bare_hertz(f) for f in model.modal.frequency]
+    few = len(listed) <= LISTED
+    return f"{', '.join(listed)} Hz" if few else f"{listed[0]} to {listed[-1]} Hz"
 
 
 def _limits(model: ModalModel) -> tuple[float, float]:
     low, high = model.band
     edge = 0.01 * (high - low)
     return low - edge, high + edge
+
+
+def _shown(model: ModalModel) -> BoolArray:
+    """Tell which poles are drawn: those in the band."""
+    low, high = model.band
+    return np.asarray((model.chart.frequency >= low) & (model.chart.frequency <= high))
 
 
 def _sum(axes: Axes, model: ModalModel) -> None:
@@ -86,46 +170,58 @@ def _sum(axes: Axes, model: ModalModel) -> None:
         axes.spines[side].set_visible(False)
 
 
-def _near_one_before(chart: StabilisationChart) -> BoolArray:
-    """Tell which poles have one of the order below close in frequency, whatever its damping."""
-    near = np.zeros(len(chart.poles), dtype=bool)
-    for level in range(1, len(chart.orders)):
-        here, before = chart.level == level, chart.frequency[chart.level == level - 1]
-        if before.size:
-            distance = np.abs(chart.frequency[here][:, None] / before[None, :] - 1.0)
-            near[here] = distance.min(axis=1) < NEAR
-    return near
-
-
-def _poles(axes: Axes, model: ModalModel) -> None:
+def _poles(axes: Axes, model: ModalModel, origins: Origins) -> None:
+    """Draw the poles of the band by what became of them."""
     chart = model.chart
     tidy(axes, x="frequency [Hz]", y="model order", grid="y")
     axes.patch.set_alpha(0.0)
-    order, stable = chart.orders[chart.level], chart.stable
-    near = _near_one_before(chart)
-    inside = (chart.frequency >= model.band[0]) & (chart.frequency <= model.band[1])
-    for keep, marker, size, colour, name in (
-        (inside & ~stable & ~near, "x", 16, FAINT, "new"),
-        (inside & ~stable & near, "+", 26, GREEN, f"within {100 * NEAR:g} % of one before"),
-        (inside & stable, "o", 13, BLUE, "stable in frequency, damping and participation"),
-    ):
-        axes.scatter(
-            chart.frequency[keep],
-            order[keep],
-            marker=marker,
-            s=size,
-            color=colour,
-            linewidth=0.8,
-            label=name,
-            zorder=2.5,
-        )
+    order = chart.orders[chart.level]
+    kind = np.array([origins.reasons[r].kind for r in origins.chain], dtype=object)
+    for which, (name, marker, size, colour) in KINDS.items():
+        keep = _shown(model) & (kind == which)
+        if keep.any():
+            axes.scatter(
+                chart.frequency[keep],
+                order[keep],
+                marker=marker,
+                s=size,
+                color=colour,
+                linewidth=0.8,
+                label=name,
+                zorder=2.5,
+            )
+
+
+def _modes(axes: Axes, model: ModalModel, origins: Origins) -> None:
+    """Mark every mode above the orders, by where it comes from, and put the key over the chart."""
+    top = 1.05 * float(model.chart.orders.max())
+    for which, (name, marker, colour) in ORIGINS.items():
+        rows = [r for r, origin in enumerate(origins.modes) if origin == which]
+        if rows:
+            at = model.modal.frequency[rows]
+            axes.plot(at, np.full(len(rows), top), marker, color=colour, markersize=6, label=name, zorder=3)
+    axes.set_ylim(0, 1.09 * float(model.chart.orders.max()))
     axes.legend(
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.065),
-        ncols=3,
+        loc="lower left",
+        bbox_to_anchor=(-0.01, 1.065),
+        ncols=5,
         frameon=False,
         fontsize=SMALL,
         handletextpad=0.2,
+        columnspacing=1.2,
         borderpad=0.0,
         borderaxespad=0.0,
     )
+
+
+def _letters(axes: Axes, model: ModalModel, columns: Sequence[tuple[float, str]]) -> None:
+    """Write a letter at the foot of each column that is no mode; those that stand close go one above the other."""
+    low, high = _limits(model)
+    last, level = -np.inf, 0
+    step = 0.055 * float(model.chart.orders.max())
+    for i, (frequency, _) in enumerate(columns):
+        level = level + 1 if frequency - last < 0.012 * (high - low) else 0
+        last = frequency
+        axes.text(
+            frequency, step * (0.35 + level), _letter(i), fontsize=SMALL, color=ORANGE, ha="center", zorder=4
+        )

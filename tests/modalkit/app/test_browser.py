@@ -264,7 +264,7 @@ def report_opens(page: Page, answer: str) -> None:
     report = opened.value
     report.wait_for_load_state()
     assert answer in report.locator("header").inner_text()
-    assert report.locator("figure svg").count() >= 3
+    report.locator("figure svg.drawn").nth(3).wait_for(state="attached")
     report.close()
 
 
@@ -274,7 +274,7 @@ def export(page: Page) -> Path:
     folder = page.served.path.parent / "study-modalkit-export"
     assert {p.name for p in folder.iterdir()} == {
         *("study.toml", "modes.json", "modes.csv", "modes.uff", "frfs.uff"),
-        *("update.json", "diagnose.json", "diagnose.html"),
+        *("update.json", "update.html", "diagnose.json", "diagnose.html"),
     }
     return folder
 

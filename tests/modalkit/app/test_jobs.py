@@ -62,11 +62,13 @@ def test_the_result_is_what_the_command_line_writes(beam):
     controller.start("update")
     found = ended(controller, "update")
     assert found["job"]["state"] == "done"
-    assert [stage["name"] for stage in found["job"]["stages"]] == ["reading and identifying", "updating"]
+    stages = ["reading and identifying", "updating", "writing the report"]
+    assert [stage["name"] for stage in found["job"]["stages"]] == stages
     folder = Path(controller.export()["folder"])
     own = plain(to_json(update_studies([read_study(folder / "study.toml")])))
     assert json.loads((folder / "update.json").read_text(encoding="utf-8")) == own
     assert {p["name"] for p in own["parameters"]} == {"E", "length"}
+    assert "modalkit update study.toml" in (folder / "update.html").read_text(encoding="utf-8")
     assert opened(beam).work("update")["result"] == found["result"], "a new server finds it again"
 
 

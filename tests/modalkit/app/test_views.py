@@ -16,10 +16,10 @@ from acquisition.hits.checks import force_bands, pulse_spectrum
 from identification import pole_origins
 from modalkit import read
 from modalkit.app.acceptance import acceptable, accepted_entries
-from modalkit.app.views.curves import POINTS, envelope
-from modalkit.app.views.faces import closed_faces
-from modalkit.app.views.model import Moved
+from modalkit.app.model_page import Moved
 from modalkit.output.whole import plain
+from modalkit.views.curves import POINTS, envelope
+from modalkit.views.faces import closed_faces
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
 

@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from modalkit.figures import diagnosis_figure
-from modalkit.figures.diagnosis.errors import mode_errors
+from modalkit.figures.diagnosis import gap_figure
+from modalkit.figures.diagnosis.errors import ModeErrors, mode_errors
 from modalkit.figures.words import answer
 from updating.diagnosis.answer.result import ParameterEstimate, Ranked
 
@@ -91,3 +92,15 @@ def test_answers_say_the_verdict() -> None:
     assert "cannot tell which" in answer(diagnosis_of("beam", verdict="class", first="E"))
     assert "nothing in the library" in answer(diagnosis_of("beam", verdict="unknown"))
     assert answer(diagnosis_of("beam", verdict="none")).startswith("No gap")
+
+
+@pytest.mark.parametrize("rings", [0, 6])
+def test_the_title_of_no_gap_counts_the_rings_outside_the_band(rings: int) -> None:
+    """No gap in all, and yet single modes outside their bands: the title says how many, not that all are within."""
+    count = 8
+    before = np.where(np.arange(count) < rings, 2.0, 0.1)
+    doubt = np.full(count, 0.5)
+    errors = ModeErrors(np.linspace(10, 90, count), before, None, doubt / 5, doubt, "frequency")
+    message = words(gap_figure(diagnosis_of("beam", verdict="none"), errors))
+    assert f"{rings or 'none'} outside what noise and tolerances make" in message
+    assert "within" not in message

@@ -12,9 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from acquisition import Dof, FrfSet, InputError, ModalData
-from identification import mac
+from acquisition.quantities import hertz
+from identification import mac, pole_origins
 from modalkit.figures import auto_mac_figure, frf_figure, hits_figure, mac_figure, stabilisation_figure
 from modalkit.figures.test.frf import pick
+from modalkit.figures.test.stabilisation import poles_title
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 50])
@@ -70,6 +72,42 @@ def test_stabilisation_shows_every_pole_of_the_band() -> None:
         assert sum(len(c.get_offsets()) for c in chart.collections) == np.count_nonzero(inside)  # type: ignore[arg-type]
         assert chart.get_xlabel() == "frequency [Hz]"
         assert_legible(figure)
+
+
+def test_every_stable_column_that_is_no_mode_has_its_reason_under_the_chart() -> None:
+    model = model_of(12)
+    frequency = float(model.modal.frequency[4])
+    origins = pole_origins(model)
+    (chain,) = (i for i, reason in enumerate(origins.reasons) if reason.kind == "mode" and reason.mode == 4)
+    without = replace(
+        model,
+        modal=model.modal.modes(np.arange(len(model)) != 4),
+        poles=np.delete(model.poles, 4),
+        constants=np.delete(model.constants, 4, axis=1),
+        background_poles=np.append(model.background_poles, model.poles[4]),
+    )
+    figure = stabilisation_figure(without, drop=[frequency])
+    assert "dropped by you: it stays in the fit" in words(figure)
+    assert hertz(float(np.median(model.chart.frequency[origins.chain == chain]))) in words(figure)
+    assert "1 stable column not taken" in words(figure) or "stable columns not taken" in words(figure)
+    assert_legible(figure)
+
+
+def test_modes_that_the_refinement_added_stand_in_the_chart() -> None:
+    model = model_of(12)
+    origins = pole_origins(model)
+    stated = replace(origins, modes=("refinement", "named", *origins.modes[2:]))
+    title = poles_title(stated, 321)
+    assert title.startswith(
+        f"{len(model)} modes: {len(model) - 2} of 321 poles; 1 added by the refinement; 1 picked by hand"
+    )
+    figure = stabilisation_figure(model, add=[float(model.modal.frequency[3])])
+    markers = {
+        str(line.get_label()): len(np.asarray(line.get_xdata()))
+        for line in panels(figure)["chart"].get_lines()
+    }
+    assert markers["mode picked by hand"] == 1
+    assert markers["mode from the chart"] == sum(o == "chain" for o in origins.modes) - 1
 
 
 @pytest.mark.parametrize(("points", "hits"), [(1, 1), (5, 4), (60, 3)])

@@ -9,6 +9,7 @@ from figure_cases import case_of, diagnosis_of
 from figure_text import assert_legible, panels, words
 
 from modalkit.figures import localisation_figure
+from modalkit.figures.diagnosis.localisation import localisation_title
 from updating import Diagnosis
 
 
@@ -77,3 +78,36 @@ def test_without_a_table_of_modes_the_structure_stands_alone() -> None:
     figure = localisation_figure(diagnosis_of("plate"))
     assert "modes" not in panels(figure)
     assert_legible(figure)
+
+
+def spread(verdict: str, *sets: tuple[str, ...]) -> Diagnosis:
+    """Return an answer of certain sets that has no single place."""
+    plain = diagnosis_with("beam", verdict, points=())
+    rows = tuple(replace(plain.ranking[0], effects=names, probability=0.9 / len(sets)) for names in sets)
+    where = replace(plain.where, channel="stiffness", location=None, locations=(), names=())
+    return replace(plain, sets=sets, ranking=rows, where=where)
+
+
+def test_what_acts_everywhere_is_named_and_not_by_one_channel() -> None:
+    """E is a stiffness, the density a mass, the thickness and the length both: the title names them, not a channel."""
+    title = localisation_title(spread("class", ("E",), ("density",), ("thickness",), ("length",)))
+    assert title.startswith("The gap has no single place: ")
+    assert "stiffness" not in title and " or " in title
+    for name in ("modulus", "density", "thickness", "length"):
+        assert name in title
+    many = localisation_title(
+        spread("class", *((n,) for n in ("E", "density", "thickness", "length", "taper")))
+    )
+    assert many.endswith("or 1 other act all over the structure") or " or 1 other acts" in many
+
+
+def test_measurement_or_structure_is_left_open_where_the_class_leaves_it_open() -> None:
+    title = localisation_title(spread("class", ("calibration_gain",), ("density",)))
+    assert title == "Whether the gap sits in the measurement or in the structure, these data cannot tell"
+
+
+def test_a_pair_of_causes_is_not_placed_whole_where_one_of_them_sits() -> None:
+    plain = diagnosis_with("beam", "named", points=())
+    pair = replace(plain, sets=(("length", "sensor_mass"),))
+    assert localisation_title(pair).startswith("Part of the gap sits at")
+    assert localisation_title(plain).startswith("The gap sits at")

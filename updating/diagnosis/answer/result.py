@@ -10,7 +10,7 @@ from typing import Any, Literal
 import pandas as pd
 
 from acquisition.arrays import FloatArray
-from acquisition.display import Displayed, counted
+from acquisition.display import Displayed, Shown, counted
 from acquisition.quantities import (
     bare_p,
     closed,
@@ -322,7 +322,7 @@ class NextTest(Displayed):
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis(Displayed):
+class Diagnosis(Shown):
     """The whole answer.
 
     Parameters

@@ -171,7 +171,9 @@ def _columns_of(path: Path) -> tuple[pd.DataFrame, list[str]]:
         )
     try:
         names = (
-            [""] * len(table) if SETS not in table.columns else table[SETS].fillna("").astype(str).to_list()
+            [""] * len(table)
+            if SETS not in table.columns
+            else table[SETS].astype(object).fillna("").astype(str).to_list()
         )
         return table[list(COLUMNS)].astype(float), names
     except (ValueError, OverflowError) as error:

@@ -61,7 +61,16 @@ export function open(root, app) {
     result.hidden = !found;
     if (!found) return;
     const d = found.document;
-    fill(answer, h("p", { class: "big", id: "update-answer" }, found.answer));
+    fill(
+      answer,
+      h("p", { class: "big", id: "update-answer" }, found.answer),
+      h(
+        "p",
+        {},
+        h("a", { href: "report/update", target: "_blank", rel: "noopener" }, "The whole report"),
+        " opens in a page of its own.",
+      ),
+    );
     const mode = d.pairs.map((p) => `${p.test_mode}`);
     const error = (key) => d.pairs.map((p) => 100 * (p[key] / p.test_hz - 1));
     await draw(

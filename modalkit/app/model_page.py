@@ -12,10 +12,10 @@ from acquisition import InputError
 from acquisition.errors import ModalkitError
 from identification import ModalModel
 from modalkit.app.toml import toml_text
-from modalkit.app.views.curves import lines
-from modalkit.app.views.shapes import Beside
 from modalkit.output.correlation import correlation_document
 from modalkit.study.read import Study
+from modalkit.views.curves import lines
+from modalkit.views.shapes import Beside
 from updating import LIBRARY
 from updating.correlation.frfs import correlate_frfs
 from updating.effects import Effect, Parameter, Variant, accepted_state, names_of

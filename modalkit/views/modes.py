@@ -11,9 +11,9 @@ from acquisition import InputError
 from identification import ModalModel, auto_mac, cmif, mpc
 from identification.identify import Provisional
 from identification.pole_reasons import Origins
-from modalkit.app.views.curves import check_frf, lines
-from modalkit.app.views.hits import frf_names
 from modalkit.study.read import Study
+from modalkit.views.curves import check_frf, lines
+from modalkit.views.hits import frf_names
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.identification import Processed
 

@@ -2,39 +2,20 @@
 
 import * as THREE from "./three.module.min.js";
 import { Body, mesh } from "./body.js";
-import { orbit } from "./orbit.js";
+import { Stage } from "./stage.js";
 
-/** A canvas with a structure in it. */
-export class Scene {
-  constructor(canvas, colours) {
-    this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: false });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-    this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
-    this.camera.up.set(0, 0, 1);
-    this.orbit = orbit(canvas, this.camera, () => {
-      this.dirty = true;
-    });
+/** A structure that moves in its modes. */
+export class Scene extends Stage {
+  constructor(canvas, colours, options) {
+    super(canvas, colours, options);
     this.playing = true;
     this.phase = 0;
     this.speed = 0.8;
     this.amplitude = 1;
-    this.recolour(colours);
-    this.watcher = new ResizeObserver(() => this.resize());
-    this.watcher.observe(canvas.parentElement);
-    this.frames = 0;
-    this.since = performance.now();
-    const loop = (now) => {
-      if (this.closed) return;
-      this.frame(now);
-      requestAnimationFrame(loop);
-    };
-    requestAnimationFrame(loop);
   }
 
   recolour(colours) {
-    this.colours = colours;
+    super.recolour(colours);
     this.shades = {
       low: new THREE.Color(colours.blue),
       middle: new THREE.Color(colours.middle),
@@ -50,7 +31,6 @@ export class Scene {
       middle: new THREE.Color(colours.green),
       high: new THREE.Color(colours.red),
     };
-    this.dirty = true;
   }
 
   /** Show a page of shapes; the camera is aimed at its points. */
@@ -64,16 +44,15 @@ export class Scene {
     this.test = new Body(this.group, page.places, { lines: page.lines, faces: page.faces, opacity: 0.75 });
     const surface = page.model?.surface;
     this.fem = surface
-      ? new Body(this.beside, surface.places, mesh(surface.shape))
+      ? new Body(
+          this.beside,
+          surface.places,
+          surface.shape ? mesh(surface.shape) : { ...surface, dots: false, opacity: 0.4 },
+        )
       : page.model
         ? new Body(this.beside, page.places, { lines: page.lines, faces: page.faces, opacity: 0.4, size: 4 })
         : null;
-    const all = surface ? [...page.places, ...surface.places] : page.places;
-    const low = [0, 1, 2].map((k) => Math.min(...all.map((p) => p[k])));
-    const high = [0, 1, 2].map((k) => Math.max(...all.map((p) => p[k])));
-    this.size = Math.hypot(...low.map((v, k) => high[k] - v)) || 1;
-    this.spread = [0, 1, 2].map((k) => high[k] - low[k]);
-    this.centre = low.map((v, k) => (v + high[k]) / 2);
+    this.measure(surface ? [...page.places, ...surface.places] : page.places);
     for (const arrow of page.arrows) {
       const to = new THREE.Vector3(...arrow.to);
       if (to.lengthSq() > 0)
@@ -104,7 +83,9 @@ export class Scene {
     this.surfaceShape = null;
     if (model && this.fem) {
       const along = this.page.model.surface?.along;
-      this.surfaceShape = model.surface ? model.surface.map((w) => along.map((a) => a * w)) : model.at_points;
+      this.surfaceShape = along
+        ? model.surface.map((w) => along.map((a) => a * w))
+        : (model.surface ?? model.at_points);
     }
     this.aim();
     this.dirty = true;
@@ -126,40 +107,23 @@ export class Scene {
       ...this.page.places,
       ...(this.page.model?.surface?.places ?? this.page.places).map((p) => p.map((v, k) => v + apart[k])),
     ];
-    const corners = places.flatMap((p) =>
-      [0, 1, 2].flatMap((k) => [-reach, reach].map((d) => p.map((v, i) => v + (i === k ? d : 0)))),
-    );
-    this.orbit.aim(centre, corners, this.camera.aspect);
+    this.aimAt(centre, places, reach);
   }
 
-  resize() {
-    const box = this.canvas.parentElement.getBoundingClientRect();
-    if (!box.width || !this.page) return;
-    this.renderer.setSize(box.width, box.height, false);
-    this.camera.aspect = box.width / box.height;
-    this.aim();
+  advance(step) {
+    if (!this.playing) return;
+    this.phase += 2 * Math.PI * this.speed * step;
+    this.dirty = true;
   }
 
-  frame(now) {
-    const step = Math.min(100, now - (this.last ?? now)) / 1000;
-    this.last = now;
-    if (this.playing) {
-      this.phase += 2 * Math.PI * this.speed * step;
-      this.dirty = true;
-    }
-    if (!this.dirty || this.mode === undefined) return;
-    this.dirty = false;
-    const begun = performance.now();
-    this.pose();
-    this.renderer.render(this.scene, this.camera);
-    this.work = (this.work ?? 0) + performance.now() - begun;
-    this.frames += 1;
-    if (now - this.since > 1000) {
-      this.canvas.dataset.fps = ((1000 * this.frames) / (now - this.since)).toFixed(1);
-      this.canvas.dataset.work = (this.work / this.frames).toFixed(2);
-      this.frames = this.work = 0;
-      this.since = now;
-    }
+  ready() {
+    return this.mode !== undefined;
+  }
+
+  /** Return where the test's points are at this moment. */
+  seen() {
+    const at = this.test?.positions ?? [];
+    return (this.page?.places ?? []).map((_, i) => [at[3 * i], at[3 * i + 1], at[3 * i + 2]]);
   }
 
   pose() {
@@ -200,11 +164,5 @@ export class Scene {
     this.playing = on;
     if (!on) this.phase = 0;
     this.dirty = true;
-  }
-
-  close() {
-    this.closed = true;
-    this.watcher.disconnect();
-    this.renderer.dispose();
   }
 }

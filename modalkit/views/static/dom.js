@@ -99,3 +99,12 @@ export function withoutModel(title, purpose) {
   const text = `There is no model to ${purpose}: open a study that has one, or write a [model] on the page of the model.`;
   return h("section", { class: "panel" }, h("h2", {}, title), h("p", {}, text));
 }
+
+/** Return a colour of the page by its name in style.css. */
+export function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+/** Return the colours that a scene needs. */
+export const palette = () =>
+  Object.fromEntries(["blue", "orange", "green", "red", "muted", "middle", "ink"].map((name) => [name, colour(name)]));

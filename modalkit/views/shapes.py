@@ -9,14 +9,20 @@ import numpy as np
 
 from acquisition import ModalData
 from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.errors import ModalkitError
 from identification import mpc
-from modalkit.app.views.faces import closed_faces
+from modalkit.views.faces import closed_faces
+from modalkit.views.mesh import edges_of, mesh_of
 from modalkit.workflow.case import Session
 from updating.correlation.correlate import Correlation
 from updating.prediction.predict import Predictor
 
 FINE = (81, (41, 27))
 """Points at which the model is drawn, along a beam and over a plate."""
+
+NODES = 1500
+"""Nodes of a user's own mesh that move, beyond which the model is drawn at the test's points alone: each takes 20 bytes
+for each mode in a report [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +148,7 @@ def _model(
                 "difference": difference / max(float(np.abs(vectors[:, :, r]).max()), 1e-300),
                 "surface": None
                 if surface is None
-                else factor * (surface["rows"] @ prediction.vectors[:, partner]),
+                else factor * _moved(surface["rows"], prediction.vectors[:, partner]),
             }
         )
     drawn = None if surface is None else {k: v for k, v in surface.items() if k != "rows"}
@@ -156,9 +162,9 @@ def _surface(beside: Beside, count: int) -> dict[str, Any] | None:
     """
     study, predictor = beside.session.study, beside.predictor
     spec = predictor.spec
-    if spec.imported is not None:
-        return None
     axes = study.axes(study.test)
+    if spec.imported is not None:
+        return _own_mesh(beside, count)
     if spec.kind == "beam":
         x = np.linspace(0.0, spec.length, FINE[0])
         flat, shape = x[:, None], [FINE[0]]
@@ -173,4 +179,35 @@ def _surface(beside: Beside, count: int) -> dict[str, Any] | None:
         "along": axes.rotation[2],
         "shape": shape,
         "rows": predictor.reduced.rows(flat)["w"][:, :count],
+    }
+
+
+def _moved(rows: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return how places move: (n,) across a beam or plate, (n, 3) where rows are (n, 3, n_basis)."""
+    return np.asarray(rows @ vector)
+
+
+def _own_mesh(beside: Beside, count: int) -> dict[str, Any] | None:
+    """Return the mesh of matrices or of a deck with the rows of its nodes; None of one that cannot be drawn."""
+    predictor = beside.predictor
+    mesh = mesh_of(predictor.spec)
+    if mesh is None or not (mesh.lines or mesh.faces):
+        return None
+    used = sorted({i for part in (*mesh.lines, *mesh.faces) for i in part})
+    if len(used) > NODES:
+        return None
+    place = {old: new for new, old in enumerate(used)}
+    axes = beside.session.study.axes(beside.session.study.test)
+    along = np.tile(axes.rotation.T, (len(used), 1))  # the test's axes, as the model has them
+    try:
+        rows = predictor.reduced.rows(np.repeat(mesh.places[used], 3, axis=0), along)["w"][:, :count]
+    except ModalkitError:  # matrices that do not know all three motions of a node
+        return None
+    return {
+        "places": mesh.places[used] @ axes.rotation + np.asarray(axes.origin),
+        "along": None,
+        "shape": None,
+        "lines": [[place[i] for i in pair] for pair in (*mesh.lines, *edges_of(mesh.faces))],
+        "faces": [[place[i] for i in face] for face in mesh.faces],
+        "rows": np.asarray(rows).reshape(len(used), 3, -1),
     }

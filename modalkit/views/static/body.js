@@ -23,7 +23,7 @@ function disc() {
 
 /** One set of points that moves, with what joins them. */
 export class Body {
-  constructor(group, places, { lines = [], faces = [], dots = true, opacity = 0.5, size = 8 } = {}) {
+  constructor(group, places, { lines = [], faces = [], dots = true, opacity = 0.5, size = 8, through = false } = {}) {
     this.places = places;
     this.count = places.length;
     this.positions = new Float32Array(3 * this.count);
@@ -54,6 +54,7 @@ export class Body {
             side: THREE.DoubleSide,
             transparent: opacity < 1,
             opacity,
+            depthWrite: opacity === 1, // what is seen through hides nothing, in whatever order it is drawn
             polygonOffset: true,
             polygonOffsetFactor: 1,
             polygonOffsetUnits: 1,
@@ -73,6 +74,7 @@ export class Body {
             vertexColors: true,
             map: disc(),
             alphaTest: 0.5,
+            depthTest: !through, // or it is seen through all that stands before it
           }),
         ),
       );

@@ -9,9 +9,9 @@ import numpy as np
 from acquisition import FrfSet, HitVerdict, InputError, force_range
 from acquisition.hits.checks import pulse_spectrum, upright
 from acquisition.quantities import hertz, number
-from modalkit.app.views.curves import check_frf, decibels, envelope, lines
 from modalkit.output.documents import hit_document
 from modalkit.study.read import Study
+from modalkit.views.curves import check_frf, decibels, envelope, lines
 from modalkit.workflow.identification import Judged, Processed
 
 

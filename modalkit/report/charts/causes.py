@@ -1,0 +1,115 @@
+"""Which explanations, how probable, and how far each closes the gap."""
+
+from __future__ import annotations
+
+from acquisition.display import counted
+from acquisition.quantities import bare_p, probability
+from modalkit.figures.diagnosis.causes import explanations
+from modalkit.figures.diagnosis.held_out import rivals
+from modalkit.figures.words import METRICS, short
+from modalkit.views.chart import Axis, Chart, Series
+from updating import Diagnosis
+
+ROWS = 10
+"""Most explanations drawn; the table has more [-]."""
+
+LEAST = 1e-4
+"""What is less is drawn as that, on a logarithmic axis [%]."""
+
+
+def causes_chart(diagnosis: Diagnosis) -> Chart:
+    """Return the probability of each explanation, those of the answer in blue."""
+    found = explanations(diagnosis)
+    rows = found[:ROWS]
+    fits = {short(r.effects): r.p_value for r in diagnosis.ranking}
+    text = [
+        "\n".join(
+            [
+                row.label,
+                f"probability {probability(row.probability)}",
+                *([f"fits with p = {bare_p(fits[row.label])}"] if row.label in fits else []),
+                *([row.detail] if row.detail else []),
+            ]
+        )
+        for row in rows
+    ]
+    series = Series(
+        "probability",
+        "bars",
+        [100 * row.probability for row in rows],
+        list(range(len(rows))),
+        "faint",
+        {"text": text, "colours": ["blue" if row.answer else "faint" for row in rows], "unnamed": True},
+    )
+    return Chart(
+        "causes",
+        _title(diagnosis),
+        f"Blue: the answer.{f' {len(found) - ROWS} more are less probable.' if len(found) > ROWS else ''}",
+        Axis("probability [%]", range=(0.0, 100.0)),
+        Axis(names=tuple(row.label for row in rows)),
+        [series],
+    )
+
+
+def _title(diagnosis: Diagnosis) -> str:
+    """Say who holds the probability."""
+    chosen = [r for r in diagnosis.ranking if r.effects in diagnosis.sets]
+    rest = [r for r in diagnosis.ranking if r.effects not in diagnosis.sets]
+    behind = f"; the next, {short(rest[0].effects)}, {probability(rest[0].probability)}" if rest else ""
+    if diagnosis.verdict == "none":
+        alone = max(0.0, 1.0 - sum(r.probability for r in diagnosis.ranking))
+        return f"Tolerances and noise alone hold {probability(alone)} of the probability"
+    if diagnosis.verdict == "unknown" or not chosen:
+        return f"No explanation of {len(diagnosis.ranking)} that were compared is the answer"
+    total = probability(sum(r.probability for r in chosen))
+    if len(chosen) == 1:
+        return f"{short(chosen[0].effects)} holds {total} of the probability{behind}"
+    return f"{counted(len(chosen), 'explanation')} hold {total} together{behind}"
+
+
+def closing_chart(diagnosis: Diagnosis) -> Chart:
+    """Return the gap on modes held out for the answer and its rivals, the floor of the noise as a band."""
+    shrink, rows = diagnosis.shrink, rivals(diagnosis)
+    whole = 100.0 if shrink.metric == "combined" else 1.0
+    unit = "σ" if shrink.metric == "combined" else "%"
+    known = [i for i, row in enumerate(rows) if row[1] == row[1]]
+    held = [max(rows[i][1], LEAST) / whole for i in known]
+    floor = max(shrink.floor, LEAST) / whole
+    text = [f"{rows[i][0]}\non modes held out: {shrink.size(rows[i][1])}" for i in known]
+    low = min([*held, floor, max(shrink.after, LEAST) / whole]) / 2
+    series = [
+        Series(
+            "noise of the test", "bands", [], list(range(len(rows))), "band",
+            {"low": [low] * len(rows), "high": [floor] * len(rows)},
+        ),
+        Series("on modes held out", "points", held, known, "blue", {"text": text, "size": 6}),
+    ]  # fmt: skip
+    if diagnosis.ranking:
+        inside = {
+            "hollow": True,
+            "size": 6,
+            "text": [f"{rows[-1][0]}\non fitted data: {shrink.size(shrink.after)}"],
+        }
+        series.append(
+            Series(
+                "on fitted data", "points", [max(shrink.after, LEAST) / whole], [len(rows) - 1], "ink", inside
+            )
+        )
+    return Chart(
+        "closing",
+        _closes(diagnosis),
+        "Each mode predicted from all others (dots), and on the data that were fitted (ring). The band is noise.",
+        Axis(f"{METRICS[shrink.metric]} gap, r.m.s. [{unit}]", log=True),
+        Axis(names=tuple(name for name, _, _ in rows)),
+        series,
+        more={"row": 34},
+    )
+
+
+def _closes(diagnosis: Diagnosis) -> str:
+    shrink = diagnosis.shrink
+    before, after = shrink.size(shrink.held_before), shrink.size(shrink.held_after)
+    if shrink.held_after != shrink.held_after or not diagnosis.ranking:
+        return f"The gap is {shrink.size(shrink.before)}; no mode can be held out to see whether it closes"
+    least = " with the least bad explanation" if diagnosis.verdict in ("unknown", "none") else ""
+    return f"{before} to {after} on modes held out{least}, noise {shrink.size(shrink.floor)}"

@@ -1,0 +1,205 @@
+"""What a test holds: hits, FRFs with the fit, the chart of the poles, indicator functions, how alike the modes are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from acquisition import FrfSet, HitVerdict, InputError, ModalData
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.display import counted
+from acquisition.quantities import hertz, percent
+from identification import ModalModel, auto_mac, cmif
+from identification.pole_reasons import Origins
+from modalkit.figures.shapes.matrix import alike
+from modalkit.figures.test import stabilisation
+from modalkit.report.charts.matrix import matrix_chart
+from modalkit.report.charts.thin import common_lines
+from modalkit.views.chart import Axis, Chart, Choices, Series
+from modalkit.views.hits import frf_names
+
+KINDS = {
+    "new": ("cross", "faint", 2.6),
+    "short": ("dot", "faint", 2.6),
+    "outside": ("up", "muted", 3.0),
+    "pruned": ("square", "orange", 3.0),
+    "background": ("diamond", "orange", 3.0),
+    "dropped": ("cross", "red", 4.0),
+    "mode": ("dot", "blue", 2.6),
+}
+"""How poles are drawn by what became of them; the words are those of the figure."""
+
+ORIGINS = {"chain": ("down", "blue"), "refinement": ("diamond", "orange"), "named": ("square", "green")}
+"""How modes are drawn above the chart by where they come from."""
+
+
+def hits_chart(hits: Sequence[HitVerdict], name: str = "hits") -> Chart:
+    """Return the peak force of every hit in the order of the test, those left out as crosses with the reason."""
+    series = []
+    for used, symbol, colour, meaning in ((True, "dot", "blue", "used"), (False, "cross", "red", "left out")):
+        rows = [i for i, hit in enumerate(hits) if hit.used is used]
+        text = [
+            "\n".join([f"{hits[i].point}, hit {hits[i].hit}: {meaning}",
+                       f"{hits[i].peak:.4g} N, {hertz(hits[i].band20)} "
+                       "(-20 dB)".replace("-", "−"), *hits[i].reasons])
+            for i in rows
+        ]  # fmt: skip
+        peaks = [hits[i].peak for i in rows]
+        more = {"text": text, "symbol": symbol, "size": 4}
+        if rows:
+            series.append(Series(meaning, "points", [i + 1 for i in rows], peaks, colour, more))
+    left = sum(not hit.used for hit in hits)
+    title = f"{counted(len(hits), 'hit')}, " + (f"{left} left out" if left else "all used")
+    return Chart(
+        name,
+        title,
+        "Peak of the force of every hit, in the order of the points.",
+        Axis("hit"),
+        Axis("peak [N]", zero=True),
+        series,
+        240.0,
+    )
+
+
+def frfs_chart(model: ModalModel, name: str = "frf", *, tests: int = 1) -> Chart:
+    """Return magnitude of every FRF with its fit and what that leaves, one shown at a time, the worst first."""
+    frfs, fitted = model.frfs, model.synthesise().values
+    keep, count = common_lines(frfs, 3, tests=tests)
+    names = frf_names(frfs)
+    left = np.sum(np.abs(frfs.values - fitted) ** 2, axis=1) / np.maximum(
+        np.sum(np.abs(frfs.values) ** 2, axis=1), 1e-300
+    )
+    worst = np.argsort(-left, kind="stable")[:count].tolist()
+    items = [
+        (
+            f"{names[i]}, {percent(100 * float(np.sqrt(left[i])))} left",
+            [
+                Series("what the fit leaves", "line", None, size(frfs.values[i] - fitted[i], keep), "faint"),
+                Series("measured", "line", None, size(frfs.values[i], keep), "ink"),
+                Series("fit", "line", None, size(fitted[i], keep), "blue", {"dash": True}),
+            ],
+        )
+        for i in worst
+    ]
+    misfit = np.sqrt(np.sum(np.abs(frfs.values - fitted) ** 2) / np.sum(np.abs(frfs.values) ** 2))
+    rest = f" {len(names) - count} better ones are not in this file." if count < len(names) else ""
+    return Chart(
+        name,
+        f"{counted(len(names), 'FRF')}, {counted(len(model), 'mode')}: the fit leaves {percent(100 * misfit)} r.m.s.",
+        f"Magnitude, the fit, and what it leaves, the worst first. Dotted: the modes.{rest}",
+        Axis("frequency [Hz]", range=ends(frfs)),
+        Axis(f"|H| [{frfs.unit}]", log=True),
+        choices=Choices("FRF", items, frfs.frequency[keep]),
+        more={"lines": [float(f) for f in model.modal.frequency]},
+    )
+
+
+def size(values: ComplexArray, keep: IntArray) -> FloatArray:
+    """Return the magnitude on some lines, nan where it is 0."""
+    found = np.abs(values[keep])
+    return np.asarray(np.where(found > 0, found, np.nan))
+
+
+def ends(frfs: FrfSet) -> tuple[float, float]:
+    """Return the ends of the axis [Hz]."""
+    return float(frfs.frequency[0]), float(frfs.frequency[-1])
+
+
+def poles_chart(model: ModalModel, origins: Origins, name: str = "poles") -> Chart:
+    """Return every pole of every order with what became of it, and above them every mode with where it comes from."""
+    chart = model.chart
+    low, high = model.band
+    edge = 0.02 * (high - low)
+    near = (chart.frequency >= low - edge) & (chart.frequency <= high + edge)
+    order = chart.orders[chart.level]
+    kind = np.array([origins.reasons[r].kind for r in origins.chain], dtype=object)
+    keep, _ = common_lines(model.frfs, 60)
+    total = size(np.abs(model.frfs.values).sum(axis=0), keep)
+    series = [Series("sum of the FRFs", "line", model.frfs.frequency[keep], total, "faint", {"right": True})]
+    for which, (symbol, colour, radius) in KINDS.items():
+        rows = np.flatnonzero(near & (kind == which))
+        text = [
+            f"{chart.frequency[i]:.3f} Hz, damping {100 * chart.damping[i]:.3f} %, order {order[i]}\n"
+            f"{origins.reasons[origins.chain[i]].text}"
+            for i in rows
+        ]
+        more = {"text": text, "symbol": symbol, "size": radius}
+        if len(rows):
+            series.append(
+                Series(
+                    stabilisation.KINDS[which][0], "points", chart.frequency[rows], order[rows], colour, more
+                )
+            )
+    top = 1.06 * float(chart.orders.max())
+    for which, (symbol, colour) in ORIGINS.items():
+        modes = [r for r, origin in enumerate(origins.modes) if origin == which]
+        hz = [float(model.modal.frequency[r]) for r in modes]
+        meaning = stabilisation.ORIGINS[which][0]
+        text = [f"mode {r + 1}: {model.modal.frequency[r]:.3f} Hz\n{meaning}" for r in modes]
+        more = {"text": text, "symbol": symbol, "size": 5}
+        if modes:
+            series.append(Series(meaning, "points", hz, [top] * len(hz), colour, more))
+    return Chart(
+        name,
+        stabilisation.poles_title(origins, int(np.sum(near))),
+        "Every pole of every order by what became of it; modes stand above, dotted below.",
+        Axis("frequency [Hz]", range=(low - edge, high + edge)),
+        Axis("model order", range=(0.0, 1.04 * top)),
+        series,
+        360.0,
+        more={"lines": [float(f) for f in model.modal.frequency]},
+    )
+
+
+def cmif_chart(frfs: FrfSet, name: str = "cmif") -> Chart | None:
+    """Return the complex mode indicator functions; None where no response was measured with every reference."""
+    try:
+        table = cmif(frfs)
+    except InputError:
+        return None
+    table = table[table.index > 0]
+    keep, _ = common_lines(frfs, 40)
+    keep = keep[keep < len(table)]
+    shades = ("ink", "orange", "blue", "muted")
+    series = [
+        Series(
+            f"CMIF {k}",
+            "line",
+            table.index[keep].to_numpy(float),
+            _positive(table[k].to_numpy(float)[keep]),
+            colour,
+        )
+        for k, colour in zip(table.columns, shades, strict=False)
+    ]
+    count = min(table.shape[1], len(shades))
+    what = (
+        "A peak is a mode; with one reference or response two close modes show as one."
+        if count == 1
+        else "A peak of the first is a mode; one of the second at the same place is another mode beside it."
+    )
+    left = table.attrs["left_out"]
+    return Chart(
+        name,
+        f"{counted(count, 'mode indicator function')} of {counted(len(frfs.responses), 'FRF')}",
+        what + (f" Left out, as FRFs lack: {', '.join(left)}." if left else ""),
+        Axis("frequency [Hz]", range=ends(frfs)),
+        Axis(f"CMIF [({frfs.unit})²]", log=True),
+        series,
+        240.0,
+    )
+
+
+def _positive(values: FloatArray) -> FloatArray:
+    """Return values that a logarithm has, none twelve decades below the largest."""
+    return np.asarray(np.where(values > 1e-12 * np.nanmax(values, initial=0.0), values, np.nan))
+
+
+def auto_mac_chart(modal: ModalData, name: str = "auto-mac") -> Chart | None:
+    """Return how alike the shapes of the modes are; None without shapes."""
+    if modal.shapes is None or not len(modal):
+        return None
+    matrix = np.asarray(auto_mac(modal.shapes), dtype=float)
+    names = [f"{i + 1}: {hertz(f)}" for i, f in enumerate(modal.frequency)]
+    text = f"Auto-MAC, shapes at {counted(len(modal.dofs), 'degree')} of freedom, in hundredths."
+    return matrix_chart(name, alike(matrix), text, matrix, names, names, axes=("mode", "mode"))

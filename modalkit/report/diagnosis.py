@@ -1,0 +1,131 @@
+"""The report of a diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import datetime
+
+from modalkit.figures.diagnosis import fitted, mode_errors, overlaid
+from modalkit.figures.diagnosis.localisation import localisation_title
+from modalkit.figures.words import answer
+from modalkit.report.charts.causes import causes_chart, closing_chart
+from modalkit.report.charts.frfs import overlaid_chart
+from modalkit.report.charts.gap import gap_chart
+from modalkit.report.charts.place import place_chart
+from modalkit.report.document import Document, Part, Section, Standing
+from modalkit.report.html import element, joined
+from modalkit.report.page import page
+from modalkit.report.provenance import Basis, provenance
+from modalkit.report.sections import (
+    not_examined,
+    the_causes,
+    the_gap,
+    the_next_test,
+    the_place,
+    the_remainder,
+    the_shrinkage,
+    the_summary,
+    the_warnings,
+)
+from modalkit.report.tested import session_sections
+from modalkit.views.structure import structure_page
+from modalkit.workflow.case import Session
+from modalkit.workflow.diagnosis import warnings_of
+from updating import Case, Diagnosis
+
+
+def diagnosis_report(
+    diagnosis: Diagnosis, sessions: Sequence[Session], *, when: datetime, command: str = ""
+) -> str:
+    """Return the report of a diagnosis as the text of an HTML file.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The answer.
+    sessions : sequence of Session
+        What was diagnosed, in the order of the diagnosis.
+    when : datetime
+        Date of the report.
+    command : str
+        What repeats it.
+    """
+    basis = Basis(when, command, [session.study for session in sessions])
+    tests = [
+        section
+        for i, session in enumerate(sessions, start=1)
+        for section in session_sections(session, number=i, tests=len(sessions))
+    ]
+    return page(
+        Document(
+            diagnosis.title or "Diagnosis",
+            "diagnosis",
+            joined(
+                element("h1", diagnosis.title or "Diagnosis"),
+                element("p", answer(diagnosis), class_="answer"),
+                the_summary(diagnosis),
+            ),
+            [
+                *answer_sections(diagnosis, sessions),
+                *tests,
+                Section("What was not examined", [not_examined(diagnosis)]),
+                Section("Warnings", [the_warnings([*diagnosis.warnings, *warnings_of(sessions)])]),
+                Section("What this rests on", [provenance(basis)]),
+            ],
+        )
+    )
+
+
+def answer_sections(diagnosis: Diagnosis, sessions: Sequence[Session]) -> list[Section]:
+    """Return how large, where, what, what is left, how far, what next, FRFs before and after.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The answer.
+    sessions : sequence of Session
+        What was diagnosed; without, only what the diagnosis itself holds is drawn.
+    """
+    gaps, frfs = _by_session(diagnosis, sessions)
+    if not sessions:
+        gaps = [gap_chart(mode_errors(diagnosis))]
+    where = [_where(diagnosis, sessions[0].case)] if sessions else []
+    return [
+        Section("How large the gap is", [*gaps, the_gap(diagnosis)]),
+        Section("Where it sits", [*where, the_place(diagnosis)]),
+        Section("What causes it", [causes_chart(diagnosis), the_causes(diagnosis)]),
+        Section("What is left", [the_remainder(diagnosis)]),
+        Section("How far it closes", [closing_chart(diagnosis), the_shrinkage(diagnosis)]),
+        Section("What to measure next", [the_next_test(diagnosis)]),
+        Section("FRFs before and after", frfs),
+    ]
+
+
+def _by_session(diagnosis: Diagnosis, sessions: Sequence[Session]) -> tuple[list[Part], list[Part]]:
+    """Return the gaps and the FRFs of each specimen."""
+    alone = len(sessions) == 1
+    gaps: list[Part] = []
+    frfs: list[Part] = []
+    after = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
+    for i, session in enumerate(sessions, start=1):
+        best, mark = fitted(diagnosis, session.case, alone=alone), "" if i == 1 else f"-{i}"
+        if not alone:
+            gaps.append(element("h3", session.case.title))
+        errors = mode_errors(diagnosis, session.case, best=best)
+        gaps.append(gap_chart(errors, f"gap{mark}", after=after))
+        if session.identified is not None:
+            both = overlaid(session.identified.frfs, best)
+            frfs.append(overlaid_chart(both, f"frfs{mark}", tests=len(sessions)))
+    return gaps, frfs
+
+
+def _where(diagnosis: Diagnosis, case: Case) -> Part | None:
+    """Return the structure: a plan of beams and plates, in space what is the user's own."""
+    found = structure_page(diagnosis, case)
+    if found is None:
+        return place_chart(diagnosis, case)
+    text = (
+        "Regions by the probability that the cause sits there, blue for 1; black: test points with the directions "
+        "measured; orange: places found. Drag to turn."
+    )
+    return Standing("place", localisation_title(diagnosis), text, found)

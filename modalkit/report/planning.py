@@ -1,0 +1,173 @@
+"""The report of a plan: what a test tells apart, from what severity on, and what to change."""
+
+from __future__ import annotations
+
+import math
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+
+from modalkit.planning import Forecast
+from modalkit.planning.document import to_json
+from modalkit.planning.effects import NOT_FORECAST
+from modalkit.planning.note import note, separated, some
+from modalkit.planning.separability import NONE, SEEN, SURE
+from modalkit.planning.trials import Check
+from modalkit.report.charts.matrix import matrix_chart
+from modalkit.report.document import Document, Section
+from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
+from modalkit.report.page import page
+from modalkit.report.provenance import Basis, provenance
+from modalkit.study.read import Study
+from modalkit.views.chart import Axis, Chart, Series
+
+
+def plan_report(
+    study: Study, found: Forecast, *, when: datetime, command: str = "", checked: Check | None = None
+) -> str:
+    """Return the report of a plan as the text of an HTML file.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    found : Forecast
+        What its test tells.
+    when : datetime
+        Date of the report.
+    command : str
+        What repeats it.
+    checked : Check, optional
+        Blind trials on that very rig.
+    """
+    document = to_json(found)
+    return page(
+        Document(
+            study.name,
+            "plan",
+            joined(element("h1", study.name), _answer(found)),
+            [
+                Section("What it tells apart", [separations_chart(found)]),
+                Section("From what severity on", [thresholds_chart(found), thresholds_table(document)]),
+                Section("What a change buys", [changes_table(found)]),
+                Section("Blind trials on this rig", [_trials(checked)]),
+                Section("What was taken for granted", [bullets(list(found.known_test.statement))]),
+                Section("What the forecast leaves out", [_left_out(found)]),
+                Section("What this rests on", [provenance(Basis(when, command, [study]))]),
+            ],
+        )
+    )
+
+
+def _answer(found: Forecast) -> Raw:
+    """Return the lines of the note."""
+    lines = [line.partition(":") for line in note(found)]
+    stated = {name.strip(): " ".join(text.split()) for name, _, text in lines}
+    share = f"{100 * found.now.separated_share:.0f} % of the pairs of effects are told apart"
+    return joined(element("p", share, class_="answer"), definitions(stated, class_="letter"))
+
+
+def separations_chart(found: Forecast) -> Chart:
+    """Return how many standard deviations each effect is from each other, full colour where it is surely told."""
+    now = found.now
+    names, columns = list(now.names), ["no effect", *now.names]
+    sigma = now.matrix[[NONE, *names]].to_numpy(float)
+    written = ["" if math.isnan(v) else f"{v:.1f}" if v < 10 else "10+" for v in sigma.ravel()]
+    pairs = now.pairs
+    least = min(pairs, key=lambda pair: pairs[pair])
+    count = f"{sum(v >= SEEN for v in pairs.values())} of {len(pairs)} pairs"
+    title = f"{count} are {SEEN:g}σ apart or more; {' and '.join(least)} are nearest, {pairs[least]:.1f}σ"
+    text = (
+        "Standard deviations between an effect (row), as strong as asked about, and the most that another (column) can "
+        f"do of it; full colour from {SURE:g}σ on."
+    )
+    return matrix_chart(
+        "separations", title, text, np.minimum(sigma / SURE, 1.0), names, columns,
+        axes=("effect", "against"), written=written, quantity="σ",
+    )  # fmt: skip
+
+
+def thresholds_chart(found: Forecast) -> Chart:
+    """Return from what share of the severity asked about each effect is told."""
+    limits = found.now.limits
+    names = sorted(limits, key=lambda n: limits[n].separated / limits[n].clear)
+    shares = {n: (limits[n].seen / limits[n].clear, limits[n].separated / limits[n].clear) for n in names}
+    rows = {n: i for i, n in enumerate(names)}
+    series = []
+    for k, (meaning, colour, hollow) in enumerate(
+        (("seen from", "ink", True), ("told from all others", "blue", False))
+    ):
+        known = [n for n in names if math.isfinite(shares[n][k]) and shares[n][k] > 0]
+        text = [f"{n}\n{meaning} {100 * shares[n][k]:.3g} % of what is asked about" for n in known]
+        more = {"text": text, "hollow": hollow, "size": 4.5}
+        at = [100 * shares[n][k] for n in known]
+        series.append(Series(meaning, "points", at, [rows[n] for n in known], colour, more))
+    never = sum(not math.isfinite(shares[n][1]) for n in names)
+    early = sum(shares[n][1] <= 1 for n in names)
+    return Chart(
+        "thresholds",
+        f"{early} of {len(names)} effects are told from all others as strong as asked about, {never or 'none'} never",
+        "Ring: seen; dot: told from all others; dotted: as strong as asked about.",
+        Axis("severity, of what is asked about [%]", log=True),
+        Axis(names=tuple(names)),
+        series,
+        more={"lines": [100.0], "row": 22},
+    )
+
+
+def thresholds_table(document: dict[str, Any]) -> Raw:
+    """Return the severities in words."""
+    columns = [
+        Column(n) for n in ("effect", "seen from", "told from", "surely from", "asked about", "nearest")
+    ]
+    columns.append(Column("σ from it", lambda v: f"{v:.1f}"))
+    keys = ("effect", "seen_from", "separated_from", "sure_from", "asked", "nearest")
+    rows: list[list[Cell | Raw]] = [
+        [*(one[k] or "never" for k in keys), one["nearest_sigma"]] for one in document["now"]["effects"]
+    ]
+    statement = f"Seen: {SEEN:g} standard deviations beyond what tolerances explain; surely: {SURE:g} from all others."
+    return table(statement, columns, rows)
+
+
+def changes_table(found: Forecast) -> Raw:
+    """Return the changes, the most worth first."""
+    columns = [
+        Column("change"),
+        Column("newly separates"),
+        Column("severities become smaller by", lambda v: f"{v:.2f}"),
+        Column("pairs told apart", lambda v: f"{100 * v:.0f} %"),
+    ]
+    rows: list[list[Cell | Raw]] = [
+        [
+            one.change.measure,
+            some(separated(one.separates)) or "nothing",
+            one.factor,
+            one.after.separated_share,
+        ]
+        for one in found.advice
+    ]
+    return table("Changes of the test that were tried, the most worth first.", columns, rows)
+
+
+def _trials(checked: Check | None) -> Raw:
+    if checked is None:
+        return Raw("")
+    frame = checked.table
+    columns = [Column(str(name)) for name in frame.columns]
+    rows: list[list[Cell | Raw]] = [
+        ["" if v is None else str(v) for v in row] for row in frame.to_numpy().tolist()
+    ]
+    return joined(
+        bullets(list(checked.summary)),
+        table("Each trial: what was forecast and what was answered.", columns, rows),
+    )
+
+
+def _left_out(found: Forecast) -> Raw:
+    left = [
+        *found.known_test.left_out,
+        *(f"{key}: {why}" for key, why in NOT_FORECAST.items()),
+        "pairs of effects",
+    ]
+    return bullets(left)

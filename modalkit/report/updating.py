@@ -1,0 +1,188 @@
+"""The report of an update."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from datetime import datetime
+
+import numpy as np
+import pandas as pd
+
+from acquisition.display import counted
+from acquisition.quantities import percent
+from modalkit.figures.diagnosis.errors import ModeErrors
+from modalkit.report.charts.gap import gap_chart
+from modalkit.report.charts.matrix import matrix_chart
+from modalkit.report.charts.update import course_charts, factors_chart, frac_chart
+from modalkit.report.document import Document, Part, Section
+from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, joined, table
+from modalkit.report.page import page
+from modalkit.report.provenance import Basis, provenance
+from modalkit.report.sections import the_warnings
+from modalkit.report.tested import session_sections
+from modalkit.views.chart import Chart
+from modalkit.workflow.case import Session
+from modalkit.workflow.diagnosis import warnings_of
+from updating.frf_update import FrfUpdate
+from updating.update import Update
+from updating.update.statistics.doubts import untested
+
+
+def update_report(result: Update, sessions: Sequence[Session], *, when: datetime, command: str = "") -> str:
+    """Return the report of an update as the text of an HTML file.
+
+    Parameters
+    ----------
+    result : Update
+        By frequencies, or by FRFs.
+    sessions : sequence of Session
+        What was updated.
+    when : datetime
+        Date of the report.
+    command : str
+        What repeats it.
+    """
+    title = ", ".join(session.case.title for session in sessions)
+    basis = Basis(when, command, [session.study for session in sessions])
+    tests = [
+        section
+        for i, session in enumerate(sessions, start=1)
+        for section in session_sections(session, number=i, tests=len(sessions))
+    ]
+    return page(
+        Document(
+            title,
+            "update",
+            joined(element("h1", title), update_answer(result)),
+            [
+                *update_sections(result),
+                *tests,
+                Section("Warnings", [the_warnings([*result.warnings, *warnings_of(sessions)])]),
+                Section("What this rests on", [provenance(basis)]),
+            ],
+        )
+    )
+
+
+def update_sections(result: Update) -> list[Section]:
+    """Return errors, parameters, what is not determined, how all moved, and the statement of the fit."""
+    frac = frac_chart(result) if isinstance(result, FrfUpdate) else None
+    return [
+        Section("How far it closes", [*_errors(result), pairs_table(result)]),
+        Section("Parameters", [factors_chart(result), parameters_table(result), _correlations(result)]),
+        Section("What the data do not determine", [_undetermined(result)]),
+        Section("FRAC", [frac]),
+        Section("How the parameters moved", list(course_charts(result))),
+        Section("The whole statement", [element("pre", result.report())]),
+    ]
+
+
+def update_answer(result: Update) -> Raw:
+    """Return how far it closes, in a few lines."""
+    before, after = (percent(result.rms_percent(when)) for when in ("before", "after"))
+    state = "converged" if result.converged else "NOT converged"
+    stated = {
+        "Closes": f"frequency error {before} → {after} r.m.s. over {counted(int(result.pairs['used'].sum()), 'mode')}",
+        "Ended": f"{state} after {counted(result.iterations, 'iteration')}",
+        "Fits": "no degree of freedom is left to test the fit"
+        if result.dof <= 0
+        else f"misfit {result.reduced_chi2:.3g} measurement variances per degree of freedom ({result.dof} of them)",
+    }
+    if result.undetermined:
+        stated["Careful"] = f"the data do not determine {', '.join(result.undetermined)}"
+    quiet = element("p", untested(result.data, len(result.parameters))) if result.dof <= 0 else Raw("")
+    line = f"{before} → {after} r.m.s., {state}"
+    return joined(element("p", line, class_="answer"), definitions(stated, class_="letter"), quiet)
+
+
+def _errors(result: Update) -> list[Part]:
+    """Return the errors before and after, a chart for each study."""
+    studies = list(dict.fromkeys(result.pairs["study"]))
+    found: list[Part] = []
+    for i, study in enumerate(studies, start=1):
+        if len(studies) > 1:
+            found.append(element("h3", str(study)))
+        pairs = result.pairs[result.pairs["study"] == study]
+        test = pairs["test_hz"].to_numpy(float)
+        before, after = (100 * (pairs[name].to_numpy(float) / test - 1) for name in ("before_hz", "after_hz"))
+        errors = ModeErrors(test, before, after, None, None, "frequency")
+        found.append(gap_chart(errors, "gap" if i == 1 else f"gap-{i}"))
+    return found
+
+
+def pairs_table(result: Update) -> Raw:
+    """Return one row per pair."""
+    columns = [
+        Column("study"),
+        Column("test mode", lambda v: f"{v:.0f}"),
+        Column("model mode", lambda v: f"{v:.0f}"),
+        Column("MAC", lambda v: f"{v:.3f}"),
+        Column("test [Hz]", lambda v: f"{v:.3f}"),
+        Column("before [Hz]", lambda v: f"{v:.3f}"),
+        Column("after [Hz]", lambda v: f"{v:.3f}"),
+        Column("left [%]", lambda v: f"{v:+.3f}".replace("-", "−")),
+        Column("used"),
+    ]
+    rows: list[list[Cell | Raw]] = [_pair(row) for _, row in result.pairs.iterrows()]
+    return table("Paired modes before and after.", columns, rows)
+
+
+def _pair(row: pd.Series) -> list[Cell | Raw]:
+    left = 100 * (float(row["after_hz"]) / float(row["test_hz"]) - 1)
+    numbers = [float(row[name]) for name in ("mac", "test_hz", "before_hz", "after_hz")]
+    return [
+        str(row["study"]),
+        int(row["test_mode"]),
+        int(row["model_mode"]),
+        *numbers,
+        left,
+        "yes" if row["used"] else "no",
+    ]
+
+
+def parameters_table(result: Update) -> Raw:
+    """Return one row per parameter."""
+    short = "{:.5g}".format
+    columns = [
+        Column("parameter"),
+        Column("study"),
+        Column("value", short),
+        Column("± sigma", "{:.2g}".format),
+        Column("unit"),
+        Column("factor", "{:.4f}".format),
+        Column("range"),
+        Column("careful"),
+    ]
+    rows: list[list[Cell | Raw]] = []
+    for name, p in zip(result.names, result.parameters, strict=True):
+        careful = ["at the end of its range"] * p.at_bound + ["not determined by the data"] * (
+            name in result.undetermined
+        )
+        sigma = p.sigma if np.isfinite(p.sigma) else None
+        limits = f"{p.low:.4g} to {p.high:.4g}"
+        rows.append(
+            [p.name, p.study or "shared", p.value, sigma, p.unit, p.factor, limits, ", ".join(careful)]
+        )
+    return table("What was updated, with one standard deviation.", columns, rows)
+
+
+def _correlations(result: Update) -> Chart | None:
+    """Return the correlations of the parameters; None of a single one."""
+    if len(result.parameters) < 2:
+        return None
+    names = list(result.names)
+    values = np.asarray(result.correlations, dtype=float)
+    apart = np.abs(values - np.diag(np.diag(values)))
+    i, j = sorted(int(k) for k in np.unravel_index(int(np.nanargmax(apart)), apart.shape))
+    title = f"The most correlated parameters: {names[i]} and {names[j]}, {values[i, j]:+.2f}".replace(
+        "-", "−"
+    )
+    text = "Correlation of the estimates in hundredths; blue rises together, orange against one another."
+    return matrix_chart("correlations", title, text, values, names, names, quantity="correlation")
+
+
+def _undetermined(result: Update) -> Raw:
+    """Return the parameters that the data leave open."""
+    if not result.undetermined:
+        return element("p", "Nothing: every parameter is known better than before.")
+    return bullets(list(result.undetermined))

@@ -1,0 +1,11 @@
+"""Drawings of the browser as plain modules: those that the app and the report share."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+
+
+def shared() -> dict[str, Traversable]:
+    """Return the modules by their names."""
+    return {entry.name: entry for entry in files(__name__).iterdir() if entry.name.endswith(".js")}
