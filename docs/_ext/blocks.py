@@ -76,11 +76,19 @@ def blocks(text: str) -> Iterator[Block]:
         yield Block(found["kind"], found["mark"] or "", found["body"], line, (start, found.end("body")))
 
 
-def alike(written: str, printed: str) -> bool:
-    """Say whether a line prints the same: every word, and numbers to one unit of their last digit.
+ROUNDED = Decimal("0.03")
+"""How far apart, relative to their size, two numbers are that print the same result [-]."""
 
-    That unit is what another processor's rounding moves. Whole numbers are counts, and equal. Widths of columns
-    follow from the numbers and do not matter.
+
+PRECISE = 5
+"""From so many digits on a number is a measurement's, and has its last digit [-]."""
+
+
+def alike(written: str, printed: str) -> bool:
+    """Say whether a line prints the same: every word, numbers to one unit of their last digit, of few digits to 3 %.
+
+    So much another processor's rounding moves: a search that rests a step earlier, a sample more or less. Whole numbers
+    are counts, and equal. Widths of columns follow from the numbers and do not matter.
     """
     if written == printed:
         return True
@@ -96,7 +104,8 @@ def _near(a: str, b: str) -> bool:
         return False
     one, other = Decimal(a), Decimal(b)
     unit = max(Decimal(1).scaleb(int(d.as_tuple().exponent)) for d in (one, other))
-    return abs(one - other) <= unit
+    few = min(len(d.as_tuple().digits) for d in (one, other)) < PRECISE
+    return abs(one - other) <= max(unit, few * ROUNDED * max(abs(one), abs(other)))
 
 
 def same(written: str, printed: str) -> bool:

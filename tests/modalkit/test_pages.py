@@ -27,6 +27,8 @@ def pages() -> ModuleType:
     [
         ("mode 1: 24.4701 Hz", "mode 1: 24.4702 Hz", True),
         ("mode 1: 24.4701 Hz", "mode 1: 24.4703 Hz", False),
+        ("clamp_rotation  0.9622", "clamp_rotation  0.9701", True),
+        ("clamp_rotation  0.9622", "clamp_rotation  0.9101", False),
         ("p = 5e-09", "p = 6e-09", True),
         ("p = 5e-09", "p = 5e-08", False),
         ("75 hits, 0 left out", "75 hits, 1 left out", False),
@@ -36,7 +38,7 @@ def pages() -> ModuleType:
         ("closes 100 % (97 to 100)", "closes 100 % (96 to 100)", False),
     ],
 )
-def test_a_line_is_the_same_to_one_unit_of_a_last_digit(
+def test_a_line_is_the_same_up_to_another_processor_s_rounding(
     pages: ModuleType, written: str, printed: str, alike: bool
 ) -> None:
     assert pages.alike(written, printed) is alike
