@@ -383,6 +383,11 @@ RELINEARISATIONS = 3
 STRAINED_LINEARISATION = 0.01
 """Relative change of a tolerance's property that a linearisation bears [-]: its square is below the noise."""
 
+TURNED_SHAPE = 0.1
+"""Relative change of a mode's shape that a linearisation bears [-]: half its square is half the usual noise of shapes.
+Modes that are close turn by more under one sigma of a tolerance. Doubled: shapes of such modes err by twice their
+noise."""
+
 FARTHEST_TOLERANCE = 6.0
 """Tolerances are followed so far from nominal [standard deviations]: nobody believes in more."""
 

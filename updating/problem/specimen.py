@@ -33,7 +33,7 @@ from updating.prediction.predict import Prediction, Predictor
 from updating.problem.candidate import Candidate
 from updating.problem.theory_error import TheoryError
 from updating.test_data.measured import Measured
-from updating.thresholds import WIDE_TOLERANCE
+from updating.thresholds import STRAINED_LINEARISATION, TURNED_SHAPE, WIDE_TOLERANCE
 from updating.tolerances import Tolerances
 
 
@@ -164,12 +164,31 @@ class SpecimenProblem:
 
     @property
     def wide(self) -> bool:
-        """Whether tolerances are too wide for one linearisation."""
-        return bool(len(self.sigmas)) and float(self.sigmas.max()) > WIDE_TOLERANCE
+        """Whether tolerances are too wide for one linearisation, or turn modes that are close into each other."""
+        if not len(self.sigmas):
+            return False
+        return float(self.sigmas.max()) > WIDE_TOLERANCE or float(self.turning.max(initial=0.0)) > TURNED_SHAPE
+
+    @cached_property
+    def turning(self) -> FloatArray:
+        """Largest change that one standard deviation of each factor makes of a mode's shape, (n_names,) [-].
+
+        Relative to its size, its level left aside. Shapes of modes that are close turn into each other by what
+        separates the modes, over what lies between them: by much, and not in proportion.
+        """
+        constants, by = self.nominal.constants, self.nominal.constants_by
+        power = np.maximum(np.sum(constants**2, axis=0), 1e-300)
+        level = np.einsum("fm,fmk->mk", constants, by) / power[:, None]
+        turned = np.linalg.norm(by - constants[:, :, None] * level, axis=0) / np.sqrt(power)[:, None]
+        return np.asarray(self.sigmas * turned.max(axis=0, initial=0.0))
 
     def strain(self, shift: FloatArray) -> float:
-        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
-        moved = np.abs(shift[: len(self.names)] * self.sigmas)
+        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-].
+
+        What turns shapes counts as that change of a property which a linearisation bears as well.
+        """
+        turned = self.turning * STRAINED_LINEARISATION / TURNED_SHAPE
+        moved = np.abs(shift[: len(self.names)]) * np.maximum(self.sigmas, turned)
         return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
 
     def compare(
