@@ -167,7 +167,9 @@ class SpecimenProblem:
         """Whether tolerances are too wide for one linearisation, or turn modes that are close into each other."""
         if not len(self.sigmas):
             return False
-        return float(self.sigmas.max()) > WIDE_TOLERANCE or float(self.turning.max(initial=0.0)) > TURNED_SHAPE
+        return (
+            float(self.sigmas.max()) > WIDE_TOLERANCE or float(self.turning.max(initial=0.0)) > TURNED_SHAPE
+        )
 
     @cached_property
     def turning(self) -> FloatArray:
