@@ -23,15 +23,17 @@ SHARED = Path(__file__).resolve().parents[2] / "shared" / "data"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--slow", action="store_true", help="also run the tests marked slow")
+    parser.addoption("--long", action="store_true", help="also run the tests marked long, as .ci/run does")
+    parser.addoption("--slow", action="store_true", help="also run the tests marked long or slow")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if config.getoption("--slow"):
-        return
+    slow = config.getoption("--slow")
+    asked = {"slow": slow, "long": slow or config.getoption("--long")}
     for item in items:
-        if "slow" in item.keywords:
-            item.add_marker(pytest.mark.skip(reason="slow: run with --slow"))
+        for mark, wanted in asked.items():
+            if mark in item.keywords and not wanted:
+                item.add_marker(pytest.mark.skip(reason=f"{mark}: run with --{mark}"))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -13,6 +13,8 @@ from judge import BAD, Judge
 
 from updating.models.imported import market
 
+pytestmark = pytest.mark.long
+
 FAMILIES = {family.name: family for family in families()}
 MUTANTS = int(os.environ.get("ATTACK_MUTANTS", "2000"))
 

@@ -20,6 +20,8 @@ from updating import Material, Spec, build_structure
 from updating.models.imported import read_imported
 from updating.update import update
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples" / "calculix"
 SAMPLE = ROOT / "sample_data" / "plate_dry"

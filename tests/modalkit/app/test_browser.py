@@ -19,7 +19,10 @@ import pytest
 from opening import FAINT
 
 CHROMIUM = os.environ.get("MODALKIT_CHROMIUM") or shutil.which("chromium")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium here: apt-get install chromium")
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(CHROMIUM is None, reason="no chromium here: apt-get install chromium"),
+]
 sync = pytest.importorskip("playwright.sync_api", reason="no playwright here")
 
 PATIENCE = 90_000

@@ -21,6 +21,8 @@ from modalkit.batch.run import run_batch
 from modalkit.batch.writing import table_places
 from modalkit.output.destinations import check_outputs
 
+pytestmark = pytest.mark.long
+
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 MODES = """
 [test]

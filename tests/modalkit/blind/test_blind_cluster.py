@@ -19,6 +19,8 @@ from modalkit.blind.cluster import cluster_outcomes
 from modalkit.workers import cluster as cluster_module
 from modalkit.workers.cluster import Keeper
 
+pytestmark = pytest.mark.long
+
 distributed = pytest.importorskip("distributed")
 
 FAST = DrawRanges(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)

@@ -22,6 +22,8 @@ from acquisition.errors import EstimationError
 from modalkit.blind.diagnoser import Diagnoser
 from updating import LIBRARY
 
+pytestmark = pytest.mark.long
+
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 PROC = Path("/proc/self/task").is_dir()
 MOST = tuple(sorted(set(LIBRARY) - {"E", "density", "thickness", "clamp_rotation", "lumped_mass"}))

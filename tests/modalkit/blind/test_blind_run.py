@@ -16,6 +16,8 @@ from blind_stub import NONE
 from acquisition.errors import EstimationError, StudyError
 from modalkit.blind import BlindResult, DrawRanges, Outcome, diagnosers, open_seal, run_blind, score
 
+pytestmark = pytest.mark.long
+
 FAST = DrawRanges(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
 
 

@@ -24,6 +24,8 @@ from modalkit.blind import store as store_module
 from modalkit.cli import blinding
 from modalkit.workers.journal import Journal, read_journal
 
+pytestmark = pytest.mark.long
+
 FAST = DrawRanges(kinds=("beam",), effects=("none", "E", "clamp_rotation"), pairs=0.0, outside=0.0)
 SEED = 5
 

@@ -9,6 +9,8 @@ import pytest
 
 from updating import LIBRARY
 
+pytestmark = pytest.mark.long
+
 Run = Callable[..., tuple[int, str, str]]
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 PLATE = (16.76, 70.69, 104.91, 229.96, 296.64, 425.51, 446.90, 574.19, 591.14, 731.06)

@@ -13,6 +13,8 @@ from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from updating import Diagnosis, diagnose
 
+pytestmark = pytest.mark.long
+
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 TAPE = (0.5, 0.8)
 """Segments 6 to 8 [m]; the paper's beam is 1 m long."""

@@ -25,7 +25,10 @@ from modalkit.workflow.case import open_study
 from modalkit.workflow.identification import read
 
 CHROMIUM = os.environ.get("MODALKIT_CHROMIUM") or shutil.which("chromium")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium here: apt-get install chromium")
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(CHROMIUM is None, reason="no chromium here: apt-get install chromium"),
+]
 sync = pytest.importorskip("playwright.sync_api", reason="no playwright here")
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -25,6 +25,8 @@ from updating import (
 )
 from updating.models.state import State
 
+pytestmark = pytest.mark.long
+
 BEAM = FINE.with_elements(20)
 UNIT = BEAM.material.E * BEAM.width * BEAM.thickness**3 / 12 / BEAM.length
 THICK = replace(BEAM, thickness=0.012, theory="euler-bernoulli", regions=())

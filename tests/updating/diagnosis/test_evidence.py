@@ -21,6 +21,8 @@ from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import REPEATED_SCATTER_PRIOR, SHAPE_NOISE_SCALES
 
+pytestmark = pytest.mark.long
+
 COARSE = replace(BEAM, elements=(8,), theory="euler-bernoulli")
 HIT = np.array([0.1, 0.25, 0.376])
 MODULUS, GAIN = (

@@ -16,6 +16,8 @@ from updating import LIBRARY, Diagnosis, diagnose
 from updating.nominal import predictor_of
 from updating.problem.candidate import Candidate
 
+pytestmark = pytest.mark.long
+
 BEAM = FINE.with_elements(20)
 SOME = tuple(
     LIBRARY[name] for name in ("E", "density", "length", "sensor_mass", "clamp_rotation", "calibration_gain")

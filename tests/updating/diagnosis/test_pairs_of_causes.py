@@ -13,6 +13,8 @@ from updating import LIBRARY, Case, Diagnosis, Measured, Predictor, diagnose
 from updating.problem.candidate import Candidate
 from updating.thresholds import WELL_FITTED
 
+pytestmark = pytest.mark.long
+
 FREE = replace(BEAM, length=0.5, clamped=()).with_elements(20)
 PLACES = np.linspace(0.0, 0.5, 7)
 SENSORS = (0, 4)

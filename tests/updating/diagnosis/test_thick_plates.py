@@ -12,6 +12,8 @@ from modalkit.simulator.bodies.plate.parts import PlateAttached
 from modalkit.simulator.bodies.plate.plate import Plate
 from updating import LIBRARY, Case, Measured, Spec, diagnose
 
+pytestmark = pytest.mark.long
+
 SPEC = replace(PLATE, thickness=PLATE.width / 60, elements=(16, 10), clamped=())
 MODES, NOISE = 10, 1e-3
 SEARCHED = ("E", "thickness", "orthotropy", "local_stiffness", "lumped_mass", "damping_patch", "shear")

@@ -12,6 +12,8 @@ from updating import LIBRARY, Case, Diagnosis, Predictor, diagnose
 from updating.effects.measurement.points import indices
 from updating.test_data.measured import turn
 
+pytestmark = pytest.mark.long
+
 NAMES = (
     "E", "section_scale", "uniform_damping", "exponential_window", "calibration_gain", "channel_gain", "time_delay",
     "polarity", "swapped_points", "position_error",
