@@ -27,7 +27,7 @@ from modalkit.report.sections import (
     the_summary,
     the_warnings,
 )
-from modalkit.report.tested import session_sections
+from modalkit.report.tested import sections_of_all
 from modalkit.views.structure import structure_page
 from modalkit.workflow.case import Session
 from modalkit.workflow.diagnosis import warnings_of
@@ -51,11 +51,7 @@ def diagnosis_report(
         What repeats it.
     """
     basis = Basis(when, command, [session.study for session in sessions])
-    tests = [
-        section
-        for i, session in enumerate(sessions, start=1)
-        for section in session_sections(session, number=i, tests=len(sessions))
-    ]
+    tests = sections_of_all(sessions)
     return page(
         Document(
             diagnosis.title or "Diagnosis",

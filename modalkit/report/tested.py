@@ -21,6 +21,15 @@ from updating.correlation.correlate import correlate
 from updating.nominal import predictor_of
 
 
+def sections_of_all(sessions: Sequence[Session]) -> list[Section]:
+    """Return the sections of the tests of several studies, one after the other."""
+    return [
+        section
+        for i, session in enumerate(sessions, start=1)
+        for section in session_sections(session, number=i, tests=len(sessions))
+    ]
+
+
 def session_sections(session: Session, *, number: int = 1, tests: int = 1) -> list[Section]:
     """Return the sections of a study's test, with the model as it stands beside the shapes.
 

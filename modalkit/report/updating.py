@@ -19,7 +19,7 @@ from modalkit.report.html import Cell, Column, Raw, bullets, definitions, elemen
 from modalkit.report.page import page
 from modalkit.report.provenance import Basis, provenance
 from modalkit.report.sections import the_warnings
-from modalkit.report.tested import session_sections
+from modalkit.report.tested import sections_of_all
 from modalkit.views.chart import Chart
 from modalkit.workflow.case import Session
 from modalkit.workflow.diagnosis import warnings_of
@@ -44,11 +44,7 @@ def update_report(result: Update, sessions: Sequence[Session], *, when: datetime
     """
     title = ", ".join(session.case.title for session in sessions)
     basis = Basis(when, command, [session.study for session in sessions])
-    tests = [
-        section
-        for i, session in enumerate(sessions, start=1)
-        for section in session_sections(session, number=i, tests=len(sessions))
-    ]
+    tests = sections_of_all(sessions)
     return page(
         Document(
             title,

@@ -91,7 +91,7 @@ def stabilisation_figure(
         axes.set_xlim(low, high)
     _modes(front, model, origins)
     mark_modes(front, model.modal.frequency, width=width)
-    _letters(front, model, columns)
+    _draw_labels(front, model, columns)
     tall = figure.get_size_inches()[1]
     for k, line in enumerate(lines):
         figure.text(
@@ -128,13 +128,13 @@ def rejected_columns(model: ModalModel, origins: Origins) -> list[tuple[float, s
 
 
 def _reason(i: int, column: tuple[float, str]) -> list[str]:
-    text = f"{_letter(i)}   {hertz(column[0])}: {column[1]}"
+    text = f"{_label(i)}   {hertz(column[0])}: {column[1]}"
     return broken(text, 72 * (WIDTH - 2 * MARGIN), SMALL)
 
 
-def _letter(i: int) -> str:
+def _label(i: int) -> str:
     """Return a, b, ... z, aa, ab, ..."""
-    return (_letter(i // 26 - 1) if i >= 26 else "") + chr(ord("a") + i % 26)
+    return (_label(i // 26 - 1) if i >= 26 else "") + chr(ord("a") + i % 26)
 
 
 def _note(model: ModalModel) -> str:
@@ -214,7 +214,7 @@ def _modes(axes: Axes, model: ModalModel, origins: Origins) -> None:
     )
 
 
-def _letters(axes: Axes, model: ModalModel, columns: Sequence[tuple[float, str]]) -> None:
+def _draw_labels(axes: Axes, model: ModalModel, columns: Sequence[tuple[float, str]]) -> None:
     """Write a letter at the foot of each column that is no mode; those that stand close go one above the other."""
     low, high = _limits(model)
     last, level = -np.inf, 0
@@ -223,5 +223,5 @@ def _letters(axes: Axes, model: ModalModel, columns: Sequence[tuple[float, str]]
         level = level + 1 if frequency - last < 0.012 * (high - low) else 0
         last = frequency
         axes.text(
-            frequency, step * (0.35 + level), _letter(i), fontsize=SMALL, color=ORANGE, ha="center", zorder=4
+            frequency, step * (0.35 + level), _label(i), fontsize=SMALL, color=ORANGE, ha="center", zorder=4
         )

@@ -118,7 +118,7 @@ def test_unknown_says_what_the_nearest_set_lacks(lacks: Shortcoming, words: str)
     assert ("sensor_mass" in message) == (lacks != "fit")
 
 
-def test_a_likely_cause_of_a_gap_that_chance_might_make_is_told() -> None:
+def test_a_likely_cause_of_a_gap_that_chance_might_make_is_named() -> None:
     message = lines(replace(NONE, ranking=NAMED.ranking))
     assert "should there be one, sensor_mass is its likeliest cause" in message["Cause"]
     assert "test again" in message["Next"]

@@ -71,7 +71,7 @@ def test_a_gap_without_bands_says_how_far_off_it_is() -> None:
     )
 
 
-def test_nothing_outside_is_said_as_none() -> None:
+def test_no_frequency_outside_the_band_counts_as_none() -> None:
     assert "none outside" in gap_title(replace(errors(None, DOUBT), before=AFTER * 0.5))
 
 

@@ -54,7 +54,7 @@ def test_close_modes_that_a_tolerance_turns_fit(off: float) -> None:
     assert found.chi2 < 1.3 * found.count
 
 
-def test_modes_that_lie_apart_are_linearised_once() -> None:
+def test_distant_modes_are_linearised_once() -> None:
     problem = clamped_plate(0.92 * SIDE, off=1.0)
     assert not problem.wide
     assert evaluate(problem, Candidate(), np.zeros(0)).marginal.scale == 1.0

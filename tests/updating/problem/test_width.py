@@ -49,7 +49,7 @@ def test_bricks_are_as_much_stiffer(tmp_path: Path) -> None:
     assert np.log(bending / own) == pytest.approx(stiffening(spec, np.arange(4)), abs=1e-3)
 
 
-def test_it_is_told_where_it_is_more_than_the_noise() -> None:
+def test_a_remark_stands_where_it_is_more_than_the_noise() -> None:
     test = blank(np.array([0.4]))
     assert test.repeatability < 1e-3
     (note,) = on_width(beam(0.04), np.arange(len(test.frequency)), test)
