@@ -214,6 +214,14 @@ OUTLIER_SCALES = (3.0, 10.0, 30.0, 100.0)
 """How many times worse such a group may be [-], each as likely: from a stated sigma that is too small to a frequency
 that belongs to another body. Doubled: an oddity of 4 sigma stays an argument."""
 
+DISCREPANCY_SIZES = (0.001, 0.003, 0.01)
+"""How far a model may be off in every frequency by what nobody modelled, relative, 1 sigma [-]: from what a finer
+theory changes of a thin plate to what a real bracket's fillets do. More is a cause."""
+
+DISCREPANCY_PRIOR = 0.1
+"""Prior that a model is off by any of them [-]. Judged: of the measured structures some do not follow their model to
+the noise whatever is put into it. Doubled: a cause that leaves a little is named a little sooner, ln 2."""
+
 MOST_OUTLIERS = 3
 """So many groups at most are taken to be odd at once: with more of them a test says nothing."""
 
@@ -388,10 +396,9 @@ RELINEARISATIONS = 3
 STRAINED_LINEARISATION = 0.01
 """Relative change of a tolerance's property that a linearisation bears [-]: its square is below the noise."""
 
-TURNED_SHAPE = 0.1
-"""Relative change of a mode's shape that a linearisation bears [-]: half its square is half the usual noise of shapes.
-Modes that are close turn by more under one sigma of a tolerance. Doubled: shapes of such modes err by twice their
-noise."""
+BENT_DATA = 1.0
+"""How far all data together may leave their linearisation, in standard deviations of their noise [-]: what changes
+chi-squared by about one. Doubled: shapes of modes that are close err by as much as one in twenty tests by chance."""
 
 FARTHEST_TOLERANCE = 6.0
 """Tolerances are followed so far from nominal [standard deviations]: nobody believes in more."""

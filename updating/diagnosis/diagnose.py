@@ -33,7 +33,6 @@ from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
 from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction, theory_error
 from updating.problem.specimen import SpecimenProblem
-from updating.problem.width import on_width
 from updating.test_data.same_places import unmatched
 from updating.thresholds import FEWEST_DATA
 
@@ -308,7 +307,6 @@ def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:
         notes += notes_on_doubtful(one)
         if one.theory_error is not None:
             notes += notes_on(one.theory_error, one.measured, one.predictor.spec)
-        notes += on_width(one.predictor.spec, one.order, one.measured)
         notes += on_reduction(one.predictor, len(one.measured.frequency))
         notes += on_modes(one.measured, one.predictor.predict(at_least=one.reach).frequency, one.order)
         wet = one.predictor.environment.fluid_density is not None

@@ -9,7 +9,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
-from updating.thresholds import LEAST_FREQUENCY_NOISE, MESH_UNEVENNESS
+from updating.thresholds import LEAST_FREQUENCY_NOISE
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,14 +20,14 @@ class Frequencies(Quantity):
     ----------
     setting : Setting
         Test and model.
-    accepted : (n_modes,) array
-        Variance of ln f by how far the idealisations of the effects put into the model beforehand may be off [-].
-    mesh : (n_modes,) array, optional
-        What the mesh leaves off in ln f; None where nothing is known of it, or a baseline has taken it out [-].
+    further : (n_modes,) array
+        Variance of ln f that is no noise of the test: what stands in the model beforehand and its mesh leave off [-].
+    common : (n_modes, k) array
+        What the model leaves off in ln f alike in all modes, per standard deviation: by its mesh, its theory [-].
     """
 
-    accepted: FloatArray
-    mesh: FloatArray | None = None
+    further: FloatArray
+    common: FloatArray
 
     @property
     def present(self) -> bool:
@@ -44,21 +44,12 @@ class Frequencies(Quantity):
         if before is not None:
             doubt, known = before.frequency(now)
             variance, by = variance + doubt, by - known
-        variance = variance + self.accepted
+        variance = variance + self.further
         n = len(test.frequency)
         named = np.zeros((n, 0))
-        own, uneven = self._mesh()
-        variance = variance + uneven
         if view.doubt.fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
             doubtful = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)
             variance, named = variance + doubtful**2, doubtful[:, None]
         residual = np.log(test.frequency / now.frequency)
-        return Block("frequency", residual, variance, by, named, own, np.arange(n))
-
-    def _mesh(self) -> tuple[FloatArray, FloatArray]:
-        """Return what the mesh leaves off in ln f: a column of doubt common to all modes, variance mode by mode."""
-        if self.mesh is None:
-            n = len(self.setting.measured.frequency)
-            return np.zeros((n, 0)), np.zeros(n)
-        return self.mesh[:, None], (MESH_UNEVENNESS * self.mesh) ** 2
+        return Block("frequency", residual, variance, by, named, self.common, np.arange(n))

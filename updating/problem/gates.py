@@ -57,6 +57,13 @@ def notes_on(found: TheoryError, measured: Measured, spec: Spec) -> list[str]:
             f"{spec.theory} theory leaves out shear and rotary inertia: {_percent(found.theory[worst])} in mode "
             f'{worst + 1}, more than the noise of {_percent(noise[worst])}; theory = "{spec.fuller}" has them'
         )
+    worst = int(np.argmax(found.width / noise))
+    if found.width[worst] > noise[worst]:
+        notes.append(
+            f"a theory of beams leaves out that a section bends across its width, and that clamps hinder it: up to "
+            f"{_percent(found.width[worst])} in mode {worst + 1}, more than the noise of {_percent(noise[worst])}, "
+            'and taken as a doubt; type = "plate" has both'
+        )
     return notes
 
 

@@ -27,13 +27,13 @@ from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
 from updating.models.base import FACTORS
-from updating.models.state import State
+from updating.models.state import NOMINAL, State
 from updating.prediction.matching import match
 from updating.prediction.predict import Prediction, Predictor
 from updating.problem.candidate import Candidate
 from updating.problem.theory_error import TheoryError
 from updating.test_data.measured import Measured
-from updating.thresholds import STRAINED_LINEARISATION, TURNED_SHAPE, WIDE_TOLERANCE
+from updating.thresholds import BENT_DATA, MESH_UNEVENNESS, STRAINED_LINEARISATION, WIDE_TOLERANCE
 from updating.tolerances import Tolerances
 
 
@@ -57,7 +57,7 @@ class SpecimenProblem:
         Rank of the model mode of each of them, for data without shapes.
     accepted : tuple of Effect
         Effects put into the model beforehand, the first of the predictor's additions.
-    theory_error : Shortfall, optional
+    theory_error : TheoryError, optional
         How far the mesh, and the theory, leave each mode's frequency off.
     mostly_alone : bool
         Whether most of the measured modes have no partner, and are left out.
@@ -164,33 +164,35 @@ class SpecimenProblem:
 
     @property
     def wide(self) -> bool:
-        """Whether tolerances are too wide for one linearisation, or turn modes that are close into each other."""
+        """Whether tolerances are too wide for one linearisation, or bend what is measured beyond its noise."""
         if not len(self.sigmas):
             return False
-        return (
-            float(self.sigmas.max()) > WIDE_TOLERANCE or float(self.turning.max(initial=0.0)) > TURNED_SHAPE
-        )
+        return float(self.sigmas.max()) > WIDE_TOLERANCE or float(self.bending.max()) > BENT_DATA
 
     @cached_property
-    def turning(self) -> FloatArray:
-        """Largest change that one standard deviation of each factor makes of a mode's shape, (n_names,) [-].
+    def bending(self) -> FloatArray:
+        """How far all data leave their linearisation at one standard deviation of each factor, (n_names,) [noise].
 
-        Relative to its size, its level left aside. Shapes of modes that are close turn into each other by what
-        separates the modes, over what lies between them: by much, and not in proportion.
+        Most follow a power of it and stay. Not so the shapes of modes that are close, which turn into each other,
+        nor the constants of a mode that hardly moves where it is hit, which are products of two that change.
         """
-        constants, by = self.nominal.constants, self.nominal.constants_by
-        power = np.maximum(np.sum(constants**2, axis=0), 1e-300)
-        level = np.einsum("fm,fmk->mk", constants, by) / power[:, None]
-        turned = np.linalg.norm(by - constants[:, :, None] * level, axis=0) / np.sqrt(power)[:, None]
-        return np.asarray(self.sigmas * turned.max(axis=0, initial=0.0))
+        count = len(self.names)
+        start = self.compare(NOMINAL)
+        found = []
+        for shift in np.eye(count):
+            there = self.compare(NOMINAL, shift)
+            # a comparison's residual is carried back to no shift: by its own slope there, by the first one here
+            off = there.residual - start.residual - (there.nuisance - start.nuisance)[:, :count] @ shift
+            found.append(float(np.linalg.norm(np.nan_to_num(off / np.sqrt(start.variance)))))
+        return np.array(found)
 
     def strain(self, shift: FloatArray) -> float:
         """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-].
 
-        What turns shapes counts as that change of a property which a linearisation bears as well.
+        What bends the data counts as that change of a property which a linearisation bears as well.
         """
-        turned = self.turning * STRAINED_LINEARISATION / TURNED_SHAPE
-        moved = np.abs(shift[: len(self.names)]) * np.maximum(self.sigmas, turned)
+        bent = np.sqrt(self.bending / BENT_DATA) * STRAINED_LINEARISATION
+        moved = np.abs(shift[: len(self.names)]) * np.maximum(self.sigmas, bent)
         return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
 
     def compare(
@@ -221,8 +223,9 @@ class SpecimenProblem:
         """The kinds of data that the test has, in the order of ``CHANNELS``."""
         setting = self.setting
         phases = Phases(setting)
+        left_out, uneven = self._left_out()
         every = (
-            Frequencies(setting, self._accepted_variance(), self._mesh()),
+            Frequencies(setting, self._accepted_variance() + uneven, left_out),
             Dampings(setting),
             Constants(setting, phases),
             phases,
@@ -240,10 +243,17 @@ class SpecimenProblem:
         """Rows of modes whose damping is measured and expected."""
         return Dampings(self.setting).rows
 
-    def _mesh(self) -> FloatArray | None:
-        """Return what the mesh leaves off in ln f, or None where nothing is known of it or a baseline took it out."""
+    def _left_out(self) -> tuple[FloatArray, FloatArray]:
+        """Return what mesh and theory leave off in ln f: columns common to all modes, variance mode by mode.
+
+        Nothing where nothing is known of it, or a baseline took it out.
+        """
         found = self.theory_error
-        return None if found is None or not found.known or self.baseline is not None else found.mesh
+        if found is None or not found.known or self.baseline is not None:
+            n = len(self.measured.frequency)
+            return np.zeros((n, 0)), np.zeros(n)
+        columns = [found.mesh, found.width] if found.width.any() else [found.mesh]
+        return np.stack(columns, axis=1), (MESH_UNEVENNESS * found.mesh) ** 2
 
     def _accepted_variance(self) -> FloatArray:
         """Return how far the idealisations of the effects put into the model beforehand may be off, relative [-]."""

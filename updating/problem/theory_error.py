@@ -16,6 +16,7 @@ from updating.models.spec import Spec
 from updating.models.state import NOMINAL
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
+from updating.problem.width import stiffening
 from updating.thresholds import LEAST_CONSTANT_NOISE, LEAST_FREQUENCY_NOISE, THEORY_BEYOND_NOISE
 
 if TYPE_CHECKING:
@@ -33,17 +34,20 @@ class TheoryError:
     ----------
     mesh, theory : (n_modes,) arrays
         ln of the better frequency over the model's; theory is 0 where nothing fuller is known [-].
+    width : (n_modes,) array
+        The same by bending across the width of a beam, see :mod:`updating.problem.width` [-].
     known : bool
         Whether anything is known; imported matrices cannot be refined.
     """
 
     mesh: FloatArray
     theory: FloatArray
+    width: FloatArray
     known: bool = True
 
     @property
     def total(self) -> FloatArray:
-        """Both together, (n_modes,) [-]."""
+        """Mesh and theory together, (n_modes,) [-]."""
         return self.mesh + self.theory
 
 
@@ -72,9 +76,11 @@ def theory_error(predictor: Predictor, order: IntArray, *, count: int | None = N
     needed = max(count or 0, int(order.max()) + 1)
     reduced = predictor.reduced
     if not reduced.structure.refinable:
-        return TheoryError(np.zeros(len(order)), np.zeros(len(order)), known=False)
+        nothing = np.zeros(len(order))
+        return TheoryError(nothing, nothing, nothing, known=False)
     base, vectors = _elastic(reduced, needed)
-    return TheoryError(_mesh(predictor.spec, base)[order], _theory(predictor, base, vectors)[order])
+    mesh, theory = _mesh(predictor.spec, base), _theory(predictor, base, vectors)
+    return TheoryError(mesh[order], theory[order], stiffening(predictor.spec, order))
 
 
 def _elastic(reduced: Reduced, count: int) -> tuple[FloatArray, FloatArray]:

@@ -3,7 +3,8 @@
 Poisson's ratio curves the section of a bent beam the other way. Where the wavelength is not long beside the width it
 can do so only in part, and a clamp forbids it: both stiffen, the clamp as if the beam were shorter by nu^2 b sqrt((1 -
 nu) / 6), some 0.03 of its width b (from the energy of a strip whose anticlastic curvature dies out towards the clamp).
-A plate of the same outline knows both, and says by how much.
+A plate of the same outline knows both, and says by how much. A real beam has all of it, a model of beams nothing: so
+it is a doubt of the frequencies, one amount for all modes together.
 """
 
 from __future__ import annotations
@@ -11,10 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from acquisition.quantities import percent
 from updating.models.build import build_structure
 from updating.models.spec import Spec
-from updating.test_data.measured import Measured
 from updating.thresholds import STRIP_ACROSS, STRIP_ALONG, TWIST_ALONE
 
 
@@ -58,17 +57,3 @@ def _bending(spec: Spec, count: int) -> FloatArray:
     points = np.stack([line, np.full_like(line, spec.width / 2)], axis=1)[:, : spec.dim]
     moved = np.abs(structure.rows(points)["w"] @ vectors[:, first:]).max(axis=0)
     return np.asarray(np.sqrt(values[first:][moved > TWIST_ALONE * moved.max()][:count]))
-
-
-def on_width(spec: Spec, order: IntArray, measured: Measured) -> list[str]:
-    """Return a remark where that is more than the noise of the frequencies."""
-    missed = stiffening(spec, order)
-    noise = np.hypot(measured.frequency_sigma / measured.frequency, measured.repeatability)
-    worst = int(np.argmax(missed / noise))
-    if missed[worst] <= noise[worst]:
-        return []
-    return [
-        f"a theory of beams leaves out that a section bends across its width, and that clamps hinder it: "
-        f"{percent(100 * missed[worst])} in mode {worst + 1}, more than the noise of {percent(100 * noise[worst])}; "
-        'type = "plate" has both'
-    ]

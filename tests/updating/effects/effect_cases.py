@@ -212,6 +212,7 @@ def _across(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]
     xx, yy, xy = (fields.sampled[n] for n in ("wxx", "wyy", "wxy"))
     mixed = xx.T @ rigidity @ yy
     root = np.sqrt(ratio) - 1
+    root += np.sqrt(ratio) * (values.get("coupling", 1.0) - 1)
     change = (ratio - 1) * (yy.T @ rigidity @ yy) + root * nu * (mixed + mixed.T)
     twist = values.get("shear_ratio", 1.0) * np.sqrt(ratio) - 1
     return {"stiffness": change + twist * 2 * (1 - nu) * (xy.T @ rigidity @ xy)}
@@ -289,7 +290,7 @@ CONTRACT = {
     "ground_spring": {"x", "y", "extent", "stiffness", "damping"},
     "suspension": {"stiffness", "damping", "inset", "cords"},
     "shear": set(),
-    "orthotropy": {"ratio", "shear_ratio"},
+    "orthotropy": {"ratio", "shear_ratio", "coupling"},
     "axial_load": {"force"},
     "fluid_added_mass": {"fluid_density", "free_surface", "bottom"},
     "fluid_damping": {"viscosity"},
@@ -319,7 +320,7 @@ VANISHING = {
     "lumped_mass": {"mass": 0.0},
     "local_stiffness": {"loss": 0.0},
     "ground_spring": {"stiffness": 0.0, "damping": 0.0},
-    "orthotropy": {"ratio": 1.0, "shear_ratio": 1.0},
+    "orthotropy": {"ratio": 1.0, "shear_ratio": 1.0, "coupling": 1.0},
     "axial_load": {"force": 0.0},
     "fluid_added_mass": {"fluid_density": 0.0},
     "fluid_damping": {"viscosity": 0.0},

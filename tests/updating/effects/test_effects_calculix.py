@@ -116,17 +116,21 @@ def test_a_span_of_a_beam(tmp_path: Path, low: float, high: float, loss: float) 
     assert moved == pytest.approx(shift(theirs, bare), abs=effect.fidelity * np.abs(moved).max(), rel=0.0)
 
 
-@pytest.mark.parametrize(("ratio", "shear_ratio"), [(0.4, 0.5), (2.0, 1.0), (0.75, 1.4)])
-def test_engineering_constants(tmp_path: Path, ratio: float, shear_ratio: float) -> None:
-    """nu_xy = nu / sqrt(ratio): the product with nu_yx, and so D_x, stay. Moduli across the thickness hardly count."""
-    root = ratio**0.5
+@pytest.mark.parametrize(
+    ("ratio", "shear_ratio", "coupling"),
+    [(0.4, 0.5, 1.0), (2.0, 1.0, 1.0), (0.75, 1.4, 0.75**0.5), (2.0, 0.8, 1.3)],
+)
+def test_engineering_constants(tmp_path: Path, ratio: float, shear_ratio: float, coupling: float) -> None:
+    """nu_xy nu_yx = (nu coupling)^2, and E_x so that D_x stays. Moduli across the thickness hardly count."""
+    root, mean = ratio**0.5, coupling * NU
+    along = E * (1 - mean**2) / (1 - NU**2)
     shear = E / (2 * (1 + NU)) * root
     lines = (
         "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n"
-        f"{E!r}, {ratio * E!r}, {E!r}, {NU / root!r}, {NU!r}, {NU!r}, {shear_ratio * shear!r}, {shear!r},\n"
-        f"{shear!r}, 293."
+        f"{along!r}, {ratio * along!r}, {along!r}, {mean / root!r}, {NU!r}, {NU!r}, "
+        f"{shear_ratio * shear!r}, {shear!r},\n{shear!r}, 293."
     )
-    values = {"ratio": ratio, "shear_ratio": shear_ratio}
+    values = {"ratio": ratio, "shear_ratio": shear_ratio, "coupling": coupling}
     found, theirs = beside_bricks(tmp_path, "orthotropy", values, bricks(elastic=lines))
     assert np.abs(theirs).max() > 0.1
     assert found == pytest.approx(theirs, rel=0.02, abs=5e-3)

@@ -166,18 +166,20 @@ def test_huber_is_a_change_of_scale_across(ratio: float) -> None:
     assert found == pytest.approx(np.sqrt(values) / (2 * np.pi), rel=5e-4)
 
 
-@pytest.mark.parametrize(("ratio", "shear_ratio"), [(0.5, 0.3), (1.8, 2.0), (4.0, 0.15)])
-def test_a_hinged_plate_of_three_constants(ratio: float, shear_ratio: float) -> None:
+@pytest.mark.parametrize(
+    ("ratio", "shear_ratio", "coupling"), [(0.5, 0.3, 1.0), (1.8, 2.0, 0.4), (4.0, 0.15, 2.0)]
+)
+def test_a_hinged_plate_of_four_constants(ratio: float, shear_ratio: float, coupling: float) -> None:
     """Lekhnitskii, Anisotropic Plates, 1968: the shapes are sines, the frequencies a sum of D_1, D_2 and D_3."""
     around = replace(PLATE, clamped=("x0", "x1", "y0", "y1"), elements=(14, 10), regions=(), masses=())
     inside = np.array([(x, y) for x in np.linspace(0.05, 0.35, 4) for y in (0.02, 0.1, 0.17)])
     predictor = Predictor(around, blank(inside))
     hinges = LIBRARY["clamp_rotation"].state(predictor, {"stiffness": 1e-3})
-    values = {"ratio": ratio, "shear_ratio": shear_ratio}
+    values = {"ratio": ratio, "shear_ratio": shear_ratio, "coupling": coupling}
     found = predictor.predict(LIBRARY["orthotropy"].state(predictor, values).plus(hinges), count=8).frequency
     nu = STEEL.poisson
     along = STEEL.E * PLATE.thickness**3 / 12 / (1 - nu**2)
-    mixed = np.sqrt(ratio) * (nu + (1 - nu) * shear_ratio)
+    mixed = np.sqrt(ratio) * (nu * coupling + (1 - nu) * shear_ratio)
     m, n = np.meshgrid(np.arange(1, 12) / PLATE.length, np.arange(1, 8) / PLATE.width)
     energy = along * (m**4 + 2 * mixed * (m * n) ** 2 + ratio * n**4)
     exact = np.pi / 2 * np.sort(np.sqrt(energy / STEEL.density / PLATE.thickness), axis=None)[:8]

@@ -7,8 +7,12 @@ import pytest
 from calculix_bricks import Bricks, isotropic, modes, needs_ccx
 from updating_cases import blank
 
-from updating import Material, Predictor, Spec
-from updating.problem.width import on_width, stiffening
+from updating import Material, Predictor, Spec, Tolerances
+from updating.problem.candidate import Candidate
+from updating.problem.gates import notes_on
+from updating.problem.specimen import SpecimenProblem
+from updating.problem.theory_error import theory_error
+from updating.problem.width import stiffening
 
 
 def beam(width: float, *, poisson: float = 0.3, clamped: tuple[str, ...] = ("x0",)) -> Spec:
@@ -51,7 +55,21 @@ def test_bricks_are_as_much_stiffer(tmp_path: Path) -> None:
 
 def test_a_remark_stands_where_it_is_more_than_the_noise() -> None:
     test = blank(np.array([0.4]))
+    order = np.arange(len(test.frequency))
     assert test.repeatability < 1e-3
-    (note,) = on_width(beam(0.04), np.arange(len(test.frequency)), test)
-    assert 'type = "plate" has both' in note
-    assert on_width(beam(0.001), np.arange(len(test.frequency)), test) == []
+    for width, remarked in ((0.04, True), (0.001, False)):
+        found = theory_error(Predictor(beam(width), test), order)
+        assert (
+            any('type = "plate" has both' in note for note in notes_on(found, test, beam(width))) == remarked
+        )
+
+
+def test_frequencies_may_be_higher_by_it_and_a_beam_of_no_width_by_nothing() -> None:
+    test = blank(np.array([0.4]))
+    predictor = Predictor(beam(0.04), test)
+    order = np.arange(len(test.frequency))
+    problem = SpecimenProblem(
+        predictor, test, Tolerances(), order, theory_error=theory_error(predictor, order)
+    )
+    nuisance = problem.at(Candidate(), np.zeros(0)).nuisance
+    assert any(np.allclose(column[order], stiffening(predictor.spec, order)) for column in nuisance.T)

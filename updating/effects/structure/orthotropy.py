@@ -1,4 +1,4 @@
-"""A plate that is stiffer along one axis than along the other, and shears in its plane as it likes."""
+"""A plate that is stiffer along one axis than along the other, with a shear and a Poisson's ratio of its own."""
 
 from __future__ import annotations
 
@@ -22,17 +22,24 @@ SHARES = {("wyy", "wyy"): 1.0, ("wxx", "wyy"): 0.5, ("wxy", "wxy"): 0.5} | {
 TWIST = frozenset({("wxy", "wxy"), ("rt", "rt")})
 """Terms that grow with the modulus of shear in the plane; those across the plate's thickness are others."""
 
+COUPLING = frozenset({("wxx", "wyy"), ("rxx", "ryy")})
+"""Terms that grow with Poisson's ratio, the geometric mean of that along and that across."""
+
 HUBER = 1.0
-"""The shear modulus where none is told, over that of Huber [-]."""
+"""Shear modulus and coupling where none is told, over those of Huber [-]."""
+
+FIRMEST = 0.95
+"""Most that the coupling may be of what makes bending cost nothing, D_1 = sqrt(D_x D_y) [-]."""
 
 
 class Orthotropy(Effect):
     """Rolled sheet, wood, laminates, ribs: stiffness across, and in twist, differs from that along.
 
-    ``ratio`` is D_y / D_x = E_y / E_x; D_x stays the model's. The coupling follows the geometric mean,
-    D_1 = nu D_x sqrt(ratio), and so does the twist but for a factor of its own: 2 D_xy = (1 - nu) D_x sqrt(ratio)
-    shear_ratio (Huber 1923 with shear_ratio 1; Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells,
-    section 86; of three independent constants Lekhnitskii, Anisotropic Plates, 1968).
+    ``ratio`` is D_y / D_x = E_y / E_x; D_x stays the model's. Coupling and twist follow the geometric mean but for a
+    factor of their own: D_1 = nu D_x sqrt(ratio) coupling, 2 D_xy = (1 - nu) D_x sqrt(ratio) shear_ratio (Huber 1923
+    with both 1; Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, section 86; of independent constants
+    Lekhnitskii, Anisotropic Plates, 1968). A sheet whose Poisson's ratio along is the model's has the coupling
+    sqrt(ratio).
     """
 
     name = "orthotropy"
@@ -42,7 +49,7 @@ class Orthotropy(Effect):
     )
     footprint = (
         "Modes that bend across shift with the ratio, modes of torsion half as far, modes that bend along hardly at "
-        "all; the ratio of shear moves modes of torsion alone."
+        "all; the ratio of shear moves modes of torsion alone, the coupling those that bend both ways."
     )
     models = ("plate",)
     separated_by = "strips cut along, across and at 45 degrees, or the data sheet of the sheet"
@@ -50,22 +57,29 @@ class Orthotropy(Effect):
     fidelity = 0.03
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
-        """Return both ratios."""
+        """Return the ratio of stiffness, and those of shear and of Poisson's ratio to Huber's."""
         why = "from unidirectional laminates and ribbed sheet along x to the same along y; rolled sheet 0.9 to 1.1"
         shear = (
             "from woven carbon (0.15), open ribs and unidirectional laminates (0.3 to 0.5), wood (0.5 to 0.7) over "
             "rolled sheet (0.85 to 1.15) to layers at 45 degrees (2.4)"
         )
+        coupling = (
+            "from woven carbon and unidirectional laminates (0.15 to 0.3) over rolled sheet (0.85 to 1.15) to layers "
+            "at 45 degrees (2.5), short of a sheet that bends into a saddle for nothing"
+        )
         return (
             Parameter("ratio", "-", 0.25, 4.0, why, log=True),
             Parameter("shear_ratio", "-", 0.15, 2.5, shear, log=True, default=HUBER),
+            Parameter("coupling", "-", 0.15, self._most(predictor), coupling, log=True, default=HUBER),
         )
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a grid: where modes change places the likelihood has maxima of its own."""
-        _, shear = self.parameters(predictor)
-        middle = shear.coordinate(HUBER)
-        return tuple((u, v) for v in (middle - 0.25, middle, middle + 0.15) for u in (0.2, 0.4, 0.6, 0.8))
+        _, shear, coupling = self.parameters(predictor)
+        middle, usual = shear.coordinate(HUBER), coupling.coordinate(HUBER)
+        return tuple(
+            (u, v, usual) for v in (middle - 0.25, middle, middle + 0.15) for u in (0.2, 0.4, 0.6, 0.8)
+        )
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the plate with its terms across and in twist scaled."""
@@ -78,8 +92,14 @@ class Orthotropy(Effect):
             if term.kind == "stiffness" and fields in SHARES:
                 grown = values["ratio"] ** SHARES[fields]
                 grown *= values.get("shear_ratio", HUBER) if fields in TWIST else 1.0
+                grown *= values.get("coupling", HUBER) if fields in COUPLING else 1.0
                 change = change + (grown - 1) * term.scale(predictor.base.factors) * whole
         return State(stiffness=(change,))
+
+    @staticmethod
+    def _most(predictor: Predictor) -> float:
+        """Return the firmest coupling of the model's material."""
+        return min(2.5, FIRMEST / max(predictor.spec.material.poisson, 1e-9))
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return the modulus of shear in the plane over E_x, which is what the twist determines."""
