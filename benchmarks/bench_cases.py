@@ -89,13 +89,9 @@ def judged(trial: Trial) -> tuple[str, bool | None, str]:
 
 
 def each(jobs: Sequence[Job], workers: int, keep: Path | None) -> Iterator[Judged]:
-    """Yield the trials as they end."""
-    work = partial(run, keep=keep)
-    if workers == 1:
-        yield from map(work, jobs)
-        return
-    with get_context("fork").Pool(workers) as pool:
-        yield from pool.imap_unordered(work, jobs)
+    """Yield the trials as they end, each from a process of its own, with which goes what it has cached."""
+    with get_context("fork").Pool(workers, maxtasksperchild=1) as pool:
+        yield from pool.imap_unordered(partial(run, keep=keep), jobs)
 
 
 def table(found: Sequence[Judged]) -> str:

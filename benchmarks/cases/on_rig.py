@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from cases.rig import Values, frequencies_alone, hidden_values, on_rig, rebanded, specimen
+from cases.rig import Values, banded, frequencies_alone, hidden_values, on_rig, specimen
 from cases.trial import Cause, Make, Trial
-from modalkit.simulator.drawing.common import draw_tank
+from modalkit.simulator.drawing.common import draw_tank, rayleigh
 from modalkit.simulator.hidden import HIDDEN_EFFECTS
 from modalkit.simulator.hidden.base import draw_within, either_sign
+from modalkit.simulator.scene import nominal_scene
 from modalkit.simulator.setup import Setup
 
 WATER = 998.0
@@ -33,7 +34,11 @@ def thick_plate(theory: str) -> Make:
     def make(rng: np.random.Generator, folder: Path) -> Trial:
         while True:
             thin = specimen(rng, "plate")
-            setup = rebanded(rng, replace(thin, thickness=round(thin.width / 60, 5), theory=theory))
+            thick = round(thin.width / 60, 5)
+            setup = replace(thin, thickness=thick, theory=theory, title=f"Plate, {1e3 * thick:.1f} mm thick")
+            hertz = setup.nominal_hz
+            alpha, beta = rayleigh(rng, hertz[0], hertz[setup.modes - 1])
+            setup = banded(replace(setup, alpha=alpha, beta=beta), hertz)
             if setup.band[1] <= HIGHEST:
                 return on_rig(rng, folder, setup, {})
 
@@ -47,17 +52,23 @@ def tank(rng: np.random.Generator, setup: Setup) -> dict[str, float]:
     return drawn
 
 
+def in_water(rng: np.random.Generator, folder: Path, setup: Setup, water: Values) -> Trial:
+    """Put a plate into water; whoever tests it there chooses the band for what he sees."""
+    wet = HIDDEN_EFFECTS["fluid_added_mass"].act(nominal_scene(setup), dict(water))
+    return on_rig(rng, folder, banded(setup, wet.elastic().frequency.tolist()), {"fluid_added_mass": water})
+
+
 def stated_tank(rng: np.random.Generator, folder: Path) -> Trial:
     """Water, surface and bottom are in the study, and not in the model."""
     setup = specimen(rng, "plate")
     setup = replace(setup, environment=WATER, **tank(rng, setup))
-    return on_rig(rng, folder, setup, {"fluid_added_mass": {"fluid_density": WATER}})
+    return in_water(rng, folder, setup, {"fluid_density": WATER})
 
 
 def unstated_tank(rng: np.random.Generator, folder: Path) -> Trial:
     """The study knows of no fluid at all."""
     setup = replace(specimen(rng, "plate"), environment=None, free_surface=None, bottom=None)
-    return on_rig(rng, folder, setup, {"fluid_added_mass": {"fluid_density": WATER, **tank(rng, setup)}})
+    return in_water(rng, folder, setup, {"fluid_density": WATER, **tank(rng, setup)})
 
 
 def free_layer(*others: str) -> Make:
