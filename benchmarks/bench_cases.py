@@ -74,7 +74,8 @@ def run(job: Job, keep: Path | None = None) -> Judged:
         seconds = time.perf_counter() - begin
     seen = f", {trial.visible:.0f} sigma" if trial.causes and np.isfinite(trial.visible) else ""
     hidden = f"{name} {seed}.{index}: {kind}. Hidden: {trial.hidden}{seen}"
-    return Judged(name, kind, held, seconds, f"{hidden}. Answer: {said} [{seconds:.0f} s]")
+    sizes = {True: "; intervals hold it", False: "; an interval misses it", None: ""}[held]
+    return Judged(name, kind, held, seconds, f"{hidden}. Answer: {said}{sizes} [{seconds:.0f} s]")
 
 
 def judged(trial: Trial) -> tuple[str, bool | None, str]:
