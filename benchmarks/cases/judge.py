@@ -91,11 +91,8 @@ def in_words(row: Ranked, trial: Trial) -> str:
     """Return one set with its probability and sizes."""
     pairs = paired(row, trial.causes) or {}
     wanted = {f"{key}.{size}" for key, cause in pairs.items() for size in cause.sizes}
-    stated = {
-        n: e
-        for n, e in row.parameters.items()
-        if (n in wanted or isinstance(e.value, str | tuple) if wanted else not e.aside)
-    }
+    named = {n: e for n, e in row.parameters.items() if n in wanted or isinstance(e.value, str | tuple)}
+    stated = named or {n: e for n, e in row.parameters.items() if not e.aside}
     sizes = "; ".join(f"{name.partition('.')[2]} {estimate}" for name, estimate in stated.items())
     return f"{' + '.join(row.effects)} {row.probability:.2%} ({sizes})"
 
