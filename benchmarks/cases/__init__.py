@@ -1,0 +1,1 @@
+"""Cases in which a diagnosis once failed, made anew on the rig."""
