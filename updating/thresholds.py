@@ -33,6 +33,11 @@ DAMPING_REPEATABILITY = 0.1
 """Scatter of damping from one mounting of a specimen to the next, relative [-]. Judged, from tests that were taken
 down and put up again. Doubled: a gap in damping beside a baseline must be twice as large to be seen."""
 
+COMMON_DAMPING = 0.5
+"""Share of the variance of the doubt in the expected damping that all modes have in common [-]: the tolerance is that
+of each mode; whether all are off alike or each for itself nobody states, so half and half. Doubled, all of it: damping
+that is off alike shows by three quarters of the sigmas, that of one mode beside the others by its noise alone."""
+
 DAMPING_PER_SHIFT = 0.5
 """How much of a change of frequency (1 sigma of its logarithm) damping may follow otherwise than expected [-]. Ratios
 of viscous dampers fall as 1/f, those of a stiffness-proportional one rise as f; half of that either way. Doubled: a
@@ -63,6 +68,15 @@ believed. Doubled: nothing."""
 
 SHAPE_NOISE_SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
 """How many times worse than thought the shapes may be [-]: powers of two up to what hides any shape."""
+
+COUPLED_SHARE = 0.3
+"""How far an idealisation is off in what it couples, relative to what it is off in each mode [-]. Judged: the mass of a
+fluid couples plate modes of one symmetry by a tenth to a half of what it adds to each. Doubled: shapes of close modes
+beside such a cause say half as much."""
+
+MOST_MIXED = 0.5
+"""Most of its neighbour that a mode may hold by it, 1 sigma [-]: beyond, the two have changed places. Doubled: nothing
+but where modes are closer than the doubt in them."""
 
 REPEATED_SCATTER_PRIOR = (0.85, 0.12, 0.025, 0.004, 0.001)
 """Prior of each of these where repeated hits show the scatter [-]. Judged: some one in seven stated scatters is too

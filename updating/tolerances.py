@@ -15,7 +15,7 @@ class Tolerances:
     factors : mapping of str to float
         Tolerances of E, density, thickness, length, width.
     damping : float
-        Doubt in the expected damping: of its level, and again of each mode.
+        Doubt in the expected damping of each mode, half of its variance common to all modes.
     """
 
     factors: Mapping[str, float] = field(default_factory=dict)

@@ -311,7 +311,7 @@ class TolerancesTable(Strict):
     width: Share = 0.002
     """Likewise [-]."""
     damping: Doubt = Field(0.3, ge=1e-6)
-    """Doubt in the expected damping: of its level, and again of each mode [-]."""
+    """Doubt in the expected damping of each mode, half of its variance common to all modes [-]."""
 
 
 class EnvironmentTable(Strict):

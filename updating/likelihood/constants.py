@@ -10,6 +10,8 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
+from updating.likelihood.mixing import mixed
+from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
@@ -58,6 +60,10 @@ class Constants(Quantity):
     def _places(self) -> Places:
         return Places(self.setting)
 
+    @cached_property
+    def _nodes(self) -> Nodes:
+        return Nodes(self.setting)
+
     def block(self, view: View) -> Block:
         """Return the constants beside a state, the calibration a named doubt where their level is data."""
         test, now, scale = self.setting.measured, view.now, self.scale
@@ -66,13 +72,17 @@ class Constants(Quantity):
         predicted, by = constants * level, by * level[:, :, None]
         own_errors = (test.constants_sigma / scale) ** 2 + doubt * level**2 + LEAST_CONSTANT_NOISE**2
         variance = own_errors + self._late(view) ** 2
-        uneven, louder = self._idealised(predicted, view.doubt.fidelity)
+        fidelity = view.doubt.fidelity
+        uneven, louder = self._idealised(predicted, fidelity)
         own = [
             self._places.hits(now.along * level),
             self._places.sensors(now.along_seen * level),
             self._places.together(now.along * level, now.along_seen * level),
+            self._nodes.columns(now, level),
             louder,
         ]
+        if fidelity:
+            own.append(mixed(self.setting, view.now, view.every, level, fidelity))
         gain = self._gains(predicted)
         if not test.absolute:
             own, gain = [gain, *own], np.zeros((predicted.size, 0))

@@ -12,6 +12,7 @@ from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
 from updating.prediction.predict import Prediction
 from updating.thresholds import (
+    COMMON_DAMPING,
     DAMPING_PER_SHIFT,
     DAMPING_REPEATABILITY,
     LEAST_DAMPING,
@@ -51,8 +52,9 @@ class Dampings(Quantity):
         # ratios go up or down with frequency as the mechanism has it: viscous ones fall, those of stiffness rise
         moved = DAMPING_PER_SHIFT * np.log(now.frequency[rows] / self.setting.nominal.frequency[rows])
         doubt = view.doubt.damping
-        variance = relative**2 + tolerance**2 + doubt**2 + moved**2
-        level = np.stack([tolerance, np.full(len(rows), doubt)], axis=1)[:, : 1 + (doubt > 0)]
+        each, common = np.sqrt(1 - COMMON_DAMPING) * tolerance, np.sqrt(COMMON_DAMPING) * tolerance
+        variance = relative**2 + each**2 + doubt**2 + moved**2
+        level = np.stack([common, np.full(len(rows), doubt)], axis=1)[:, : 1 + (doubt > 0)]
         return Block(
             "damping",
             np.log(test.damping[rows] / expected),
@@ -64,7 +66,7 @@ class Dampings(Quantity):
         )
 
     def _tolerance(self, now: Prediction) -> FloatArray:
-        """Return the doubt in the expected damping of each mode: small where a baseline measured it [-]."""
+        """Return the whole doubt in the expected damping of each mode: small where a baseline measured it [-]."""
         stated, before = self.setting.tolerances.damping, self.setting.before
         if before is None:
             return np.full(len(now.frequency), stated)

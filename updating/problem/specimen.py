@@ -9,7 +9,7 @@ own: see :mod:`updating.likelihood`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,6 +23,7 @@ from updating.likelihood.comparison import Comparison, assemble
 from updating.likelihood.constants import Constants, scatter_prior
 from updating.likelihood.damping import Dampings
 from updating.likelihood.frequency import Frequencies
+from updating.likelihood.gaussian import gaussian
 from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
@@ -33,7 +34,13 @@ from updating.prediction.predict import Prediction, Predictor
 from updating.problem.candidate import Candidate
 from updating.problem.theory_error import TheoryError
 from updating.test_data.measured import Measured
-from updating.thresholds import BENT_DATA, MESH_UNEVENNESS, STRAINED_LINEARISATION, WIDE_TOLERANCE
+from updating.thresholds import (
+    BENT_DATA,
+    MESH_UNEVENNESS,
+    SHAPE_NOISE_SCALES,
+    STRAINED_LINEARISATION,
+    WIDE_TOLERANCE,
+)
 from updating.tolerances import Tolerances
 
 
@@ -173,6 +180,8 @@ class SpecimenProblem:
     def bending(self) -> FloatArray:
         """How far all data leave their linearisation at one standard deviation of each factor, (n_names,) [noise].
 
+        What nuisances take up counts for nothing.
+
         Most follow a power of it and stay. Not so the shapes of modes that are close, which turn into each other,
         nor the constants of a mode that hardly moves where it is hit, which are products of two that change.
         """
@@ -183,7 +192,8 @@ class SpecimenProblem:
             there = self.compare(NOMINAL, shift)
             # a comparison's residual is carried back to no shift: by its own slope there, by the first one here
             off = there.residual - start.residual - (there.nuisance - start.nuisance)[:, :count] @ shift
-            found.append(float(np.linalg.norm(np.nan_to_num(off / np.sqrt(start.variance)))))
+            (left,) = gaussian(replace(start, residual=np.nan_to_num(off)), SHAPE_NOISE_SCALES[:1])
+            found.append(float(np.sqrt(max(left.chi2, 0.0))))
         return np.array(found)
 
     def strain(self, shift: FloatArray) -> float:
@@ -212,9 +222,9 @@ class SpecimenProblem:
         shift = np.zeros(len(self.names)) if shift is None else shift
         moved = State(factors=dict(zip(self.names, np.exp(shift * self.sigmas), strict=True)))
         whole = state.plus(moved)
-        prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
-        prediction = prediction.select(self._match(prediction))
-        view = View(prediction, self.predictor.base.plus(whole), doubt)
+        every = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
+        prediction = every.select(self._match(every))
+        view = View(prediction, self.predictor.base.plus(whole), doubt, every)
         blocks = [quantity.block(view) for quantity in self.quantities]
         return assemble(blocks, self.sigmas, shift, prediction, scatter_prior(self.measured))
 
