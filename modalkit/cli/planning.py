@@ -16,8 +16,7 @@ from modalkit.cli.reporting import now, save_report, this_command
 from modalkit.output.whole import write_json
 from modalkit.planning import DesignForecast, Forecast, KnownTest, forecast
 from modalkit.planning.document import family_of, statement, to_json
-from modalkit.planning.effects import NOT_FORECAST
-from modalkit.planning.from_study import known_test_of
+from modalkit.planning.from_study import bench_of, known_test_of
 from modalkit.planning.note import followed, note, separated, some
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check, check
@@ -50,9 +49,9 @@ def plan_study(
     """
     own = read_study(study)
     with working("reading the test"):
-        known_test = known_test_of(own)
-    with working("solving the rig's own body"):
-        found = forecast(known_test)
+        bench = bench_of(own)
+    with working(f"solving {bench.basis}"):
+        found = forecast(bench)
     show_note(own.name, found)
     show_tables(found)
     document, checked = to_json(found), None
@@ -97,12 +96,12 @@ def _figures(found: Forecast) -> dict[str, Any]:
 
 def show_note(name: str, found: Forecast) -> None:
     """Print what a colleague would say in ten lines."""
-    known_test = found.known_test
+    bench = found.bench
     out.print(name, style="bold", markup=False)
     for line in note(found):
         out.print(line, markup=False)
-    out.print(f"Taken:   {'; '.join(known_test.statement)}", markup=False)
-    left = [*known_test.left_out, *[f"{key} ({why})" for key, why in NOT_FORECAST.items()]]
+    out.print(f"Taken:   {'; '.join(bench.statement)}", markup=False)
+    left = [*bench.left_out, *[f"{key} ({why})" for key, why in bench.not_forecast.items()]]
     out.print(f"Not in:  {'; '.join(left)}; pairs of effects", markup=False)
     out.print()
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from modalkit.planning.family import Family
 from modalkit.planning.forecast import Advice, DesignForecast
-from modalkit.planning.separability import EQUAL, NONE, SURE, Distances, at_severity, crossing
+from modalkit.planning.separability import NONE, SURE, Distances, at_severity, crossing
 from modalkit.simulator.hidden import HIDDEN_EFFECTS, Values
 from modalkit.simulator.setup import Setup
 
@@ -109,7 +109,7 @@ def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:
     most = float(np.abs(family.grid[side]).max())
     q = float(np.sign(family.grid[side[0]]) * min(size, most))
     before, after = (at_severity(family.grid, one.sigma[:, place], q) for one in (now, then))
-    own = _own(now)
+    own = now.unequal
     return Case(
         family,
         q,
@@ -120,8 +120,3 @@ def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:
         then.rivals[own[int(np.argmin(after[own]))]],
     )
 
-
-def _own(found: Distances) -> list[int]:
-    """Return the rivals that are no exact equals."""
-    name = found.curve.family.name
-    return [i for i, rival in enumerate(found.rivals) if (name, rival) not in EQUAL]

@@ -1,7 +1,8 @@
-"""Every effect's curve, or surface, through the space of the data, by re-solution of the rig's own body."""
+"""Every effect's curve, or surface, through the space of the data, by re-solution."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,7 +12,6 @@ from scipy.interpolate import make_interp_spline
 
 from acquisition.arrays import FloatArray
 from modalkit.planning.family import Family
-from modalkit.planning.responses import Stations
 
 _BETWEEN = 5
 _CUBIC = 3
@@ -27,10 +27,16 @@ class Curve:
         The effect.
     data : (n_places, n_severities, n_data) array
         Change of the data by the effect [-].
+    fidelity : float
+        How far the idealisation of who takes it for a cause may be off, of the change [-].
+    slack : (n_data,) array or None
+        What such a one leaves in doubt of the data beside that, 1 sigma; None is nothing [-].
     """
 
     family: Family
     data: FloatArray
+    fidelity: float = 0.0
+    slack: FloatArray | None = None
 
     @cached_property
     def severities(self) -> FloatArray:
@@ -71,25 +77,21 @@ def _finer(values: FloatArray, between: int) -> FloatArray:
     return fine
 
 
-def solve_curve(family: Family, stations: Stations) -> Curve:
+Change = Callable[[Family, float, float], FloatArray]
+"""What an effect of a severity at a place changes of the data, (n_data,) [-]."""
+
+
+def solve_curve(family: Family, change: Change, *, fidelity: float = 0.0, slack: FloatArray | None = None) -> Curve:
     """Solve an effect at all its severities and places.
 
     Parameters
     ----------
     family : Family
         The effect.
-    stations : Stations
-        What is read.
-
-    Returns
-    -------
-    Curve
-        Changes off the rig without the effect.
+    change : callable
+        What it changes.
+    fidelity, slack
+        As in :class:`Curve`.
     """
-    base, zero = stations.base, stations.nominal
-
-    def change(place: float, q: float) -> FloatArray:
-        return stations.read(family.act(base, float(q), float(place))) - zero if q else np.zeros(len(zero))
-
-    data = np.array([[change(place, q) for q in family.grid] for place in family.sites])
-    return Curve(family, data)
+    data = np.array([[change(family, float(q), float(place)) for q in family.grid] for place in family.sites])
+    return Curve(family, data, fidelity, slack)

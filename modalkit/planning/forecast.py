@@ -11,12 +11,10 @@ import pandas as pd
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
-from modalkit.planning.changes import Change, changes
-from modalkit.planning.curves import Curve, solve_curve
-from modalkit.planning.design import Design, present
-from modalkit.planning.effects import families
-from modalkit.planning.known import KnownTest
-from modalkit.planning.responses import Stations
+from modalkit.planning.bench import Bench
+from modalkit.planning.changes import Change
+from modalkit.planning.curves import Curve
+from modalkit.planning.design import Design
 from modalkit.planning.separability import CLASS, EQUAL, NONE, SEEN, SURE, Distances, distances
 
 _CAP = 10.0
@@ -125,10 +123,9 @@ class DesignForecast:
 
 def _limit(one: Distances) -> Limit:
     family = one.curve.family
-    at = zip(one.rivals[1:], one.clear(one.sigma)[1:], strict=True)
-    rival, sigma = min(
-        ((r, float(s)) for r, s in at if (family.name, r) not in EQUAL), key=lambda pair: pair[1]
-    )
+    clear = one.clear(one.sigma)
+    own = [i for i in one.unequal if one.rivals[i] != NONE]
+    rival, sigma = min(((one.rivals[i], float(clear[i])) for i in own), key=lambda pair: pair[1], default=(NONE, np.inf))
     return Limit(
         seen=one.threshold(one.sigma[0]),
         separated=one.threshold(one.nearest),
@@ -170,8 +167,8 @@ class Forecast:
 
     Parameters
     ----------
-    known_test : Told
-        The test.
+    bench : Bench
+        The structure and its test.
     curves : tuple of Curve
         The effects.
     now : Outlook
@@ -180,19 +177,19 @@ class Forecast:
         Changes, the most worth first.
     """
 
-    known_test: KnownTest
+    bench: Bench
     curves: tuple[Curve, ...]
     now: DesignForecast
     advice: tuple[Advice, ...]
 
 
-def forecast(known_test: KnownTest, *, progress: Callable[[str], None] | None = None) -> Forecast:
-    """Forecast a test with the rig's own bodies.
+def forecast(bench: Bench, *, progress: Callable[[str], None] | None = None) -> Forecast:
+    """Forecast what a test tells apart.
 
     Parameters
     ----------
-    known_test : Told
-        The test.
+    bench : Bench
+        The structure and its test.
     progress : callable, optional
         Called with what is being done.
 
@@ -202,22 +199,22 @@ def forecast(known_test: KnownTest, *, progress: Callable[[str], None] | None = 
         What it tells apart now, and what each change would bring.
     """
     say = progress or (lambda _: None)
-    stations, curves = Stations(known_test.setup), []
-    for family in families(known_test):
+    curves = []
+    for family in bench.families:
         say(f"solving {family.name}")
-        curves.append(solve_curve(family, stations))
+        curves.append(bench.solve(family))
     kept = tuple(curves)
 
     def forecast_of(design: Design, *, fine: bool = True) -> DesignForecast:
-        return DesignForecast(design, distances(kept, design, known_test, stations, fine=fine))
+        return DesignForecast(design, distances(kept, design, bench, fine=fine))
 
-    design = present(known_test)
+    design = bench.design
     now = forecast_of(design)
     say("weighing changes")
-    tried = changes(design, stations, lambda d: forecast_of(d, fine=False).worth)
+    tried = bench.changes(design, lambda d: forecast_of(d, fine=False).worth)
     found = [_advice(change, now, forecast_of) for change in tried]
     found.sort(key=lambda one: -one.worth)
-    return Forecast(known_test, kept, now, tuple(found))
+    return Forecast(bench, kept, now, tuple(found))
 
 
 def _advice(change: Change, now: DesignForecast, forecast_of: Callable[[Design], DesignForecast]) -> Advice:

@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 
 from acquisition.quantities import severity
-from modalkit.planning.family import Family, Maker
+from modalkit.planning.family import Family, Maker, factor, per_cent
 from modalkit.simulator.setup import Setup
 
 _SOFTEST_CLAMP, _SOFT_CLAMP = 1.5, 20.0
@@ -22,22 +22,9 @@ _NEAR = 0.3
 mass, the other adds a sixth; nearer than a tenth none is believed, beyond three none is felt."""
 
 
-def _per_cent(q: float) -> str:
-    return f"{severity(100 * abs(np.expm1(q)))} %"
-
-
 def _factor(name: str, noun: str, *, most: float, clear: float) -> Maker:
     """A property of the whole specimen, off by exp(q)."""
-    return lambda setup: Family(
-        name,
-        lambda q, _: {"factor": float(np.exp(q))},
-        -float(np.log(most)),
-        float(np.log(most)),
-        clear,
-        f"{noun} off by more than",
-        _per_cent,
-        always=True,
-    )
+    return lambda setup: factor(name, noun, most=most, clear=clear)
 
 
 def _length(setup: Setup) -> Family | None:
@@ -122,7 +109,7 @@ def _gain(setup: Setup) -> Family:
         float(np.log(2.5)),
         0.2,
         "a level off by more than",
-        _per_cent,
+        per_cent,
     )
 
 

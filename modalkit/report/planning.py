@@ -10,7 +10,6 @@ import numpy as np
 
 from modalkit.planning import Forecast
 from modalkit.planning.document import to_json
-from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.note import note, separated, some
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check
@@ -52,7 +51,7 @@ def plan_report(
                 Section("From what severity on", [thresholds_chart(found), thresholds_table(document)]),
                 Section("What a change buys", [changes_table(found)]),
                 Section("Blind trials on this rig", [_trials(checked)]),
-                Section("What was taken for granted", [bullets(list(found.known_test.statement))]),
+                Section("What was taken for granted", [bullets(list(found.bench.statement))]),
                 Section("What the forecast leaves out", [_left_out(found)]),
                 Section("What this rests on", [provenance(Basis(when, command, [study]))]),
             ],
@@ -166,8 +165,8 @@ def _trials(checked: Check | None) -> Raw:
 
 def _left_out(found: Forecast) -> Raw:
     left = [
-        *found.known_test.left_out,
-        *(f"{key}: {why}" for key, why in NOT_FORECAST.items()),
+        *found.bench.left_out,
+        *(f"{key}: {why}" for key, why in found.bench.not_forecast.items()),
         "pairs of effects",
     ]
     return bullets(left)
