@@ -23,6 +23,9 @@ from modalkit.planning.trials import Check, check
 from modalkit.planning.writing import noise_for, write_case
 from modalkit.study.read import Study, read_study
 
+WIDEST = 20
+"""So many effects still have their separations in a table that is printed; JSON, report and figure have all."""
+
 
 def plan_study(
     study: Path,
@@ -112,9 +115,10 @@ def show_tables(found: Forecast) -> None:
         _thresholds(found.now),
         f"From what severity on: {SEEN:g} sigma beyond what tolerances explain, surely {SURE:g}",
     )
-    show_table(
-        _separations(found.now), "Sigma between each effect, clear, and the nearest that another can do"
-    )
+    if len(found.now.names) <= WIDEST:
+        show_table(
+            _separations(found.now), "Sigma between each effect, clear, and the nearest that another can do"
+        )
     show_table(_changes(found), "What a change buys", digits={"times smaller": 2, "share told": 3})
 
 
@@ -123,11 +127,13 @@ def _thresholds(now: DesignForecast) -> pd.DataFrame:
     rows = []
     for name, limit in now.limits.items():
         family = family_of(now, name)
-        first, *rest = (limit.seen, limit.separated, limit.sure, limit.clear)
-        words = [family.amount(q) if math.isfinite(q) else "never" for q in rest]
+        sizes = (limit.seen, limit.separated, limit.sure, limit.clear)
+        words = [family.amount(q) if math.isfinite(q) else "never" for q in sizes]
+        if not family.at:
+            words[0] = statement(now, name, limit.seen) or "never"
         keys = ("seen from", "told from", "surely from", "asked about")
-        known_test = dict(zip(keys, (statement(now, name, first) or "never", *words), strict=True))
-        rows.append({"effect": name, **known_test, "nearest": f"{limit.nearest} ({limit.sigma:.1f})"})
+        row = {"effect": name, **dict(zip(keys, words, strict=True))}
+        rows.append({**row, "nearest": f"{limit.nearest} ({limit.sigma:.1f})", "expected": now.outcomes[name].kind})
     return pd.DataFrame(rows)
 
 

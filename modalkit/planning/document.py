@@ -39,7 +39,11 @@ def _design_forecast(evaluation: DesignForecast) -> dict[str, Any]:
     return {
         "effects": [
             {
-                "effect": name,
+                "effect": family_of(evaluation, name).cause,
+                "name": name,
+                "at": family_of(evaluation, name).at or None,
+                "outcome": evaluation.outcomes[name].kind,
+                "not_told_from": list(evaluation.outcomes[name].rivals),
                 "seen_from": statement(evaluation, name, limit.seen),
                 "separated_from": statement(evaluation, name, limit.separated),
                 "sure_from": statement(evaluation, name, limit.sure),

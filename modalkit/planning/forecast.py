@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -42,6 +43,26 @@ class Limit:
     clear: float
     nearest: str
     sigma: float
+
+
+Kind = Literal["named", "edge", "class", "unseen"]
+"""Told from all others surely; by less; not told from some; not told from nothing."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a diagnosis is expected to answer.
+
+    Parameters
+    ----------
+    kind : str
+        ``named``, on the ``edge`` of it, in a ``class`` with others, or ``unseen``.
+    rivals : tuple of str
+        Those from which it is not told, or hardly, the nearest first.
+    """
+
+    kind: Kind
+    rivals: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,9 +117,23 @@ class DesignForecast:
         return tuple(self.matrix.index[self.matrix[NONE] < CLASS])
 
     @property
+    def shown_pairs(self) -> dict[tuple[str, str], float]:
+        """Separation of each pair of effects that are seen, clear as they are [-]."""
+        unseen = set(self.unseen)
+        return {pair: sigma for pair, sigma in self.pairs.items() if not unseen & set(pair)}
+
+    @cached_property
+    def outcomes(self) -> dict[str, Outcome]:
+        """What a diagnosis is expected to answer to each effect, as strong as is asked about."""
+        return {one.curve.family.name: _outcome(one) for one in self.found}
+
+    @property
     def classes(self) -> tuple[tuple[str, ...], ...]:
-        """Groups of effects that all lie less than 2 sigma from each other, those of one effect left out."""
-        names, pairs = list(self.names), self.pairs
+        """Groups of effects that all lie less than 2 sigma from each other; those that are not seen are left out."""
+        pairs = self.shown_pairs
+        names = [name for name in self.names if name not in self.unseen]
+        if len(names) < 2:
+            return ()
         separately = np.zeros((len(names), len(names)))
         for (a, b), sigma in pairs.items():
             separately[names.index(a), names.index(b)] = separately[names.index(b), names.index(a)] = sigma
@@ -134,6 +169,17 @@ def _limit(one: Distances) -> Limit:
         nearest=rival,
         sigma=sigma,
     )
+
+
+def _outcome(one: Distances) -> Outcome:
+    clear = one.clear(one.sigma)
+    if clear[one.rivals.index(NONE)] < SEEN:
+        return Outcome("unseen")
+    near = sorted((float(s), r) for r, s in zip(one.rivals, clear, strict=True) if r != NONE and s < SURE)
+    if not near:
+        return Outcome("named")
+    untold = tuple(rival for sigma, rival in near if sigma < SEEN)
+    return Outcome("class", untold) if untold else Outcome("edge", tuple(rival for _, rival in near))
 
 
 @dataclass(frozen=True, eq=False)

@@ -142,8 +142,8 @@ def crossing(q: FloatArray, sigma: FloatArray, level: float) -> float:
         Standard deviations [-].
     """
     below = np.flatnonzero(sigma < level)
-    if not len(below):
-        return float(q[0])
+    if not len(below):  # small changes are in proportion
+        return float(q[0] * level / sigma[0])
     last = int(below[-1])
     if last == len(q) - 1:
         return np.inf
@@ -196,27 +196,22 @@ class _Surface:
     cloud : (n_places, n_severities, n_data) array
         Points of the surface [standard deviations].
     doubt : (n_places, n_severities, n_data) array or None
-        How far its idealisation may be off in each datum, 1 sigma, not whitened [-].
-    white : (n_data, n_data) array
-        What whitens the data.
+        Variance by how far its idealisation may be off there [standard deviations squared].
     """
 
     cloud: FloatArray
     doubt: FloatArray | None
-    white: FloatArray
 
     def distance(self, targets: FloatArray) -> FloatArray:
         """Return the distance of whitened targets (n, n_data), the surface's own doubt counted in, (n,) [-].
 
-        Doubt D in independent data beside unit covariance: d' (I + W D W')^-1 d is at least |d|^4 / d' (I + W D W') d.
+        What the doubts of two data have in common once these are whitened is left aside.
         """
         left, best = nearest_in(targets, self.cloud)
-        size = np.linalg.norm(left, axis=1)
         if self.doubt is None:
-            return np.asarray(size)
-        along = (left / np.maximum(size, 1e-300)[:, None]) @ self.white
+            return np.asarray(np.linalg.norm(left, axis=1))
         doubt = self.doubt.reshape(-1, self.doubt.shape[-1])[best]
-        return np.asarray(size / np.sqrt(1 + np.sum((along * doubt) ** 2, axis=1)))
+        return np.asarray(np.sqrt(np.sum(left**2 / (1 + doubt), axis=1)))
 
 
 def _surface(curve: Curve, have: IntArray, white: FloatArray, *, fine: bool) -> _Surface:
@@ -224,8 +219,8 @@ def _surface(curve: Curve, have: IntArray, white: FloatArray, *, fine: bool) -> 
     doubt = None
     if curve.fidelity or curve.slack is not None:
         slack = 0.0 if curve.slack is None else curve.slack[have]
-        doubt = np.hypot(curve.fidelity * bare, slack)
-    return _Surface(bare @ white.T, doubt, white)
+        doubt = ((curve.fidelity * bare) ** 2 + slack**2) @ (white**2).T
+    return _Surface(bare @ white.T, doubt)
 
 
 def nearest_in(targets: FloatArray, cloud: FloatArray) -> tuple[FloatArray, IntArray]:

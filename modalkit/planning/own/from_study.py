@@ -31,6 +31,9 @@ GAS = 10.0
 FIRST_MODES, MANY = 5, 40
 """Modes that are looked at where nothing says the band, and most that a band may hold [-]."""
 
+FAINT = 0.02
+"""A mode moves no point if it moves all by less than this share of what the middle mode does [-]."""
+
 HITS = 5
 """Hits at each point where nothing says how many [-]."""
 
@@ -64,7 +67,8 @@ def own_bench(study: Study) -> OwnBench:
     test = _with_data(study) if study.test.files or study.test.modes else _planned(study)
     near = predictor_of(Case(test.case.title, test.case.spec, test.measured, None, test.case.tolerances,
                              test.case.environment, test.case.accepted))  # fmt: skip
-    ranks = np.append(test.ranks, test.ranks[-1] + 1)
+    shown = _shown(test.case, test.measured)
+    ranks = np.append(test.ranks, shown[shown > test.ranks[-1]][0])
     layout = layout_of(test.measured, candidates(near, ranks, test.measured.points))
     blank = Predictor(near.spec, layout.blank, near.environment, near.additions)
     data = imagined(layout, blank, ranks, test.known.one_more)
@@ -154,8 +158,8 @@ def _planned(study: Study) -> _Test:
     points = _spaced(study, spec) if stated is None else stated
     case = Case(study.name, spec, points.test(study, points.hit[0]), None, study.doubts(), study.surroundings(),
                 study.accepted())  # fmt: skip
-    modes = predictor_of(case).predict(count=MANY)
-    ranks, band = _in_band(study, modes.frequency)
+    shown = _shown(case, case.measured)
+    ranks, band = _in_band(study, predictor_of(case).predict(count=MANY).frequency, shown)
     sensor = points.sensor
     if sensor is None:
         sensor = points.hit[_strongest(case, points, ranks)]
@@ -188,17 +192,28 @@ def _spaced(study: Study, spec: Spec) -> PlannedPoints:
     return PlannedPoints(points, tuple(range(1, len(points) + 1)), None, tuple(range(len(points))), None)
 
 
+def _shapes(case: Case, points: IntArray) -> FloatArray:
+    """Return how far the model's lowest modes, normalised by their mass, move some points of a test (n, n_modes)."""
+    bare = replace(case.measured, seen=points, hit=np.full(len(points), -1))
+    return np.abs(predictor_of(replace(case, measured=bare)).predict(count=MANY).constants)
+
+
+def _shown(case: Case, test: Measured) -> IntArray:
+    """Return the ranks of the modes that move any of the points of a test: of one that moves none nothing is known."""
+    if not len(test.seen):
+        return np.arange(MANY)
+    moved = _shapes(replace(case, measured=test), np.unique([test.seen, np.maximum(test.hit, 0)])).max(axis=0)
+    return np.flatnonzero(moved > FAINT * np.median(moved))
+
+
 def _strongest(case: Case, points: PlannedPoints, ranks: IntArray) -> int:
     """Return which of the points hit moves most in the mode that moves it least, each over its largest."""
-    hit = np.array(points.hit)
-    bare = replace(case.measured, seen=hit, hit=np.full(len(hit), -1))
-    predictor = predictor_of(replace(case, measured=bare))
-    shapes = np.abs(predictor.predict(count=int(ranks.max()) + 1).constants[:, ranks])
+    shapes = _shapes(case, np.array(points.hit))[:, ranks]
     return int((shapes / np.maximum(shapes.max(axis=0), 1e-300)).min(axis=1).argmax())
 
 
-def _in_band(study: Study, frequency: FloatArray) -> tuple[IntArray, tuple[float, float]]:
-    """Return which modes a band holds; left out, it reaches over the first few.
+def _in_band(study: Study, frequency: FloatArray, shown: IntArray) -> tuple[IntArray, tuple[float, float]]:
+    """Return which modes, of those that the points show, a band holds; left out, it reaches over the first few.
 
     Raises
     ------
@@ -207,12 +222,12 @@ def _in_band(study: Study, frequency: FloatArray) -> tuple[IntArray, tuple[float
     """
     band = study.test.band
     if band is None:
-        last = min(FIRST_MODES, len(frequency) - 1)
-        band = (float(f"{0.25 * frequency[0]:.2g}"), float(f"{np.sqrt(frequency[last - 1] * frequency[last]):.3g}"))
-    ranks = np.flatnonzero((frequency >= band[0]) & (frequency <= band[1]))
+        last, above = frequency[shown[min(FIRST_MODES, len(shown) - 1) - 1 :][:2]]
+        band = (float(f"{0.25 * frequency[0]:.2g}"), float(f"{np.sqrt(last * above):.3g}"))
+    ranks = shown[(frequency[shown] >= band[0]) & (frequency[shown] <= band[1])]
     if len(ranks) < 2:
         raise StudyError(
-            f"{study.path}: [test] band = [{band[0]:g}, {band[1]:g}] Hz holds {len(ranks)} of the model's modes, the "
-            f"lowest of which is at {frequency[0]:.4g} Hz; a forecast needs two"
+            f"{study.path}: [test] band = [{band[0]:g}, {band[1]:g}] Hz holds {len(ranks)} of the model's modes "
+            f"that the points show, the lowest of which is at {frequency[shown[0]]:.4g} Hz; a forecast needs two"
         )
     return ranks, (float(band[0]), float(band[1]))
