@@ -14,7 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from modalkit.cli.common import out, progress, show_figures, show_table, working
 from modalkit.cli.reporting import now, save_report, this_command
 from modalkit.output.whole import write_json
-from modalkit.planning import DesignForecast, Forecast, KnownTest, forecast
+from modalkit.planning import DesignForecast, Forecast, KnownTest, RigBench, forecast
 from modalkit.planning.document import family_of, statement, to_json
 from modalkit.planning.from_study import bench_of, known_test_of
 from modalkit.planning.note import followed, note, separated, some
@@ -77,11 +77,14 @@ def _report(study: Study, found: Forecast, checked: Check | None) -> str:
 
 def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:
     """Run trials whose channels are as noisy as makes the constants as uncertain as told."""
-    with working("matching the noise"):
-        noise = _noise(found.known_test) if found.known_test.shapes else None
+    bench, noise = found.bench, None
+    if isinstance(bench, RigBench) and bench.known_test.shapes:
+        with working("matching the noise"):
+            noise = _noise(bench.known_test)
+    runs = (2 if followed(found) and bench.follows else 1) * trials
     columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=progress) as bar:
-        task = bar.add_task("trials", total=(2 if followed(found) else 1) * trials)
+        task = bar.add_task("trials", total=runs)
         return check(found, trials, seed, noise=noise, workers=workers, progress=lambda: bar.advance(task))
 
 
@@ -133,7 +136,9 @@ def _thresholds(now: DesignForecast) -> pd.DataFrame:
             words[0] = statement(now, name, limit.seen) or "never"
         keys = ("seen from", "told from", "surely from", "asked about")
         row = {"effect": name, **dict(zip(keys, words, strict=True))}
-        rows.append({**row, "nearest": f"{limit.nearest} ({limit.sigma:.1f})", "expected": now.outcomes[name].kind})
+        rows.append(
+            {**row, "nearest": f"{limit.nearest} ({limit.sigma:.1f})", "expected": now.outcomes[name].kind}
+        )
     return pd.DataFrame(rows)
 
 

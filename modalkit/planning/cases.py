@@ -43,7 +43,7 @@ class Case:
     @property
     def values(self) -> Values:
         """Parameters under the contract's names [SI]."""
-        return self.family.values(self.q, self.place)
+        return dict(self.family.values(self.q, self.place))
 
     def accepted(self, setup: Setup) -> frozenset[str]:
         """Return names that are right answers."""
@@ -53,9 +53,12 @@ class Case:
     @property
     def statement(self) -> str:
         """Severity in words."""
-        name = self.family.name
-        known_test = {key: value for key, value in self.values.items() if value}
-        return ", ".join(f"{key} {value:.3g}" for key, value in known_test.items()) or name
+        known = {key: value for key, value in self.values.items() if value}
+        words = [
+            f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}"
+            for key, value in known.items()
+        ]
+        return ", ".join(words) or self.family.name
 
 
 def choose(
@@ -119,4 +122,3 @@ def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:
         now.rivals[own[int(np.argmin(before[own]))]],
         then.rivals[own[int(np.argmin(after[own]))]],
     )
-

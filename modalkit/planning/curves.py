@@ -81,7 +81,9 @@ Change = Callable[[Family, float, float], FloatArray]
 """What an effect of a severity at a place changes of the data, (n_data,) [-]."""
 
 
-def solve_curve(family: Family, change: Change, *, fidelity: float = 0.0, slack: FloatArray | None = None) -> Curve:
+def solve_curve(
+    family: Family, change: Change, *, fidelity: float = 0.0, slack: FloatArray | None = None
+) -> Curve:
     """Solve an effect at all its severities and places.
 
     Parameters

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
+from threadpoolctl import threadpool_limits
 
 from modalkit.planning.bench import Bench
 from modalkit.planning.changes import Change
@@ -160,7 +161,9 @@ def _limit(one: Distances) -> Limit:
     family = one.curve.family
     clear = one.clear(one.sigma)
     own = [i for i in one.unequal if one.rivals[i] != NONE]
-    rival, sigma = min(((one.rivals[i], float(clear[i])) for i in own), key=lambda pair: pair[1], default=(NONE, np.inf))
+    rival, sigma = min(
+        ((one.rivals[i], float(clear[i])) for i in own), key=lambda pair: pair[1], default=(NONE, np.inf)
+    )
     return Limit(
         seen=one.threshold(one.sigma[0]),
         separated=one.threshold(one.nearest),
@@ -244,7 +247,11 @@ def forecast(bench: Bench, *, progress: Callable[[str], None] | None = None) -> 
     Forecast
         What it tells apart now, and what each change would bring.
     """
-    say = progress or (lambda _: None)
+    with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
+        return _forecast(bench, progress or (lambda _: None))
+
+
+def _forecast(bench: Bench, say: Callable[[str], None]) -> Forecast:
     curves = []
     for family in bench.families:
         say(f"solving {family.name}")

@@ -8,9 +8,10 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from modalkit.planning.bench import Bench, RigBench
+from modalkit.planning.bench import Bench
 from modalkit.planning.known import KnownTest, by_default
 from modalkit.planning.own import own_bench
+from modalkit.planning.rig import RigBench
 from modalkit.simulator.setup import Setup, Tolerances
 from modalkit.study.read import Study
 from modalkit.workflow.case import open_study

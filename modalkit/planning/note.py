@@ -52,7 +52,9 @@ def _cannot(now: DesignForecast) -> list[str]:
     if near:
         lines.append(f"Hardly:  {some(near)}.")
     if now.unseen:
-        lines.append(f"Blind:   {some(list(now.unseen), what='effects')} would be taken for no effect at all.")
+        lines.append(
+            f"Blind:   {some(list(now.unseen), what='effects')} would be taken for no effect at all."
+        )
     return lines
 
 

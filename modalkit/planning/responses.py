@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from modalkit.simulator.bodies.complex_modes import ComplexModes
 from modalkit.planning.family import Family
+from modalkit.simulator.bodies.complex_modes import ComplexModes
 from modalkit.simulator.hidden import HIDDEN_EFFECTS
 from modalkit.simulator.scene import Scene, nominal_scene
 from modalkit.simulator.setup import Setup

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from modalkit.planning.curves import Curve
 from modalkit.planning.bench import Bench
+from modalkit.planning.curves import Curve
 from modalkit.planning.design import Design
 
 NONE = "none"

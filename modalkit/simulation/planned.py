@@ -22,6 +22,7 @@ from modalkit.simulation.setup import (
     Options,
 )
 from modalkit.study.read import Study
+from modalkit.workflow.planned_points import planned_points
 from updating import Measured, Predictor, Spec
 from updating.simulation import natural_modes, simulated
 from updating.test_data.axes import Axes
@@ -51,7 +52,11 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
         What the user says.
     """
     axes, notes = study.axes(study.test), []
-    if measured is not None and len(measured.points):
+    planned = planned_points(study, spec) if spec.kind != "beam" and measured is None else None
+    if planned is not None:
+        points, nodes, directions = planned.points, planned.nodes, planned.directions
+        notes.append(f"the study has no hits: the hammer goes to the {len(planned.hit)} points that it plans")
+    elif measured is not None and len(measured.points):
         points, nodes, directions = measured.points, measured.nodes, measured.directions
         notes.append(f"the study has no hits: the hammer goes to the {len(points)} points of its shapes")
     else:
@@ -63,7 +68,8 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
     modes = natural_modes(simulated(Predictor(spec, blank)))
     band = study.test.band or _band(frequency, modes.frequency)
     inside = (modes.frequency > band[0]) & (modes.frequency < band[1])
-    sensor = _sensor(spec, points, modes.shapes[:, inside])
+    stated = None if planned is None else planned.sensor
+    sensor = _sensor(spec, points, modes.shapes[:, inside]) if stated is None else stated
     names, geometry = _named(points, nodes, directions, axes)
     notes.append(f"the sensor sits at {names[sensor]}")
     slowest = float(np.min((modes.damping * 2 * np.pi * modes.frequency)[inside], initial=np.inf))
@@ -102,7 +108,7 @@ def spaced(spec: Spec, count: int | None) -> FloatArray:
     """
     if not spec.outlined:
         raise StudyError(
-            "imported matrices do not say where to hit: give [test] files with points, or shapes"
+            "imported matrices do not say where to hit: give [test] files with points, shapes, or [test] points"
         )
     if count is not None and count < 2:
         raise StudyError(f"--points {count}: give at least 2")

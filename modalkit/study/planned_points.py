@@ -8,7 +8,7 @@ from pydantic import PlainValidator
 
 from acquisition.dof import Dof
 from acquisition.errors import ModalkitError
-from modalkit.study.units import si_value
+from acquisition.si_units import si_value
 
 WAYS = ("x", "y", "z")
 

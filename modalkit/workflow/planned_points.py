@@ -81,7 +81,9 @@ def planned_points(study: Study, spec: Spec) -> PlannedPoints | None:
     count = len(table.points)
     if len(placed.rows) < len(stated):
         lost = stated[min(set(range(len(stated))) - set(placed.rows.tolist()))]
-        raise StudyError(f"{study.path}: [test] points: {_written(lost)}: the model does not move that way there")
+        raise StudyError(
+            f"{study.path}: [test] points: {_written(lost)}: the model does not move that way there"
+        )
     directions = None if spec.imported is None else np.array([key[1] for key in keys])
     hit = tuple(dict.fromkeys(placed.index[:count].tolist()))
     return PlannedPoints(
@@ -115,7 +117,9 @@ def _of_node(node: int, spec: Spec) -> FloatArray:
     places = spec.imported.places
     here = np.flatnonzero(places.node == node)
     if not len(here):
-        raise StudyError(f"node {node} is none of the model's, which reach from {places.node.min()} to {places.node.max()}")
+        raise StudyError(
+            f"node {node} is none of the model's, which reach from {places.node.min()} to {places.node.max()}"
+        )
     return np.asarray(places.at[here[0]])
 
 

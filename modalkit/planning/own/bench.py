@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,6 +11,9 @@ import numpy as np
 import scipy.linalg
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
+from modalkit.blind.answer import Answer
+from modalkit.planning.bench import Attempt
+from modalkit.planning.cases import Case
 from modalkit.planning.changes import Change, Gain
 from modalkit.planning.curves import Curve, solve_curve
 from modalkit.planning.design import Design
@@ -18,8 +22,12 @@ from modalkit.planning.family import Family
 from modalkit.planning.own.changes import own_changes
 from modalkit.planning.own.families import families_of
 from modalkit.planning.own.layout import Layout
+from modalkit.planning.own.trials import REMOUNTED, diagnosed
+from modalkit.planning.separability import EQUAL
+from modalkit.simulation.simulate import prepare
+from modalkit.study.read import Study
 from updating.effects import LIBRARY, Effect, hypotheses_of
-from updating.likelihood.comparison import CHANNELS, Comparison
+from updating.likelihood.comparison import Comparison
 from updating.models.state import NOMINAL
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
@@ -34,6 +42,8 @@ class OwnBench:
 
     Parameters
     ----------
+    study : Study
+        The study.
     problem : SpecimenProblem
         Test and model; the data are the nominal model's own, at all stations, in one mode more than the test has.
     layout : Layout
@@ -52,6 +62,7 @@ class OwnBench:
         Effects that the study rules out.
     """
 
+    study: Study
     problem: SpecimenProblem
     layout: Layout
     ranks: IntArray
@@ -131,7 +142,9 @@ class OwnBench:
         hit = np.isin(self.layout.station[np.maximum(found.source, 0)], design.stations)
         inside = found.mode < design.modes
         damping = found.of("damping") & (design.damping_known or design.baseline)
-        return np.asarray(inside & (found.of("frequency") | damping | (found.of("frf") & hit & design.shapes)))
+        return np.asarray(
+            inside & (found.of("frequency") | damping | (found.of("frf") & hit & design.shapes))
+        )
 
     def whitener(self, design: Design) -> FloatArray:
         """Return W with ``W @ data`` of unit covariance, all doubts of the diagnosis counted in.
@@ -163,9 +176,27 @@ class OwnBench:
         factors = dict(zip(own.names, design.tolerances, strict=True))
         damping = 0.0 if design.baseline else design.damping
         tolerances = replace(own.tolerances, factors={**own.tolerances.factors, **factors}, damping=damping)
-        return replace(own, predictor=own.predictor.for_test(measured), measured=measured, tolerances=tolerances)
+        return replace(
+            own, predictor=own.predictor.for_test(measured), measured=measured, tolerances=tolerances
+        )
 
     def changes(self, design: Design, worth: Gain) -> Iterator[Change]:
         """Give all changes of the test that are worth a look."""
         above = float(self.problem.measured.frequency[design.modes])
         return own_changes(design, self.layout, self.problem.names, above, self.hits, worth)
+
+    follows = False
+
+    def right(self, case: Case) -> frozenset[str]:
+        """Return the names that are right answers to a case."""
+        return frozenset((case.family.cause, *(b for a, b in EQUAL if a == case.family.cause)))
+
+    @contextmanager
+    def attempts(self, *, noise: float | None, workers: int) -> Iterator[Attempt]:
+        """Give what makes trials: the study's model is hit as its test was, or as is planned."""
+        ready = prepare(self.study, replace(REMOUNTED, noise=noise))
+
+        def attempt(case: Case, _: Change | None, seed: list[int]) -> Answer:
+            return diagnosed(self.study, ready, case, seed)
+
+        yield attempt

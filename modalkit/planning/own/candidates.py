@@ -12,7 +12,7 @@ from updating.models import Spec
 from updating.prediction.predict import Predictor
 
 SPREAD = 12
-"""So many places are tried: as many as the rig's forecast tries along a beam; each more is a column in every solution."""
+"""So many places are tried: as many as the rig's forecast tries along a beam [-]."""
 
 CLOSE = 0.02
 """Nearer to a point of the test than this share of the structure, a place is no other one [-]."""

@@ -1,4 +1,4 @@
-"""What might be changed about a test of a study's own model: the rig's changes, and where two more points would help."""
+"""What might be changed about a test of a study's own model: and where two more points would help."""
 
 from __future__ import annotations
 
@@ -46,9 +46,15 @@ def own_changes(
     """
     if design.shapes:
         if layout.drive is not None and layout.drive not in design.stations:
-            where = "put the sensor at the hammer's point too" if layout.roving else "hit the sensor's own point too"
+            where = (
+                "put the sensor at the hammer's point too"
+                if layout.roving
+                else "hit the sensor's own point too"
+            )
             yield Change(
-                "drive point", f"{where}, the drive point", replace(design, stations=(*design.stations, layout.drive))
+                "drive point",
+                f"{where}, the drive point",
+                replace(design, stations=(*design.stations, layout.drive)),
             )
         yield from _points(design, layout, worth)
         if design.absolute and design.calibration > CALIBRATED and not design.baseline:
@@ -118,6 +124,10 @@ def _sizes(design: Design, names: Sequence[str]) -> Iterator[Change]:
     better = tuple(min(reached.get(n, s), s) for n, s in zip(names, design.tolerances, strict=True))
     if better == design.tolerances:
         return
-    words = [f"{n} to {100 * reached[n]:g} %" for n, s in zip(names, design.tolerances, strict=True) if s > reached.get(n, s)]
+    words = [
+        f"{n} to {100 * reached[n]:g} %"
+        for n, s in zip(names, design.tolerances, strict=True)
+        if s > reached.get(n, s)
+    ]
     do = "weigh and gauge" if any(n in ("thickness", "width") for n in names) else "weigh"
     yield Change("sizes", f"{do} the specimen: {', '.join(words)}", replace(design, tolerances=better))

@@ -66,7 +66,12 @@ def families_of(effect: Effect, predictor: Predictor, points: FloatArray) -> lis
     """
     if isinstance(effect, Supposed):
         return list(_supposed(effect))
-    local = {"lumped_mass": _bodies, "ground_spring": _springs, "channel_gain": _channels, "position_error": _strayed}
+    local = {
+        "lumped_mass": _bodies,
+        "ground_spring": _springs,
+        "channel_gain": _channels,
+        "position_error": _strayed,
+    }
     if effect.name in local:
         return list(local[effect.name](effect, predictor, points))
     return list(MAKERS[effect.name](effect, predictor)) if effect.name in MAKERS else []
@@ -169,7 +174,11 @@ def _clamps(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     if imported is not None:
         axes = range(3, 6) if turns else range(3)
         ways = [
-            (f"{effect.name} of {support.name} {'about' if turns else 'along'} {WAYS[axis].strip('r')}", support, axis)
+            (
+                f"{effect.name} of {support.name} {'about' if turns else 'along'} {WAYS[axis].strip('r')}",
+                support,
+                axis,
+            )
             for support in imported.supports
             for axis in axes
             if support.holds(axis)
@@ -179,8 +188,8 @@ def _clamps(effect: Effect, predictor: Predictor) -> Iterator[Family]:
         yield Family(
             name, _given(support, axis), 0.0, 1 / stiffness.low, 1 / (soft * stiffness.low),
             "a clamp softer than" if support is None else f"a support {support.name} softer than",
-            lambda q: f"{severity(1 / q)} {stiffness.unit}", effect=effect.name, at="" if support is None else support.name,
-            finest=max(stiffness.low / stiffness.high, FAINTEST),
+            lambda q: f"{severity(1 / q)} {stiffness.unit}", effect=effect.name,
+            at="" if support is None else support.name,            finest=max(stiffness.low / stiffness.high, FAINTEST),
         )  # fmt: skip
 
 
@@ -247,7 +256,9 @@ def _springs(effect: Effect, predictor: Predictor, points: FloatArray) -> Iterat
         assert imported is not None
         (group,) = (one for one in imported.groups if one.name == name)
         for axis in (axis for axis in range(3) if group.moves(axis)):
-            yield family(f"{effect.name} at {name} along {WAYS[axis]}", name, [{**places[0], "along": WAYS[axis]}])
+            yield family(
+                f"{effect.name} at {name} along {WAYS[axis]}", name, [{**places[0], "along": WAYS[axis]}]
+            )
 
 
 def _channels(effect: Effect, predictor: Predictor, points: FloatArray) -> Iterator[Family]:
@@ -273,7 +284,13 @@ def _strayed(effect: Effect, predictor: Predictor, points: FloatArray) -> Iterat
 def _gain(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     end = float(np.log(2.5))
     yield Family(
-        effect.name, lambda q, _: {"gain": float(np.exp(q))}, -end, end, 0.2, "a level off by more than", per_cent
+        effect.name,
+        lambda q, _: {"gain": float(np.exp(q))},
+        -end,
+        end,
+        0.2,
+        "a level off by more than",
+        per_cent,
     )
 
 

@@ -21,6 +21,7 @@ from updating import Case, Measured, Predictor, Spec
 from updating.nominal import predictor_of
 from updating.prediction.matching import pair_modes
 from updating.problem.specimen import SpecimenProblem
+from updating.tolerances import Tolerances
 
 SHAPE_FLOOR = 1e-3
 """No constant is taken to be known better than this, relative to its mode's largest: points are not that good [-]."""
@@ -42,13 +43,18 @@ HITS = 5
 class _Test:
     """A test, its model, and which of the model's modes are in it."""
 
-    case: Case
-    measured: Measured
+    predictor: Predictor
+    tolerances: Tolerances
     ranks: IntArray
     known: Known
     band: tuple[float, float]
     hits: int
     statement: tuple[str, ...]
+
+    @property
+    def measured(self) -> Measured:
+        """The test's points and FRFs."""
+        return self.predictor.measured
 
 
 def own_bench(study: Study) -> OwnBench:
@@ -65,18 +71,17 @@ def own_bench(study: Study) -> OwnBench:
         If nothing says where the structure is hit, or its band holds too few modes.
     """
     test = _with_data(study) if study.test.files or study.test.modes else _planned(study)
-    near = predictor_of(Case(test.case.title, test.case.spec, test.measured, None, test.case.tolerances,
-                             test.case.environment, test.case.accepted))  # fmt: skip
-    shown = _shown(test.case, test.measured)
+    shown = _shown(test.predictor)
     ranks = np.append(test.ranks, shown[shown > test.ranks[-1]][0])
-    layout = layout_of(test.measured, candidates(near, ranks, test.measured.points))
-    blank = Predictor(near.spec, layout.blank, near.environment, near.additions)
+    layout = layout_of(test.measured, candidates(test.predictor, ranks, test.measured.points))
+    blank = test.predictor.for_test(layout.blank)
     data = imagined(layout, blank, ranks, test.known.one_more)
-    problem = SpecimenProblem(blank.for_test(data), data, test.case.tolerances, ranks)
+    problem = SpecimenProblem(blank.for_test(data), data, test.tolerances, ranks)
     around = study.surroundings().fluid_density
     without = ("fluid_added_mass", "fluid_damping") if around is not None and around < GAS else ()
     design = _design(study, test, layout, problem)
     return OwnBench(
+        study,
         problem,
         layout,
         ranks,
@@ -108,7 +113,11 @@ def _design(study: Study, test: _Test, layout: Layout, problem: SpecimenProblem)
 
 
 def _on_damping(design: Design) -> list[str]:
-    stated = "damping as the model expects it" if design.damping_known else "the model expects no damping: it tells nothing"
+    stated = (
+        "damping as the model expects it"
+        if design.damping_known
+        else "the model expects no damping: it tells nothing"
+    )
     return [stated, *(["with the baseline, what changed since is asked about"] if design.baseline else [])]
 
 
@@ -131,8 +140,15 @@ def _with_data(study: Study) -> _Test:
     used = [] if processed is None else [v for v in processed.hits if v.used]
     hits = round(len(used) / max(len({v.point for v in used}), 1)) if used else (study.test.hits or HITS)
     where = f"{len(np.unique(test.points, axis=0))} points, {len(test.seen)} FRFs or components of shapes"
-    statement = (where if len(test.seen) else "frequencies alone", f"{len(test.frequency)} modes that have a partner in the model", words)
-    return _Test(case, test, paired.order[rising], known, (float(band[0]), float(band[1])), hits, statement)
+    statement = (
+        where if len(test.seen) else "frequencies alone",
+        f"{len(test.frequency)} modes that have a partner in the model",
+        words,
+    )
+    inside = float(band[0]), float(band[1])
+    return _Test(
+        predictor.for_test(test), case.tolerances, paired.order[rising], known, inside, hits, statement
+    )
 
 
 def _as_found(test: Measured) -> tuple[Known, str]:
@@ -158,21 +174,24 @@ def _planned(study: Study) -> _Test:
     points = _spaced(study, spec) if stated is None else stated
     case = Case(study.name, spec, points.test(study, points.hit[0]), None, study.doubts(), study.surroundings(),
                 study.accepted())  # fmt: skip
-    shown = _shown(case, case.measured)
-    ranks, band = _in_band(study, predictor_of(case).predict(count=MANY).frequency, shown)
+    predictor = predictor_of(case)
+    ranks, band = _in_band(study, predictor.predict(count=MANY).frequency, _shown(predictor))
     sensor = points.sensor
     if sensor is None:
-        sensor = points.hit[_strongest(case, points, ranks)]
-    measured = points.test(study, sensor)
+        sensor = points.hit[_strongest(predictor, np.array(points.hit), ranks)]
+    test = predictor.for_test(points.test(study, sensor))
     frequency, damping, shape = by_default(len(ranks))
-    whence = "as planned" if stated is not None else "by default, since no data and no [test] points say where"
+    whence = (
+        "as planned" if stated is not None else "by default, since no data and no [test] points say where"
+    )
     statement = (
         f"{len(points.hit)} points hit, the sensor at point {points.nodes[sensor]} ({whence})",
         f"{len(ranks)} modes in {band[0]:g} to {band[1]:g} Hz",
         f"no data tell how well: frequencies to {100 * frequency[0]:g} %, damping to {100 * damping[0]:g} %, constants "
         f"to {100 * shape[0]:g} % of their mode's largest are taken",
     )
-    return _Test(case, measured, ranks, Known(frequency, damping, shape), band, table.hits or HITS, statement)
+    known = Known(frequency, damping, shape)
+    return _Test(test, case.tolerances, ranks, known, band, table.hits or HITS, statement)
 
 
 def _spaced(study: Study, spec: Spec) -> PlannedPoints:
@@ -192,23 +211,24 @@ def _spaced(study: Study, spec: Spec) -> PlannedPoints:
     return PlannedPoints(points, tuple(range(1, len(points) + 1)), None, tuple(range(len(points))), None)
 
 
-def _shapes(case: Case, points: IntArray) -> FloatArray:
+def _shapes(predictor: Predictor, points: IntArray) -> FloatArray:
     """Return how far the model's lowest modes, normalised by their mass, move some points of a test (n, n_modes)."""
-    bare = replace(case.measured, seen=points, hit=np.full(len(points), -1))
-    return np.abs(predictor_of(replace(case, measured=bare)).predict(count=MANY).constants)
+    bare = replace(predictor.measured, seen=points, hit=np.full(len(points), -1))
+    return np.abs(predictor.for_test(bare).predict(count=MANY).constants)
 
 
-def _shown(case: Case, test: Measured) -> IntArray:
+def _shown(predictor: Predictor) -> IntArray:
     """Return the ranks of the modes that move any of the points of a test: of one that moves none nothing is known."""
+    test = predictor.measured
     if not len(test.seen):
         return np.arange(MANY)
-    moved = _shapes(replace(case, measured=test), np.unique([test.seen, np.maximum(test.hit, 0)])).max(axis=0)
+    moved = _shapes(predictor, np.unique([test.seen, np.maximum(test.hit, 0)])).max(axis=0)
     return np.flatnonzero(moved > FAINT * np.median(moved))
 
 
-def _strongest(case: Case, points: PlannedPoints, ranks: IntArray) -> int:
+def _strongest(predictor: Predictor, hit: IntArray, ranks: IntArray) -> int:
     """Return which of the points hit moves most in the mode that moves it least, each over its largest."""
-    shapes = _shapes(case, np.array(points.hit))[:, ranks]
+    shapes = _shapes(predictor, hit)[:, ranks]
     return int((shapes / np.maximum(shapes.max(axis=0), 1e-300)).min(axis=1).argmax())
 
 
