@@ -89,8 +89,8 @@ def choose(
 
 
 def _possible(names: Sequence[str], now: DesignForecast, after: DesignForecast) -> list[str]:
-    """Return names once each, without those that a baseline has too."""
-    kept = dict.fromkeys(names)
+    """Return names once each, without those that a baseline has too and those that no severity shows."""
+    kept = [n for n in dict.fromkeys(names) if np.isfinite(after.limits[n].seen)]
     return [n for n in kept if not (after.design.baseline and _found(now, n).curve.family.always)]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil, log2
 
@@ -64,6 +65,7 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
         nodes = tuple(range(1, len(points) + 1))
         notes.append(f"the study has no points: the hammer goes to {len(points)}, evenly spaced")
     frequency = np.zeros(0) if measured is None else measured.frequency
+    hit = range(len(points)) if planned is None else planned.hit
     blank = _blank(points, nodes, directions, 0)
     modes = natural_modes(simulated(Predictor(spec, blank)))
     band = study.test.band or _band(frequency, modes.frequency)
@@ -76,10 +78,10 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
     plan = _usual_plan(band, slowest + study.test.exponential_window, options)
     plan = replace(plan, position_sigma=study.test.position_sigma, decay=study.test.exponential_window)
     return MeasurementSetup(
-        _blank(points, nodes, directions, sensor),
-        (names[sensor],) * len(points),
-        names,
-        np.ones(len(points)),
+        _blank(points, nodes, directions, sensor, hit),
+        (names[sensor],) * len(hit),
+        tuple(names[i] for i in hit),
+        np.ones(len(hit)),
         geometry,
         band,
         plan,
@@ -88,12 +90,17 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
 
 
 def _blank(
-    points: FloatArray, nodes: tuple[int, ...], directions: FloatArray | None, sensor: int
+    points: FloatArray,
+    nodes: tuple[int, ...],
+    directions: FloatArray | None,
+    sensor: int,
+    hit: Sequence[int] | None = None,
 ) -> Measured:
-    """Return a test without modes: every point is hit, one is looked at."""
-    n, none = len(points), np.zeros(0)
+    """Return a test without modes: every point, or some, is hit, one is looked at."""
+    chosen = np.arange(len(points)) if hit is None else np.array(hit)
+    n, none = len(chosen), np.zeros(0)
     return Measured(
-        none, none, none, none, points, nodes, np.full(n, sensor), np.arange(n), np.zeros((n, 0)), np.zeros((n, 0)),
+        none, none, none, none, points, nodes, np.full(n, sensor), chosen, np.zeros((n, 0)), np.zeros((n, 0)),
         absolute=True, directions=directions,
     )  # fmt: skip
 
