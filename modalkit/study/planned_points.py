@@ -12,25 +12,23 @@ from acquisition.si_units import si_value
 
 WAYS = ("x", "y", "z")
 
-PlainPoint = float | Dof | tuple[tuple[float, ...], int]
-"""A place along a beam [m]; a node of the model and a direction; or coordinates [m] and a direction's UFF code."""
+PlainPoint = float | str | tuple[Any, ...]
+"""A place along a beam [m]; a node of the model and its direction, ``12+Z``; or coordinates [m] and a direction."""
 
 
 def planned_point(value: Any) -> PlainPoint:
-    """Return a point as written: ``0.15``, ``"12+Z"``, ``[0.1, 0.2]`` or ``[0.1, 0.0, 0.3, "+x"]``.
+    """Return a point written ``0.15``, ``"12+Z"``, ``[0.1, 0.2]`` or ``[0.1, 0.0, 0.3, "+x"]``, its direction always.
 
     Raises
     ------
     ValueError
         If it is written otherwise.
     """
-    if isinstance(value, Dof) or (isinstance(value, tuple) and value and isinstance(value[0], tuple)):
-        return value
     if isinstance(value, list | tuple):
         return _coordinates(list(value))
     if isinstance(value, str):
         try:
-            return Dof.of(value)
+            return str(Dof.of(value))
         except ModalkitError:
             pass
     try:
@@ -54,7 +52,7 @@ def _coordinates(value: list[Any]) -> PlainPoint:
         at = tuple(float(si_value(v, "m")) for v in value)
     except (TypeError, ValueError) as error:
         raise ValueError(_HOW.format(value)) from error
-    return at, (WAYS.index(way.lstrip("+-")) + 1) * (-1 if way.startswith("-") else 1)
+    return (*at, way if way[0] in "+-" else f"+{way}")
 
 
-PlannedPoint = Annotated[PlainPoint, PlainValidator(planned_point)]
+PlannedPoint = Annotated[Any, PlainValidator(planned_point)]

@@ -93,16 +93,18 @@ def planned_points(study: Study, spec: Spec) -> PlannedPoints | None:
 
 
 def _placed(stated: list[PlainPoint], spec: Spec) -> Placed:
-    numbers = [one.node for one in stated if isinstance(one, Dof)]
+    numbers = [Dof.of(one).node for one in stated if isinstance(one, str)]
     known: dict[tuple[float, ...], int] = {}
     dofs, at = [], {}
     for one in stated:
-        if isinstance(one, Dof):
-            dof, where = one, _of_node(one.node, spec)
+        if isinstance(one, str):
+            dof = Dof.of(one)
+            where = _of_node(dof.node, spec)
         elif isinstance(one, tuple):
-            where = np.array([*one[0], 0.0][:3])
-            number = known.setdefault(one[0], max(numbers, default=0) + len(known) + 1)
-            dof = Dof(number, one[1])
+            *place_of, way = one
+            where = np.array([*place_of, 0.0][:3])
+            number = known.setdefault(tuple(place_of), max(numbers, default=0) + len(known) + 1)
+            dof = Dof.of(f"{number}{way}")
         else:
             raise StudyError(f"{one:g} is a place along a beam; {_how(spec)}")
         dofs.append(dof)
@@ -131,6 +133,4 @@ def _how(spec: Spec) -> str:
 
 
 def _written(point: PlainPoint) -> str:
-    if isinstance(point, tuple):
-        return f"{list(point[0])}, along {'xyz'[abs(point[1]) - 1]}"
-    return str(point)
+    return f"{list(point[:-1])} along {point[-1]}" if isinstance(point, tuple) else str(point)

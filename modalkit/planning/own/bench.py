@@ -49,7 +49,7 @@ class OwnBench:
     layout : Layout
         The stations.
     ranks : (n_modes + 1,) int array
-        Ranks of the modes among the elastic ones.
+        Ranks of the modes among the elastic ones; one less where the model has none above.
     design : Design
         The test as it is.
     band : (float, float)
@@ -182,7 +182,8 @@ class OwnBench:
 
     def changes(self, design: Design, worth: Gain) -> Iterator[Change]:
         """Give all changes of the test that are worth a look."""
-        above = float(self.problem.measured.frequency[design.modes])
+        higher = self.problem.measured.frequency[design.modes :]
+        above = float(higher[0]) if len(higher) else None
         return own_changes(design, self.layout, self.problem.names, above, self.hits, worth)
 
     follows = False

@@ -25,7 +25,7 @@ MORE = 2
 
 
 def own_changes(
-    design: Design, layout: Layout, names: Sequence[str], above: float, hits: int, worth: Gain
+    design: Design, layout: Layout, names: Sequence[str], above: float | None, hits: int, worth: Gain
 ) -> Iterator[Change]:
     """Give all changes that are worth a look.
 
@@ -37,8 +37,8 @@ def own_changes(
         Where it might be hit or seen.
     names : sequence of str
         Properties with a tolerance.
-    above : float
-        Frequency of the mode above the band [Hz].
+    above : float or None
+        Frequency of the mode above the band, None where there is none [Hz].
     hits : int
         Hits at each point [-].
     worth : callable
@@ -73,11 +73,12 @@ def own_changes(
             replace(design, baseline=True),
         )
         yield from _sizes(design, names)
-    yield Change(
-        "band",
-        f"widen the band to {ABOVE * above:.3g} Hz: one more mode, at {above:.0f} Hz",
-        replace(design, modes=design.modes + 1),
-    )
+    if above is not None:
+        yield Change(
+            "band",
+            f"widen the band to {ABOVE * above:.3g} Hz: one more mode, at {above:.0f} Hz",
+            replace(design, modes=design.modes + 1),
+        )
     if design.repeatability:
         better = design.repeatability / CARE
         yield Change(

@@ -72,10 +72,10 @@ def own_bench(study: Study) -> OwnBench:
     """
     test = _with_data(study) if study.test.files or study.test.modes else _planned(study)
     shown = _shown(test.predictor)
-    ranks = np.append(test.ranks, shown[shown > test.ranks[-1]][0])
+    ranks = np.append(test.ranks, shown[shown > test.ranks[-1]][:1])
     layout = layout_of(test.measured, candidates(test.predictor, ranks, test.measured.points))
     blank = test.predictor.for_test(layout.blank)
-    data = imagined(layout, blank, ranks, test.known.one_more)
+    data = imagined(layout, blank, ranks, test.known.of(len(ranks)))
     problem = SpecimenProblem(blank.for_test(data), data, test.tolerances, ranks)
     around = study.surroundings().fluid_density
     without = ("fluid_added_mass", "fluid_damping") if around is not None and around < GAS else ()
@@ -221,7 +221,7 @@ def _shown(predictor: Predictor) -> IntArray:
     """Return the ranks of the modes that move any of the points of a test: of one that moves none nothing is known."""
     test = predictor.measured
     if not len(test.seen):
-        return np.arange(MANY)
+        return np.arange(len(predictor.predict(count=MANY).frequency))
     moved = _shapes(predictor, np.unique([test.seen, np.maximum(test.hit, 0)])).max(axis=0)
     return np.flatnonzero(moved > FAINT * np.median(moved))
 

@@ -99,10 +99,10 @@ class Known:
     damping: FloatArray
     shape: FloatArray
 
-    @property
-    def one_more(self) -> Known:
-        """With the mode above the band taken to be known as the one below it."""
-        return Known(*(np.append(v, v[-1]) for v in (self.frequency, self.damping, self.shape)))
+    def of(self, count: int) -> Known:
+        """Return it for so many modes, what is above the band taken to be known as the mode below it."""
+        each = (self.frequency, self.damping, self.shape)
+        return Known(*(np.append(v, np.full(count - len(v), v[-1])) for v in each))
 
 
 def imagined(layout: Layout, predictor: Predictor, ranks: IntArray, known: Known) -> Measured:
