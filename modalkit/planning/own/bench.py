@@ -151,7 +151,7 @@ class OwnBench:
 
         A pair of tests has twice the noise, and neither tolerances nor doubts in level and damping.
         """
-        found = self.posed(design).compare(NOMINAL)
+        found = self.problem_of(design).compare(NOMINAL)
         have = self._have(found, design)
         nuisance = found.nuisance[have]
         noise = found.variance[have] * (2.0 if design.baseline else 1.0)
@@ -160,7 +160,7 @@ class OwnBench:
         lower = scipy.linalg.cholesky(np.diag(noise) + nuisance @ nuisance.T, lower=True)
         return np.asarray(scipy.linalg.solve_triangular(lower, np.eye(len(lower)), lower=True))
 
-    def posed(self, design: Design) -> SpecimenProblem:
+    def problem_of(self, design: Design) -> SpecimenProblem:
         """Return the problem with everything as doubtful as a design has it."""
         own, test = self.problem, self.problem.measured
         measured = replace(

@@ -202,11 +202,11 @@ def _sensor(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     mass = total_mass(predictor.spec)
     yield Family(
         effect.name, lambda q, _: {"mass": q, "bulk": 0.0}, 0.0, HEAVIEST * mass, BODY * mass,
-        "a sensor heavier than stated by", _grams,
+        "a sensor heavier than stated by", _in_g,
     )  # fmt: skip
 
 
-def _grams(q: float) -> str:
+def _in_g(q: float) -> str:
     return f"{severity(1e3 * q)} g"
 
 
@@ -222,7 +222,7 @@ def _body(cause: str, name: str, places: list[Values], more: Values, mass: float
     return Family(
         f"{cause} at {name}" if name else cause,
         lambda q, i: {**places[int(i)], **more, "mass": q}, 0.0, HEAVIEST * mass, BODY * mass,
-        f"a body at {name} heavier than" if name else "a body at a point heavier than", _grams,
+        f"a body at {name} heavier than" if name else "a body at a point heavier than", _in_g,
         np.arange(float(len(places))) if len(places) > 1 else np.zeros(0), separately=True, effect=cause, at=name,
     )  # fmt: skip
 
