@@ -63,7 +63,11 @@ def _answer(found: Forecast) -> Raw:
     """Return the lines of the note."""
     lines = [line.partition(":") for line in note(found)]
     stated = {name.strip(): " ".join(text.split()) for name, _, text in lines}
-    share = f"{100 * found.now.separated_share:.0f} % of the pairs of effects are told apart"
+    pairs = list(found.now.shown_pairs.values())
+    separately = sum(value >= SEEN for value in pairs)
+    share = (
+        f"{100 * separately / max(len(pairs), 1):.0f} % of the pairs of effects that are seen are told apart"
+    )
     return joined(element("p", share, class_="answer"), definitions(stated, class_="letter"))
 
 
@@ -73,10 +77,12 @@ def separations_chart(found: Forecast) -> Chart:
     names, columns = list(now.names), ["no effect", *now.names]
     sigma = now.matrix[[NONE, *names]].to_numpy(float)
     written = ["" if math.isnan(v) else f"{v:.1f}" if v < 10 else "10+" for v in sigma.ravel()]
-    pairs = now.pairs
-    least = min(pairs, key=lambda pair: pairs[pair])
+    pairs = now.shown_pairs
     count = f"{sum(v >= SEEN for v in pairs.values())} of {len(pairs)} pairs"
-    title = f"{count} are {SEEN:g}σ apart or more; {' and '.join(least)} are nearest, {pairs[least]:.1f}σ"
+    title = f"{count} are {SEEN:g}σ apart or more"
+    if pairs:
+        least = min(pairs, key=lambda pair: pairs[pair])
+        title += f"; {' and '.join(least)} are nearest, {pairs[least]:.1f}σ"
     text = (
         "Standard deviations between an effect (row), as strong as asked about, and the most that another (column) can "
         f"do of it; full colour from {SURE:g}σ on."
@@ -120,10 +126,11 @@ def thresholds_table(document: dict[str, Any]) -> Raw:
     columns = [
         Column(n) for n in ("effect", "seen from", "told from", "surely from", "asked about", "nearest")
     ]
-    columns.append(Column("σ from it", lambda v: f"{v:.1f}"))
-    keys = ("effect", "seen_from", "separated_from", "sure_from", "asked", "nearest")
+    columns += [Column("σ from it", lambda v: f"{v:.1f}"), Column("expected")]
+    keys = ("name", "seen_from", "separated_from", "sure_from", "asked", "nearest")
     rows: list[list[Cell | Raw]] = [
-        [*(one[k] or "never" for k in keys), one["nearest_sigma"]] for one in document["now"]["effects"]
+        [*(one[k] or "never" for k in keys), one["nearest_sigma"], one["outcome"]]
+        for one in document["now"]["effects"]
     ]
     statement = f"Seen: {SEEN:g} standard deviations beyond what tolerances explain; surely: {SURE:g} from all others."
     return table(statement, columns, rows)
