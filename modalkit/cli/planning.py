@@ -107,7 +107,10 @@ def show_note(name: str, found: Forecast) -> None:
     for line in note(found):
         out.print(line, markup=False)
     out.print(f"Taken:   {'; '.join(bench.statement)}", markup=False)
-    left = [*bench.left_out, *[f"{key} ({why})" for key, why in bench.not_forecast.items()]]
+    reasons: dict[str, list[str]] = {}
+    for key, why in bench.not_forecast.items():
+        reasons.setdefault(why, []).append(key)
+    left = [*bench.left_out, *[f"{', '.join(keys)} ({why})" for why, keys in reasons.items()]]
     out.print(f"Not in:  {'; '.join(left)}; pairs of effects", markup=False)
     out.print()
 

@@ -35,7 +35,7 @@ def _names(now: DesignForecast) -> str:
     kinds = [one.kind for one in now.outcomes.values()]
     edge = kinds.count("edge")
     more = f", {edge} more on the edge ({SEEN:g} to {SURE:g} sigma)" if edge else ""
-    return f"Names:   {kinds.count('named')} of {len(kinds)} effects alone, at places of their own{more}."
+    return f"Names:   {kinds.count('named')} of {len(kinds)} effects surely ({SURE:g} sigma from all others){more}."
 
 
 def _cannot(now: DesignForecast) -> list[str]:

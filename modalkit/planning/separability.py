@@ -169,22 +169,37 @@ def distances(
         Whether surfaces are interpolated between the severities and places that were solved.
     """
     have, white = bench.columns(design), bench.whitener(design)
-    clouds = [_surface(curve, have, white, fine=fine) for curve in curves]
-    out = []
-    for i, curve in enumerate(curves):
-        chosen = np.unique(np.linspace(0, len(curve.data) - 1, _TARGET_PLACES).astype(int))
-        targets = curve.data[chosen][..., have] @ white.T
-        flat = targets.reshape(-1, targets.shape[-1])
-        rows = [np.linalg.norm(flat, axis=1)]
-        names, causes = [NONE], [NONE]
-        for j, cloud in enumerate(clouds):
-            if j != i:
-                rows.append(np.minimum(cloud.distance(flat), rows[0]))
-                names.append(curves[j].family.name)
-                causes.append(curves[j].family.cause)
-        sigma = np.array(rows).reshape(len(rows), *targets.shape[:2])
-        out.append(Distances(curve, curve.family.sites[chosen], tuple(names), tuple(causes), sigma))
-    return tuple(out)
+    chosen = [_chosen(len(curve.data)) for curve in curves]
+    targets = [curve.data[i][..., have] @ white.T for curve, i in zip(curves, chosen, strict=True)]
+    flat = np.concatenate([one.reshape(-1, one.shape[-1]) for one in targets])
+    nothing = np.linalg.norm(flat, axis=1)
+    reached = [
+        np.minimum(_surface(curve, have, white, fine=fine).distance(flat), nothing) for curve in curves
+    ]
+    ends = np.cumsum([0, *(np.prod(one.shape[:2]) for one in targets)])
+    return tuple(
+        _against(curves, i, chosen[i], [row[ends[i] : ends[i + 1]] for row in (nothing, *reached)])
+        for i in range(len(curves))
+    )
+
+
+def _chosen(places: int) -> IntArray:
+    """Return the places at which an effect is asked about, of so many."""
+    return np.unique(np.linspace(0, places - 1, _TARGET_PLACES).astype(int))
+
+
+def _against(curves: Sequence[Curve], own: int, chosen: IntArray, rows: Sequence[FloatArray]) -> Distances:
+    """Return one effect against none (the first row) and all others (one row for each curve)."""
+    curve, others = curves[own], [j for j in range(len(curves)) if j != own]
+    families = [curves[j].family for j in others]
+    sigma = np.array([rows[0], *(rows[1 + j] for j in others)])
+    return Distances(
+        curve,
+        curve.family.sites[chosen],
+        (NONE, *(family.name for family in families)),
+        (NONE, *(family.cause for family in families)),
+        sigma.reshape(len(sigma), len(chosen), -1),
+    )
 
 
 @dataclass(frozen=True, eq=False)
