@@ -230,7 +230,8 @@ class _Surface:
 
 
 def _surface(curve: Curve, have: IntArray, white: FloatArray, *, fine: bool) -> _Surface:
-    bare = (curve.cloud if fine else curve.data)[..., have]
+    coarse = curve.data if curve.dense is None else curve.dense.data
+    bare = (curve.cloud if fine else coarse)[..., have]
     doubt = None
     if curve.fidelity or curve.slack is not None:
         slack = 0.0 if curve.slack is None else curve.slack[have]

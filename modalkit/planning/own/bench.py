@@ -15,7 +15,7 @@ from modalkit.blind.answer import Answer
 from modalkit.planning.bench import Attempt
 from modalkit.planning.cases import Case
 from modalkit.planning.changes import Change, Gain
-from modalkit.planning.curves import Curve, solve_curve
+from modalkit.planning.curves import Curve, refined, solve_curve
 from modalkit.planning.design import Design
 from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.family import Family
@@ -132,7 +132,12 @@ class OwnBench:
         """Return an effect at all its severities and places, with what its idealisation leaves in doubt."""
         doubt = Candidate((self.library[family.cause],)).doubt_on(self.problem.predictor)
         slack = np.where(self._nominal.of("damping"), doubt.damping, 0.0) if doubt.damping else None
-        return solve_curve(family, self.change, fidelity=doubt.fidelity, slack=slack)
+        curve = solve_curve(family, self.change, fidelity=doubt.fidelity, slack=slack)
+        return refined(curve, self.change, self._white, self.columns(self.design))
+
+    @cached_property
+    def _white(self) -> FloatArray:
+        return self.whitener(self.design)
 
     def columns(self, design: Design) -> IntArray:
         """Return which entries of a row of data a test has."""

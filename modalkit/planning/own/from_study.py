@@ -13,6 +13,7 @@ from modalkit.planning.known import by_default
 from modalkit.planning.own.bench import OwnBench
 from modalkit.planning.own.candidates import candidates
 from modalkit.planning.own.layout import Known, Layout, imagined, layout_of
+from modalkit.planning.own.tracked import Tracked
 from modalkit.simulation.planned import spaced
 from modalkit.study.read import Study
 from modalkit.workflow.case import open_study
@@ -76,7 +77,7 @@ def own_bench(study: Study) -> OwnBench:
     layout = layout_of(test.measured, candidates(test.predictor, ranks, test.measured.points))
     blank = test.predictor.for_test(layout.blank)
     data = imagined(layout, blank, ranks, test.known.of(len(ranks)))
-    problem = SpecimenProblem(blank.for_test(data), data, test.tolerances, ranks)
+    problem = Tracked(blank.for_test(data), data, test.tolerances, ranks)
     around = study.surroundings().fluid_density
     without = ("fluid_added_mass", "fluid_damping") if around is not None and around < GAS else ()
     design = _design(study, test, layout, problem)
