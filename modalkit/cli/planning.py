@@ -60,7 +60,7 @@ def plan_study(
     document, checked = to_json(found), None
     if trials:
         checked = _checked(found, trials, 1 if seed is None else seed, workers)
-        show_check(checked)
+        show_check(checked, found.bench.basis)
         document["trials"] = checked.to_json()
     if json is not None:
         write_json(json, document)
@@ -179,8 +179,8 @@ def _changes(found: Forecast) -> pd.DataFrame:
     )
 
 
-def show_check(checked: Check) -> None:
-    """Print what blind trials of the rig answered beside what was forecast."""
-    show_table(checked.table, "Blind trials on this rig: forecast and answer", digits={"sigma": 1})
+def show_check(checked: Check, basis: str) -> None:
+    """Print what blind trials answered beside what was forecast."""
+    show_table(checked.table, f"Blind trials on {basis}: forecast and answer", digits={"sigma": 1})
     for line in checked.summary:
         out.print(line, markup=False)

@@ -105,7 +105,7 @@ def _compared(now: DesignForecast) -> list[str]:
     """Return the effects whose separations are drawn: all, of many those that are seen and not surely named."""
     if len(now.names) <= _MANY:
         return list(now.names)
-    hard = [name for name, one in now.outcomes.items() if one.kind in ("edge", "class")]
+    hard = [name for name, one in now.outcomes.items() if one.kind in ("place", "edge", "class")]
     return sorted(hard, key=lambda name: now.limits[name].sigma)[:_MANY]
 
 

@@ -46,8 +46,8 @@ class Limit:
     sigma: float
 
 
-Kind = Literal["named", "edge", "class", "unseen"]
-"""Told from all others surely; by less; not told from some; not told from nothing."""
+Kind = Literal["named", "place", "edge", "class", "unseen"]
+"""Told from all others surely; but for itself elsewhere; by less; not told from some; not told from nothing."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Outcome:
     Parameters
     ----------
     kind : str
-        ``named``, on the ``edge`` of it, in a ``class`` with others, or ``unseen``.
+        ``named``; named with its ``place`` in doubt; on the ``edge`` of it; in a ``class`` with others; or ``unseen``.
     rivals : tuple of str
         Those from which it is not told, or hardly, the nearest first.
     """
@@ -178,11 +178,15 @@ def _outcome(one: Distances) -> Outcome:
     clear = one.clear(one.sigma)
     if clear[one.rivals.index(NONE)] < SEEN:
         return Outcome("unseen")
-    near = sorted((float(s), r) for r, s in zip(one.rivals, clear, strict=True) if r != NONE and s < SURE)
+    rivals = zip(clear.tolist(), one.rivals, one.causes, strict=True)
+    near = sorted((s, rival, cause) for s, rival, cause in rivals if rival != NONE and s < SURE)
+    untold = [(rival, cause) for sigma, rival, cause in near if sigma < SEEN]
     if not near:
         return Outcome("named")
-    untold = tuple(rival for sigma, rival in near if sigma < SEEN)
-    return Outcome("class", untold) if untold else Outcome("edge", tuple(rival for _, rival in near))
+    if not untold:
+        return Outcome("edge", tuple(rival for _, rival, _ in near))
+    own = {cause for _, cause in untold} == {one.curve.family.cause}
+    return Outcome("place" if own else "class", tuple(rival for rival, _ in untold))
 
 
 @dataclass(frozen=True, eq=False)

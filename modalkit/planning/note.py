@@ -33,8 +33,9 @@ def _separates(now: DesignForecast) -> str:
 
 def _names(now: DesignForecast) -> str:
     kinds = [one.kind for one in now.outcomes.values()]
-    edge = kinds.count("edge")
+    edge, place = kinds.count("edge"), kinds.count("place")
     more = f", {edge} more on the edge ({SEEN:g} to {SURE:g} sigma)" if edge else ""
+    more += f", {place} more with their place in doubt" if place else ""
     return f"Names:   {kinds.count('named')} of {len(kinds)} effects surely ({SURE:g} sigma from all others){more}."
 
 

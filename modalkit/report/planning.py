@@ -50,7 +50,7 @@ def plan_report(
                 Section("What it tells apart", [separations_chart(found)]),
                 Section("From what severity on", [thresholds_chart(found), thresholds_table(document)]),
                 Section("What a change buys", [changes_table(found)]),
-                Section("Blind trials on this rig", [_trials(checked)]),
+                Section(f"Blind trials on {found.bench.basis}", [_trials(checked)]),
                 Section("What was taken for granted", [bullets(list(found.bench.statement))]),
                 Section("What the forecast leaves out", [_left_out(found)]),
                 Section("What this rests on", [provenance(Basis(when, command, [study]))]),
