@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator, make_interp_spline
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from modalkit.planning.family import Family
 
 _BETWEEN, _DENSER = 5, 3
@@ -24,8 +24,8 @@ ROUNDS = 5
 MISSED = 0.5
 """A curve is met between two severities within so many standard deviations [-]..."""
 
-SHARE = 0.3
-"""...or within this share of the doubt in its own idealisation [-]."""
+SHARE = 1.0
+"""...or within this share of the doubt in its own idealisation [-]: then it is off by one sigma of a rival's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,22 +158,26 @@ def refined(curve: Curve, change: Change, white: FloatArray, have: IntArray) -> 
         Which data these are.
     """
     family, known, data = curve.family, curve.family.grid, curve.data
-    open_ends = np.ones(len(known) - 1, dtype=bool)
+
+    def far(missed: FloatArray, whole: FloatArray) -> BoolArray:
+        """Tell at which severities a curve is missed by more than is allowed."""
+        off, size = (np.linalg.norm(one[..., have] @ white.T, axis=2) for one in (missed, whole))
+        return np.asarray((off > np.hypot(MISSED, SHARE * curve.fidelity * size)).any(axis=0))
+
+    loud = far(data, 0 * data)
+    open_ends = loud[1:] | loud[:-1]
     for _ in range(ROUNDS):
         chosen = np.flatnonzero(open_ends)
         if not len(chosen):
             break
         middle = _middle(known, family)[chosen]
         found = np.array([[change(family, float(q), float(place)) for q in middle] for place in family.sites])
-        missed = (found - _between(known, data, middle, family))[..., have] @ white.T
-        size = np.linalg.norm(found[..., have] @ white.T, axis=2)
-        far = np.linalg.norm(missed, axis=2) > np.hypot(MISSED, SHARE * curve.fidelity * size)
         bad = np.zeros(len(known) - 1, dtype=bool)
-        bad[chosen] = far.any(axis=0)
-        split = np.insert(known, chosen + 1, middle)
-        data = np.insert(data, chosen + 1, found, axis=1)
+        bad[chosen] = far(found - _between(known, data, middle, family), found)
         halves = np.repeat(bad, np.where(open_ends, 2, 1))
-        known, open_ends = split, halves
+        known = np.insert(known, chosen + 1, middle)
+        data = np.insert(data, chosen + 1, found, axis=1)
+        open_ends = halves
     return replace(curve, dense=Dense(known, data))
 
 

@@ -7,12 +7,14 @@ says, as in a diagnosis.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from itertools import product
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.quantities import severity
 from modalkit.planning.family import Family, Values, factor, per_cent
+from modalkit.planning.whole import CLEAR_LOAD, MOST_LOAD, NEAR
 from updating.effects.base import Effect, total_mass
 from updating.effects.hypothesis import Supposed
 from updating.effects.regions import WAYS, heavy_regions, stiff_regions
@@ -44,6 +46,9 @@ raises a cantilever's lowest frequency by a twentieth."""
 
 SOFT_SUPPORT = 20.0
 """A support that is asked about, over the softest that is believed [-]: as the clamps of the rig's beams."""
+
+BELIEVED_LOAD = 0.8
+"""Largest pressure that the effect believes, of that at which the plate buckles [-]."""
 
 FAINTEST = 1e-5
 """Smallest severity that is solved where it ranges over many decades, of the largest [-]."""
@@ -357,6 +362,37 @@ def _orthotropy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     )  # fmt: skip
 
 
+def _load(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    """A load along x, over that at which the plate buckles: the end of what the effect believes."""
+    (force,) = effect.parameters(predictor)
+    buckling = -force.low / BELIEVED_LOAD
+    yield Family(
+        effect.name, lambda q, _: {"force": q}, -MOST_LOAD * buckling, 2 * buckling, CLEAR_LOAD * buckling,
+        "an axial load above", lambda q: f"{severity(abs(q))} {force.unit}",
+    )  # fmt: skip
+
+
+def _fluid(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    """Of its surface and bottom those that the study does not state are far off or near: forms of the effect."""
+    around, spec = predictor.environment, predictor.spec
+    near = NEAR * min(spec.length, spec.width)
+    unstated = [name for name in ("free_surface", "bottom") if getattr(around, name) is None]
+    tanks = [dict(zip(unstated, at, strict=True)) for at in product((np.inf, near), repeat=len(unstated))]
+    known = around.fluid_density
+    yield Family(
+        effect.name, lambda q, form: {"fluid_density": q, **tanks[int(form)]}, 0.0, known or 2000.0, known or 998.0,
+        "a fluid denser than", _unit("kg/m3"), np.arange(float(len(tanks))), separately=True,
+    )  # fmt: skip
+
+
+def _viscous(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    """Severity is the root of the viscosity, in proportion to which a boundary layer damps."""
+    yield Family(
+        effect.name, lambda q, _: {"viscosity": q**2}, 0.0, 1.0, 0.1, "a fluid more viscous than",
+        lambda q: f"{severity(1e3 * q**2)} mPa s",
+    )  # fmt: skip
+
+
 def _supposed(effect: Supposed) -> Iterator[Family]:
     """How far it is as the study supposes, in full asked about; of a parameter its value."""
     own = effect.hypothesis
@@ -383,6 +419,9 @@ MAKERS: dict[str, Maker] = {
     "length": _length,
     "taper": _taper,
     "orthotropy": _orthotropy,
+    "axial_load": _load,
+    "fluid_added_mass": _fluid,
+    "fluid_damping": _viscous,
     "clamp_rotation": _clamps,
     "clamp_translation": _clamps,
     "sensor_mass": _sensor,
