@@ -139,10 +139,16 @@ def _thresholds(now: DesignForecast) -> pd.DataFrame:
             words[0] = statement(now, name, limit.seen) or "never"
         keys = ("seen from", "told from", "surely from", "asked about")
         row = {"effect": name, **dict(zip(keys, words, strict=True))}
-        rows.append(
-            {**row, "nearest": f"{limit.nearest} ({limit.sigma:.1f})", "expected": now.outcomes[name].kind}
-        )
+        rows.append({**row, "nearest": _nearest(now, name), "expected": now.outcomes[name].kind})
     return pd.DataFrame(rows)
+
+
+def _nearest(now: DesignForecast, name: str) -> str:
+    """Return the rival from which an effect is not told, or hardly; else that which comes nearest to it."""
+    rivals, limit = now.outcomes[name].rivals, now.limits[name]
+    if not rivals:
+        return f"{limit.nearest} ({limit.sigma:.1f})"
+    return f"{rivals[0]} ({now.found[now.names.index(name)].clear_of(rivals[0]):.1f})"
 
 
 def _separations(now: DesignForecast) -> pd.DataFrame:
@@ -172,7 +178,7 @@ def _changes(found: Forecast) -> pd.DataFrame:
                 "change": one.change.measure,
                 "newly separates": some(separated(one.separates)) or "-",
                 "times smaller": one.factor,
-                "share told": one.after.separated_share,
+                "share told": one.after.shown_share,
             }
             for one in found.advice
         ]

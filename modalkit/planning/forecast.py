@@ -149,6 +149,12 @@ class DesignForecast:
         return float(np.mean(values >= SEEN)) if len(values) else 1.0
 
     @property
+    def shown_share(self) -> float:
+        """Share of the pairs of effects that are seen that are 3 sigma apart or more [-]."""
+        values = np.array(list(self.shown_pairs.values()))
+        return float(np.mean(values >= SEEN)) if len(values) else 1.0
+
+    @property
     def worth(self) -> float:
         """Share of pairs told, and beside it how low thresholds are on a logarithmic scale, as one number [-]."""
         table = self.thresholds

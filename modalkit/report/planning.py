@@ -149,7 +149,7 @@ def changes_table(found: Forecast) -> Raw:
             one.change.measure,
             some(separated(one.separates)) or "nothing",
             one.factor,
-            one.after.separated_share,
+            one.after.shown_share,
         ]
         for one in found.advice
     ]
