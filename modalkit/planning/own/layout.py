@@ -53,6 +53,8 @@ def layout_of(test: Measured, spots: tuple[Spot, ...]) -> Layout:
     spots : tuple of Spot
         Where it might be hit, or seen, too.
     """
+    if not len(test.seen):
+        return _of_spots(test, spots)
     bare = bool((test.hit < 0).all())
     roving = bare or len(np.unique(test.seen)) > len(np.unique(test.hit))
     moving, fixed = (test.seen, test.hit) if roving else (test.hit, test.seen)
@@ -76,6 +78,19 @@ def layout_of(test: Measured, spots: tuple[Spot, ...]) -> Layout:
         slope_sigma=None, noise=None, shared=None, partners=None, partner_constants=None, written=(), warnings=(),
     )  # fmt: skip
     return Layout(blank, moves, tuple(mine.tolist()), spots, roving, drive)
+
+
+def _of_spots(test: Measured, spots: tuple[Spot, ...]) -> Layout:
+    """Return the stations of a test that has frequencies alone: the places that are tried, the sensor at the first."""
+    places = [spot.place[None, : test.points.shape[1]] for spot in spots]
+    count = len(spots)
+    hit = np.arange(count)
+    blank = replace(
+        test, points=np.vstack([test.points, *places]), directions=_directions(test, spots),
+        nodes=tuple(range(1, count + 1)), seen=np.zeros(count, dtype=int), hit=hit,
+        constants=np.zeros((count, 0)), constants_sigma=np.zeros((count, 0)), warnings=(), written=(), trusted=None,
+    )  # fmt: skip
+    return Layout(blank, hit, (), spots, roving=False)
 
 
 def _directions(test: Measured, spots: tuple[Spot, ...]) -> FloatArray | None:

@@ -221,6 +221,19 @@ def test_a_trial_on_the_model_answers_as_was_forecast(tmp_path: Path) -> None:
     assert all(one.kept for one in checked.tried), checked.table.to_string()
 
 
+def test_where_frequencies_alone_are_known_shapes_are_proposed(tmp_path: Path) -> None:
+    rows = "\n".join(f"{f:.6g},{1e-4 * f:.3g}" for f in closed_form({})[:5])
+    (tmp_path / "modes.csv").write_text(f"frequency,sigma\n{rows}\n")
+    own = bench(tmp_path, test='modes = "modes.csv"')
+    assert not own.design.shapes
+    assert len(own.columns(own.design)) == 5
+    shapes = next(one for one in own.changes(own.design, lambda _: 0.0) if one.key == "shapes")
+    assert "not frequencies alone" in shapes.measure
+    assert len(own.columns(shapes.design)) > 5
+    white = own.whitener(shapes.design)
+    assert np.isfinite(white).all()
+
+
 def test_points_are_proposed_by_node_direction_and_region(chained: Forecast) -> None:
     points = next(one for one in chained.advice if one.change.key == "points")
     assert "node" in points.change.measure
