@@ -221,6 +221,21 @@ def test_a_trial_on_the_model_answers_as_was_forecast(tmp_path: Path) -> None:
     assert all(one.kept for one in checked.tried), checked.table.to_string()
 
 
+def test_softer_springs_at_the_foot_are_heavier_masses_at_the_end_to_frequencies_and_not_to_shapes(
+    tmp_path: Path,
+) -> None:
+    """B' S B on masses M has the eigenvalues of B M^-1 B' on compliances S^-1, which is the chain turned round."""
+    own = bench(tmp_path)
+    pair = [f for f in own.families if f.name in ("local_stiffness of low", "local_mass of high")]
+    curves = [own.solve(family) for family in pair]
+    apart = {
+        shapes: distances(curves, replace(own.design, shapes=shapes), own)[0].clear_of(pair[1].name)
+        for shapes in (False, True)
+    }
+    assert apart[False] < 0.1
+    assert apart[True] > SEEN
+
+
 def test_where_frequencies_alone_are_known_shapes_are_proposed(tmp_path: Path) -> None:
     rows = "\n".join(f"{f:.6g},{1e-4 * f:.3g}" for f in closed_form({})[:5])
     (tmp_path / "modes.csv").write_text(f"frequency,sigma\n{rows}\n")
