@@ -74,7 +74,15 @@ def make(folder: Path, loose: str = "joint_3", seed: int = 7) -> Path:
     specimen = frame({loose: LOOSE})[0]
     pair = specimen.matrix("stiffness"), specimen.matrix("mass")
     hit(folder / "hits.uff", model, *pair, POINTS, rate=2048.0, rng=np.random.default_rng(seed))
-    return Path(shutil.copy(Path(__file__).parent / "frame.toml", folder / "study.toml"))
+    study = Path(shutil.copy(Path(__file__).parent / "frame.toml", folder / "study.toml"))
+    (folder / "planned.toml").write_text(planned(study.read_text(encoding="utf-8")), encoding="utf-8")
+    return study
+
+
+def planned(study: str) -> str:
+    """Return the text of a study before its test was made: where the frame will be hit in place of the hits."""
+    points = [[*(round(c, 4) for c in place), f"+{'xyz'[axis - 1]}"] for place, axis in POINTS.values()]
+    return study.replace('files = ["hits.uff"]', f"points = {points}\nsensor = {points[-1]}")
 
 
 if __name__ == "__main__":

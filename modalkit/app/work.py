@@ -97,14 +97,14 @@ def plan(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Forecast what the test of a study tells apart."""
     from modalkit.planning import forecast
     from modalkit.planning.document import to_json
-    from modalkit.planning.from_study import known_test_of
+    from modalkit.planning.from_study import bench_of
     from modalkit.planning.note import note
     from modalkit.study.read import read_study
 
     progress("reading the test")
-    known = known_test_of(read_study(path))
-    progress("solving the rig's own body")
-    found = forecast(known)
+    bench = bench_of(read_study(path))
+    progress(f"solving {bench.basis}")
+    found = forecast(bench)
     return {"lines": note(found), "document": to_json(found)}
 
 

@@ -14,15 +14,17 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from modalkit.cli.common import out, progress, show_figures, show_table, working
 from modalkit.cli.reporting import now, save_report, this_command
 from modalkit.output.whole import write_json
-from modalkit.planning import DesignForecast, Forecast, KnownTest, forecast
+from modalkit.planning import DesignForecast, Forecast, KnownTest, RigBench, forecast
 from modalkit.planning.document import family_of, statement, to_json
-from modalkit.planning.effects import NOT_FORECAST
-from modalkit.planning.from_study import known_test_of
+from modalkit.planning.from_study import bench_of, known_test_of
 from modalkit.planning.note import followed, note, separated, some
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check, check
 from modalkit.planning.writing import noise_for, write_case
 from modalkit.study.read import Study, read_study
+
+WIDEST = 20
+"""So many effects still have their separations in a table that is printed; JSON, report and figure have all."""
 
 
 def plan_study(
@@ -50,15 +52,15 @@ def plan_study(
     """
     own = read_study(study)
     with working("reading the test"):
-        known_test = known_test_of(own)
-    with working("solving the rig's own body"):
-        found = forecast(known_test)
+        bench = bench_of(own)
+    with working(f"solving {bench.basis}"):
+        found = forecast(bench)
     show_note(own.name, found)
     show_tables(found)
     document, checked = to_json(found), None
     if trials:
         checked = _checked(found, trials, 1 if seed is None else seed, workers)
-        show_check(checked)
+        show_check(checked, found.bench.basis)
         document["trials"] = checked.to_json()
     if json is not None:
         write_json(json, document)
@@ -75,11 +77,14 @@ def _report(study: Study, found: Forecast, checked: Check | None) -> str:
 
 def _checked(found: Forecast, trials: int, seed: int, workers: int) -> Check:
     """Run trials whose channels are as noisy as makes the constants as uncertain as told."""
-    with working("matching the noise"):
-        noise = _noise(found.known_test) if found.known_test.shapes else None
+    bench, noise = found.bench, None
+    if isinstance(bench, RigBench) and bench.known_test.shapes:
+        with working("matching the noise"):
+            noise = _noise(bench.known_test)
+    runs = (2 if followed(found) and bench.follows else 1) * trials
     columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=progress) as bar:
-        task = bar.add_task("trials", total=(2 if followed(found) else 1) * trials)
+        task = bar.add_task("trials", total=runs)
         return check(found, trials, seed, noise=noise, workers=workers, progress=lambda: bar.advance(task))
 
 
@@ -97,12 +102,15 @@ def _figures(found: Forecast) -> dict[str, Any]:
 
 def show_note(name: str, found: Forecast) -> None:
     """Print what a colleague would say in ten lines."""
-    known_test = found.known_test
+    bench = found.bench
     out.print(name, style="bold", markup=False)
     for line in note(found):
         out.print(line, markup=False)
-    out.print(f"Taken:   {'; '.join(known_test.statement)}", markup=False)
-    left = [*known_test.left_out, *[f"{key} ({why})" for key, why in NOT_FORECAST.items()]]
+    out.print(f"Taken:   {'; '.join(bench.statement)}", markup=False)
+    reasons: dict[str, list[str]] = {}
+    for key, why in bench.not_forecast.items():
+        reasons.setdefault(why, []).append(key)
+    left = [*bench.left_out, *[f"{', '.join(keys)} ({why})" for why, keys in reasons.items()]]
     out.print(f"Not in:  {'; '.join(left)}; pairs of effects", markup=False)
     out.print()
 
@@ -113,9 +121,10 @@ def show_tables(found: Forecast) -> None:
         _thresholds(found.now),
         f"From what severity on: {SEEN:g} sigma beyond what tolerances explain, surely {SURE:g}",
     )
-    show_table(
-        _separations(found.now), "Sigma between each effect, clear, and the nearest that another can do"
-    )
+    if len(found.now.names) <= WIDEST:
+        show_table(
+            _separations(found.now), "Sigma between each effect, clear, and the nearest that another can do"
+        )
     show_table(_changes(found), "What a change buys", digits={"times smaller": 2, "share told": 3})
 
 
@@ -124,12 +133,22 @@ def _thresholds(now: DesignForecast) -> pd.DataFrame:
     rows = []
     for name, limit in now.limits.items():
         family = family_of(now, name)
-        first, *rest = (limit.seen, limit.separated, limit.sure, limit.clear)
-        words = [family.amount(q) if math.isfinite(q) else "never" for q in rest]
+        sizes = (limit.seen, limit.separated, limit.sure, limit.clear)
+        words = [family.amount(q) if math.isfinite(q) else "never" for q in sizes]
+        if not family.at:
+            words[0] = statement(now, name, limit.seen) or "never"
         keys = ("seen from", "told from", "surely from", "asked about")
-        known_test = dict(zip(keys, (statement(now, name, first) or "never", *words), strict=True))
-        rows.append({"effect": name, **known_test, "nearest": f"{limit.nearest} ({limit.sigma:.1f})"})
+        row = {"effect": name, **dict(zip(keys, words, strict=True))}
+        rows.append({**row, "nearest": _nearest(now, name), "expected": now.outcomes[name].kind})
     return pd.DataFrame(rows)
+
+
+def _nearest(now: DesignForecast, name: str) -> str:
+    """Return the rival from which an effect is not told, or hardly; else that which comes nearest to it."""
+    rivals, limit = now.outcomes[name].rivals, now.limits[name]
+    if not rivals:
+        return f"{limit.nearest} ({limit.sigma:.1f})"
+    return f"{rivals[0]} ({now.found[now.names.index(name)].clear_of(rivals[0]):.1f})"
 
 
 def _separations(now: DesignForecast) -> pd.DataFrame:
@@ -159,15 +178,15 @@ def _changes(found: Forecast) -> pd.DataFrame:
                 "change": one.change.measure,
                 "newly separates": some(separated(one.separates)) or "-",
                 "times smaller": one.factor,
-                "share told": one.after.separated_share,
+                "share told": one.after.shown_share,
             }
             for one in found.advice
         ]
     )
 
 
-def show_check(checked: Check) -> None:
-    """Print what blind trials of the rig answered beside what was forecast."""
-    show_table(checked.table, "Blind trials on this rig: forecast and answer", digits={"sigma": 1})
+def show_check(checked: Check, basis: str) -> None:
+    """Print what blind trials answered beside what was forecast."""
+    show_table(checked.table, f"Blind trials on {basis}: forecast and answer", digits={"sigma": 1})
     for line in checked.summary:
         out.print(line, markup=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,9 +15,10 @@ from modalkit.cli.options import Figures
 from modalkit.output.destinations import check_outputs, uff_of
 from modalkit.simulation.setup import Options
 from modalkit.simulation.simulate import SimulatedTest, simulate_test
-from modalkit.study.named_effects import parse_effect
+from modalkit.study.named_effects import effects_of, parse_effect
 from modalkit.study.read import kind_of, read_study
 from updating import LIBRARY
+from updating.effects import Effect
 
 
 def add_commands(app: typer.Typer) -> None:
@@ -57,11 +59,12 @@ def simulate(
     check_folder(figures)
     asked = read_study(study)
     kind = "beam" if asked.model is None else kind_of(asked.model)
-    effects = [parse_effect(text, kind) for text in effect or ()]
+    there: Mapping[str, Effect] = effects_of(asked.spec()) if asked.hypothesis else LIBRARY
+    effects = [parse_effect(text, kind, there) for text in effect or ()]
     with working("hitting the model"):
         made = simulate_test(asked, effects, seed=seed, options=options)
         made.write(output, as_frfs=frfs)
-    _show(made)
+    _show(made, there)
     out.print(f"written: {output}", markup=False)
     show_figures(figures, lambda: _figures(made))
 
@@ -72,10 +75,10 @@ def _figures(made: SimulatedTest) -> dict[str, Any]:
     return {"frf": frf_figure(made.frfs())}
 
 
-def _show(made: SimulatedTest) -> None:
+def _show(made: SimulatedTest, there: Mapping[str, Effect]) -> None:
     out.print(made.title, style="bold", markup=False)
     rows = [
-        {"effect": name, "channel": LIBRARY[name].channel, "parameter": parameter, "value": value}
+        {"effect": name, "channel": there[name].channel, "parameter": parameter, "value": value}
         for name, values in made.effects
         for parameter, value in (values or {"-": float("nan")}).items()
     ]

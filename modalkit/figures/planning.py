@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -31,12 +33,14 @@ from modalkit.figures.style import (
     tidy,
 )
 from modalkit.planning import DesignForecast, Forecast
+from modalkit.planning.family import Family
 from modalkit.planning.separability import CLASS, NONE, SEEN
 
 _ROW = 0.3
 _WORDS = 3.7
 _LEAST, _MOST = 0.01, 10.0
 _FULL = 10.0
+_MANY = 24
 
 
 def planning_figure(found: Forecast) -> Figure:
@@ -59,43 +63,55 @@ def planning_figure(found: Forecast) -> Figure:
     now = found.now
     if len(now.names) < 2:
         raise InputError("the forecast has fewer than two effects to draw")
-    pairs = list(now.pairs.values())
+    pairs = list(now.shown_pairs.values())
     title = f"{sum(v >= SEEN for v in pairs)} of {len(pairs)} pairs of effects are told apart by this test"
     best = found.advice[0] if found.advice and found.advice[0].worth > 0 else None
-    note = "forecast by the rig's own body, tolerances and all doubts counted in"
+    note = f"forecast by {found.bench.basis}, tolerances and all doubts counted in"
     if best is not None:
         note += f"; green: {best.change.key} changed as advised"
     top = caption_height(title, note) + 0.45
-    left = MARGIN + 0.2 + max(text_width(_plain(n), SMALL) for n in now.names) / 72
+    plain = {one.curve.family.name: _plain(one.curve.family) for one in now.found} | {NONE: NONE}
+    left = MARGIN + 0.2 + max(text_width(text, SMALL) for text in plain.values()) / 72
     tall = _ROW * len(now.names)
-    names = [NONE, *now.names]
-    above = max(text_width(_plain(n), SMALL) for n in names) / 72 + 0.2
+    rows = _compared(now)
+    names = [NONE, *rows]
+    above = max(text_width(plain[n], SMALL) for n in names) / 72 + 0.2
     cell = min(0.5, (WIDTH - left - MARGIN) / len(names))
     matrix_top = top + tall + 1.05 + above
-    figure = new_figure(matrix_top + _ROW * len(now.names) + 0.35)
+    figure = new_figure(matrix_top + _ROW * len(rows) + 0.35 if rows else top + tall + 0.75)
     caption(figure, title, note)
     heading(figure, MARGIN, top - 0.18, "From what severity on")
     _thresholds(
         place(figure, left, top, WIDTH - left - MARGIN - _WORDS, tall, name="thresholds"),
         now,
         None if best is None else best.after,
+        plain,
     )
-    heading(
-        figure,
-        MARGIN,
-        top + tall + 0.85,
-        "Sigma between each effect, as strong as 1 above, and all that another can do",
-    )
-    axes = place(figure, left, matrix_top, cell * len(names), tall, name="separations")
-    _separations(axes, now, names)
+    if rows:
+        which = "each effect" if len(rows) == len(now.names) else "each effect that is not surely named"
+        what = f"Sigma between {which}, as strong as 1 above, and all that another can do"
+        heading(figure, MARGIN, top + tall + 0.85, what)
+        axes = place(figure, left, matrix_top, cell * len(names), _ROW * len(rows), name="separations")
+        _separations(axes, now, names, plain)
     return figure
 
 
-def _plain(name: str) -> str:
-    return name.replace("_", " ")
+def _plain(family: Family) -> str:
+    """Return a family's name with the effect in words, the names of the user's own model as they are."""
+    return family.name.replace(family.cause, family.cause.replace("_", " "), 1)
 
 
-def _thresholds(axes: Axes, now: DesignForecast, after: DesignForecast | None) -> None:
+def _compared(now: DesignForecast) -> list[str]:
+    """Return the effects whose separations are drawn: all, of many those that are seen and not surely named."""
+    if len(now.names) <= _MANY:
+        return list(now.names)
+    hard = [name for name, one in now.outcomes.items() if one.kind in ("place", "edge", "class")]
+    return sorted(hard, key=lambda name: now.limits[name].sigma)[:_MANY]
+
+
+def _thresholds(
+    axes: Axes, now: DesignForecast, after: DesignForecast | None, plain: Mapping[str, str]
+) -> None:
     """Draw a bar from the severity that is seen to the one that is told, over the one asked about."""
     tidy(axes, x="severity over the one that is asked about (right) [-]", grid="x")
     axes.set_xscale("log")
@@ -113,17 +129,22 @@ def _thresholds(axes: Axes, now: DesignForecast, after: DesignForecast | None) -
         )
     for row, one in enumerate(now.found):
         axes.annotate(
-            shortened(one.curve.family.say(one.curve.family.clear), 72 * (_WORDS - 0.15), SMALL), (1, row),
+            shortened(_asked(one.curve.family), 72 * (_WORDS - 0.15), SMALL), (1, row),
             xycoords=("axes fraction", "data"), xytext=(10, 0), textcoords="offset points", va="center",
             fontsize=SMALL, color=MUTED, annotation_clip=False,
         )  # fmt: skip
     axes.axvline(1.0, color=INK, linewidth=0.8, zorder=1)
     axes.set_xlim(_LEAST * 0.9, _MOST)
-    axes.set_yticks(rows, [_plain(n) for n in now.names], fontsize=SMALL)
+    axes.set_yticks(rows, [plain[n] for n in now.names], fontsize=SMALL)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, frameon=False, fontsize=SMALL)
+
+
+def _asked(family: Family) -> str:
+    """Return what is asked about: of one at a place of its own, which its name says, the amount alone."""
+    return family.amount(family.clear) if family.at else family.say(family.clear)
 
 
 def _over_clear(evaluation: DesignForecast, name: str) -> FloatArray:
@@ -133,8 +154,8 @@ def _over_clear(evaluation: DesignForecast, name: str) -> FloatArray:
     return shown
 
 
-def _separations(axes: Axes, now: DesignForecast, names: list[str]) -> None:
-    values = now.matrix[names].to_numpy(float)
+def _separations(axes: Axes, now: DesignForecast, names: list[str], plain: Mapping[str, str]) -> None:
+    values = now.matrix.loc[names[1:], names].to_numpy(float)
     axes.pcolormesh(
         np.clip(values, 0, _FULL),
         cmap=PROBABILITY,
@@ -153,9 +174,9 @@ def _separations(axes: Axes, now: DesignForecast, names: list[str]) -> None:
                 j + 0.5, i + 0.5, text, fontsize=SMALL, ha="center", va="center",
                 color=colour, fontweight="bold" if weak else "normal",
             )  # fmt: skip
-    axes.set_xticks(np.arange(len(names)) + 0.5, [_plain(n) for n in names], rotation=90, fontsize=SMALL)
+    axes.set_xticks(np.arange(len(names)) + 0.5, [plain[n] for n in names], rotation=90, fontsize=SMALL)
     axes.xaxis.tick_top()
-    axes.set_yticks(np.arange(len(now.names)) + 0.5, [_plain(n) for n in now.names], fontsize=SMALL)
+    axes.set_yticks(np.arange(len(names) - 1) + 0.5, [plain[n] for n in names[1:]], fontsize=SMALL)
     axes.tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)

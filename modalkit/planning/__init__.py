@@ -1,6 +1,8 @@
 """Plan a test before it is made, or look back at one: what it tells apart, and which change of it buys most."""
 
+from modalkit.planning.bench import Bench
 from modalkit.planning.forecast import Advice, DesignForecast, Forecast, forecast
 from modalkit.planning.known import KnownTest, by_default
+from modalkit.planning.rig import RigBench
 
-__all__ = ["Advice", "DesignForecast", "Forecast", "KnownTest", "by_default", "forecast"]
+__all__ = ["Advice", "Bench", "DesignForecast", "Forecast", "KnownTest", "RigBench", "by_default", "forecast"]

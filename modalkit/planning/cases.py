@@ -9,7 +9,7 @@ import numpy as np
 
 from modalkit.planning.family import Family
 from modalkit.planning.forecast import Advice, DesignForecast
-from modalkit.planning.separability import EQUAL, NONE, SURE, Distances, at_severity, crossing
+from modalkit.planning.separability import NONE, SURE, Distances, at_severity, crossing
 from modalkit.simulator.hidden import HIDDEN_EFFECTS, Values
 from modalkit.simulator.setup import Setup
 
@@ -43,7 +43,7 @@ class Case:
     @property
     def values(self) -> Values:
         """Parameters under the contract's names [SI]."""
-        return self.family.values(self.q, self.place)
+        return dict(self.family.values(self.q, self.place))
 
     def accepted(self, setup: Setup) -> frozenset[str]:
         """Return names that are right answers."""
@@ -53,9 +53,12 @@ class Case:
     @property
     def statement(self) -> str:
         """Severity in words."""
-        name = self.family.name
-        known_test = {key: value for key, value in self.values.items() if value}
-        return ", ".join(f"{key} {value:.3g}" for key, value in known_test.items()) or name
+        known = {key: value for key, value in self.values.items() if value}
+        words = [
+            f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}"
+            for key, value in known.items()
+        ]
+        return ", ".join(words) or self.family.name
 
 
 def choose(
@@ -86,8 +89,8 @@ def choose(
 
 
 def _possible(names: Sequence[str], now: DesignForecast, after: DesignForecast) -> list[str]:
-    """Return names once each, without those that a baseline has too."""
-    kept = dict.fromkeys(names)
+    """Return names once each, without those that a baseline has too and those that no severity shows."""
+    kept = [n for n in dict.fromkeys(names) if np.isfinite(after.limits[n].seen)]
     return [n for n in kept if not (after.design.baseline and _found(now, n).curve.family.always)]
 
 
@@ -109,7 +112,7 @@ def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:
     most = float(np.abs(family.grid[side]).max())
     q = float(np.sign(family.grid[side[0]]) * min(size, most))
     before, after = (at_severity(family.grid, one.sigma[:, place], q) for one in (now, then))
-    own = _own(now)
+    own = now.unequal
     return Case(
         family,
         q,
@@ -119,9 +122,3 @@ def _case(now: Distances, then: Distances, rng: np.random.Generator) -> Case:
         now.rivals[own[int(np.argmin(before[own]))]],
         then.rivals[own[int(np.argmin(after[own]))]],
     )
-
-
-def _own(found: Distances) -> list[int]:
-    """Return the rivals that are no exact equals."""
-    name = found.curve.family.name
-    return [i for i, rival in enumerate(found.rivals) if (name, rival) not in EQUAL]

@@ -29,7 +29,13 @@ CARE = 2.5
 MORE_POINTS = 3
 """So many points are proposed."""
 
-_ABOVE = 1.1
+ABOVE = 1.1
+"""A band reaches so far above the mode that is to be in it [-]."""
+
+
+def unchanged(setup: Setup) -> Setup:
+    """Return a setup as it is: what is no rig's is not followed there."""
+    return setup
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,13 +51,13 @@ class Change:
     design : Design
         The test then.
     follow : callable
-        Setup before to setup after, for trials.
+        Setup before to setup after, for trials on the rig.
     """
 
     key: str
     measure: str
     design: Design
-    follow: Callable[[Setup], Setup]
+    follow: Callable[[Setup], Setup] = unchanged
 
 
 Gain = Callable[[Design], float]
@@ -162,12 +168,12 @@ def _wider(design: Design, stations: Stations) -> Change:
     above = float(np.exp(stations.nominal[design.modes])) / (2 * np.pi)
 
     def follow(setup: Setup) -> Setup:
-        top = float(f"{_ABOVE * above:.3g}")
+        top = float(f"{ABOVE * above:.3g}")
         return replace(setup, modes=setup.modes + 1, band=(setup.band[0], top))
 
     return Change(
         "band",
-        f"widen the band to {_ABOVE * above:.3g} Hz: one more mode, at {above:.0f} Hz",
+        f"widen the band to {ABOVE * above:.3g} Hz: one more mode, at {above:.0f} Hz",
         replace(design, modes=design.modes + 1),
         follow,
     )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.family import Family
 from modalkit.planning.forecast import Advice, DesignForecast, Forecast
 
@@ -27,9 +26,9 @@ def to_json(found: Forecast) -> dict[str, Any]:
     """
     return {
         "schema": SCHEMA,
-        "said": list(found.known_test.statement),
-        "left_out": list(found.known_test.left_out),
-        "not_forecast": [*NOT_FORECAST, *found.known_test.without],
+        "said": list(found.bench.statement),
+        "left_out": list(found.bench.left_out),
+        "not_forecast": list(found.bench.not_forecast),
         "now": _design_forecast(found.now),
         "advice": [_advice(one) for one in found.advice],
     }
@@ -40,7 +39,11 @@ def _design_forecast(evaluation: DesignForecast) -> dict[str, Any]:
     return {
         "effects": [
             {
-                "effect": name,
+                "effect": family_of(evaluation, name).cause,
+                "name": name,
+                "at": family_of(evaluation, name).at or None,
+                "outcome": evaluation.outcomes[name].kind,
+                "not_told_from": list(evaluation.outcomes[name].rivals),
                 "seen_from": statement(evaluation, name, limit.seen),
                 "separated_from": statement(evaluation, name, limit.separated),
                 "sure_from": statement(evaluation, name, limit.sure),

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from modalkit.simulator.hidden import HIDDEN_EFFECTS, Values
-from modalkit.simulator.scene import Scene
+from acquisition.quantities import severity
 from modalkit.simulator.setup import Setup
 
 _FINEST = 1e-3
 _RATIO = 1.8
+
+Values = Mapping[str, Any]
+"""Values of an effect's parameters, and the names of places, under the contract's names [SI]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +26,7 @@ class Family:
     Parameters
     ----------
     name : str
-        Under the contract's names; the rig's secret of that name acts.
+        How it is listed: the effect's name, and where several places are asked about one by one, which it is.
     values : callable
         ``values(q, place)``: parameters under the contract's names; ``q`` = 0 is no effect [SI].
     low, high : float
@@ -42,6 +45,14 @@ class Family:
         Whether it was there from the start, so that a baseline of the same specimen has it too.
     graded : bool
         Whether it has severities; without, only ``clear`` counts.
+    effect : str
+        The effect under the contract's name; left out, that of the family.
+    at : str
+        Its place in the names of the user's own model; empty where it has none.
+    finest : float
+        Smallest severity that is solved, of the largest [-].
+    both : bool
+        Whether both signs are asked about; otherwise one below zero only stands in for others.
     """
 
     name: str
@@ -55,32 +66,27 @@ class Family:
     separately: bool = False
     always: bool = False
     graded: bool = True
+    effect: str = ""
+    at: str = ""
+    finest: float = _FINEST
+    both: bool = True
+
+    @property
+    def cause(self) -> str:
+        """Name of the effect."""
+        return self.effect or self.name
 
     def say(self, q: float) -> str:
         """Return a severity [SI] in words."""
         return f"{self.words} {self.amount(q)}"
-
-    def act(self, scene: Scene, q: float, place: float) -> Scene:
-        """Return a scene with the effect.
-
-        Parameters
-        ----------
-        scene : Scene
-            Without it.
-        q : float
-            Severity; 0 is none [SI].
-        place : float
-            Where [m], or which form.
-        """
-        return HIDDEN_EFFECTS[self.name].act(scene, self.values(q, place)) if q else scene
 
     @property
     def grid(self) -> FloatArray:
         """Severities that are solved, 0 among them, ever closer towards it, (n_severities,) [SI]."""
         if not self.graded:
             return np.array([0.0, self.clear])
-        sides = [-_steps(-self.low)[::-1]] if self.low < 0 else []
-        return np.concatenate([*sides, [0.0], _steps(self.high)])
+        sides = [-_steps(-self.low, self.finest)[::-1]] if self.low < 0 else []
+        return np.concatenate([*sides, [0.0], _steps(self.high, self.finest)])
 
     @property
     def sites(self) -> FloatArray:
@@ -90,13 +96,43 @@ class Family:
     @property
     def asked(self) -> tuple[float, ...]:
         """Clear severities, one for each sign."""
-        return (-self.clear, self.clear) if self.low < 0 else (self.clear,)
+        return (-self.clear, self.clear) if self.low < 0 and self.both else (self.clear,)
 
 
-def _steps(end: float) -> FloatArray:
-    count = int(np.ceil(np.log(1 / _FINEST) / np.log(_RATIO)))
+def _steps(end: float, finest: float) -> FloatArray:
+    count = int(np.ceil(np.log(1 / finest) / np.log(_RATIO)))
     return np.asarray(end * _RATIO ** -np.arange(count, -1.0, -1.0))
 
 
 Maker = Callable[[Setup], Family | None]
 """Makes a family for a setup; None where the effect cannot be."""
+
+
+def per_cent(q: float) -> str:
+    """Return the logarithm of a factor as a change in per cent."""
+    return f"{severity(100 * abs(np.expm1(q)))} %"
+
+
+def factor(name: str, noun: str, *, most: float, clear: float) -> Family:
+    """Return a property of the whole specimen, off by exp(q).
+
+    Parameters
+    ----------
+    name, noun : str
+        The effect, and how its severity is said.
+    most : float
+        Largest factor [-].
+    clear : float
+        Logarithm of the factor that is asked about [-].
+    """
+    end = float(np.log(most))
+    return Family(
+        name,
+        lambda q, _: {"factor": float(np.exp(q))},
+        -end,
+        end,
+        clear,
+        f"{noun} off by more than",
+        per_cent,
+        always=True,
+    )

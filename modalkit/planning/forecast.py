@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import pandas as pd
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
+from threadpoolctl import threadpool_limits
 
-from modalkit.planning.changes import Change, changes
-from modalkit.planning.curves import Curve, solve_curve
-from modalkit.planning.design import Design, present
-from modalkit.planning.effects import families
-from modalkit.planning.known import KnownTest
-from modalkit.planning.responses import Stations
+from modalkit.planning.bench import Bench
+from modalkit.planning.changes import Change
+from modalkit.planning.curves import Curve
+from modalkit.planning.design import Design
 from modalkit.planning.separability import CLASS, EQUAL, NONE, SEEN, SURE, Distances, distances
 
 _CAP = 10.0
@@ -44,6 +44,26 @@ class Limit:
     clear: float
     nearest: str
     sigma: float
+
+
+Kind = Literal["named", "place", "edge", "class", "unseen"]
+"""Told from all others surely; but for itself elsewhere; by less; not told from some; not told from nothing."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a diagnosis is expected to answer.
+
+    Parameters
+    ----------
+    kind : str
+        ``named``; named with its ``place`` in doubt; on the ``edge`` of it; in a ``class`` with others; or ``unseen``.
+    rivals : tuple of str
+        Those from which it is not told, or hardly, the nearest first.
+    """
+
+    kind: Kind
+    rivals: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +118,23 @@ class DesignForecast:
         return tuple(self.matrix.index[self.matrix[NONE] < CLASS])
 
     @property
+    def shown_pairs(self) -> dict[tuple[str, str], float]:
+        """Separation of each pair of effects that are seen, clear as they are [-]."""
+        unseen = set(self.unseen)
+        return {pair: sigma for pair, sigma in self.pairs.items() if not unseen & set(pair)}
+
+    @cached_property
+    def outcomes(self) -> dict[str, Outcome]:
+        """What a diagnosis is expected to answer to each effect, as strong as is asked about."""
+        return {one.curve.family.name: _outcome(one) for one in self.found}
+
+    @property
     def classes(self) -> tuple[tuple[str, ...], ...]:
-        """Groups of effects that all lie less than 2 sigma from each other, those of one effect left out."""
-        names, pairs = list(self.names), self.pairs
+        """Groups of effects that all lie less than 2 sigma from each other; those that are not seen are left out."""
+        pairs = self.shown_pairs
+        names = [name for name in self.names if name not in self.unseen]
+        if len(names) < 2:
+            return ()
         separately = np.zeros((len(names), len(names)))
         for (a, b), sigma in pairs.items():
             separately[names.index(a), names.index(b)] = separately[names.index(b), names.index(a)] = sigma
@@ -115,6 +149,12 @@ class DesignForecast:
         return float(np.mean(values >= SEEN)) if len(values) else 1.0
 
     @property
+    def shown_share(self) -> float:
+        """Share of the pairs of effects that are seen that are 3 sigma apart or more [-]."""
+        values = np.array(list(self.shown_pairs.values()))
+        return float(np.mean(values >= SEEN)) if len(values) else 1.0
+
+    @property
     def worth(self) -> float:
         """Share of pairs told, and beside it how low thresholds are on a logarithmic scale, as one number [-]."""
         table = self.thresholds
@@ -125,9 +165,10 @@ class DesignForecast:
 
 def _limit(one: Distances) -> Limit:
     family = one.curve.family
-    at = zip(one.rivals[1:], one.clear(one.sigma)[1:], strict=True)
+    clear = one.clear(one.sigma)
+    own = [i for i in one.unequal if one.rivals[i] != NONE]
     rival, sigma = min(
-        ((r, float(s)) for r, s in at if (family.name, r) not in EQUAL), key=lambda pair: pair[1]
+        ((one.rivals[i], float(clear[i])) for i in own), key=lambda pair: pair[1], default=(NONE, np.inf)
     )
     return Limit(
         seen=one.threshold(one.sigma[0]),
@@ -137,6 +178,21 @@ def _limit(one: Distances) -> Limit:
         nearest=rival,
         sigma=sigma,
     )
+
+
+def _outcome(one: Distances) -> Outcome:
+    clear = one.clear(one.sigma)
+    if clear[one.rivals.index(NONE)] < SEEN:
+        return Outcome("unseen")
+    rivals = zip(clear.tolist(), one.rivals, one.causes, strict=True)
+    near = sorted((s, rival, cause) for s, rival, cause in rivals if rival != NONE and s < SURE)
+    untold = [(rival, cause) for sigma, rival, cause in near if sigma < SEEN]
+    if not near:
+        return Outcome("named")
+    if not untold:
+        return Outcome("edge", tuple(rival for _, rival, _ in near))
+    own = {cause for _, cause in untold} == {one.curve.family.cause}
+    return Outcome("place" if own else "class", tuple(rival for rival, _ in untold))
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,8 +226,8 @@ class Forecast:
 
     Parameters
     ----------
-    known_test : Told
-        The test.
+    bench : Bench
+        The structure and its test.
     curves : tuple of Curve
         The effects.
     now : Outlook
@@ -180,19 +236,19 @@ class Forecast:
         Changes, the most worth first.
     """
 
-    known_test: KnownTest
+    bench: Bench
     curves: tuple[Curve, ...]
     now: DesignForecast
     advice: tuple[Advice, ...]
 
 
-def forecast(known_test: KnownTest, *, progress: Callable[[str], None] | None = None) -> Forecast:
-    """Forecast a test with the rig's own bodies.
+def forecast(bench: Bench, *, progress: Callable[[str], None] | None = None) -> Forecast:
+    """Forecast what a test tells apart.
 
     Parameters
     ----------
-    known_test : Told
-        The test.
+    bench : Bench
+        The structure and its test.
     progress : callable, optional
         Called with what is being done.
 
@@ -201,23 +257,27 @@ def forecast(known_test: KnownTest, *, progress: Callable[[str], None] | None = 
     Forecast
         What it tells apart now, and what each change would bring.
     """
-    say = progress or (lambda _: None)
-    stations, curves = Stations(known_test.setup), []
-    for family in families(known_test):
+    with threadpool_limits(1, user_api="blas"):  # two threads are slower on small eigenproblems
+        return _forecast(bench, progress or (lambda _: None))
+
+
+def _forecast(bench: Bench, say: Callable[[str], None]) -> Forecast:
+    curves = []
+    for family in bench.families:
         say(f"solving {family.name}")
-        curves.append(solve_curve(family, stations))
+        curves.append(bench.solve(family))
     kept = tuple(curves)
 
     def forecast_of(design: Design, *, fine: bool = True) -> DesignForecast:
-        return DesignForecast(design, distances(kept, design, known_test, stations, fine=fine))
+        return DesignForecast(design, distances(kept, design, bench, fine=fine))
 
-    design = present(known_test)
+    design = bench.design
     now = forecast_of(design)
     say("weighing changes")
-    tried = changes(design, stations, lambda d: forecast_of(d, fine=False).worth)
+    tried = bench.changes(design, lambda d: forecast_of(d, fine=False).worth)
     found = [_advice(change, now, forecast_of) for change in tried]
     found.sort(key=lambda one: -one.worth)
-    return Forecast(known_test, kept, now, tuple(found))
+    return Forecast(bench, kept, now, tuple(found))
 
 
 def _advice(change: Change, now: DesignForecast, forecast_of: Callable[[Design], DesignForecast]) -> Advice:

@@ -8,7 +8,10 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from modalkit.planning import KnownTest, by_default
+from modalkit.planning.bench import Bench
+from modalkit.planning.known import KnownTest, by_default
+from modalkit.planning.own import own_bench
+from modalkit.planning.rig import RigBench
 from modalkit.simulator.setup import Setup, Tolerances
 from modalkit.study.read import Study
 from modalkit.workflow.case import open_study
@@ -35,21 +38,33 @@ class _Layout:
     left_out: tuple[str, ...] = ()
 
 
+def bench_of(study: Study) -> Bench:
+    """Return a study's structure and test as the forecast takes them.
+
+    A beam is the rig's own body; a plate, matrices and a deck are the study's model, seen as the diagnosis sees it.
+
+    Parameters
+    ----------
+    study : Study
+        With data or without.
+
+    Raises
+    ------
+    StudyError
+        If nothing says where it is hit, or its band holds too few modes.
+    """
+    return RigBench(known_test_of(study)) if study.spec().kind == "beam" else own_bench(study)
+
+
 def known_test_of(study: Study) -> KnownTest:
-    """Return a study's test as the forecast takes it.
+    """Return the test of a study's beam as the forecast takes it.
 
     Parameters
     ----------
     study : Study
         With data or without; what no data tell is taken by default, and said so.
-
-    Raises
-    ------
-    StudyError
-        If the rig has no such body.
     """
     spec = study.spec()
-    _refuse(study, spec)
     case, processed = None, None
     if study.test.files or study.test.modes:
         session = open_study(study, with_baseline=False)
@@ -76,20 +91,6 @@ def known_test_of(study: Study) -> KnownTest:
     )
 
 
-def _refuse(study: Study, spec: Spec) -> None:
-    """Say what can be done where the rig has no body like the model."""
-    if spec.kind == "matrices":
-        raise StudyError(
-            f"{study.path}: a forecast needs a body of the rig's own, and there is none for imported matrices; "
-            "plan with a beam or plate of about the same size, or see what `modalkit diagnose` proposes to measure next"
-        )
-    if spec.kind == "plate":
-        raise StudyError(
-            f"{study.path}: forecasts are made of beams in this version, not of plates; "
-            "plan with a beam of about the same length and thickness, or see what `modalkit diagnose` proposes"
-        )
-
-
 def _in_gas(study: Study) -> bool:
     known_test = study.surroundings().fluid_density
     return known_test is not None and known_test < GAS
@@ -104,9 +105,13 @@ def _planned(study: Study, spec: Spec) -> _Layout:
         If a point is off the beam.
     """
     table = study.test
-    points = np.array(table.points) if table.points else _even(spec)
+    if other := [one for one in (*table.points, table.sensor) if not isinstance(one, float | None)]:
+        raise StudyError(f"{study.path}: [test] points: {other[0]} is no place along a beam; write x in [m]")
+    points = np.array(table.points, dtype=float) if table.points else _even(spec)
     free_end = 0.0 if tuple(spec.clamped) == ("x1",) else spec.length
-    sensor_at = table.sensor if table.sensor is not None else points[np.argmin(np.abs(points - free_end))]
+    sensor_at = float(points[np.argmin(np.abs(points - free_end))])
+    if isinstance(table.sensor, float):
+        sensor_at = table.sensor
     off = [x for x in (*points, sensor_at) if not 0 <= x <= spec.length]
     if off:
         raise StudyError(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from modalkit.planning.document import statement
 from modalkit.planning.forecast import Advice, DesignForecast, Forecast
-from modalkit.planning.separability import CLASS, NONE, SEEN
+from modalkit.planning.separability import CLASS, NONE, SEEN, SURE
 
 _LINES = 4
 
@@ -17,7 +17,7 @@ def followed(found: Forecast) -> bool:
 def note(found: Forecast) -> list[str]:
     """Return the forecast in a few sentences."""
     now = found.now
-    lines = [_separates(now), *_cannot(now), _from_when(now)]
+    lines = [_separates(now), _names(now), *_cannot(now), _from_when(now)]
     if followed(found):
         lines.append(_best(found.advice[0]))
     else:
@@ -26,33 +26,43 @@ def note(found: Forecast) -> list[str]:
 
 
 def _separates(now: DesignForecast) -> str:
-    pairs = list(now.pairs.values())
+    pairs = list(now.shown_pairs.values())
     separately = sum(value >= SEEN for value in pairs)
     return f"Tells:   {separately} of {len(pairs)} pairs of effects apart, each effect as strong as asked about below."
+
+
+def _names(now: DesignForecast) -> str:
+    kinds = [one.kind for one in now.outcomes.values()]
+    edge, place = kinds.count("edge"), kinds.count("place")
+    more = f", {edge} more on the edge ({SEEN:g} to {SURE:g} sigma)" if edge else ""
+    more += f", {place} more with their place in doubt" if place else ""
+    return f"Names:   {kinds.count('named')} of {len(kinds)} effects surely ({SURE:g} sigma from all others){more}."
 
 
 def _cannot(now: DesignForecast) -> list[str]:
     lines, groups = [], [" = ".join(group) for group in now.classes]
     if groups:
         lines.append(
-            f"Cannot:  tell apart (under {CLASS:g} sigma, all doubts counted in) {'; '.join(groups)}."
+            f"Cannot:  tell apart (under {CLASS:g} sigma, all doubts counted in) {some(groups, '; ', 'classes')}."
         )
     near = [
         f"{a} from {b} ({value:.1f} sigma)"
-        for (a, b), value in sorted(now.pairs.items(), key=lambda item: item[1])
+        for (a, b), value in sorted(now.shown_pairs.items(), key=lambda item: item[1])
         if value < SEEN and not any(a in group and b in group for group in now.classes)
     ]
     if near:
         lines.append(f"Hardly:  {some(near)}.")
     if now.unseen:
-        lines.append(f"Blind:   {', '.join(now.unseen)} would be taken for no effect at all.")
+        lines.append(
+            f"Blind:   {some(list(now.unseen), what='effects')} would be taken for no effect at all."
+        )
     return lines
 
 
-def some(words: list[str]) -> str:
+def some(words: list[str], between: str = ", ", what: str = "pairs") -> str:
     """Return the first of a list, and how many more there are."""
     rest = len(words) - _LINES
-    return ", ".join(words) if rest < 2 else f"{', '.join(words[:_LINES])} and {rest} pairs more"
+    return between.join(words) if rest < 2 else f"{between.join(words[:_LINES])} and {rest} {what} more"
 
 
 def separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
@@ -62,7 +72,8 @@ def separated(pairs: tuple[tuple[str, str], ...]) -> list[str]:
 
 def _from_when(now: DesignForecast) -> str:
     """Return the effects that need to be largest, against what is asked about, to be told."""
-    hard = sorted(now.limits, key=lambda name: -now.limits[name].separated / now.limits[name].clear)[:_LINES]
+    seen = [name for name in now.limits if name not in now.unseen]
+    hard = sorted(seen, key=lambda name: -now.limits[name].separated / now.limits[name].clear)[:_LINES]
     words = []
     for name in hard:
         limit = now.limits[name]

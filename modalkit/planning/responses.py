@@ -8,7 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from modalkit.planning.family import Family
 from modalkit.simulator.bodies.complex_modes import ComplexModes
+from modalkit.simulator.hidden import HIDDEN_EFFECTS
 from modalkit.simulator.scene import Scene, nominal_scene
 from modalkit.simulator.setup import Setup
 
@@ -95,6 +97,12 @@ class Stations:
         """Data of the rig exactly as stated, in one row [-]."""
         return self.read(self.base)
 
+    def change(self, family: Family, q: float, place: float) -> FloatArray:
+        """Return what an effect of a severity [SI] at a place changes of the data, in one row [-]."""
+        if not q:
+            return np.zeros_like(self.nominal)
+        return self.read(hidden(family, self.base, q, place)) - self.nominal
+
     @cached_property
     def slopes(self) -> FloatArray:
         """Change of the nominal constants as the hammer strays, (n_stations, n_modes) [1/m]."""
@@ -129,3 +137,20 @@ class Stations:
         here = slice(2 * self.modes + mode, None, self.modes)
         column[here] = self.nominal[here]
         return column
+
+
+def hidden(family: Family, scene: Scene, q: float, place: float) -> Scene:
+    """Return a scene of the rig with an effect.
+
+    Parameters
+    ----------
+    family : Family
+        The effect; the rig's own of that name acts.
+    scene : Scene
+        Without it.
+    q : float
+        Severity; 0 is none [SI].
+    place : float
+        Where [m], or which form.
+    """
+    return HIDDEN_EFFECTS[family.name].act(scene, dict(family.values(q, place))) if q else scene

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from modalkit.planning.bench import Bench
 from modalkit.planning.curves import Curve
-from modalkit.planning.design import Design, columns, whitener
-from modalkit.planning.known import KnownTest
-from modalkit.planning.responses import Stations
+from modalkit.planning.design import Design
 
 NONE = "none"
 SEEN = 3.0
@@ -47,7 +46,9 @@ class Distances:
     places : (n_places,) array
         Places that were looked at [m].
     rivals : tuple of str
-        ``none`` first, then the other effects.
+        ``none`` first, then the other families.
+    causes : tuple of str
+        Their effects, by which exact equals are known.
     sigma : (n_rivals, n_places, n_severities) array
         Mahalanobis distance to the nearest that the rival can do [-].
     """
@@ -55,13 +56,19 @@ class Distances:
     curve: Curve
     places: FloatArray
     rivals: tuple[str, ...]
+    causes: tuple[str, ...]
     sigma: FloatArray
 
     @property
     def nearest(self) -> FloatArray:
         """Distance to the nearest rival that is not its exact equal, ``none`` among them."""
-        name = self.curve.family.name
-        return np.asarray(self.sigma[[(name, r) not in EQUAL for r in self.rivals]].min(axis=0))
+        return np.asarray(self.sigma[self.unequal].min(axis=0))
+
+    @property
+    def unequal(self) -> list[int]:
+        """Which rivals are no exact equals of it."""
+        cause = self.curve.family.cause
+        return [i for i, other in enumerate(self.causes) if (cause, other) not in EQUAL]
 
     def clear(self, sigma: FloatArray) -> FloatArray:
         """Return distances at the clear severities: the worse sign, the middle of the places.
@@ -135,8 +142,8 @@ def crossing(q: FloatArray, sigma: FloatArray, level: float) -> float:
         Standard deviations [-].
     """
     below = np.flatnonzero(sigma < level)
-    if not len(below):
-        return float(q[0])
+    if not len(below):  # small changes are in proportion
+        return float(q[0] * level / sigma[0])
     last = int(below[-1])
     if last == len(q) - 1:
         return np.inf
@@ -146,7 +153,7 @@ def crossing(q: FloatArray, sigma: FloatArray, level: float) -> float:
 
 
 def distances(
-    curves: Sequence[Curve], design: Design, known_test: KnownTest, stations: Stations, *, fine: bool = True
+    curves: Sequence[Curve], design: Design, bench: Bench, *, fine: bool = True
 ) -> tuple[Distances, ...]:
     """Return how far every effect is from every other in a test.
 
@@ -156,34 +163,84 @@ def distances(
         The effects.
     design : Design
         The test.
-    known_test : Told
-        How well data are known.
-    stations : Stations
-        What the data are.
+    bench : Bench
+        What the data are, and how well they are known.
     fine : bool
         Whether surfaces are interpolated between the severities and places that were solved.
     """
-    have = columns(design, stations)
-    white = whitener(design, known_test, stations)
-    clouds = [(curve.cloud if fine else curve.data)[..., have] @ white.T for curve in curves]
-    out = []
-    for i, curve in enumerate(curves):
-        chosen = np.unique(np.linspace(0, len(curve.data) - 1, _TARGET_PLACES).astype(int))
-        targets = curve.data[chosen][..., have] @ white.T
-        flat = targets.reshape(-1, targets.shape[-1])
-        rows = [np.linalg.norm(flat, axis=1)]
-        names = [NONE]
-        for j, cloud in enumerate(clouds):
-            if j != i:
-                rows.append(np.minimum(nearest_in(flat, cloud), rows[0]))
-                names.append(curves[j].family.name)
-        sigma = np.array(rows).reshape(len(rows), *targets.shape[:2])
-        out.append(Distances(curve, curve.family.sites[chosen], tuple(names), sigma))
-    return tuple(out)
+    have, white = bench.columns(design), bench.whitener(design)
+    chosen = [_chosen(len(curve.data)) for curve in curves]
+    targets = [curve.data[i][..., have] @ white.T for curve, i in zip(curves, chosen, strict=True)]
+    flat = np.concatenate([one.reshape(-1, one.shape[-1]) for one in targets])
+    nothing = np.linalg.norm(flat, axis=1)
+    reached = [
+        np.minimum(_surface(curve, have, white, fine=fine).distance(flat), nothing) for curve in curves
+    ]
+    ends = np.cumsum([0, *(np.prod(one.shape[:2]) for one in targets)])
+    return tuple(
+        _against(curves, i, chosen[i], [row[ends[i] : ends[i + 1]] for row in (nothing, *reached)])
+        for i in range(len(curves))
+    )
 
 
-def nearest_in(targets: FloatArray, cloud: FloatArray) -> FloatArray:
-    """Return the distance from each target to a surface given by a fine grid of points.
+def _chosen(places: int) -> IntArray:
+    """Return the places at which an effect is asked about, of so many."""
+    return np.unique(np.linspace(0, places - 1, _TARGET_PLACES).astype(int))
+
+
+def _against(curves: Sequence[Curve], own: int, chosen: IntArray, rows: Sequence[FloatArray]) -> Distances:
+    """Return one effect against none (the first row) and all others (one row for each curve)."""
+    curve, others = curves[own], [j for j in range(len(curves)) if j != own]
+    families = [curves[j].family for j in others]
+    sigma = np.array([rows[0], *(rows[1 + j] for j in others)])
+    return Distances(
+        curve,
+        curve.family.sites[chosen],
+        (NONE, *(family.name for family in families)),
+        (NONE, *(family.cause for family in families)),
+        sigma.reshape(len(sigma), len(chosen), -1),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Surface:
+    """All that an effect can do, in whitened data.
+
+    Parameters
+    ----------
+    cloud : (n_places, n_severities, n_data) array
+        Points of the surface [standard deviations].
+    doubt : (n_places, n_severities, n_data) array or None
+        Variance by how far its idealisation may be off there [standard deviations squared].
+    """
+
+    cloud: FloatArray
+    doubt: FloatArray | None
+
+    def distance(self, targets: FloatArray) -> FloatArray:
+        """Return the distance of whitened targets (n, n_data), the surface's own doubt counted in, (n,) [-].
+
+        What the doubts of two data have in common once these are whitened is left aside.
+        """
+        left, best = nearest_in(targets, self.cloud)
+        if self.doubt is None:
+            return np.asarray(np.linalg.norm(left, axis=1))
+        doubt = self.doubt.reshape(-1, self.doubt.shape[-1])[best]
+        return np.asarray(np.sqrt(np.sum(left**2 / (1 + doubt), axis=1)))
+
+
+def _surface(curve: Curve, have: IntArray, white: FloatArray, *, fine: bool) -> _Surface:
+    coarse = curve.data if curve.dense is None else curve.dense.data
+    bare = (curve.cloud if fine else coarse)[..., have]
+    doubt = None
+    if curve.fidelity or curve.slack is not None:
+        slack = 0.0 if curve.slack is None else curve.slack[have]
+        doubt = ((curve.fidelity * bare) ** 2 + slack**2) @ (white**2).T
+    return _Surface(bare @ white.T, doubt)
+
+
+def nearest_in(targets: FloatArray, cloud: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return what lies between each target and a surface given by a fine grid of points.
 
     The nearest point is sought over the whole grid, then moved within its cell along the surface's tangents.
 
@@ -196,8 +253,10 @@ def nearest_in(targets: FloatArray, cloud: FloatArray) -> FloatArray:
 
     Returns
     -------
-    (n,) array
-        Distances.
+    left : (n, m) array
+        From the surface to each target.
+    best : (n,) int array
+        The point of the grid that is nearest, places and severities in a row.
     """
     points = cloud.reshape(-1, cloud.shape[-1])
     square = np.einsum("ij,ij->i", points, points) - 2 * targets @ points.T
@@ -206,7 +265,7 @@ def nearest_in(targets: FloatArray, cloud: FloatArray) -> FloatArray:
     place, severity = np.unravel_index(best, cloud.shape[:2])
     for index, axis in ((severity, 1), (place, 0)):
         left = _moved(left, cloud, (place, severity), index, axis)
-    return np.asarray(np.linalg.norm(left, axis=1))
+    return left, best
 
 
 def _moved(

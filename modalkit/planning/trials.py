@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from acquisition.errors import ModalkitError
-from modalkit.blind.answer import Answer, read_answer
-from modalkit.blind.diagnoser import Diagnose, diagnosers
+from modalkit.blind.answer import Answer
 from modalkit.planning.cases import Case, choose
 from modalkit.planning.forecast import Advice, Forecast
-from modalkit.planning.known import KnownTest
 from modalkit.planning.separability import SEEN, SURE
-from modalkit.planning.writing import write_case
 
 _LEAST = SURE - 1e-6
 
@@ -161,7 +156,7 @@ def check(
     workers: int = 1,
     progress: Callable[[], None] | None = None,
 ) -> Check:
-    """Hide effects at severities about the thresholds in the user's own rig, and have them diagnosed.
+    """Hide effects at severities about the thresholds in the user's own structure, and have them diagnosed.
 
     Parameters
     ----------
@@ -181,37 +176,22 @@ def check(
     Check
         The process that diagnoses is given the study and the raw hits, and nothing else.
     """
-    advice = next((one for one in found.advice if one.worth > 0), None)
-    known_test = found.known_test
-    if noise is not None:
-        known_test = replace(known_test, setup=replace(known_test.setup, noise=noise))
+    bench = found.bench
+    advice = next((one for one in found.advice if one.worth > 0), None) if bench.follows else None
     cases = choose(found.now, advice, count, np.random.default_rng([seed, 0]))
-    wanted = [(case, False, known_test) for case in cases]
-    if advice is not None:
-        design = advice.change.design
-        setup = advice.change.follow(known_test.setup)
-        followed = replace(known_test, setup=setup, shapes=design.shapes, absolute=design.absolute)
-        wanted += [(case, True, followed) for case in cases]
-    with diagnosers(workers) as diagnose, ThreadPoolExecutor(workers) as pool:
+    wanted = [(case, False) for case in cases] + [(case, True) for case in cases if advice is not None]
+    with bench.attempts(noise=noise, workers=workers) as attempt, ThreadPoolExecutor(workers) as pool:
 
-        def one(job: tuple[int, tuple[Case, bool, KnownTest]]) -> Tried:
-            index, (case, follows, own) = job
-            tried = _try(case, follows, own, [seed, 1 + index % len(cases)], diagnose)
+        def one(job: tuple[int, tuple[Case, bool]]) -> Tried:
+            index, (case, follows) = job
+            change = advice.change if follows and advice is not None else None
+            right, answer, failure = bench.right(case), None, ""
+            try:  # the same draws with and without the advice
+                answer = attempt(case, change, [seed, 1 + index % len(cases)])
+            except (ModalkitError, OSError) as error:
+                failure = str(error)
             if progress is not None:
                 progress()
-            return tried
+            return Tried(case, follows, answer, right, failure)
 
         return Check(advice, tuple(pool.map(one, enumerate(wanted))))
-
-
-def _try(case: Case, followed: bool, known_test: KnownTest, seed: list[int], diagnose: Diagnose) -> Tried:
-    """Draw specimen and test, hide the case, and have it diagnosed; the same draws with and without the advice."""
-    setup = known_test.setup
-    right = case.accepted(setup)
-    with tempfile.TemporaryDirectory(prefix="test-", ignore_cleanup_errors=True) as name:
-        study = write_case(case, known_test, Path(name), seed=seed)
-        try:
-            answer = read_answer(diagnose(study, ()))
-        except (ModalkitError, OSError) as error:
-            return Tried(case, followed, None, right, str(error))
-    return Tried(case, followed, answer, right)

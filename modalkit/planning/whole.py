@@ -8,36 +8,24 @@ from math import inf
 import numpy as np
 
 from acquisition.quantities import severity
-from modalkit.planning.family import Family, Maker
+from modalkit.planning.family import Family, Maker, factor, per_cent
 from modalkit.simulator.setup import Setup
 
 _SOFTEST_CLAMP, _SOFT_CLAMP = 1.5, 20.0
 _SOFTEST_SLIDE, _SOFT_SLIDE = 60.0, 2000.0
-_CLEAR_LOAD, _MOST_LOAD = 0.25, 0.7
+CLEAR_LOAD, MOST_LOAD = 0.25, 0.7
+"""Axial load that is asked about, and the largest, of that at which the specimen buckles [-]."""
 _STEEPEST = 0.8
 _MIDDLE = 1
 
-_NEAR = 0.3
+NEAR = 0.3
 """A near surface or bottom of a fluid over the shorter side [-]: of a slender beam the one takes an eighth of the added
 mass, the other adds a sixth; nearer than a tenth none is believed, beyond three none is felt."""
 
 
-def _per_cent(q: float) -> str:
-    return f"{severity(100 * abs(np.expm1(q)))} %"
-
-
 def _factor(name: str, noun: str, *, most: float, clear: float) -> Maker:
     """A property of the whole specimen, off by exp(q)."""
-    return lambda setup: Family(
-        name,
-        lambda q, _: {"factor": float(np.exp(q))},
-        -float(np.log(most)),
-        float(np.log(most)),
-        clear,
-        f"{noun} off by more than",
-        _per_cent,
-        always=True,
-    )
+    return lambda setup: factor(name, noun, most=most, clear=clear)
 
 
 def _length(setup: Setup) -> Family | None:
@@ -106,9 +94,9 @@ def _load(setup: Setup) -> Family | None:
     return Family(
         "axial_load",
         lambda q, _: {"force": q},
-        -_MOST_LOAD * buckling,
+        -MOST_LOAD * buckling,
         2 * buckling,
-        _CLEAR_LOAD * buckling,
+        CLEAR_LOAD * buckling,
         "an axial load above",
         lambda q: f"{severity(abs(q))} N",
     )
@@ -122,7 +110,7 @@ def _gain(setup: Setup) -> Family:
         float(np.log(2.5)),
         0.2,
         "a level off by more than",
-        _per_cent,
+        per_cent,
     )
 
 
@@ -130,7 +118,7 @@ def _fluid(setup: Setup) -> Family:
     """Of its surface and bottom those that the study does not state are far off or near: forms of the effect."""
     known_test = setup.environment
     unstated = [name for name in ("free_surface", "bottom") if getattr(setup, name) is None]
-    near = _NEAR * min(setup.length, setup.width)
+    near = NEAR * min(setup.length, setup.width)
     tanks = [
         dict(zip(unstated, places, strict=True)) for places in product((inf, near), repeat=len(unstated))
     ]

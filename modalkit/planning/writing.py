@@ -8,6 +8,7 @@ import numpy as np
 
 from modalkit.planning.cases import Case
 from modalkit.planning.known import KnownTest
+from modalkit.planning.responses import hidden
 from modalkit.simulator.measurement import record
 from modalkit.simulator.scene import Scene, draw_scene
 from modalkit.simulator.setup import Setup
@@ -35,7 +36,7 @@ def write_case(case: Case | None, known_test: KnownTest, folder: Path, *, seed: 
     """
     build, first, second = np.random.default_rng(seed).spawn(3)
     before = draw_scene(known_test.setup, build)
-    scene = before if case is None else case.family.act(before, case.q, case.place)
+    scene = before if case is None else hidden(case.family, before, case.q, case.place)
     return write_scene(scene, before, known_test, folder, rngs=(first, second))
 
 

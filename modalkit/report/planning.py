@@ -10,7 +10,6 @@ import numpy as np
 
 from modalkit.planning import Forecast
 from modalkit.planning.document import to_json
-from modalkit.planning.effects import NOT_FORECAST
 from modalkit.planning.note import note, separated, some
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check
@@ -51,8 +50,8 @@ def plan_report(
                 Section("What it tells apart", [separations_chart(found)]),
                 Section("From what severity on", [thresholds_chart(found), thresholds_table(document)]),
                 Section("What a change buys", [changes_table(found)]),
-                Section("Blind trials on this rig", [_trials(checked)]),
-                Section("What was taken for granted", [bullets(list(found.known_test.statement))]),
+                Section(f"Blind trials on {found.bench.basis}", [_trials(checked)]),
+                Section("What was taken for granted", [bullets(list(found.bench.statement))]),
                 Section("What the forecast leaves out", [_left_out(found)]),
                 Section("What this rests on", [provenance(Basis(when, command, [study]))]),
             ],
@@ -64,7 +63,11 @@ def _answer(found: Forecast) -> Raw:
     """Return the lines of the note."""
     lines = [line.partition(":") for line in note(found)]
     stated = {name.strip(): " ".join(text.split()) for name, _, text in lines}
-    share = f"{100 * found.now.separated_share:.0f} % of the pairs of effects are told apart"
+    pairs = list(found.now.shown_pairs.values())
+    separately = sum(value >= SEEN for value in pairs)
+    share = (
+        f"{100 * separately / max(len(pairs), 1):.0f} % of the pairs of effects that are seen are told apart"
+    )
     return joined(element("p", share, class_="answer"), definitions(stated, class_="letter"))
 
 
@@ -74,10 +77,12 @@ def separations_chart(found: Forecast) -> Chart:
     names, columns = list(now.names), ["no effect", *now.names]
     sigma = now.matrix[[NONE, *names]].to_numpy(float)
     written = ["" if math.isnan(v) else f"{v:.1f}" if v < 10 else "10+" for v in sigma.ravel()]
-    pairs = now.pairs
-    least = min(pairs, key=lambda pair: pairs[pair])
+    pairs = now.shown_pairs
     count = f"{sum(v >= SEEN for v in pairs.values())} of {len(pairs)} pairs"
-    title = f"{count} are {SEEN:g}σ apart or more; {' and '.join(least)} are nearest, {pairs[least]:.1f}σ"
+    title = f"{count} are {SEEN:g}σ apart or more"
+    if pairs:
+        least = min(pairs, key=lambda pair: pairs[pair])
+        title += f"; {' and '.join(least)} are nearest, {pairs[least]:.1f}σ"
     text = (
         "Standard deviations between an effect (row), as strong as asked about, and the most that another (column) can "
         f"do of it; full colour from {SURE:g}σ on."
@@ -121,10 +126,11 @@ def thresholds_table(document: dict[str, Any]) -> Raw:
     columns = [
         Column(n) for n in ("effect", "seen from", "told from", "surely from", "asked about", "nearest")
     ]
-    columns.append(Column("σ from it", lambda v: f"{v:.1f}"))
-    keys = ("effect", "seen_from", "separated_from", "sure_from", "asked", "nearest")
+    columns += [Column("σ from it", lambda v: f"{v:.1f}"), Column("expected")]
+    keys = ("name", "seen_from", "separated_from", "sure_from", "asked", "nearest")
     rows: list[list[Cell | Raw]] = [
-        [*(one[k] or "never" for k in keys), one["nearest_sigma"]] for one in document["now"]["effects"]
+        [*(one[k] or "never" for k in keys), one["nearest_sigma"], one["outcome"]]
+        for one in document["now"]["effects"]
     ]
     statement = f"Seen: {SEEN:g} standard deviations beyond what tolerances explain; surely: {SURE:g} from all others."
     return table(statement, columns, rows)
@@ -143,7 +149,7 @@ def changes_table(found: Forecast) -> Raw:
             one.change.measure,
             some(separated(one.separates)) or "nothing",
             one.factor,
-            one.after.separated_share,
+            one.after.shown_share,
         ]
         for one in found.advice
     ]
@@ -166,8 +172,8 @@ def _trials(checked: Check | None) -> Raw:
 
 def _left_out(found: Forecast) -> Raw:
     left = [
-        *found.known_test.left_out,
-        *(f"{key}: {why}" for key, why in NOT_FORECAST.items()),
+        *found.bench.left_out,
+        *(f"{key}: {why}" for key, why in found.bench.not_forecast.items()),
         "pairs of effects",
     ]
     return bullets(left)

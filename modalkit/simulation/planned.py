@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil, log2
 
@@ -22,6 +23,7 @@ from modalkit.simulation.setup import (
     Options,
 )
 from modalkit.study.read import Study
+from modalkit.workflow.planned_points import planned_points
 from updating import Measured, Predictor, Spec
 from updating.simulation import natural_modes, simulated
 from updating.test_data.axes import Axes
@@ -51,7 +53,11 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
         What the user says.
     """
     axes, notes = study.axes(study.test), []
-    if measured is not None and len(measured.points):
+    planned = planned_points(study, spec) if spec.kind != "beam" and measured is None else None
+    if planned is not None:
+        points, nodes, directions = planned.points, planned.nodes, planned.directions
+        notes.append(f"the study has no hits: the hammer goes to the {len(planned.hit)} points that it plans")
+    elif measured is not None and len(measured.points):
         points, nodes, directions = measured.points, measured.nodes, measured.directions
         notes.append(f"the study has no hits: the hammer goes to the {len(points)} points of its shapes")
     else:
@@ -59,21 +65,23 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
         nodes = tuple(range(1, len(points) + 1))
         notes.append(f"the study has no points: the hammer goes to {len(points)}, evenly spaced")
     frequency = np.zeros(0) if measured is None else measured.frequency
+    hit = range(len(points)) if planned is None else planned.hit
     blank = _blank(points, nodes, directions, 0)
     modes = natural_modes(simulated(Predictor(spec, blank)))
     band = study.test.band or _band(frequency, modes.frequency)
     inside = (modes.frequency > band[0]) & (modes.frequency < band[1])
-    sensor = _sensor(spec, points, modes.shapes[:, inside])
+    stated = None if planned is None else planned.sensor
+    sensor = _sensor(spec, points, modes.shapes[:, inside]) if stated is None else stated
     names, geometry = _named(points, nodes, directions, axes)
     notes.append(f"the sensor sits at {names[sensor]}")
     slowest = float(np.min((modes.damping * 2 * np.pi * modes.frequency)[inside], initial=np.inf))
     plan = _usual_plan(band, slowest + study.test.exponential_window, options)
     plan = replace(plan, position_sigma=study.test.position_sigma, decay=study.test.exponential_window)
     return MeasurementSetup(
-        _blank(points, nodes, directions, sensor),
-        (names[sensor],) * len(points),
-        names,
-        np.ones(len(points)),
+        _blank(points, nodes, directions, sensor, hit),
+        (names[sensor],) * len(hit),
+        tuple(names[i] for i in hit),
+        np.ones(len(hit)),
         geometry,
         band,
         plan,
@@ -82,12 +90,17 @@ def rig_of_model(study: Study, spec: Spec, measured: Measured | None, options: O
 
 
 def _blank(
-    points: FloatArray, nodes: tuple[int, ...], directions: FloatArray | None, sensor: int
+    points: FloatArray,
+    nodes: tuple[int, ...],
+    directions: FloatArray | None,
+    sensor: int,
+    hit: Sequence[int] | None = None,
 ) -> Measured:
-    """Return a test without modes: every point is hit, one is looked at."""
-    n, none = len(points), np.zeros(0)
+    """Return a test without modes: every point, or some, is hit, one is looked at."""
+    chosen = np.arange(len(points)) if hit is None else np.array(hit)
+    n, none = len(chosen), np.zeros(0)
     return Measured(
-        none, none, none, none, points, nodes, np.full(n, sensor), np.arange(n), np.zeros((n, 0)), np.zeros((n, 0)),
+        none, none, none, none, points, nodes, np.full(n, sensor), chosen, np.zeros((n, 0)), np.zeros((n, 0)),
         absolute=True, directions=directions,
     )  # fmt: skip
 
@@ -102,7 +115,7 @@ def spaced(spec: Spec, count: int | None) -> FloatArray:
     """
     if not spec.outlined:
         raise StudyError(
-            "imported matrices do not say where to hit: give [test] files with points, or shapes"
+            "imported matrices do not say where to hit: give [test] files with points, shapes, or [test] points"
         )
     if count is not None and count < 2:
         raise StudyError(f"--points {count}: give at least 2")

@@ -13,9 +13,9 @@ from acquisition.errors import InputError, StudyError
 from acquisition.si_units import si_value
 from modalkit.study.stated_effects import SOME, nodes, sensor
 from updating import LIBRARY, Predictor
-from updating.effects import check_values, labels_of, names_of, optional_values
+from updating.effects import Effect, check_values, hypotheses_of, labels_of, names_of, optional_values
 from updating.effects.specimens import unit_of
-from updating.models.spec import Kind
+from updating.models.spec import Kind, Spec
 from updating.models.state import State
 
 EffectValues = tuple[str, Mapping[str, Any]]
@@ -23,10 +23,17 @@ EffectValues = tuple[str, Mapping[str, Any]]
 
 def departure(name: str, values: Mapping[str, Any]) -> Callable[[Predictor], State]:
     """Return the function that puts an effect into a predictor's model."""
-    return lambda predictor: LIBRARY[name].state(predictor, values)
+    return lambda predictor: effects_of(predictor.spec)[name].state(predictor, values)
 
 
-def parse_effect(text: str, kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
+def effects_of(spec: Spec) -> Mapping[str, Effect]:
+    """Return the effects of the library and the hypotheses of a model, by name."""
+    return {**LIBRARY, **{effect.name: effect for effect in hypotheses_of(spec)}}
+
+
+def parse_effect(
+    text: str, kind: Kind = "beam", effects: Mapping[str, Effect] = LIBRARY
+) -> tuple[str, dict[str, Any]]:
     """Read an effect written NAME or NAME:PARAM=VALUE,PARAM=VALUE; points are node numbers, as points=3/4.
 
     Parameters
@@ -35,6 +42,8 @@ def parse_effect(text: str, kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
         As typed; a value may have its unit, ``lumped_mass:mass=20g,x=100mm``, and is in SI units without.
     kind : {"beam", "plate", "matrices"}
         Kind of model, on which the unit of a spring along an edge depends.
+    effects : mapping of str to Effect
+        What there is: the library, and of some models their study's hypotheses.
 
     Raises
     ------
@@ -42,8 +51,8 @@ def parse_effect(text: str, kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
         If the effect is unknown or a value is no number.
     """
     name, _, rest = (part.strip() for part in text.partition(":"))
-    if name not in LIBRARY:
-        near = get_close_matches(name, LIBRARY, n=3)
+    if name not in effects:
+        near = get_close_matches(name, effects, n=3)
         meant = f"did you mean {' or '.join(near)}?" if near else "`modalkit effects` lists them"
         raise InputError(f"--effect {text}: there is no effect {name!r}; {meant}")
     values: dict[str, Any] = {}
@@ -51,17 +60,17 @@ def parse_effect(text: str, kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
         parameter, equals, stated = (part.strip() for part in entry.partition("="))
         if parameter in values:
             raise InputError(f"--effect {text}: {parameter} stands twice")
-        if parameter in LIBRARY[name].labels:
+        if parameter in effects[name].labels:
             values[parameter] = _points(text, parameter, stated)
             continue
-        if parameter == "channel" and LIBRARY[name].of_sensor:
+        if parameter == "channel" and effects[name].of_sensor:
             values[parameter] = _sensor(text, stated)
             continue
-        if parameter in LIBRARY[name].named and stated:
+        if parameter in effects[name].named and stated:
             values[parameter] = stated
             continue
         try:
-            values[parameter] = _value(stated, name, parameter, kind)
+            values[parameter] = _value(stated, effects[name], parameter, kind)
         except ValueError as error:
             if equals and stated[:1].isdigit():
                 raise InputError(f"--effect {text}: {parameter}: {error}") from error
@@ -71,12 +80,12 @@ def parse_effect(text: str, kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
     return name, values
 
 
-def _value(stated: str, name: str, parameter: str, kind: Kind) -> float:
+def _value(stated: str, effect: Effect, parameter: str, kind: Kind) -> float:
     """Return a number in SI units."""
     try:
         return float(stated)
     except ValueError:
-        return float(si_value(stated, unit_of(LIBRARY[name], parameter, kind)))
+        return float(si_value(stated, unit_of(effect, parameter, kind)))
 
 
 def _points(text: str, label: str, stated: str) -> Any:
@@ -100,7 +109,7 @@ def check_effect(
     predictor: Predictor, name: str, values: Mapping[str, Any], *, where: str = "--effect"
 ) -> None:
     """Refuse an effect that does not fit the model, and parameters that do not fit the effect."""
-    effect, tested = LIBRARY[name], _as_tested(predictor)
+    effect, tested = effects_of(predictor.spec)[name], _as_tested(predictor)
     if effect.channel == "measurement" and predictor.spec.kind in effect.models:
         obstacle = None  # what a diagnosis would need of the data is no obstacle to simulating them
     else:

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
+from modalkit.study.planned_points import PlannedPoint
 from modalkit.study.units import (
     Density,
     Hertz,
@@ -135,10 +136,15 @@ class MeasurementTable(Strict):
     """
     position_sigma: Annotated[float, in_unit("m"), Field(ge=0.0, lt=LARGEST_ASTRAY)] = 0.001
     """1-sigma of the points hit, and of where a sensor sits [m]."""
-    points: list[Length] = []
-    """Of a test that is only planned: where along a beam it will be hit [m]. Left out: eight, evenly."""
-    sensor: Length | None = None
-    """Of a test that is only planned: where the sensor will sit [m]. Left out: the free end."""
+    points: list[PlannedPoint] = []
+    """Of a test that is only planned: where it will be hit. Along a beam [m]; on a plate ``[x, y]`` [m]; on matrices
+    and decks a node and its direction as ``"12+Z"``, or ``[x, y, z, "+z"]`` in model axes [m]. Left out: of beams
+    eight, of plates 5 x 4, evenly.
+    """
+    sensor: PlannedPoint | None = None
+    """Of a test that is only planned: where the sensor will sit, written likewise. Left out: of a beam the free end,
+    else the point hit at which the faintest mode is strongest.
+    """
     hits: int | None = Field(None, ge=1)
     """Of a test that is only planned: how often each point is hit. Left out: 5."""
     axes: AxesTable = AxesTable()

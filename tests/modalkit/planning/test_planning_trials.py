@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from modalkit.blind.answer import Answer
-from modalkit.planning import forecast
+from modalkit.planning import KnownTest, RigBench, forecast
 from modalkit.planning.cases import Case, choose
 from modalkit.planning.forecast import Forecast
 from modalkit.planning.from_study import known_test_of
@@ -22,8 +22,13 @@ SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 
 
 @pytest.fixture(scope="module")
-def sample() -> Forecast:
-    return forecast(known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml")))
+def known() -> KnownTest:
+    return known_test_of(read_study(SAMPLES / "beam_dry" / "study.toml"))
+
+
+@pytest.fixture(scope="module")
+def sample(known: KnownTest) -> Forecast:
+    return forecast(RigBench(known))
 
 
 @pytest.fixture(scope="module")
@@ -42,17 +47,17 @@ def test_half_of_the_cases_are_what_the_advice_newly_tells_apart(
         assert case.now < SEEN <= case.then
 
 
-def test_cases_stay_inside_the_range_of_their_effect(sample: Forecast, cases: tuple[Case, ...]) -> None:
+def test_cases_stay_inside_the_range_of_their_effect(known: KnownTest, cases: tuple[Case, ...]) -> None:
     for case in cases:
         assert case.family.low <= case.q <= case.family.high
         assert case.q != 0
-        assert case.family.name in case.accepted(sample.known_test.setup)
+        assert case.family.name in case.accepted(known.setup)
 
 
 def test_the_files_of_a_case_say_what_the_user_says_and_not_what_is_hidden(
-    sample: Forecast, cases: tuple[Case, ...], tmp_path: Path
+    known: KnownTest, cases: tuple[Case, ...], tmp_path: Path
 ) -> None:
-    study = read_study(write_case(cases[0], sample.known_test, tmp_path, seed=[1]))
+    study = read_study(write_case(cases[0], known, tmp_path, seed=[1]))
     own = read_study(SAMPLES / "beam_dry" / "study.toml")
     assert study.tolerances == own.tolerances
     assert study.test.calibration == own.test.calibration
@@ -66,18 +71,18 @@ def test_the_files_of_a_case_say_what_the_user_says_and_not_what_is_hidden(
 
 
 def test_the_same_seed_writes_the_same_test(
-    sample: Forecast, cases: tuple[Case, ...], tmp_path: Path
+    known: KnownTest, cases: tuple[Case, ...], tmp_path: Path
 ) -> None:
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
-        write_case(cases[0], sample.known_test, tmp_path / name, seed=[4])
+        write_case(cases[0], known, tmp_path / name, seed=[4])
     assert (tmp_path / "a" / "test.uff").read_bytes() == (tmp_path / "b" / "test.uff").read_bytes()
 
 
 def test_modes_alone_are_written_where_the_user_has_no_more(
-    sample: Forecast, cases: tuple[Case, ...], tmp_path: Path
+    known: KnownTest, cases: tuple[Case, ...], tmp_path: Path
 ) -> None:
-    known_test = replace(sample.known_test, shapes=False)
+    known_test = replace(known, shapes=False)
     study = read_study(write_case(cases[0], known_test, tmp_path, seed=[1]))
     assert study.test.modes == "test.csv"
     assert not study.test.files
@@ -103,8 +108,8 @@ def test_an_answer_is_right_if_it_names_the_effect_or_its_exact_equals_alone(
         assert not tried(cases[0], answer).kept
 
 
-def test_noise_is_matched_in_proportion(sample: Forecast) -> None:
-    setup = replace(sample.known_test.setup, noise=1e-3)
+def test_noise_is_matched_in_proportion(known: KnownTest) -> None:
+    setup = replace(known.setup, noise=1e-3)
     assert noise_for(0.004, 0.002, setup) == pytest.approx(2e-3)
 
 

@@ -1,0 +1,142 @@
+"""What is off on the whole specimen, around it, or in the measurement, as families of a study's own model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+
+from acquisition.quantities import severity
+from modalkit.planning.family import Family, factor, per_cent
+from modalkit.planning.own.sizes import BODY, HEAVIEST, Maker, in_g, in_unit
+from modalkit.planning.whole import CLEAR_LOAD, MOST_LOAD, NEAR
+from updating.effects.base import Effect, total_mass
+from updating.prediction.predict import Predictor
+
+BELIEVED_LOAD = 0.8
+"""Largest pressure that the effect believes, of that at which the plate buckles [-]."""
+
+
+def _whole(noun: str, *, most: float, clear: float) -> Maker:
+    return lambda effect, predictor: iter([factor(effect.name, noun, most=most, clear=clear)])
+
+
+def _sensor(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    mass = total_mass(predictor.spec)
+    yield Family(
+        effect.name, lambda q, _: {"mass": q, "bulk": 0.0}, 0.0, HEAVIEST * mass, BODY * mass,
+        "a sensor heavier than stated by", in_g,
+    )  # fmt: skip
+
+
+def _gain(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    end = float(np.log(2.5))
+    yield Family(
+        effect.name,
+        lambda q, _: {"gain": float(np.exp(q))},
+        -end,
+        end,
+        0.2,
+        "a level off by more than",
+        per_cent,
+    )
+
+
+def _middle(predictor: Predictor) -> tuple[float, float]:
+    """Return angular frequency [rad/s] and expected decay [1/s] of the second mode."""
+    modes = predictor.predict(count=2)
+    omega = 2 * np.pi * float(modes.frequency[-1])
+    return omega, float(modes.damping[-1]) * omega
+
+
+def _window(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    _, decay = _middle(predictor)
+    yield Family(
+        effect.name, lambda q, _: {"decay": q}, 0.0, max(70.0, 20 * decay), 1.5 * decay, "a window of more than",
+        in_unit("1/s"),
+    )  # fmt: skip
+
+
+def _uniform(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    """Three laws, each as much as the second mode's expected decay at ``q`` = 1."""
+    omega, decay = _middle(predictor)
+    unit = {"alpha": 2 * decay, "beta": 2 * decay / omega**2, "loss_factor": 2 * decay / omega}
+    laws = tuple(unit)
+    yield Family(
+        effect.name, lambda q, law: {name: q * unit[name] * (name == laws[int(law)]) for name in laws}, 0.0, 20.0, 1.5,
+        "damping", lambda q: f"{severity(1 + q)} times that expected in the middle", np.arange(3.0), separately=True,
+    )  # fmt: skip
+
+
+def _length(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    size = predictor.spec.length
+    yield Family(
+        effect.name, lambda q, _: {"extension": q}, -0.06 * size, 0.12 * size, 0.03 * size,
+        "a free length off by more than", lambda q: f"{severity(1e3 * abs(q))} mm", always=True,
+    )  # fmt: skip
+
+
+def _taper(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    yield Family(
+        effect.name, lambda q, _: {"slope": q}, -0.8, 0.8, 0.1, "a thickness that changes along x by more than",
+        lambda q: f"{severity(100 * abs(q))} %", always=True,
+    )  # fmt: skip
+
+
+def _orthotropy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    end = float(np.log(2.0))
+    yield Family(
+        effect.name, lambda q, _: {"ratio": float(np.exp(q)), "shear_ratio": 1.0}, -end, end, 0.1,
+        "a modulus along over that across off by more than", per_cent, always=True,
+    )  # fmt: skip
+
+
+def _load(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    """A load along x, over that at which the plate buckles: the end of what the effect believes."""
+    (force,) = effect.parameters(predictor)
+    buckling = -force.low / BELIEVED_LOAD
+    yield Family(
+        effect.name, lambda q, _: {"force": q}, -MOST_LOAD * buckling, 2 * buckling, CLEAR_LOAD * buckling,
+        "an axial load above", lambda q: f"{severity(abs(q))} {force.unit}",
+    )  # fmt: skip
+
+
+def _fluid(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    """Of its surface and bottom those that the study does not state are far off or near: forms of the effect."""
+    around, spec = predictor.environment, predictor.spec
+    near = NEAR * min(spec.length, spec.width)
+    unstated = [name for name in ("free_surface", "bottom") if getattr(around, name) is None]
+    tanks = [dict(zip(unstated, at, strict=True)) for at in product((np.inf, near), repeat=len(unstated))]
+    known = around.fluid_density
+    yield Family(
+        effect.name, lambda q, form: {"fluid_density": q, **tanks[int(form)]}, 0.0, known or 2000.0, known or 998.0,
+        "a fluid denser than", in_unit("kg/m3"), np.arange(float(len(tanks))), separately=True,
+    )  # fmt: skip
+
+
+def _viscous(effect: Effect, predictor: Predictor) -> Iterator[Family]:
+    """Severity is the root of the viscosity, in proportion to which a boundary layer damps."""
+    yield Family(
+        effect.name, lambda q, _: {"viscosity": q**2}, 0.0, 1.0, 0.1, "a fluid more viscous than",
+        lambda q: f"{severity(1e3 * q**2)} mPa s",
+    )  # fmt: skip
+
+
+OVERALL: dict[str, Maker] = {
+    "E": _whole("a modulus", most=2.5, clear=0.1),
+    "density": _whole("a density", most=2.5, clear=0.1),
+    "thickness": _whole("a thickness", most=1.6, clear=0.05),
+    "section_scale": _whole("stiffness and mass together", most=2.5, clear=0.15),
+    "length": _length,
+    "taper": _taper,
+    "orthotropy": _orthotropy,
+    "axial_load": _load,
+    "fluid_added_mass": _fluid,
+    "fluid_damping": _viscous,
+    "sensor_mass": _sensor,
+    "uniform_damping": _uniform,
+    "exponential_window": _window,
+    "calibration_gain": _gain,
+}
+"""By effect."""

@@ -1,0 +1,349 @@
+"""The forecast on a study's own model: regions, joints, supports and hypotheses by name, plates, what is refused."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import mmwrite
+from typer.testing import CliRunner
+
+from acquisition.errors import StudyError
+from modalkit.cli import app
+from modalkit.planning import Forecast, forecast
+from modalkit.planning.document import to_json
+from modalkit.planning.from_study import bench_of
+from modalkit.planning.own import OwnBench
+from modalkit.planning.separability import SEEN, distances, nearest_in
+from modalkit.planning.trials import check
+from modalkit.study.read import read_study
+
+MASSES, SPRINGS = 6, 6
+K, M = 1e6, 1.0
+PARTS = ("low", "middle", "high")
+
+STUDY = """
+title = "Chain"
+[test]
+band = [1.0, 290.0]
+{test}
+[model]
+type = "matrices"
+stiffness = "stiffness.mtx"
+mass = "mass.mtx"
+nodes = "nodes.csv"
+stiffness_parts = ["stiffness_low.mtx", "stiffness_middle.mtx", "stiffness_high.mtx"]
+mass_parts = ["mass_low.mtx", "mass_middle.mtx", "mass_high.mtx"]
+{model}
+[[model.region]]
+name = "low"
+[[model.region]]
+name = "middle"
+[[model.region]]
+name = "high"
+[tolerances]
+E = {E}
+density = {density}
+{more}
+"""
+POINTS = 'points = ["2+X", "4+X", "6+X"]\nsensor = "6+X"'
+
+
+def chain(folder: Path) -> None:
+    """Write six masses in a row between springs, the first held; two springs and two masses to a region."""
+    whole = np.zeros((2, MASSES, MASSES))
+    for i, part in enumerate(PARTS):
+        k, m = np.zeros((MASSES, MASSES)), np.zeros((MASSES, MASSES))
+        for n in (2 * i, 2 * i + 1):
+            k[n, n] += K
+            if n:
+                k[n - 1, n - 1] += K
+                k[n - 1, n] = k[n, n - 1] = -K
+            m[n, n] = M
+        whole += k, m
+        mmwrite(folder / f"stiffness_{part}.mtx", k, precision=17)
+        mmwrite(folder / f"mass_{part}.mtx", m, precision=17)
+    mmwrite(folder / "stiffness.mtx", whole[0], precision=17)
+    mmwrite(folder / "mass.mtx", whole[1], precision=17)
+    softer = whole[0].copy()
+    softer[2, 2] -= 0.5 * K
+    softer[1, 1] -= 0.5 * K
+    softer[1, 2] = softer[2, 1] = -0.5 * K
+    mmwrite(folder / "softer.mtx", softer, precision=17)
+    lines = [
+        f"{n + 1}, {0.1 * (n + 1):g}, 0, 0, 1, {n + 1}, {'end' if n == 5 else ''}" for n in range(MASSES)
+    ]
+    (folder / "nodes.csv").write_text("\n".join(["node, x, y, z, direction, row, sets", *lines]) + "\n")
+
+
+def study(folder: Path, **words: str) -> Path:
+    chain(folder)
+    known = {"test": POINTS, "model": "", "E": "0.01", "density": "0.003", "more": ""} | words
+    path = folder / "study.toml"
+    path.write_text(STUDY.format(**known))
+    return path
+
+
+def bench(folder: Path, **words: str) -> OwnBench:
+    found = bench_of(read_study(study(folder, **words)))
+    assert isinstance(found, OwnBench)
+    return found
+
+
+@pytest.fixture(scope="module")
+def chained(tmp_path_factory: pytest.TempPathFactory) -> Forecast:
+    hypothesis = '[[hypothesis]]\nname = "spring 3 is cracked"\nstiffness = "softer.mtx"'
+    return forecast(bench(tmp_path_factory.mktemp("chain"), more=hypothesis))
+
+
+def closed_form(factors: dict[int, float]) -> np.ndarray:
+    """Return the chain's frequencies with some springs times a factor [Hz]."""
+    k = np.zeros((MASSES, MASSES))
+    for n in range(SPRINGS):
+        own = K * factors.get(n, 1.0)
+        k[n, n] += own
+        if n:
+            k[n - 1, n - 1] += own
+            k[n - 1, n] -= own
+            k[n, n - 1] -= own
+    return np.sqrt(np.linalg.eigvalsh(k) / M) / (2 * np.pi)
+
+
+def test_the_test_is_as_planned(tmp_path: Path) -> None:
+    own = bench(tmp_path)
+    assert own.design.modes == 5
+    assert own.problem.measured.frequency == pytest.approx(closed_form({}), rel=1e-9)
+    assert own.band == (1.0, 290.0)
+    assert [own.problem.measured.nodes[i] for i in own.design.stations] == [2, 4, 6]
+    assert own.layout.drive is None
+    names = {family.name for family in own.families}
+    assert {
+        "local_stiffness of low",
+        "local_mass of high",
+        "lumped_mass at end",
+        "ground_spring at end along x",
+    } <= names
+    assert "taper" in own.not_forecast
+    assert not names & set(own.not_forecast)
+
+
+def test_what_a_region_changes_is_what_its_springs_change(tmp_path: Path) -> None:
+    own = bench(tmp_path)
+    family = next(f for f in own.families if f.name == "local_stiffness of middle")
+    change = own.change(family, float(np.log(1 / 0.7)), 0.0)
+    softer = np.log(closed_form({2: 0.7, 3: 0.7}) / closed_form({}))
+    assert change[:MASSES] == pytest.approx(softer, abs=1e-9)
+
+
+def test_covariance_of_frequencies_is_that_of_the_stated_doubts(tmp_path: Path) -> None:
+    own = bench(tmp_path)
+    design = replace(own.design, shapes=False)
+    white = own.whitener(design)
+    covariance = np.linalg.inv(white.T @ white)
+    noise = (2e-4) ** 2 + 5e-4**2
+    common = (0.5 * 0.01) ** 2 + (0.5 * 0.003) ** 2
+    assert covariance == pytest.approx(common * np.ones((5, 5)) + noise * np.eye(5), rel=1e-3, abs=1e-12)
+
+
+def test_seen_is_where_the_closed_form_says(tmp_path: Path) -> None:
+    """From frequencies alone, the size of a region's softness at three sigma is known from the springs."""
+    own = bench(tmp_path)
+    design = replace(own.design, shapes=False)
+    family = next(f for f in own.families if f.name == "local_stiffness of middle")
+    (found,) = distances([own.solve(family)], design, own)
+    noise = ((2e-4) ** 2 + 5e-4**2) * np.eye(5) + ((0.5 * 0.01) ** 2 + (0.5 * 0.003) ** 2)
+    step = 1e-4
+    slope = (np.log(closed_form({2: 1 - step, 3: 1 - step}) / closed_form({}))[:5]) / step
+    expected = SEEN / np.sqrt(slope @ np.linalg.solve(noise, slope))
+    assert found.threshold(found.sigma[0]) == pytest.approx(expected, rel=0.05)
+
+
+def test_a_hypothesis_is_told_or_in_a_class_like_any_effect(chained: Forecast) -> None:
+    assert "spring 3 is cracked" in chained.now.names
+    assert chained.now.limits["spring 3 is cracked"].clear == 1.0
+    outcome = chained.now.outcomes["spring 3 is cracked"]
+    assert outcome.kind == "named"
+    seen = chained.now.limits["spring 3 is cracked"].seen
+    assert 0 < seen < 0.2
+
+
+def test_springs_and_bodies_at_one_place_are_one_cause_in_doubt_of_its_place(chained: Forecast) -> None:
+    """The end is a node set and a point of the test: what holds it is the same under both names."""
+    assert chained.now.outcomes["ground_spring at end along x"].kind == "place"
+    assert chained.now.outcomes["ground_spring at end along x"].rivals == ("ground_spring",)
+    body = chained.now.outcomes["lumped_mass at end"]
+    assert body.kind == "class"
+    assert set(body.rivals) == {"sensor_mass", "lumped_mass"}
+
+
+def test_the_document_names_effects_places_and_what_is_expected(chained: Forecast) -> None:
+    document = json.loads(json.dumps(to_json(chained), allow_nan=False))
+    rows = {row["name"]: row for row in document["now"]["effects"]}
+    assert rows["local_stiffness of low"]["effect"] == "local_stiffness"
+    assert rows["local_stiffness of low"]["at"] == "low"
+    assert rows["E"]["at"] is None
+    assert {row["outcome"] for row in rows.values()} <= {"named", "place", "edge", "class", "unseen"}
+    for row in rows.values():
+        assert set(row["sigma"]) == {"none", *rows}
+        assert (row["outcome"] in ("named", "unseen")) == (not row["not_told_from"])
+
+
+def test_a_curve_is_met_between_the_severities_that_were_solved(chained: Forecast) -> None:
+    own = chained.bench
+    assert isinstance(own, OwnBench)
+    have, white = own.columns(own.design), own.whitener(own.design)
+    for curve in chained.curves:
+        if len(curve.family.places):
+            continue
+        for share in (0.13, 0.37, 0.73):
+            target = own.change(curve.family, share * curve.family.clear, 0.0)[have] @ white.T
+            left, _ = nearest_in(target[None], curve.cloud[..., have] @ white.T)
+            assert np.linalg.norm(left) < max(1.0, curve.fidelity * np.linalg.norm(target)), curve.family.name
+
+
+def test_modes_are_known_again_when_all_frequencies_move(tmp_path: Path) -> None:
+    """A modulus moves all frequencies alike and no shape: nothing else may be in its change."""
+    own = bench(tmp_path)
+    modulus = next(family for family in own.families if family.name == "E")
+    for q in (0.02, 0.3, 0.8):
+        change = own.change(modulus, q, 0.0)
+        assert change[:MASSES] == pytest.approx(q / 2, abs=1e-9)
+        assert np.abs(change[MASSES:]).max() < 1e-6
+
+
+@pytest.mark.long
+def test_a_trial_on_the_model_answers_as_was_forecast(tmp_path: Path) -> None:
+    found = forecast(bench(tmp_path))
+    checked = check(found, 3, 2)
+    assert all(one.kept for one in checked.tried), checked.table.to_string()
+
+
+def test_softer_springs_at_the_foot_are_heavier_masses_at_the_end_to_frequencies_and_not_to_shapes(
+    tmp_path: Path,
+) -> None:
+    """B' S B on masses M has the eigenvalues of B M^-1 B' on compliances S^-1, which is the chain turned round."""
+    own = bench(tmp_path)
+    pair = [f for f in own.families if f.name in ("local_stiffness of low", "local_mass of high")]
+    curves = [own.solve(family) for family in pair]
+    apart = {
+        shapes: distances(curves, replace(own.design, shapes=shapes), own)[0].clear_of(pair[1].name)
+        for shapes in (False, True)
+    }
+    assert apart[False] < 0.1
+    assert apart[True] > SEEN
+
+
+def test_where_frequencies_alone_are_known_shapes_are_proposed(tmp_path: Path) -> None:
+    rows = "\n".join(f"{f:.6g},{1e-4 * f:.3g}" for f in closed_form({})[:5])
+    (tmp_path / "modes.csv").write_text(f"frequency,sigma\n{rows}\n")
+    own = bench(tmp_path, test='modes = "modes.csv"')
+    assert not own.design.shapes
+    assert len(own.columns(own.design)) == 5
+    shapes = next(one for one in own.changes(own.design, lambda _: 0.0) if one.key == "shapes")
+    assert "not frequencies alone" in shapes.measure
+    assert len(own.columns(shapes.design)) > 5
+    white = own.whitener(shapes.design)
+    assert np.isfinite(white).all()
+
+
+def test_points_are_proposed_by_node_direction_and_region(chained: Forecast) -> None:
+    points = next(one for one in chained.advice if one.change.key == "points")
+    assert "node" in points.change.measure
+    assert "along x" in points.change.measure
+    assert any(part in points.change.measure for part in PARTS)
+    assert len(points.change.design.stations) == 5
+
+
+PLATE = """
+[test]
+{test}
+[model]
+type = "plate"
+length = 0.4
+width = 0.2
+thickness = 0.003
+elements = [8, 4]
+clamped = ["x0"]
+[model.material]
+E = 210e9
+density = 7850.0
+"""
+
+
+def test_a_plate_is_forecast_by_its_own_model(tmp_path: Path) -> None:
+    path = tmp_path / "plate.toml"
+    path.write_text(
+        PLATE.format(test="points = [[0.2, 0.05], [0.2, 0.15], [0.4, 0.0], [0.4, 0.2]]\nband = [1.0, 150.0]")
+    )
+    own = bench_of(read_study(path))
+    assert isinstance(own, OwnBench)
+    assert len(own.design.stations) == 4
+    names = {family.name for family in own.families}
+    assert {"E", "thickness", "local_stiffness", "orthotropy", "clamp_rotation", "lumped_mass"} <= names
+    modulus = next(family for family in own.families if family.name == "E")
+    assert own.change(modulus, 0.1, 0.0)[: own.design.modes] == pytest.approx(0.05, abs=1e-9)
+    path.write_text(PLATE.format(test=""))
+    assert len(bench_of(read_study(path)).design.stations) == 20
+
+
+REFUSED = [
+    ({"test": ""}, "nothing says where the structure will be hit; give .test. points"),
+    ({"test": "points = [0.1, 0.2]"}, "0.1 is a place along a beam; write a node and its direction"),
+    ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is none of the model's, which reach from 1 to 6"),
+    ({"test": 'points = ["2+X", "3+Y"]'}, "3.Y: the model does not move that way"),
+    ({"test": 'points = ["2+X", [9.0, 0.0, 0.0, "x"]]'}, "off the imported structure"),
+    ({"test": 'points = ["here"]'}, "'here' is no point; write a place along a beam"),
+    ({"test": "points = [[0.1]]"}, "is no point; write a place along a beam"),
+]
+
+
+@pytest.mark.parametrize(("words", "message"), REFUSED)
+def test_what_cannot_be_planned_is_refused_in_one_line(
+    tmp_path: Path, words: dict[str, str], message: str
+) -> None:
+    with pytest.raises(StudyError, match=message) as error:
+        bench(tmp_path, **words)
+    assert "\n" not in str(error.value)
+
+
+def test_a_band_without_modes_is_refused(tmp_path: Path) -> None:
+    path = study(tmp_path)
+    path.write_text(path.read_text().replace("band = [1.0, 290.0]", "band = [1.0, 50.0]"))
+    with pytest.raises(StudyError, match="holds 1 of the model's modes that the points show"):
+        bench_of(read_study(path))
+
+
+def test_a_place_on_a_plate_is_no_place_along_a_beam(tmp_path: Path) -> None:
+    path = tmp_path / "beam.toml"
+    text = PLATE.replace('type = "plate"', 'type = "beam"').replace("elements = [8, 4]", "")
+    path.write_text(text.format(test="points = [[0.2, 0.05]]"))
+    with pytest.raises(StudyError, match="is no place along a beam"):
+        bench_of(read_study(path))
+    path.write_text(PLATE.format(test='points = ["3+Z"]'))
+    with pytest.raises(StudyError, match="node 3: a plate has no node numbers; write"):
+        bench_of(read_study(path))
+
+
+def test_the_command_prints_writes_and_draws(tmp_path: Path) -> None:
+    path = study(tmp_path)
+    document, report = tmp_path / "plan.json", tmp_path / "plan.html"
+    wanted = [
+        "blind",
+        str(path),
+        "--json",
+        str(document),
+        "--report",
+        str(report),
+        "--figures",
+        str(tmp_path / "f"),
+    ]
+    done = CliRunner().invoke(app, wanted)
+    assert done.exit_code == 0, done.output
+    assert "Names:" in done.output
+    assert "local_stiffness of middle" in done.output
+    assert json.loads(document.read_text())["schema"] == "modalkit.plan/1"
+    assert "local_stiffness of middle" in report.read_text()
+    assert (tmp_path / "f" / "planning.png").exists()
