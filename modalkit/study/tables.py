@@ -28,6 +28,9 @@ LARGEST_LOSS = 5.0
 LARGEST_ASTRAY = 100.0
 """Points known no better than this say nothing of any structure [m]."""
 
+LARGEST_SHAPE_ERROR = 10.0
+"""Shapes known no better than this say nothing [-]."""
+
 LossFactor = Annotated[float, in_unit(""), Field(ge=0, lt=LARGEST_LOSS)]
 Fluid = Annotated[float, in_unit("kg/m^3"), Field(gt=0, lt=30e3)]
 Alpha = Annotated[float, in_unit("1/s"), Field(ge=0, lt=1e9)]
@@ -135,6 +138,22 @@ class MeasurementTable(Strict):
     """
     position_sigma: Annotated[float, in_unit("m"), Field(ge=0.0, lt=LARGEST_ASTRAY)] = 0.001
     """1-sigma of the points hit, and of where a sensor sits [m]."""
+    shape_sigma: Annotated[float, in_unit(""), Field(gt=0.0, lt=LARGEST_SHAPE_ERROR)] | None = None
+    """Of modes: error of every component of a shape over the shape's r.m.s. [-], in place of what the table says. Left
+    out where the table says nothing either: an update estimates it, a diagnosis takes 2 % times an unknown scale.
+    """
+    places: dict[Annotated[str, Field(pattern=r"^\d{1,9}$")], Place] = {}
+    """Where points are whose file does not say so, or says it wrongly, in the coordinates of the test [m], as
+    ``{ 12 = [0.1, 0.0, 0.3] }``. Left out of a model with nodes: those of the same numbers.
+    """
+    directions: dict[str, Vector] = {}
+    """Which way sensors or hits point that point along no axis, in the coordinates of the test, as
+    ``{ "12+X" = [0.7, 0.7, 0.0] }``: what is written 12+X is measured along that.
+    """
+    match_tolerance: Size | None = None
+    """How far from the nodes (or elements) of matrices or a deck a point may lie [m]; farther off than nodes are apart
+    it is put on the nearest. Left out: as far as nodes are apart.
+    """
     points: list[Length] = []
     """Of a test that is only planned: where along a beam it will be hit [m]. Left out: eight, evenly."""
     sensor: Length | None = None
@@ -149,6 +168,10 @@ class MeasurementTable(Strict):
         """See that the band is one, and that modes come without what is said of records and FRFs."""
         rising("band", self.band)
         if self.modes is None:
+            if self.shape_sigma is not None:
+                raise ValueError(
+                    "shape_sigma is of modes; of files the identification says how well shapes are known: leave it out"
+                )
             return self
         if self.files:
             raise ValueError("files and modes are both given; modes stand in place of files: leave one out")

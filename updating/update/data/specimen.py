@@ -198,6 +198,17 @@ class Specimen:
         near = self.predictor.predict(self.parameter_set.state(self.predictor, values), count=count)
         return replace(self, nominal=replace(self.nominal, near=near.select(evaluation.partner)))
 
+    def discrepant(self, size: FloatArray) -> Specimen:
+        """Return the same specimen with shapes that err by so much more (n_modes,), over their r.m.s. [-]."""
+        return replace(self, nominal=replace(self.nominal, discrepancy=size))
+
+    @property
+    def shape_sigma(self) -> FloatArray:
+        """R.m.s. error that each mode's shape is taken to have, over its r.m.s. (n_modes,) [-]."""
+        test = self.measured
+        error = np.mean(self.errors.sigma.reshape(test.constants.shape) ** 2, axis=0)
+        return np.asarray(np.sqrt(error / np.maximum(np.mean(test.constants**2, axis=0), 1e-300)))
+
     def corrected(self, factor: FloatArray) -> Specimen:
         """Return the same specimen with other corrections of the reduced model's frequencies (n_modes,) [-]."""
         return replace(self, correction=factor)

@@ -6,6 +6,7 @@ shapes best is taken. Others that explain them about as well count in what is sa
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,7 +65,11 @@ NONE = Others((), np.zeros(0))
 """No other solution, or none that was looked for."""
 
 
-def best_solution(system: System) -> tuple[Solution, Others]:
+Price = Callable[[System, Solution], float]
+"""How badly a solution explains everything, in variances up to a constant."""
+
+
+def best_solution(system: System, price: Price | None = None) -> tuple[Solution, Others]:
     """Return the solution that explains frequencies and shapes best, and the others.
 
     They are looked for from other starts where tolerances hold all parameters, and frequencies alone are data or
@@ -74,6 +79,8 @@ def best_solution(system: System) -> tuple[Solution, Others]:
     ----------
     system : System
         The problem.
+    price : callable, optional
+        What the best has the least of; left out, the misfit of all data at the errors that are stated of them.
     """
     first = solve(system)
     plain = all(eligible(s.parameter_set.model_parameters) for s in system.specimens)
@@ -87,11 +94,11 @@ def best_solution(system: System) -> tuple[Solution, Others]:
         other = solve(system, start, steps=STEPS, rest=ROUGH)
         if not _known(other, found, system.doubt):
             found.append(other)
-    price = np.array([_price(system, s) for s in found])
-    order = np.argsort(price, kind="stable")
+    costs = np.array([(price or _price)(system, s) for s in found])
+    order = np.argsort(costs, kind="stable")
     best = found[order[0]] if order[0] == 0 else solve(system, found[order[0]].theta)
-    rest = [i for i in order[1:] if price[i] < price[order[0]] + HOPELESS]
-    return best, Others(tuple(found[i] for i in rest), price[rest] - price[order[0]])
+    rest = [i for i in order[1:] if costs[i] < costs[order[0]] + HOPELESS]
+    return best, Others(tuple(found[i] for i in rest), costs[rest] - costs[order[0]])
 
 
 def mixture(system: System, best: Solution, covariance: FloatArray, others: Others) -> Mixture:
