@@ -72,6 +72,19 @@ def rising(name: str, ends: tuple[float, float] | None) -> None:
         raise ValueError(f"{name} = [{ends[0]:g}, {ends[1]:g}] ends before it begins; give [low, high]")
 
 
+def _of_part(name: str, value: Any) -> bool:
+    """Tell whether a key of ``[tolerances]`` names a single parameter."""
+    return "." in name or isinstance(value, dict)
+
+
+def _flat(table: dict[str, Any], before: str = "") -> dict[str, Any]:
+    """Return a table of tables as one, names joined by points."""
+    found: dict[str, Any] = {}
+    for name, value in table.items():
+        found |= _flat(value, f"{before}{name}.") if isinstance(value, dict) else {before + name: value}
+    return found
+
+
 class AxesTable(Strict):
     """Model axes in test coordinates."""
 
@@ -335,6 +348,34 @@ class TolerancesTable(Strict):
     """Likewise [-]."""
     damping: Doubt = Field(0.3, ge=1e-6)
     """Doubt in the expected damping: of its level, and again of each mode [-]."""
+    parts: dict[str, Doubt] = {}
+    """Of single parameters, written ``web.E = 0.2`` or ``"web.E" = 0.2``: of a region, beside what all have in
+    common (in an update in its place); and of numbers of a deck that an update turns [-].
+    """
+    bounds: dict[str, tuple[float, float]] = {}
+    """Between which parameters lie, as ``{ "web.E" = [0.8, 1.1] }``: as factors, others in their unit. Without a
+    tolerance of its own such a one lies anywhere between them.
+    """
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_part(cls, table: Any) -> Any:
+        """Gather what is stated of single parameters: dotted names, and tables that TOML makes of them."""
+        if not isinstance(table, dict):
+            return table
+        plain = {n: v for n, v in table.items() if n in cls.model_fields or not _of_part(n, v)}
+        own = {n: v for n, v in table.items() if n not in plain}
+        plain["bounds"] = (
+            _flat(plain["bounds"]) if isinstance(plain.get("bounds"), dict) else plain.get("bounds", {})
+        )
+        return {**plain, "parts": {**_flat(plain.get("parts", {})), **_flat(own)}}
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        """See that bounds stand in order."""
+        for name, ends in self.bounds.items():
+            rising(f"bounds of {name}", ends)
+        return self
 
 
 class EnvironmentTable(Strict):

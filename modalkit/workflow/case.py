@@ -20,6 +20,7 @@ from modalkit.workflow.identification import Processed, read_frfs
 from modalkit.workflow.processing_options import ProcessingOptions
 from modalkit.workflow.stated_places import with_places
 from updating import Case, Measured, measured_from_identified, measured_from_modes
+from updating.problem.stated_doubts import check_doubts
 from updating.test_data.measured import NO_PARTNER, UNSTATED
 
 if TYPE_CHECKING:
@@ -84,6 +85,9 @@ def open_study(
         if study.baseline is not None and with_baseline
         else (None, None, None)
     )
+    with _naming(study):
+        own = [name for stage in study.update.stages or [] for name in stage]
+        check_doubts(study.doubts(), study.spec(), [*study.update.named, *own])
     case = Case(
         study.name,
         study.spec(),

@@ -335,6 +335,18 @@ def _on_shapes(system: System, *, contradicted: bool) -> Iterator[str]:
         )
 
 
+def _at_bounds(system: System, solution: Solution) -> Iterator[str]:
+    """Say which parameters the data would take beyond their bounds, and what then is to be thought of the rest."""
+    stopped = [
+        e.name for i, t in enumerate(solution.theta) if (e := _estimate(system, i, float(t), 0.0)).at_bound
+    ]
+    if stopped:
+        yield (
+            f"{', '.join(stopped)} ended at a bound, not where data and tolerances are met best: sigmas are those "
+            "without the bound, and the others make up for it; widen the bounds, or look for what is wrong"
+        )
+
+
 def _warnings(fitted: Fitted, statistics: Statistics) -> list[str]:
     system, solution, disagreement = fitted.system, fitted.solution, fitted.disagreement
     found = [*doubts(system, solution, statistics.dof), *(w for s in system.specimens for w in s.warnings)]
@@ -346,6 +358,7 @@ def _warnings(fitted: Fitted, statistics: Statistics) -> list[str]:
             f"the updated model misses the frequencies by {statistics.inflation:.1f} times what the measurement "
             "explains; the standard deviations are raised by that factor"
         )
+    found += _at_bounds(system, solution)
     if statistics.strain > 1:
         away = (solution.theta - system.start) * np.sqrt(system.prior)
         worst = int(np.argmax(np.abs(away)))

@@ -124,6 +124,7 @@ def _stated(system: System, linear: Linear, theta: FloatArray) -> Determinabilit
         residual=np.concatenate(
             [np.concatenate(residual)[system.used], np.sqrt(start.weight[behind:]) * start.residual[behind:]]
         ),
+        tolerated=system.prior > 0,
     )
 
 
