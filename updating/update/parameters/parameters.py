@@ -315,7 +315,7 @@ def _bounded(parameter: ModelParameter, tolerances: Tolerances) -> ModelParamete
     """
     if parameter.name in tolerances.parts and not parameter.tolerated:
         raise StudyError(
-            f"[tolerances] {parameter.name} has no nominal value to be near: effects are not there, and damping unknown "
+            f"[tolerances] {parameter.name} has no nominal value to be near: effects are not there, damping unknown "
             "until found; give its bounds instead"
         )
     if parameter.name not in tolerances.bounds:
