@@ -76,7 +76,9 @@ def agreed(system: System) -> Agreed:
         if _by_chance(system, solution):
             return _reconciled(Agreed(system, solution, others))
     system = system.discrepant([np.full(len(s.number), RANGE[1]) for s in system.specimens])
-    solution, others = best_solution(system, _of_any_size)
+    # shapes that may be off by twice their size say nothing of parameters, and much of which solution is the right one
+    alone = replace(system, shapes=False)
+    solution, others = best_solution(alone, lambda _, found: _of_any_size(system, found))
     system, solution = _estimated(system, solution)
     return _reconciled(Agreed(system, solution, others))
 
@@ -86,12 +88,13 @@ def _of_any_size(system: System, solution: Solution) -> float:
 
     A size that may be anything leaves n ln(sum of squares) of n squared residuals: each mode's own.
     """
-    frequencies = replace(system, shapes=False).cost(solution.theta, solution.evaluations)
-    parts = _parts(system, system.linear(solution.theta, solution.evaluations))
-    shapes = [
-        float(p.free @ np.log(np.maximum(p.square.sum(axis=0), 1e-300))) for p in parts if p is not None
-    ]
-    return frequencies + sum(shapes)
+    total = replace(system, shapes=False).cost(solution.theta, solution.evaluations)
+    left, end = system.residual(solution.evaluations), system.count_of_frequencies
+    for test in (s.measured for s in system.specimens if s.measured.has_shapes):
+        begin, end = end, end + test.constants.size
+        square = np.sum(left[begin:end].reshape(test.constants.shape) ** 2, axis=0)
+        total += len(test.seen) * float(np.sum(np.log(np.maximum(square, 1e-300))))
+    return total
 
 
 def _by_chance(system: System, solution: Solution) -> bool:
