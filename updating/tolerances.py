@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import log, sqrt
+
+UNIFORM = sqrt(12.0)
+"""Width over standard deviation of what lies anywhere between two bounds [-]."""
 
 
 @dataclass(frozen=True)
@@ -16,7 +20,27 @@ class Tolerances:
         Tolerances of E, density, thickness, length, width.
     damping : float
         Doubt in the expected damping of each mode, half of its variance common to all modes.
+    parts : mapping of str to float
+        Of single parameters, by the names that an update has for them: ``web.E``.
+    bounds : mapping of str to (float, float)
+        Between which a parameter lies: a factor as a factor, what is none in its unit. A bounded parameter without a
+        tolerance of its own lies anywhere between them.
     """
 
     factors: Mapping[str, float] = field(default_factory=dict)
     damping: float = 0.3
+    parts: Mapping[str, float] = field(default_factory=dict)
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    def of(self, name: str, general: str) -> float:
+        """Return the tolerance of a parameter: its own, 0 for one that has bounds alone, else that of the property."""
+        if name in self.parts or name in self.bounds:
+            return self.parts.get(name, 0.0)
+        return self.factors.get(general, 0.0)
+
+    def regional(self, name: str) -> float:
+        """Return the 1-sigma of a factor's logarithm by its tolerance, or by its bounds; 0 for neither [-]."""
+        if name in self.parts or name not in self.bounds:
+            return self.parts.get(name, 0.0)
+        low, high = self.bounds[name]
+        return log(high / low) / UNIFORM if low > 0 else 0.0

@@ -30,7 +30,7 @@ from updating.frf_update import FrfUpdate
 from updating.update import Update
 from updating.update.statistics.doubts import untested
 
-PAIRS = {"test_hz": 3, "before_hz": 3, "after_hz": 3, "mac": 4}
+PAIRS = {"test_hz": 3, "before_hz": 3, "after_hz": 3, "mac": 4, "shape_sigma": 3}
 PAIRS |= dict.fromkeys(("test_damping", "before_damping", "after_damping"), 5)
 """Decimals of the table of pairs."""
 

@@ -47,6 +47,7 @@ def to_json(update: Update) -> dict[str, Any]:
                 "before_hz": _number(row["before_hz"]),
                 "after_hz": _number(row["after_hz"]),
                 "used": bool(row["used"]),
+                "shape_sigma": _number(row.get("shape_sigma")),
             }
             for row in update.pairs.to_dict("records")
         ],

@@ -14,7 +14,7 @@ from acquisition.si_units import si_value
 from modalkit.study.tables import Strict, rising
 from updating import LIBRARY
 from updating.models import Spec
-from updating.models.decks import deck_matrices
+from updating.models.decks import KNOWN, DeckModel, deck_matrices
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, read_matrix
 from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends, same_as
@@ -40,7 +40,9 @@ class HypothesisTable(Strict):
     deck: str | None = None
     """In their place, for ``calculix``: the deck if it were so, on the same mesh and supports."""
     parameter: str | None = None
-    """In their place: ``E``, ``density``, ``REGION.E``, ``REGION.density``; the answer is ``NAME.value``."""
+    """In their place: ``E``, ``density``, ``REGION.E``, ``REGION.density``, or a number of a deck, ``SET.thickness``;
+    the answer is ``NAME.value``.
+    """
     range: Annotated[list[float | str], Field(min_length=2, max_length=2)] | None = None
     """How far towards it, 0 being the model as it stands; of a parameter from, to in its unit, and needed."""
     why: str = ""
@@ -171,10 +173,14 @@ def _range(table: HypothesisTable, unit: str) -> tuple[float, float]:
 def _of_parameter(spec: Spec, table: HypothesisTable) -> Hypothesis:
     """Return a hypothesis on a modulus or a density, of the whole or of a region."""
     assert spec.imported is not None
+    deck = spec.imported.deck
     region, _, factor = str(table.parameter).rpartition(".")
+    if deck is not None and factor not in UNITS and (number := _number(deck, table)) is not None:
+        return number
     names = [one.name for one in spec.regions]
     if factor not in UNITS or (region and region not in names):
         known = ", ".join([*UNITS, *(f"{name}.{factor}" for name in names for factor in UNITS)])
+        known += f"; of the deck {KNOWN}" if deck is not None else ""
         raise StudyError(f"[[hypothesis]] {table.name!r}: no parameter {table.parameter!r}; known: {known}")
     if why := spec.imported.obstacle(factor, regional=bool(region)):
         raise StudyError(f"[[hypothesis]] {table.name!r}: {table.parameter}: {why}")
@@ -189,4 +195,41 @@ def _of_parameter(spec: Spec, table: HypothesisTable) -> Hypothesis:
     index = names.index(region) if region else -1
     return Hypothesis(
         table.name, table.why, low, high, factor=factor, region=index, nominal=nominal, unit=unit
+    )
+
+
+def _number(deck: DeckModel, table: HypothesisTable) -> Hypothesis | None:
+    """Return a hypothesis on a number of a deck; None where its parameter is none.
+
+    Raises
+    ------
+    StudyError
+        If the range leaves what the deck can follow, or holds nothing but the number as it is.
+    """
+    what = f"[[hypothesis]] {table.name!r}"
+    try:
+        found = deck.parameter(str(table.parameter))
+    except StudyError as error:
+        raise StudyError(f"{what}: {error}") from error
+    if found is None:
+        return None
+    low, high = _range(table, found.unit)
+    ends = found.nominal * found.low, found.nominal * found.high
+    if low < ends[0] or high > ends[1]:
+        raise StudyError(
+            f"{what}: range = [{low:g}, {high:g}] {found.unit} reaches beyond [{ends[0]:.4g}, {ends[1]:.4g}] "
+            f"{found.unit}, between which the deck is run; in it {found.name} is {found.nominal * found.start:.4g}"
+        )
+    changes = tuple(
+        deck.change({found: end / found.nominal}) for end in (low, high) if end / found.nominal != found.start
+    )
+    return Hypothesis(
+        table.name,
+        table.why,
+        low,
+        high,
+        nominal=found.nominal,
+        unit=found.unit,
+        of_deck=found,
+        changes=changes,
     )

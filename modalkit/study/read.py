@@ -183,9 +183,11 @@ class Study(Strict):
     def doubts(self) -> Tolerances:
         """Return the tolerances."""
         stated = self.tolerances.model_dump()
+        parts, bounds = stated.pop("parts"), stated.pop("bounds")
         values = {name: value if value > NOTHING else 0.0 for name, value in stated.items()}
+        parts = {name: value for name, value in parts.items() if value > NOTHING}
         damping = values.pop("damping")
-        return Tolerances(values, damping)
+        return Tolerances(values, damping, parts, bounds)
 
     def accepted(self) -> tuple[tuple[str, dict[str, Any]], ...]:
         """Return the effects put into the model, with the values of their parameters and the points they speak of.

@@ -29,6 +29,9 @@ LARGEST_LOSS = 5.0
 LARGEST_ASTRAY = 100.0
 """Points known no better than this say nothing of any structure [m]."""
 
+LARGEST_SHAPE_ERROR = 10.0
+"""Shapes known no better than this say nothing [-]."""
+
 LossFactor = Annotated[float, in_unit(""), Field(ge=0, lt=LARGEST_LOSS)]
 Fluid = Annotated[float, in_unit("kg/m^3"), Field(gt=0, lt=30e3)]
 Alpha = Annotated[float, in_unit("1/s"), Field(ge=0, lt=1e9)]
@@ -68,6 +71,19 @@ def rising(name: str, ends: tuple[float, float] | None) -> None:
     """
     if ends is not None and not ends[0] < ends[1]:
         raise ValueError(f"{name} = [{ends[0]:g}, {ends[1]:g}] ends before it begins; give [low, high]")
+
+
+def _of_part(name: str, value: Any) -> bool:
+    """Tell whether a key of ``[tolerances]`` names a single parameter."""
+    return "." in name or isinstance(value, dict)
+
+
+def _flat(table: dict[str, Any], before: str = "") -> dict[str, Any]:
+    """Return a table of tables as one, names joined by points."""
+    found: dict[str, Any] = {}
+    for name, value in table.items():
+        found |= _flat(value, f"{before}{name}.") if isinstance(value, dict) else {before + name: value}
+    return found
 
 
 class AxesTable(Strict):
@@ -136,6 +152,22 @@ class MeasurementTable(Strict):
     """
     position_sigma: Annotated[float, in_unit("m"), Field(ge=0.0, lt=LARGEST_ASTRAY)] = 0.001
     """1-sigma of the points hit, and of where a sensor sits [m]."""
+    shape_sigma: Annotated[float, in_unit(""), Field(gt=0.0, lt=LARGEST_SHAPE_ERROR)] | None = None
+    """Of modes: error of every component of a shape over the shape's r.m.s. [-], in place of what the table says. Left
+    out where the table says nothing either: an update estimates it, a diagnosis takes 2 % times an unknown scale.
+    """
+    places: dict[Annotated[str, Field(pattern=r"^\d{1,9}$")], Place] = {}
+    """Where points are whose file does not say so, or says it wrongly, in the coordinates of the test [m], as
+    ``{ 12 = [0.1, 0.0, 0.3] }``. Left out of a model with nodes: those of the same numbers.
+    """
+    directions: dict[str, Vector] = {}
+    """Which way sensors or hits point that point along no axis, in the coordinates of the test, as
+    ``{ "12+X" = [0.7, 0.7, 0.0] }``: what is written 12+X is measured along that.
+    """
+    match_tolerance: Size | None = None
+    """How far from the nodes (or elements) of matrices or a deck a point may lie [m]; farther off than nodes are apart
+    it is put on the nearest. Left out: as far as nodes are apart.
+    """
     points: list[PlannedPoint] = []
     """Of a test that is only planned: where it will be hit. Along a beam [m]; on a plate ``[x, y]`` [m]; on matrices
     and decks a node and its direction as ``"12+Z"``, or ``[x, y, z, "+z"]`` in model axes [m]. Left out: of beams
@@ -155,6 +187,10 @@ class MeasurementTable(Strict):
         """See that the band is one, and that modes come without what is said of records and FRFs."""
         rising("band", self.band)
         if self.modes is None:
+            if self.shape_sigma is not None:
+                raise ValueError(
+                    "shape_sigma is of modes; of files the identification says how well shapes are known: leave it out"
+                )
             return self
         if self.files:
             raise ValueError("files and modes are both given; modes stand in place of files: leave one out")
@@ -318,6 +354,34 @@ class TolerancesTable(Strict):
     """Likewise [-]."""
     damping: Doubt = Field(0.3, ge=1e-6)
     """Doubt in the expected damping of each mode, half of its variance common to all modes [-]."""
+    parts: dict[str, Doubt] = {}
+    """Of single parameters, written ``web.E = 0.2`` or ``"web.E" = 0.2``: of a region, beside what all have in
+    common (in an update in its place); and of numbers of a deck that an update turns [-].
+    """
+    bounds: dict[str, tuple[float, float]] = {}
+    """Between which parameters lie, as ``{ "web.E" = [0.8, 1.1] }``: as factors, others in their unit. Without a
+    tolerance of its own such a one lies anywhere between them.
+    """
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_part(cls, table: Any) -> Any:
+        """Gather what is stated of single parameters: dotted names, and tables that TOML makes of them."""
+        if not isinstance(table, dict):
+            return table
+        plain = {n: v for n, v in table.items() if n in cls.model_fields or not _of_part(n, v)}
+        own = {n: v for n, v in table.items() if n not in plain}
+        plain["bounds"] = (
+            _flat(plain["bounds"]) if isinstance(plain.get("bounds"), dict) else plain.get("bounds", {})
+        )
+        return {**plain, "parts": {**_flat(plain.get("parts", {})), **_flat(own)}}
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        """See that bounds stand in order."""
+        for name, ends in self.bounds.items():
+            rising(f"bounds of {name}", ends)
+        return self
 
 
 class EnvironmentTable(Strict):

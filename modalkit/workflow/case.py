@@ -18,7 +18,9 @@ from modalkit.study.read import MeasurementTable, Study, read_study
 from modalkit.workflow.files import Progress
 from modalkit.workflow.identification import Processed, read_frfs
 from modalkit.workflow.processing_options import ProcessingOptions
+from modalkit.workflow.stated_places import with_places
 from updating import Case, Measured, measured_from_identified, measured_from_modes
+from updating.problem.stated_doubts import check_doubts
 from updating.test_data.measured import NO_PARTNER, UNSTATED
 
 if TYPE_CHECKING:
@@ -83,6 +85,9 @@ def open_study(
         if study.baseline is not None and with_baseline
         else (None, None, None)
     )
+    with _naming(study):
+        own = [name for stage in study.update.stages or [] for name in stage]
+        check_doubts(study.doubts(), study.spec(), [*study.update.named, *own])
     case = Case(
         study.name,
         study.spec(),
@@ -196,18 +201,25 @@ def _measure(
         "position_sigma": table.position_sigma,
         "title": f"{study.name}, {name}" if name == "baseline" else study.name,
     }
-    axes, spec = study.axes(table), study.spec()
+    axes, spec, near = study.axes(table), study.spec(), table.match_tolerance
     if table.modes is not None:
         modes, below, beyond = modes_in_band(study, table, name)
         with _naming(study):
-            measured = measured_from_modes(modes, axes, spec, **options)
+            modes, placed = with_places(modes, table, axes, spec)
+            measured = measured_from_modes(
+                modes, axes, spec, shape_sigma=table.shape_sigma, match_tolerance=near, **options
+            )
         measured = _with_pairs(study, table, measured)
-        return replace(measured, warnings=(*measured.warnings, *beyond), below=below), None, None
+        return replace(measured, warnings=(*measured.warnings, *placed, *beyond), below=below), None, None
     if not table.files:
         raise StudyError(f'{study.path}: [{name}] names no data; add files = [...] or modes = "..."')
     processed, identified = _identified(study, table) if known is None else known
     with _naming(study):
-        measured = measured_from_identified(identified, axes, spec, **options)
+        modal, placed = with_places(identified.modal, table, axes, spec)
+        measured = measured_from_identified(
+            replace(identified, modal=modal), axes, spec, match_tolerance=near, **options
+        )
+        measured = replace(measured, warnings=(*measured.warnings, *placed))
     measured = _with_pairs(study, table, measured)
     return _with_levels(measured, processed, identified), processed, identified
 

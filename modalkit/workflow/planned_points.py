@@ -13,7 +13,7 @@ from modalkit.study.planned_points import PlainPoint
 from modalkit.study.read import Study
 from updating import Measured, Spec
 from updating.test_data.axes import Axes
-from updating.test_data.placement import Placed, check_among, place
+from updating.test_data.placement import Placed, matched, place
 
 BY_HAND = 1e-9
 
@@ -75,7 +75,7 @@ def planned_points(study: Study, spec: Spec) -> PlannedPoints | None:
     try:
         placed = _placed(stated, spec)
         keys = placed.keys
-        check_among(placed.points, keys, spec)
+        points, _ = matched(placed.points, keys, spec, table.match_tolerance)
     except StudyError as error:
         raise StudyError(f"{study.path}: [test] points: {error}") from error
     count = len(table.points)
@@ -87,7 +87,7 @@ def planned_points(study: Study, spec: Spec) -> PlannedPoints | None:
     directions = None if spec.imported is None else np.array([key[1] for key in keys])
     hit = tuple(dict.fromkeys(placed.index[:count].tolist()))
     return PlannedPoints(
-        placed.points, tuple(key[0] for key in keys), directions, hit,
+        points, tuple(key[0] for key in keys), directions, hit,
         None if table.sensor is None else int(placed.index[-1]),
     )  # fmt: skip
 

@@ -33,6 +33,7 @@ from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
 from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction, theory_error
 from updating.problem.specimen import SpecimenProblem
+from updating.problem.stated_doubts import of_updates_alone
 from updating.test_data.same_places import unmatched
 from updating.thresholds import FEWEST_DATA
 
@@ -178,7 +179,7 @@ def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
     predictor = predictor_of(case)
     additions = list(predictor.additions)
     paired = pair_modes(case.measured, predictor.predict())
-    warnings = [*case.measured.warnings, *paired.warnings]
+    warnings = [*case.measured.warnings, *paired.warnings, *of_updates_alone(case.tolerances, case.spec)]
     baseline, baseline_order, tolerances = None, None, case.tolerances
     if case.baseline is not None:
         own_predictor = predictor.for_test(case.baseline, ())

@@ -9,6 +9,7 @@ from updating.effects.base import EDGES, Channel, Effect, Parameter, Values
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import on_basis, region_centre
+from updating.models.decks.states import deck_state
 from updating.models.fields import Sparse
 from updating.models.imported.hypothesis import Hypothesis
 from updating.models.spec import Spec
@@ -49,7 +50,7 @@ class Supposed(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return how far it is so, or the value of the parameter."""
         own = self.hypothesis
-        if own.factor:
+        if own.of_parameter:
             return (Parameter("value", own.unit, own.low, own.high, "as the study states it", natural=EDGES),)
         why = "as the study states it: 0 is the model as it stands, 1 all the way"
         return (Parameter("amount", "-", own.low, own.high, why, natural=EDGES),)
@@ -67,6 +68,10 @@ class Supposed(Effect):
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with so much of the change."""
         own = self._of(predictor.spec)
+        if own.of_deck is not None:
+            return deck_state(
+                predictor.reduced, {own.of_deck: float(values["value"]) / own.nominal}, predictor.base
+            )
         if own.factor:
             factor = float(values["value"]) / own.nominal
             return State(factors={own.factor: factor}) if own.region < 0 else State(
@@ -87,8 +92,7 @@ class Supposed(Effect):
             return () if own.region < 0 else (region_centre(predictor, {"region": float(own.region)}),)
         share = sum(
             np.abs(change.diagonal()) / max(float(np.abs(change.diagonal()).max()), 1e-300)
-            for change in (own.stiffness, own.mass)
-            if change is not None
+            for change in own.differences
         )
         weight = share * np.isfinite(imported.row_places).all(axis=1)
         if not weight.sum() > 0:
@@ -110,6 +114,8 @@ def hypotheses_of(spec: Spec) -> tuple[Effect, ...]:
 
 
 def _channel(hypothesis: Hypothesis) -> Channel:
+    if hypothesis.of_deck is not None:
+        return "mass" if hypothesis.of_deck.kind == "mass" else "stiffness"
     if hypothesis.factor:
         return "mass" if hypothesis.factor == "density" else "stiffness"
     return "mass" if hypothesis.stiffness is None else "stiffness"

@@ -237,6 +237,20 @@ class Reduced:
                 change[term.kind] += power * term.scale(state.factors) * parts[:n, :n]
         return change["stiffness"], change["mass"]
 
+    def regional_sensitivity(
+        self, state: State, factor: str, regions: tuple[int, ...]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return dK and dM per unit of the logarithm of a factor of some regions, at a state [SI]."""
+        n = self.ranks[state.released]
+        change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
+        for term, parts in zip(self.structure.terms, self.parts, strict=True):
+            power = term.powers.get(factor, 0.0)
+            for region in regions if power else ():
+                own = {name: value for (index, name), value in state.regional.items() if index == region}
+                scale = term.scale(state.factors) * term.scale(own)
+                change[term.kind] += power * scale * parts[region][:n, :n]
+        return change["stiffness"], change["mass"]
+
     def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return displacement and slopes of the basis at points (n_points, dim) [m], each (n_points, r).
 

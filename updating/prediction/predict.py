@@ -26,6 +26,7 @@ from updating.models.damping import (
     modal_damping,
     modal_losses,
 )
+from updating.models.named_factors import regions_of
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.shear import sheared
@@ -203,7 +204,7 @@ class Predictor(Displayed):
         state : State
             Departure from the nominal model, on top of ``base``.
         factors : sequence of str
-            Factors to differentiate by.
+            Factors to differentiate by, those of regions as ``web.E``.
         count : int, optional
             Number of modes; left out, those up to 1.6 times the highest measured frequency and three more.
         at_least : int
@@ -311,6 +312,11 @@ class Predictor(Displayed):
         whole = np.tensordot(powers, parts, axes=1)
         own = np.arange(len(chosen))
         heavier = -(powers * heavy) @ parts[:, chosen, own] / np.where(lam == 0, 1.0, lam)
+        for k, (regions, factor) in enumerate(regions_of(self.spec, name) for name in names):
+            if regions:
+                stiffness, mass = self.reduced.regional_sensitivity(state, factor, regions)
+                whole[k] = vectors.T @ (stiffness @ modes - mass @ modes * lam)
+                heavier[k] = np.sum(modes * (mass @ modes), axis=0)
         gap = lam - values[:, None]
         near = np.abs(gap) < 1e-9 * np.abs(lam).max()
         weights = whole * np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))

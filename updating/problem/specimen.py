@@ -28,6 +28,7 @@ from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
 from updating.models.base import FACTORS
+from updating.models.named_factors import departure, regions_of
 from updating.models.state import NOMINAL, State
 from updating.prediction.matching import match
 from updating.prediction.predict import Prediction, Predictor
@@ -139,9 +140,17 @@ class SpecimenProblem:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Factors with a tolerance that the model knows."""
+        """Factors with a tolerance that the model knows: of the whole, then those of regions."""
         known = {name for term in self.predictor.reduced.structure.terms for name in term.powers}
-        return tuple(n for n in FACTORS if n in known and self.tolerances.factors.get(n, 0.0) > 0)
+        whole = [n for n in FACTORS if n in known and self.tolerances.factors.get(n, 0.0) > 0]
+        own = dict.fromkeys([*self.tolerances.parts, *self.tolerances.bounds])
+        regional = [n for n in own if self.tolerances.regional(n) > 0 and self._of_regions(n, known)]
+        return (*whole, *regional)
+
+    def _of_regions(self, name: str, known: set[str]) -> bool:
+        """Tell whether a name is a factor of regions of the model."""
+        regions, factor = regions_of(self.predictor.spec, name)
+        return bool(regions) and factor in known
 
     @property
     def reach(self) -> int:
@@ -158,7 +167,8 @@ class SpecimenProblem:
     @cached_property
     def sigmas(self) -> FloatArray:
         """Their standard deviations [-]."""
-        return np.array([self.tolerances.factors[n] for n in self.names])
+        own, every = self.tolerances, self.names
+        return np.array([own.regional(n) if "." in n else own.factors[n] for n in every])
 
     @cached_property
     def nominal(self) -> Prediction:
@@ -220,8 +230,8 @@ class SpecimenProblem:
             What the state leaves in doubt.
         """
         shift = np.zeros(len(self.names)) if shift is None else shift
-        moved = State(factors=dict(zip(self.names, np.exp(shift * self.sigmas), strict=True)))
-        whole = state.plus(moved)
+        factors = dict(zip(self.names, np.exp(shift * self.sigmas).tolist(), strict=True))
+        whole = state.plus(departure(self.predictor.spec, factors))
         every = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
         prediction = every.select(self._match(every))
         view = View(prediction, self.predictor.base.plus(whole), doubt, every)

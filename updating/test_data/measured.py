@@ -15,13 +15,17 @@ from identification import ModalModel
 from identification.scaling.shapes import turned
 from updating.models import Spec
 from updating.test_data.axes import Axes
-from updating.test_data.placement import Key, check_among, place
+from updating.test_data.placement import Key, matched, place
 
 if TYPE_CHECKING:
     import pandas as pd
 
 UNKNOWN_LEVEL = 0.2
 """A calibration worse than this is found by least squares before anything is linearised [-]."""
+
+GUESSED_SHAPE_SIGMA = 0.02
+"""Error of a shape of which none is stated, over its r.m.s. [-]: two transducers' calibrations. The diagnosis takes it
+times an unknown scale, an update estimates it. Doubled: shapes of few points count a quarter as much."""
 
 UNSTATED, NO_PARTNER = -1, -2
 """What stands among the partners for a mode of which nothing is stated, and for one that is stated to have none."""
@@ -91,6 +95,8 @@ class Measured(Displayed):
         Rank of the nominal model's mode that each one is stated to be, from 0; `UNSTATED`, or `NO_PARTNER`.
     partner_constants : (n_frf, n_modes) array, optional
         Constants of those modes, by which they are known again in a model that has changed [as ``constants``].
+    guessed : bool
+        Whether ``constants_sigma`` is a guess: nobody stated how well the shapes are known.
     """
 
     frequency: FloatArray
@@ -126,6 +132,7 @@ class Measured(Displayed):
     trusted: BoolArray | None = None
     partners: IntArray | None = None
     partner_constants: FloatArray | None = None
+    guessed: bool = False
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -201,7 +208,15 @@ class Measured(Displayed):
         return pd.DataFrame(columns, index=pd.RangeIndex(1, len(self.frequency) + 1, name="mode"))
 
 
-def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: float | str) -> Measured:
+def measured_from_modes(
+    modes: ModalData,
+    axes: Axes,
+    spec: Spec,
+    *,
+    shape_sigma: float | None = None,
+    match_tolerance: float | None = None,
+    **options: float | str,
+) -> Measured:
     """Take plain modal data to the model's axes.
 
     Parameters
@@ -212,6 +227,10 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
         The model's axes in test coordinates.
     spec : Spec
         The model, whose outline the points must meet.
+    shape_sigma : float, optional
+        Standard deviation of every component over the r.m.s. of its shape, in place of what the modes state [-].
+    match_tolerance : float, optional
+        How far from the model's nodes a point may lie; left out, as far as they are apart [m].
     **options
         Calibration, repeatability, position_sigma, title of :class:`Measured`.
 
@@ -222,6 +241,7 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
         per mode. Complex shapes are turned to be as real as they can be.
     """
     placed = place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
+    points, beside = matched(placed.points, placed.keys, spec, match_tolerance)
     rows = placed.rows
     shapes = (
         np.zeros((0, len(modes)))
@@ -229,18 +249,18 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
         else _straight(modes.shapes)[rows] * placed.signs[:, None]
     )
     absolute = modes.scaled and len(rows) > 0
-    if modes.shape_sigma is None and len(rows) == 0:
-        sigma = np.zeros_like(shapes)
-    elif modes.shape_sigma is None:
-        sigma = 0.02 * np.sqrt(np.mean(shapes**2, axis=0, keepdims=True)) * np.ones_like(shapes)
-    else:
+    guessed = modes.shape_sigma is None and shape_sigma is None
+    if modes.shape_sigma is not None and shape_sigma is None:
         sigma = modes.shape_sigma[rows]
+    else:
+        part = GUESSED_SHAPE_SIGMA if shape_sigma is None else shape_sigma
+        sigma = part * np.sqrt(np.sum(shapes**2, axis=0) / max(len(shapes), 1)) * np.ones_like(shapes)
     return Measured(
         modes.frequency,
         np.where(np.isfinite(modes.frequency_sigma), modes.frequency_sigma, 0.0),
         _column(modes.damping, len(modes)),
         _column(modes.damping_sigma, len(modes)),
-        placed.points,
+        points,
         tuple(node for node, _ in placed.keys),
         placed.index,
         np.full(len(rows), -1),
@@ -250,12 +270,13 @@ def measured_from_modes(modes: ModalData, axes: Axes, spec: Spec, **options: flo
         repeated=False,
         warnings=(
             *placed.warnings,
-            *check_among(placed.points, placed.keys, spec),
+            *beside,
             *_without_sigma(modes, float(options.get("repeatability", 0.0))),
             *modes.doubts(),
             *(_with_level(float(options.get("calibration", Measured.calibration))) if absolute else ()),
         ),
         directions=_directions(placed.keys, spec),
+        guessed=guessed,
         **options,  # type: ignore[arg-type]
     )
 
@@ -293,14 +314,21 @@ def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
     )
 
 
-def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **options: float | str) -> Measured:
+def measured_from_identified(
+    model: ModalModel,
+    axes: Axes,
+    spec: Spec,
+    *,
+    match_tolerance: float | None = None,
+    **options: float | str,
+) -> Measured:
     """Take an identified modal model to the model's axes, with absolute level.
 
     Parameters
     ----------
     model : ModalModel
         Identified from FRFs.
-    axes, spec, **options
+    axes, spec, match_tolerance, **options
         As in :func:`measured_from_modes`.
     """
     geometry = model.modal.geometry
@@ -318,6 +346,7 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
     keys = tuple(dict.fromkeys(responses.keys + references.keys))
     where = {key: i for i, key in enumerate(keys)}
     points = np.stack([(responses if k in responses.keys else references).point(k) for k in keys])
+    points, beside = matched(points, keys, spec, match_tolerance)
     seen, hit = responses.index[left], references.index[right]
     signs = responses.signs[left] * references.signs[right]
     constants = turn(model.constants[both] * signs[:, None], model.constant_sigma[both], seen, hit)
@@ -334,9 +363,7 @@ def measured_from_identified(model: ModalModel, axes: Axes, spec: Spec, **option
         constants.widened(model.constant_sigma[both]),
         absolute=True,
         repeated=model.frfs.variance is not None,
-        warnings=tuple(
-            dict.fromkeys(responses.warnings + references.warnings + check_among(points, keys, spec))
-        ),
+        warnings=tuple(dict.fromkeys(responses.warnings + references.warnings + beside)),
         rows=both,
         signs=signs,
         directions=_directions(keys, spec),

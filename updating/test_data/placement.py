@@ -118,38 +118,69 @@ def _check_on(points: FloatArray, keys: tuple[Key, ...], spec: Spec) -> None:
         )
 
 
-def check_among(points: FloatArray, keys: tuple[Key, ...], spec: Spec) -> tuple[str, ...]:
-    """See that points lie on imported nodes or between them; say how many lie between.
+def matched(
+    points: FloatArray, keys: tuple[Key, ...], spec: Spec, tolerance: float | None = None
+) -> tuple[FloatArray, tuple[str, ...]]:
+    """Match points to imported nodes, or to places between them.
+
+    Parameters
+    ----------
+    points : (n, dim) array
+        Where they are in model axes [m].
+    keys : tuple of (node, direction)
+        What they are.
+    spec : Spec
+        The model.
+    tolerance : float, optional
+        How far from its nodes, or elements, one may lie: if that is off the structure it is put on the nearest
+        node; left out, none may, and a point on the structure is where it is [m].
+
+    Returns
+    -------
+    points : (n, dim) array
+        Where they are taken to be [m].
+    warnings : tuple of str
+        How many lie between nodes, or were put on one.
 
     Raises
     ------
     StudyError
-        If one lies off the structure.
+        If one lies off the structure, or farther from it than the tolerance.
     """
     if spec.imported is None or not len(points):
-        return ()
+        return points, ()
     places = spec.imported.places
     if (stated := _thousandfold(points, spec)) and len(points) > 1:
         raise StudyError(
             f"the test spans {quantity(np.ptp(points, axis=0).max(), 'm')} of the model's axes: {stated}"
         )
-    between: dict[int, float] = {}
-    for point, (node, direction) in zip(points, keys, strict=True):
+    taken, between, moved = points.copy(), dict[int, float](), dict[int, float]()
+    for i, (point, (node, direction)) in enumerate(zip(points, keys, strict=True)):
         for axis in np.flatnonzero(np.abs(direction) > 1e-9).tolist():
             if not places.has(axis):
                 continue
             found = places.find(point, axis)
+            if not found.on if tolerance is None else found.distance > tolerance:
+                raise StudyError(_astray(point, node, found, spec, tolerance))
             if not found.on:
-                raise StudyError(_astray(point, node, found, spec))
-            if found.distance > 0.05 * found.spacing:
+                taken[i] = places.at[found.nearest]
+                moved[node] = max(moved.get(node, 0.0), found.distance)
+            elif found.distance > 0.05 * found.spacing:
                 between[node] = max(between.get(node, 0.0), found.distance)
-    if not between:
-        return ()
-    worst = max(between, key=lambda n: between[n])
-    return (
-        f"{len(between)} test point(s) lie beside the model's nodes and are interpolated: point {worst} is "
-        f"{quantity(between[worst], 'm')} from the nearest",
-    )
+    warnings = []
+    if between:
+        worst = max(between, key=lambda n: between[n])
+        warnings.append(
+            f"{len(between)} test point(s) lie beside the model's nodes and are interpolated: point {worst} is "
+            f"{quantity(between[worst], 'm')} from the nearest"
+        )
+    if moved:
+        worst = max(moved, key=lambda n: moved[n])
+        warnings.append(
+            f"{len(moved)} test point(s) lie off the model and are put on its nearest nodes by match_tolerance: "
+            f"point {worst} by {quantity(moved[worst], 'm')}"
+        )
+    return taken, tuple(warnings)
 
 
 def _thousandfold(points: FloatArray, spec: Spec) -> str:
@@ -167,12 +198,19 @@ def _thousandfold(points: FloatArray, spec: Spec) -> str:
     return ""
 
 
-def _astray(point: FloatArray, node: int, found: Found, spec: Spec) -> str:
+def _astray(point: FloatArray, node: int, found: Found, spec: Spec, tolerance: float | None) -> str:
     assert spec.imported is not None
     places = spec.imported.places
     at = np.round(places.at[found.nearest], 4).tolist()
+    if tolerance is not None:
+        return (
+            f"test point {node} lies at {np.round(point, 4).tolist()} m in model axes, {quantity(found.distance, 'm')} "
+            f"from the nearest node {int(places.node[found.nearest])} at {at} m, more than match_tolerance = "
+            f"{quantity(tolerance, 'm')}; check axes and places in [test], or allow more"
+        )
     return (
         f"test point {node} lies at {np.round(point, 4).tolist()} m in model axes, off the imported structure: the "
         f"nearest node {int(places.node[found.nearest])} at {at} m is {quantity(found.distance, 'm')} away (nodes are "
-        f"{quantity(found.spacing, 'm')} apart there); check axes in [test], the units of the file, and the node table"
+        f"{quantity(found.spacing, 'm')} apart there); check axes in [test], the units of the file, and the node "
+        "table, or allow more by match_tolerance"
     )

@@ -24,7 +24,8 @@ class Update(Shown):
     parameters : tuple of Estimate
         What was updated.
     pairs : DataFrame
-        One row per paired mode: study, test_mode, model_mode (from 1), mac, test_hz, before_hz, after_hz, used.
+        One row per paired mode: study, test_mode, model_mode (from 1), mac, test_hz, before_hz, after_hz, used;
+        with shapes as data shape_sigma, the error each shape is taken to have over its r.m.s. [-].
     covariance, correlations : (p, p) arrays
         Of the values [product of units] and [-].
     undetermined : tuple of str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +12,9 @@ from acquisition.arrays import FloatArray
 from acquisition.quantities import percent
 from updating.case import Case
 from updating.update.building import BEYOND, build_specimen, build_system, check_data, per_case
+from updating.update.data.specimen import Specimen
 from updating.update.data.system import Quantity, System, Weights
+from updating.update.discrepancy import agreed
 from updating.update.estimate import Estimate
 from updating.update.parameters.exact import full_modes
 from updating.update.parameters.parameters import ModelParameter
@@ -21,7 +23,7 @@ from updating.update.solve import Solution, solve
 from updating.update.statistics.determined import Statistics, assess, correlations
 from updating.update.statistics.doubts import doubts
 from updating.update.statistics.mixture import Mixture
-from updating.update.statistics.solutions import Others, best_solution, mixture, statement, within
+from updating.update.statistics.solutions import Others, mixture, statement, within
 
 EXACT = 1e-7
 """Agreement of reduced and full frequencies at which the outer iteration ends, relative [-]."""
@@ -108,6 +110,8 @@ class Fitted:
         None where an effect is known to the reduced model alone [-].
     others : Others
         Other solutions that explain the data about as well.
+    contradicted : bool
+        Whether shapes count for less than what is left of them asks for, because they pulled the frequencies off.
     weights : str
         What W_s is.
     """
@@ -116,6 +120,7 @@ class Fitted:
     solution: Solution
     disagreement: float | None
     others: Others
+    contradicted: bool
     weights: str
 
 
@@ -150,9 +155,10 @@ def fit(
     return Fitted(*_exactly(system), kind)
 
 
-def _exactly(system: System) -> tuple[System, Solution, float | None, Others]:
+def _exactly(system: System) -> tuple[System, Solution, float | None, Others, bool]:
     """Solve on the reduced models, bring these nearer to the full ones there, and repeat until they agree."""
-    solution, others = best_solution(system)
+    found = agreed(system)
+    system, solution, others = found.system, found.solution, found.others
     history = [solution.history]
     if system.shapes:
         system = system.settled(solution.theta, solution.evaluations)
@@ -162,7 +168,7 @@ def _exactly(system: System) -> tuple[System, Solution, float | None, Others]:
         full = [_full(system, i, solution) for i in range(len(system.specimens))]
         modes = [f for f in full if f is not None]
         if len(modes) < len(full):
-            return system, solution, None, others
+            return system, solution, None, others, found.contradicted
         ratios = [
             f / evaluation.frequency for (f, _), evaluation in zip(modes, solution.evaluations, strict=True)
         ]
@@ -182,6 +188,7 @@ def _exactly(system: System) -> tuple[System, Solution, float | None, Others]:
         Solution(solution.theta, evaluations, np.vstack(history), solution.converged),
         disagreement,
         others,
+        found.contradicted,
     )
 
 
@@ -231,7 +238,7 @@ def report(fitted: Fitted) -> Update:
         statistics.inflation,
         history,
         disagreement is not None and disagreement < AGREED,
-        (*_warnings(system, solution, statistics, disagreement), *statement(system, several)),
+        (*_warnings(fitted, statistics), *statement(system, several)),
         determinability=statistics.determinability,
         data=system.count,
         weights=fitted.weights,
@@ -295,16 +302,55 @@ def _pairs(system: System, solution: Solution) -> pd.DataFrame:
                     "before_hz": before.frequency,
                     "after_hz": evaluation.frequency,
                     "used": weight > 0,
+                    **({"shape_sigma": _shape_sigma(specimen)} if system.shapes else {}),
                 }
             )
         )
     return pd.concat(parts, ignore_index=True)
 
 
-def _warnings(
-    system: System, solution: Solution, statistics: Statistics, disagreement: float | None
-) -> list[str]:
+def _shape_sigma(specimen: Specimen) -> FloatArray:
+    return specimen.shape_sigma if specimen.measured.has_shapes else np.full(len(specimen.number), np.nan)
+
+
+def _on_shapes(system: System, *, contradicted: bool) -> Iterator[str]:
+    """Say how well shapes are taken to be known, where that is not as stated."""
+    if not system.shapes:
+        return
+    for specimen in system.specimens:
+        found = specimen.nominal.discrepancy
+        if found is None or not found.any():
+            continue
+        size = specimen.shape_sigma
+        middle, worst = float(np.median(size)), int(np.argmax(size))
+        stated = (
+            "nobody stated how well shapes are known"
+            if specimen.measured.guessed
+            else ("shapes miss the model by more than was stated of them")
+        )
+        yield (
+            f"{specimen.title}: {stated}: they are taken to err by {percent(100 * middle)} of their r.m.s., that of "
+            f"test mode {specimen.number[worst]} by {percent(100 * size[worst])}"
+            + (", by which they pull the frequencies no further off than these admit" if contradicted else "")
+        )
+
+
+def _at_bounds(system: System, solution: Solution) -> Iterator[str]:
+    """Say which parameters the data would take beyond their bounds, and what then is to be thought of the rest."""
+    stopped = [
+        e.name for i, t in enumerate(solution.theta) if (e := _estimate(system, i, float(t), 0.0)).at_bound
+    ]
+    if stopped:
+        yield (
+            f"{', '.join(stopped)} ended at a bound, not where data and tolerances are met best: sigmas are those "
+            "without the bound, and the others make up for it; widen the bounds, or look for what is wrong"
+        )
+
+
+def _warnings(fitted: Fitted, statistics: Statistics) -> list[str]:
+    system, solution, disagreement = fitted.system, fitted.solution, fitted.disagreement
     found = [*doubts(system, solution, statistics.dof), *(w for s in system.specimens for w in s.warnings)]
+    found += _on_shapes(system, contradicted=fitted.contradicted)
     if not solution.converged:
         found.append(f"the parameters still move after {solution.iterations} iterations")
     if statistics.inflation > 1:
@@ -312,6 +358,7 @@ def _warnings(
             f"the updated model misses the frequencies by {statistics.inflation:.1f} times what the measurement "
             "explains; the standard deviations are raised by that factor"
         )
+    found += _at_bounds(system, solution)
     if statistics.strain > 1:
         away = (solution.theta - system.start) * np.sqrt(system.prior)
         worst = int(np.argmax(np.abs(away)))

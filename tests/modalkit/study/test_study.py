@@ -249,3 +249,19 @@ def test_toml_deeper_than_a_stack_or_longer_than_a_number(tmp_path: Path, text: 
     (tmp_path / "study.toml").write_text(text)
     with pytest.raises(StudyError, match="not a valid TOML file"):
         read_study(tmp_path / "study.toml")
+
+
+def test_doubts_by_part_are_written_as_names_or_as_tables(tmp_path: Path) -> None:
+    text = TEST + BEAM + REGION + "[tolerances]\nE = 0.02\na.E = '20 %'\n'a.density' = 0.1\n"
+    found = study(tmp_path, text + "bounds.a.E = [0.5, 1.5]\n").doubts()
+    assert found.factors["E"] == 0.02
+    assert found.parts == {"a.E": 0.2, "a.density": 0.1}
+    assert found.bounds == {"a.E": (0.5, 1.5)}
+    assert study(tmp_path, text + "bounds = { 'a.E' = [0.5, 1.5] }\n").doubts() == found
+    for wrong, message in (
+        ("a.E = -0.1\n", r"tolerances\.parts\.a\.E"),
+        ("bounds.a.E = [1.5, 0.5]\n", r"bounds of a\.E = \[1\.5, 0\.5\] ends before it begins"),
+        ("densty = 0.1\n", r"unknown key tolerances\.densty.*is 'density' meant"),
+    ):
+        with pytest.raises(StudyError, match=message):
+            study(tmp_path, TEST + BEAM + REGION + "[tolerances]\n" + wrong)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.checks import symmetric
 from updating.models.imported.shifted import Shifted
+
+if TYPE_CHECKING:
+    from updating.models.decks import DeckParameter
 
 SAME = 1e-9
 """A change below this share of the matrix's largest entry is rounding of the file's digits [-]."""
@@ -37,6 +41,10 @@ class Hypothesis:
         The parameter's value in the model [its unit].
     unit : str
         Unit of the parameter, ``-`` where the model has no material.
+    of_deck : DeckParameter, optional
+        The number of a deck that the parameter is.
+    changes : tuple of (stiffness, mass)
+        What that number changes at the ends of its range: static answers to it join the basis [SI].
     """
 
     name: str
@@ -49,6 +57,19 @@ class Hypothesis:
     region: int = -1
     nominal: float = 1.0
     unit: str = "-"
+    of_deck: DeckParameter | None = None
+    changes: tuple[tuple[Sparse, Sparse], ...] = ()
+
+    @property
+    def of_parameter(self) -> bool:
+        """Whether it is another value of a parameter, not other matrices."""
+        return bool(self.factor) or self.of_deck is not None
+
+    @property
+    def differences(self) -> tuple[Sparse, ...]:
+        """Every matrix by which it differs from the model; none of a modulus or a density [SI]."""
+        known = [matrix for matrix in (self.stiffness, self.mass) if matrix is not None]
+        return (*known, *(matrix for pair in self.changes for matrix in pair))
 
 
 def change_of(own: Sparse, other: Sparse, what: str) -> Sparse:

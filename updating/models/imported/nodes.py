@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
@@ -149,7 +150,64 @@ def read_table(path: Path, order: int) -> NodeTable:
     return found
 
 
-def _columns_of(path: Path) -> tuple[pd.DataFrame, list[str]]:
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Nodes without rows, for matrices that name them.
+
+    Parameters
+    ----------
+    nodes : mapping of int to tuple
+        Coordinates of each.
+    sets : mapping of str to int array
+        Node sets: the numbers of their nodes.
+    """
+
+    nodes: Mapping[int, tuple[float, float, float]]
+    sets: NodeSets
+
+
+def read_places(path: Path) -> Nodes:
+    """Read the nodes of matrices that name them: CSV with the columns node, x, y, z, and sets where wanted.
+
+    Raises
+    ------
+    StudyError
+        If a column is missing, or a value is no number.
+    """
+    if not path.is_file():
+        raise StudyError(f"{path}: no such file; paths of the study are relative to the study file")
+    values, names = _columns_of(path, COLUMNS[:4])
+    if values.isna().to_numpy().any() or (values["node"] != values["node"].round()).any():
+        raise StudyError(f"{path}: a node or a coordinate is missing or no number; give node, x, y, z")
+    node = values["node"].to_numpy(dtype=np.int64)
+    at = dict(zip(node.tolist(), map(tuple, values[["x", "y", "z"]].to_numpy().tolist()), strict=True))
+    return Nodes(at, sets_of_table(node, names))
+
+
+def labelled_table(
+    known: Nodes | Deck, rows: Mapping[tuple[int, int], int], held: Sequence[tuple[int, int]], source: str
+) -> NodeTable:
+    """Make the node table of matrices that name nodes and directions.
+
+    Rows of nodes that have no place, and of directions that are none (modal coordinates of a superelement), are at no
+    place.
+
+    Raises
+    ------
+    StudyError
+        If none of the nodes has a place.
+    """
+    every = [(n, d, row) for (n, d), row in rows.items()] + [(n, d, HELD) for n, d in held]
+    placed = [entry for entry in every if entry[0] in known.nodes and 1 <= entry[1] <= 6]
+    if not placed:
+        raise StudyError(f"{source}: has none of the nodes that the matrices name; give those of this model")
+    table = np.array(placed, dtype=np.int64)
+    places = np.array([known.nodes[n] for n in table[:, 0].tolist()]).reshape(-1, 3)
+    sets = sets_of_deck(known) if isinstance(known, Deck) else known.sets
+    return NodeTable(table[:, 0], places, table[:, 1], table[:, 2], source, sets)
+
+
+def _columns_of(path: Path, columns: Sequence[str] = COLUMNS) -> tuple[pd.DataFrame, list[str]]:
     """Return the columns of a node table as numbers, and the sets that each line names; its heading checked."""
     try:
         table = pd.read_csv(path, comment="#", skipinitialspace=True, encoding="utf-8-sig")
@@ -165,9 +223,9 @@ def _columns_of(path: Path) -> tuple[pd.DataFrame, list[str]]:
         raise StudyError(
             f"{path}, line 1: {numbers[0]!r} is no name of a column; is the header's line end lost?"
         )
-    if missing := [c for c in COLUMNS if c not in table.columns]:
+    if missing := [c for c in columns if c not in table.columns]:
         raise StudyError(
-            f"{path}: no column {', '.join(missing)}; the table needs {', '.join(COLUMNS)}, separated by commas"
+            f"{path}: no column {', '.join(missing)}; the table needs {', '.join(columns)}, separated by commas"
         )
     try:
         names = (
@@ -175,7 +233,7 @@ def _columns_of(path: Path) -> tuple[pd.DataFrame, list[str]]:
             if SETS not in table.columns
             else table[SETS].astype(object).fillna("").astype(str).to_list()
         )
-        return table[list(COLUMNS)].astype(float), names
+        return table[list(columns)].astype(float), names
     except (ValueError, OverflowError) as error:
         raise StudyError(f"{path}: {error}; every column holds numbers") from error
 

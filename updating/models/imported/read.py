@@ -10,9 +10,17 @@ from updating.models.fields import Sparse
 from updating.models.imported.archive import read_archive
 from updating.models.imported.boeing import read_boeing
 from updating.models.imported.calculix import read_triplets
+from updating.models.imported.deck import read_deck
+from updating.models.imported.labelled import is_labelled, read_labelled, rows_of
 from updating.models.imported.market import read_market
 from updating.models.imported.matrices import Imported
-from updating.models.imported.nodes import NodeTable, read_deck_table, read_table
+from updating.models.imported.nodes import (
+    NodeTable,
+    labelled_table,
+    read_deck_table,
+    read_places,
+    read_table,
+)
 from updating.models.imported.units import SI, matrix_in_si, places_in_si
 
 READERS: dict[str, Callable[[Path], Sparse]] = {
@@ -33,7 +41,7 @@ READERS: dict[str, Callable[[Path], Sparse]] = {
 
 
 def read_matrix(path: Path | str) -> Sparse:
-    """Read a matrix: MatrixMarket, Harwell-Boeing, .npz or CalculiX.
+    """Read a matrix by its rows: MatrixMarket, Harwell-Boeing, .npz or CalculiX.
 
     Raises
     ------
@@ -98,18 +106,45 @@ def read_imported(
     StudyError
         If a file cannot be read, or the matrices cannot be those of a structure.
     """
-    whole = read_matrix(stiffness)
-    table = read_nodes(nodes, stiffness, max(whole.shape))
-    weight = read_matrix(mass)
-    parts = [
-        tuple(matrix_in_si(read_matrix(path), table, units) for path in paths)
-        for paths in (stiffness_parts, mass_parts)
-    ]
+    read = _labelled if is_labelled(stiffness) else _by_rows
+    (whole, weight), parts, table = read(stiffness, mass, nodes, stiffness_parts, mass_parts)
+    in_si = [tuple(matrix_in_si(matrix, table, units) for matrix in own) for own in parts]
     return Imported(
         matrix_in_si(whole, table, units),
         matrix_in_si(weight, table, units),
         places_in_si(table, units),
-        parts[0],
-        parts[1],
+        in_si[0],
+        in_si[1],
         f"{stiffness.name}, {mass.name}",
     )
+
+
+Parts = tuple[list[Sparse], list[Sparse]]
+Read = tuple[tuple[Sparse, Sparse], Parts, NodeTable]
+"""Stiffness and mass, their parts, and where their rows are."""
+
+
+def _by_rows(
+    stiffness: Path, mass: Path, nodes: Path, stiffness_parts: Sequence[Path], mass_parts: Sequence[Path]
+) -> Read:
+    """Read matrices by their rows."""
+    whole = read_matrix(stiffness)
+    table = read_nodes(nodes, stiffness, max(whole.shape))
+    weight = read_matrix(mass)
+    parts = [read_matrix(path) for path in stiffness_parts], [read_matrix(path) for path in mass_parts]
+    return (whole, weight), parts, table
+
+
+def _labelled(
+    stiffness: Path, mass: Path, nodes: Path, stiffness_parts: Sequence[Path], mass_parts: Sequence[Path]
+) -> Read:
+    """Read matrices whose entries name nodes and directions; supports that are among them lose their rows."""
+    whole, weight = read_labelled(stiffness, "stiffness"), read_labelled(mass, "mass")
+    rows, held = rows_of([whole, weight])
+    places = read_deck(nodes) if nodes.suffix.lower() == ".inp" else read_places(nodes)
+    table = labelled_table(places, rows, held, str(nodes))
+    parts = (
+        [read_labelled(path, "stiffness").on(rows) for path in stiffness_parts],
+        [read_labelled(path, "mass").on(rows) for path in mass_parts],
+    )
+    return (whole.on(rows), weight.on(rows)), parts, table

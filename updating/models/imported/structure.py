@@ -183,9 +183,12 @@ class ImportedStructure(Structure):
     def _changing(self) -> tuple[tuple[Sparse, ...], tuple[Sparse, ...]]:
         """Parts of the stiffness and of the mass that may change, hypotheses' among them, each (n, n) [SI]."""
         known, supposed = self.imported, self.spec.hypotheses
+        numbers = [pair for one in supposed for pair in one.changes]
+        stiffness = [one.stiffness for one in supposed if one.stiffness is not None]
+        mass = [one.mass for one in supposed if one.mass is not None]
         return (
-            (*known.stiffness_parts, *(one.stiffness for one in supposed if one.stiffness is not None)),
-            (*known.mass_parts, *(one.mass for one in supposed if one.mass is not None)),
+            (*known.stiffness_parts, *stiffness, *(pair[0] for pair in numbers)),
+            (*known.mass_parts, *mass, *(pair[1] for pair in numbers)),
         )
 
     def _acting(self, elastic: FloatArray) -> FloatArray:

@@ -95,6 +95,8 @@ class Nominal:
     near : Prediction, optional
         Partners in a model nearer to the test than the nominal one, by which misplaced points and calibration are
         judged.
+    discrepancy : (n_modes,) array, optional
+        Error of each shape beyond what was stated, over its r.m.s.; None until it is estimated [-].
     """
 
     model: UpdatedModel
@@ -102,6 +104,7 @@ class Nominal:
     order: IntArray
     level: bool = False
     near: Prediction | None = None
+    discrepancy: FloatArray | None = None
 
     @cached_property
     def modes(self) -> Prediction:
@@ -122,8 +125,12 @@ class Nominal:
     @cached_property
     def errors(self) -> Whitening:
         """Covariance of the measured constants, calibration included where their level is data."""
+        return self.errors_with(self.discrepancy)
+
+    def errors_with(self, discrepancy: FloatArray | None) -> Whitening:
+        """Return that covariance with another discrepancy of the shapes (n_modes,) [-]."""
         at = self.evaluation.prediction if self.near is None else self.near
         parameters = self.model.parameter_set.model_parameters
         turned = any(parameter.competes_with == "calibration" for parameter in parameters)
         level_sigma = self.measured.level_sigma if self.level and not turned else 0.0
-        return constant_errors(self.measured, at, level_sigma)
+        return constant_errors(self.measured, at, level_sigma, discrepancy)

@@ -13,7 +13,9 @@ FINEST = 1e-4
 """No shape is measured better than this part of its r.m.s. [-]."""
 
 
-def constant_errors(test: Measured, at: Prediction, calibration: float = 0.0) -> Whitening:
+def constant_errors(
+    test: Measured, at: Prediction, calibration: float = 0.0, discrepancy: FloatArray | None = None
+) -> Whitening:
     """Return the covariance of the measured constants, all FRFs of all modes in one vector (n_frf * n_modes).
 
     Parameters
@@ -24,10 +26,14 @@ def constant_errors(test: Measured, at: Prediction, calibration: float = 0.0) ->
         The modes of a model near it, which say what a misplaced point does; constants and slopes of them.
     calibration : float
         Relative 1-sigma uncertainty of a level that all constants have in common [-].
+    discrepancy : (n_modes,) array, optional
+        A further error of each mode's shape over its r.m.s., once it is estimated; it stands in place of a guess [-].
     """
-    floor = FINEST**2 * np.mean(test.constants**2, axis=0, keepdims=True)
+    extra = FINEST**2 + (0.0 if discrepancy is None else discrepancy**2)
+    stated = 0.0 if test.guessed and discrepancy is not None else test.own_sigma**2
     left_out, stretched = _curved(test, at)
-    sigma = np.sqrt(test.own_sigma**2 + floor + left_out).ravel()
+    sigma = np.sqrt(stated + extra * np.mean(test.constants**2, axis=0, keepdims=True) + left_out)
+    sigma = np.broadcast_to(sigma, test.constants.shape).ravel()
     common = [_flat(_misplaced(test, at)), _flat(stretched), calibration * _all_alike(test, at)]
     if test.shared is not None:
         common.append(_flat(_smooth(test, at, test.shared)))

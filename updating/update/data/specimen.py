@@ -173,11 +173,10 @@ class Specimen:
                 self._shape_difference(i, values, at) for i in range(len(self.parameter_set.model_parameters))
             ]
             return np.stack(columns, axis=-1)
-        turned = model.turns(np.log(values), at.partner, self.model.rigid)
+        turned, shape = model.turns(np.log(values), at.partner, self.model.rigid)
         here, change = self.model.shape_rows @ at.prediction.vectors, self.model.shape_rows @ turned
         # the solver's sign of a shape is of no account in a product of two components of the same solution
-        flip = self._signs(model, values, at)
-        change = change * flip
+        change = change * np.sign(np.sum(shape * at.prediction.vectors, axis=0))
         seen, hit, bare = self.measured.seen, self.measured.hit, self.measured.hit < 0
         both = change[:, seen] * here[hit] + here[seen] * change[:, hit]
         slopes = np.where(bare[:, None], change[:, seen], both)
@@ -188,15 +187,22 @@ class Specimen:
         """Factor by which the measured level is off in what the model has accepted [-]."""
         return level_of(self.predictor.base.gain, self.measured)
 
-    def _signs(self, model: Affine, values: Sequence[float], at: Evaluation) -> FloatArray:
-        vectors = model.eigen(np.log(values), model.rank)[1][:, at.partner + self.model.rigid]
-        return np.asarray(np.sign(np.sum(vectors * at.prediction.vectors, axis=0)))
-
     def settled(self, values: Sequence[float], evaluation: Evaluation) -> Specimen:
         """Return the same specimen with its errors judged by the model at some values of its parameters."""
         count = int(evaluation.partner.max()) + 1
         near = self.predictor.predict(self.parameter_set.state(self.predictor, values), count=count)
         return replace(self, nominal=replace(self.nominal, near=near.select(evaluation.partner)))
+
+    def discrepant(self, size: FloatArray) -> Specimen:
+        """Return the same specimen with shapes that err by so much more (n_modes,), over their r.m.s. [-]."""
+        return replace(self, nominal=replace(self.nominal, discrepancy=size))
+
+    @property
+    def shape_sigma(self) -> FloatArray:
+        """R.m.s. error that each mode's shape is taken to have, over its r.m.s. (n_modes,) [-]."""
+        test = self.measured
+        error = np.mean(self.errors.sigma.reshape(test.constants.shape) ** 2, axis=0)
+        return np.asarray(np.sqrt(error / np.maximum(np.mean(test.constants**2, axis=0), 1e-300)))
 
     def corrected(self, factor: FloatArray) -> Specimen:
         """Return the same specimen with other corrections of the reduced model's frequencies (n_modes,) [-]."""

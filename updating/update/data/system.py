@@ -227,6 +227,19 @@ class System:
         own = [s.settled(self.values(theta, i), k) if s.measured.has_shapes else s for i, (s, k) in both]
         return replace(self, specimens=tuple(own))
 
+    def discrepant(self, sizes: Sequence[FloatArray]) -> System:
+        """Return the problem with shapes that err by so much more, (n_modes,) of each specimen [-]."""
+        both = zip(self.specimens, sizes, strict=True)
+        return replace(
+            self, specimens=tuple(s.discrepant(d) if s.measured.has_shapes else s for s, d in both)
+        )
+
+    def frequency_misfit(self, evaluations: tuple[Evaluation, ...]) -> float:
+        """Return the squares of the frequencies' residuals over what the measurement is good for, summed [-]."""
+        both = zip(self.specimens, evaluations, strict=True)
+        parts = [(1 - k.frequency / s.measured.frequency) ** 2 / s.relative_variance for s, k in both]
+        return float(np.sum(np.concatenate(parts)[self.used]))
+
     def nearer(self, modes: Sequence[FloatArray], factors: Sequence[FloatArray]) -> System:
         """Return the problem with the full models' modes (n_dofs, n) in the bases; with factors where none fits."""
         parts = zip(self.specimens, modes, factors, strict=True)

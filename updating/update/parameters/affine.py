@@ -131,8 +131,10 @@ class Affine:
         by = {kind: self._forms(kind, logs, vectors).T @ self.powers[kind] for kind in self.parts}
         return np.asarray((by["stiffness"] / eigenvalue[:, None] - by["mass"]) / 2)
 
-    def turns(self, logs: FloatArray, chosen: IntArray, rigid: int) -> FloatArray:
-        """Return the derivatives of some mode shapes by the logarithms of the factors, (n_parameters, n, n_modes).
+    def turns(self, logs: FloatArray, chosen: IntArray, rigid: int) -> tuple[FloatArray, FloatArray]:
+        """Return derivatives of some mode shapes by the logarithms of the factors, and these shapes.
+
+        They are (n_parameters, n, n_modes) and (n, n_modes), of one solution: its signs are the solver's.
 
         Modal expansion over all modes of the basis (Fox and Kapoor 1968).
 
@@ -154,7 +156,7 @@ class Affine:
         by_k, by_m = (self._crossed(kind, logs, vectors, shape) for kind in ("stiffness", "mass"))
         share = np.where(near, 0.0, (by_k - value * by_m) / np.where(near, 1.0, gap))
         share[:, own[0], own[1]] = -0.5 * by_m[:, own[0], own[1]]
-        return np.asarray(vectors @ share)
+        return np.asarray(vectors @ share), shape
 
     def _crossed(self, kind: str, logs: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
         """Return left' dK right for every parameter, shape (n_parameters, n, n_modes)."""

@@ -259,11 +259,11 @@ def _model_parameters(name: str, predictor: Predictor, tolerances: Tolerances) -
         if (number := deck.parameter(name)) is not None:
             return [_number(number, tolerances)]
     if places and tail in DAMPERS:
-        return [_damper(name, tail, predictor, places)]
+        return [_bounded(_damper(name, tail, predictor, places), tolerances)]
     if places and tail:
         return [_regional(name, places, tail, spec, tolerances)]
     if name in DAMPERS:
-        return [_damper(name, name, predictor, ())]
+        return [_bounded(_damper(name, name, predictor, ()), tolerances)]
     if head in UNITS and tail in ("", "factor"):
         return [_whole(head, spec, tolerances)]
     if head in LIBRARY:
@@ -288,19 +288,55 @@ def _whole(name: str, spec: Spec, tolerances: Tolerances) -> ModelParameter:
     }[name]
     of_deck = spec.imported is not None and spec.imported.deck is not None
     every = tuple(range(len(spec.regions))) if of_deck else ()  # a deck's springs have no modulus
-    return _factor(
-        name, _unit(UNITS[name], nominal, spec), nominal, tolerances.factors.get(name, 0.0), name, every
-    )
+    found = _factor(name, _unit(UNITS[name], nominal, spec), nominal, tolerances.of(name, name), name, every)
+    return _bounded(found, tolerances)
 
 
 def _number(number: DeckParameter, tolerances: Tolerances) -> ModelParameter:
     """Return a number of a deck: a factor runs by its logarithm, a shift by itself."""
-    tolerance = tolerances.factors.get("thickness", 0.0) if number.kind.startswith("thickness") else 0.0
-    doubt = (tolerance or UNTOLD) if number.relative else (number.high - number.low) / np.sqrt(12)
-    return ModelParameter(
-        number.name, number.unit, number.nominal, number.start, number.low, number.high, float(doubt), tolerance > 0,
-        log=number.relative, of_deck=number,
+    general = "thickness" if number.kind.startswith("thickness") else ""
+    tolerance = tolerances.of(number.name, general)
+    width = UNTOLD if number.relative else (number.high - number.low) / np.sqrt(12)
+    found = ModelParameter(
+        number.name, number.unit, number.nominal, number.start, number.low, number.high, float(tolerance or width),
+        tolerance > 0, log=number.relative, of_deck=number,
     )  # fmt: skip
+    return _bounded(found, tolerances)
+
+
+def _bounded(parameter: ModelParameter, tolerances: Tolerances) -> ModelParameter:
+    """Give a parameter the bounds that the study states of it; without a tolerance it lies anywhere between them.
+
+    Raises
+    ------
+    StudyError
+        If they leave out where it starts, or reach where a deck cannot follow, or if a tolerance is stated of what
+        has no nominal value.
+    """
+    if parameter.name in tolerances.parts and not parameter.tolerated:
+        raise StudyError(
+            f"[tolerances] {parameter.name} has no nominal value to be near: effects are not there, damping unknown "
+            "until found; give its bounds instead"
+        )
+    if parameter.name not in tolerances.bounds:
+        return parameter
+    low, high = tolerances.bounds[parameter.name]
+    given = f"[{low:g}, {high:g}]"
+    if not low <= parameter.start <= high or (parameter.log and low <= 0):
+        kind = (
+            "a factor, where 1 leaves the model as it is" if parameter.is_factor else f"in {parameter.unit}"
+        )
+        raise StudyError(
+            f"[tolerances] bounds of {parameter.name}: {given} leaves out where it starts, {parameter.start:g}; "
+            f"it is {kind}"
+        )
+    if parameter.of_deck is not None and (low < parameter.low or high > parameter.high):
+        raise StudyError(
+            f"[tolerances] bounds of {parameter.name}: {given} reaches beyond [{parameter.low:g}, {parameter.high:g}], "
+            "between which the deck is run; bring them in"
+        )
+    inside = replace(parameter, low=low, high=high)
+    return inside if parameter.tolerated else replace(inside, doubt=inside.span() / np.sqrt(12))
 
 
 def _regional(
@@ -315,9 +351,10 @@ def _regional(
     region = spec.regions[places[0]]
     own = getattr(region, prop)
     nominal = float(_general(prop, region, spec) if own is None else own)
-    return _factor(
-        name, _unit(REGIONAL[prop], nominal, spec), nominal, tolerances.factors.get(prop, 0.0), prop, places
+    found = _factor(
+        name, _unit(REGIONAL[prop], nominal, spec), nominal, tolerances.of(name, prop), prop, places
     )
+    return _bounded(found, tolerances)
 
 
 def _unit(unit: str, nominal: float, spec: Spec) -> str:
@@ -395,7 +432,8 @@ def _effect(
             p.unit, 1.0, start, low, high, float(width / np.sqrt(12)), False, log,
             effect=effect.name, parameter=p.name,
         )  # fmt: skip
-        model_parameters.append(_in_model(model_parameter, effect.scales(predictor), tolerances))
+        in_model = _in_model(model_parameter, effect.scales(predictor), tolerances)
+        model_parameters.append(_bounded(in_model, tolerances))
     return model_parameters
 
 

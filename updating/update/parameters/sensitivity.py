@@ -46,12 +46,4 @@ def change_by(
     """Return dK and dM per unit of the logarithm of a factor of some regions, of all where none is named [SI]."""
     if not regions:
         return reduced.log_sensitivity(state, factor)
-    n = reduced.ranks[state.released]
-    change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
-    for term, parts in zip(reduced.structure.terms, reduced.parts, strict=True):
-        power = term.powers.get(factor, 0.0)
-        for region in regions if power else ():
-            own = {name: value for (index, name), value in state.regional.items() if index == region}
-            scale = term.scale(state.factors) * term.scale(own)
-            change[term.kind] += power * scale * parts[region][:n, :n]
-    return change["stiffness"], change["mass"]
+    return reduced.regional_sensitivity(state, factor, regions)

@@ -11,6 +11,7 @@ from acquisition.arrays import BoolArray, FloatArray
 from updating.update.data.system import Linear, System
 from updating.update.solve import NEGLIGIBLE
 from updating.update.statistics.identifiability import Determinability, determinability
+from updating.update.statistics.leverage import leverage
 
 SIGNIFICANT = 1e-3
 """A misfit less probable than this means that the model's error, not the measurement's, is what scatters."""
@@ -73,6 +74,8 @@ def assess(system: System, linear: Linear, theta: FloatArray) -> Statistics:
     inflation = 1.0
     if dof > 0 and chi2_distribution.sf(chi2, dof) < SIGNIFICANT:
         inflation = float(np.sqrt(chi2 / dof))
+    if system.shapes:
+        inflation = max(inflation, _of_frequencies(system, linear))
     data, beliefs = _covariance(system, linear, variance * inflation**2, inflation)
     covariance = data + beliefs
     hopeless = undetermined & (system.prior == 0)
@@ -83,6 +86,16 @@ def assess(system: System, linear: Linear, theta: FloatArray) -> Statistics:
     stated = replace(stated, couplings=couplings)
     strain = _strain(system, theta)
     return Statistics(covariance, undetermined, chi2, dof, inflation, stated, strain, beliefs)
+
+
+def _of_frequencies(system: System, linear: Linear) -> float:
+    """Return by how much frequencies alone are missed beyond chance, r.m.s.; else 1; many shapes drown it [-]."""
+    behind = system.count_of_frequencies
+    missed = system.frequency_misfit(linear.evaluations)
+    free = float(np.sum((1 - leverage(system, linear)[:behind])[system.used]))
+    if free <= 0 or chi2_distribution.sf(missed, free) > SIGNIFICANT:
+        return 1.0
+    return float(np.sqrt(missed / free))
 
 
 def _strain(system: System, theta: FloatArray) -> float:
@@ -111,6 +124,7 @@ def _stated(system: System, linear: Linear, theta: FloatArray) -> Determinabilit
         residual=np.concatenate(
             [np.concatenate(residual)[system.used], np.sqrt(start.weight[behind:]) * start.residual[behind:]]
         ),
+        tolerated=system.prior > 0,
     )
 
 

@@ -13,6 +13,11 @@ from updating.update.data.nominal import Evaluation
 from updating.update.data.specimen import Specimen
 from updating.update.data.system import System
 from updating.update.solve import Solution
+from updating.update.statistics.leverage import leverage
+
+LEFT = 0.05
+"""Share of the data that parameters must leave free for these to test a model [-]. Doubled: a tolerance a third of what
+data would leave in doubt is none."""
 
 POOR_MAC = 0.9
 """MAC of a pair after an update under which it may be no pair, or something that no parameter turns is wrong. With the
@@ -31,7 +36,7 @@ def doubts(system: System, solution: Solution, dof: int) -> Iterator[str]:
     dof : int
         Data less parameters that no tolerance holds [-].
     """
-    if dof <= 0:
+    if dof <= 0 or _taken_up(system, solution):
         yield untested(system.count, len(system.model_parameters))
     for specimen, evaluation, index in zip(system.specimens, solution.evaluations, system.index, strict=True):
         yield from _poor_pairs(specimen, evaluation)
@@ -39,6 +44,14 @@ def doubts(system: System, solution: Solution, dof: int) -> Iterator[str]:
             model_parameters = specimen.parameter_set.model_parameters
             at = [k.value(float(t)) for k, t in zip(model_parameters, solution.theta[index], strict=True)]
             yield from _mirrored(specimen, at)
+
+
+def _taken_up(system: System, solution: Solution) -> bool:
+    """Tell whether parameters as many as data, held by wide tolerances at most, take all of these up."""
+    if len(system.model_parameters) < system.count:
+        return False
+    linear = system.linear(solution.theta, solution.evaluations)
+    return bool(system.count - leverage(system, linear).sum() < LEFT * system.count)
 
 
 def untested(data: int, parameters: int) -> str:

@@ -26,6 +26,10 @@ MOVED = 3.0
 """A parameter that data moved by more of its own standard deviations is determined, however small the doubt was: the
 data contradict the doubt, which is then no yardstick. Doubling it calls undetermined what data moved by 3 to 6 [-]."""
 
+NARROWED = 0.5
+"""Share of its doubt to which data and the tolerances of the other parameters must bring one for it to be determined
+[-]. Of two that only a ratio ties each keeps 0.7. Doubled: whatever has a tolerance is determined."""
+
 NOTHING = 1e-3
 """What data that say nothing leave is a thousand times the doubt, so that matrices can be inverted [-]."""
 
@@ -77,7 +81,8 @@ class Determinability(Displayed):
     alone : (p,) array
         Standard deviation of each parameter from the data alone, all others free, over its doubt [-].
     undetermined : (p,) bool array
-        Parameters of which the data alone say less than the doubt, and which they do not contradict either.
+        Parameters of which the data alone say less than the doubt, which they do not contradict either, and whose doubt
+        they do not even halve together with the tolerances of the others.
     couplings : tuple of Coupling
         Parameters that only combinations determine, group by group.
     subset : tuple of str
@@ -103,6 +108,7 @@ def determinability(
     moved: FloatArray,
     at_start: FloatArray,
     residual: FloatArray,
+    tolerated: BoolArray | None = None,
 ) -> Determinability:
     """Work out what data determine.
 
@@ -122,6 +128,8 @@ def determinability(
         ``scaled`` at the nominal model.
     residual : (n,) array
         Residual of the nominal model over standard deviations of the data [-].
+    tolerated : (p,) bool array, optional
+        Which parameters' doubts are tolerances, that hold them; left out, none.
     """
     _, size, right = np.linalg.svd(scaled, full_matrices=True)
     padded = np.zeros(scaled.shape[1])
@@ -129,9 +137,18 @@ def determinability(
     floored = np.maximum(padded, FLOOR * max(padded.max(initial=0.0), 1e-300))
     alone = np.sqrt(np.sum((right.T / floored) ** 2, axis=1))
     undetermined = (alone > 1) & (np.abs(moved) <= MOVED * alone * doubt)
+    if tolerated is not None:
+        undetermined &= ~(tolerated & (_together(scaled, tolerated) < NARROWED))
     couplings = _couplings(right, floored, undetermined, names, doubt, log)
     subset, explained = best_subset(at_start, residual)
     return Determinability(size, alone, undetermined, couplings, tuple(names[i] for i in subset), explained)
+
+
+def _together(scaled: FloatArray, tolerated: BoolArray) -> FloatArray:
+    """Return the standard deviation of each parameter by data and tolerances together, over its doubt (p,) [-]."""
+    normal = scaled.T @ scaled + np.diag(tolerated.astype(float))
+    inverse = np.linalg.pinv(normal, rcond=FLOOR, hermitian=True)
+    return np.asarray(np.sqrt(np.maximum(np.diag(inverse), 0.0)))
 
 
 def best_subset(columns: FloatArray, residual: FloatArray) -> tuple[tuple[int, ...], tuple[float, ...]]:

@@ -1,0 +1,51 @@
+"""Whether doubts that are stated of single parameters are of something that the model has."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from acquisition.errors import StudyError
+from updating.models.spec import Spec
+from updating.tolerances import Tolerances
+
+REGIONAL = ("E", "density", "thickness", "area", "inertia")
+"""Properties of a region of which a doubt may be stated."""
+
+
+def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] = ()) -> None:
+    """See that every stated doubt is of a region's property, or of a parameter that is updated.
+
+    Parameters
+    ----------
+    tolerances : Tolerances
+        The doubts.
+    spec : Spec
+        The model.
+    parameters : sequence of str
+        What an update turns, beside properties of regions.
+
+    Raises
+    ------
+    StudyError
+        If one is of neither.
+    """
+    own = list(dict.fromkeys(region.name for region in spec.regions))
+    for name in (*tolerances.parts, *tolerances.bounds):
+        region, _, prop = name.rpartition(".")
+        if name in parameters or (region in own and prop in REGIONAL):
+            continue
+        named = ", ".join(own[:6]) + (", ..." if len(own) > 6 else "")
+        raise StudyError(
+            f"[tolerances] {name}: neither E, density, thickness, area or inertia of a region ({named}) nor among the "
+            "parameters of [update]; correct the name or leave it out"
+        )
+
+
+def of_updates_alone(tolerances: Tolerances, spec: Spec) -> tuple[str, ...]:
+    """Say which doubts are of nothing that a diagnosis turns: numbers of a deck, and effects."""
+    regions = {region.name for region in spec.regions}
+    every = dict.fromkeys([*tolerances.parts, *tolerances.bounds])
+    others = [name for name in every if name.rpartition(".")[0] not in regions]
+    if not others:
+        return ()
+    return (f"doubts in {', '.join(others)} are for updates; a diagnosis knows those of regions' properties",)
