@@ -3,15 +3,15 @@
 python benchmarks/bench_own_models.py frame             50 random frames, through simulated hits
 python benchmarks/bench_own_models.py solid             50 random brackets; needs ccx
 python benchmarks/bench_own_models.py frame --seeds 5 --verbose
+python benchmarks/bench_own_models.py frame --only frequencies    one line of the table
 
-Moduli of all parts, and of every third density, are drawn from a tolerance of 30 %. The truth is solved on the mesh of
-the model, for sigmas do not cover the mesh. Modes, scattered by the re-mounting that is stated, answer simulated hits
-at a dozen points in three directions with a calibration off by 2 %; these are averaged and identified, and the same
-test updated by frequencies alone, as if nothing else had been measured, by frequencies whose modes are paired by shapes,
-with shapes, with shapes of which nobody states the sigma, and, of a specimen whose density as a whole is off, with their
-level. One accelerometer misses a third of a frame's modes: with nothing but frequencies these are paired by rank, wrongly.
-
-    python benchmarks/bench_own_models.py frame --only "frequencies"    one line of the table
+Moduli of all parts, and of every third density, are drawn from a tolerance of 30 %. The truth is solved on the mesh
+of the model, for sigmas do not cover the mesh. Modes, scattered by the re-mounting that is stated, answer simulated
+hits at a dozen points in three directions with a calibration off by 2 %; these are averaged and identified, and the
+same test updated by frequencies alone, as if nothing else had been measured, by frequencies whose modes are paired by
+shapes, with shapes, with shapes of which nobody states the sigma, and, of a specimen whose density as a whole is off,
+with their level. One accelerometer misses a third of a frame's modes: with nothing but frequencies these are paired
+by rank, wrongly.
 """
 
 from __future__ import annotations
