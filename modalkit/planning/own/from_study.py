@@ -163,7 +163,7 @@ def _as_found(test: Measured) -> tuple[Known, str]:
         words.append(f"damping to {100 * np.median(damping):.2g} %")
     if test.has_shapes:
         largest = np.abs(test.constants).max(axis=0)
-        shape = np.maximum(np.median(test.own_sigma, axis=0) / largest, SHAPE_FLOOR)
+        shape = np.maximum(np.median(test.constants_sigma, axis=0) / largest, SHAPE_FLOOR)
         words.append(f"constants to {100 * np.median(shape):.2g} % of their mode's largest")
     return Known(frequency, damping, shape), f"from the identification: {', '.join(words)}"
 
