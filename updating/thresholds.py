@@ -69,15 +69,6 @@ believed. Doubled: nothing."""
 SHAPE_NOISE_SCALES = (1.0, 2.0, 4.0, 8.0, 16.0)
 """How many times worse than thought the shapes may be [-]: powers of two up to what hides any shape."""
 
-COUPLED_SHARE = 0.3
-"""How far an idealisation is off in what it couples, relative to what it is off in each mode [-]. Judged: the mass of a
-fluid couples plate modes of one symmetry by a tenth to a half of what it adds to each. Doubled: shapes of close modes
-beside such a cause say half as much."""
-
-MOST_MIXED = 0.5
-"""Most of its neighbour that a mode may hold by it, 1 sigma [-]: beyond, the two have changed places. Doubled: nothing
-but where modes are closer than the doubt in them."""
-
 REPEATED_SCATTER_PRIOR = (0.85, 0.12, 0.025, 0.004, 0.001)
 """Prior of each of these where repeated hits show the scatter [-]. Judged: some one in seven stated scatters is too
 small by two or more. The p-value of a fit is never above the tail of this prior at the scale that it needs."""
@@ -227,14 +218,6 @@ Judged: of some forty groups that is one test in five with one. Doubled: a datum
 OUTLIER_SCALES = (3.0, 10.0, 30.0, 100.0)
 """How many times worse such a group may be [-], each as likely: from a stated sigma that is too small to a frequency
 that belongs to another body. Doubled: an oddity of 4 sigma stays an argument."""
-
-DISCREPANCY_SIZES = (0.001, 0.003, 0.01)
-"""How far a model may be off in every frequency by what nobody modelled, relative, 1 sigma [-]: from what a finer
-theory changes of a thin plate to what a real bracket's fillets do. More is a cause."""
-
-DISCREPANCY_PRIOR = 0.1
-"""Prior that a model is off by any of them [-]. Judged: of the measured structures some do not follow their model to
-the noise whatever is put into it. Doubled: a cause that leaves a little is named a little sooner, ln 2."""
 
 MOST_OUTLIERS = 3
 """So many groups at most are taken to be odd at once: with more of them a test says nothing."""

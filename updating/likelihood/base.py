@@ -73,14 +73,11 @@ class View:
         Its whole departure from the bare nominal model, what was put in beforehand included.
     doubt : Doubt
         What it leaves in doubt.
-    every : Prediction
-        All modes that were predicted, measured or not.
     """
 
     now: Prediction
     state: State
     doubt: Doubt
-    every: Prediction
 
 
 @dataclass(frozen=True, eq=False)

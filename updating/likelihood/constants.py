@@ -10,7 +10,6 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
-from updating.likelihood.mixing import mixed
 from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
@@ -72,8 +71,7 @@ class Constants(Quantity):
         predicted, by = constants * level, by * level[:, :, None]
         own_errors = (test.constants_sigma / scale) ** 2 + doubt * level**2 + LEAST_CONSTANT_NOISE**2
         variance = own_errors + self._late(view) ** 2
-        fidelity = view.doubt.fidelity
-        uneven, louder = self._idealised(predicted, fidelity)
+        uneven, louder = self._idealised(predicted, view.doubt.fidelity)
         own = [
             self._places.hits(now.along * level),
             self._places.sensors(now.along_seen * level),
@@ -81,8 +79,6 @@ class Constants(Quantity):
             self._nodes.columns(now, level),
             louder,
         ]
-        if fidelity:
-            own.append(mixed(self.setting, view.now, view.every, level, fidelity))
         gain = self._gains(predicted)
         if not test.absolute:
             own, gain = [gain, *own], np.zeros((predicted.size, 0))

@@ -35,7 +35,7 @@ class Frequencies(Quantity):
         return True
 
     def block(self, view: View) -> Block:
-        """Return ln f beside a state, the idealisation of a candidate a named doubt."""
+        """Return ln f beside a state; what mesh, theory and a candidate's idealisation leave off are named doubts."""
         test, now, before = self.setting.measured, view.now, self.setting.before
         variance = (test.frequency_sigma / test.frequency) ** 2 + max(
             test.repeatability, LEAST_FREQUENCY_NOISE
@@ -46,10 +46,10 @@ class Frequencies(Quantity):
             variance, by = variance + doubt, by - known
         variance = variance + self.further
         n = len(test.frequency)
-        named = np.zeros((n, 0))
+        named = self.common
         if view.doubt.fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
             doubtful = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)
-            variance, named = variance + doubtful**2, doubtful[:, None]
+            variance, named = variance + doubtful**2, np.column_stack([named, doubtful])
         residual = np.log(test.frequency / now.frequency)
-        return Block("frequency", residual, variance, by, named, self.common, np.arange(n))
+        return Block("frequency", residual, variance, by, named, np.zeros((n, 0)), np.arange(n))

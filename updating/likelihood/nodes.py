@@ -44,9 +44,10 @@ class Nodes:
         columns = np.zeros((n_frf, n_modes, len(self._shared), n_modes))
         if len(self._shared):
             fixed, roving = self._roles
-            shapes = self.setting.predictor.nominal_rows["w"][:, : len(now.vectors)] @ now.vectors
-            besides = LEAST_CONSTANT_NOISE * np.sqrt(np.mean(shapes**2, axis=0))
-            change = shapes[roving] * besides * level
+            besides = LEAST_CONSTANT_NOISE * np.sqrt(np.mean(now.at_points**2, axis=0))
+            # a shape has no sign of its own: one that leaps would be no smooth function of the state
+            sign = np.where(np.sum(now.at_points * self.setting.nominal.at_points, axis=0) < 0, -1.0, 1.0)
+            change = now.at_points[roving] * besides * sign * level
             for k, place in enumerate(self._shared):
                 there = np.flatnonzero(fixed == place)
                 columns[there[:, None], np.arange(n_modes), k, np.arange(n_modes)] = change[there]

@@ -1,4 +1,4 @@
-"""What is worse than thought, at a price: data of a mode, a mode, a channel, a tolerance; or the model as a whole.
+"""Data that are worse than thought, at a price: one kind of data of a mode, a mode, or a channel; or a tolerance.
 
 Every test has something that nobody stated: a mode that is no mode of this body, a sensor that hung loose, one
 frequency that drifted. Gaussian noise makes of it an argument against every true explanation. So any group of
@@ -16,7 +16,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from acquisition.arrays import BoolArray
 from updating.likelihood.comparison import CHANNELS, Comparison
-from updating.thresholds import DISCREPANCY_PRIOR, DISCREPANCY_SIZES, OUTLIER_PRIOR, OUTLIER_SCALES
+from updating.thresholds import OUTLIER_PRIOR, OUTLIER_SCALES
 
 SHAPE = (CHANNELS.index("frf"), CHANNELS.index("phase"))
 """Channels of a mode's shape."""
@@ -36,8 +36,6 @@ class Outlier:
         One of a comparison's tolerances of the model.
     scale : float
         How many times worse [-].
-    discrepancy : float
-        How far the model is off in every frequency, relative; nought for a group of data [-].
     """
 
     mode: int | None = None
@@ -45,13 +43,12 @@ class Outlier:
     source: int | None = None
     tolerance: int | None = None
     scale: float = OUTLIER_SCALES[0]
-    discrepancy: float = 0.0
 
     def data(self, comparison: Comparison) -> BoolArray:
         """Return which data (n,) it is about."""
         if self.source is not None:
             return np.asarray(comparison.source == self.source)
-        if self.mode is None:  # of a tolerance, or of the model
+        if self.mode is None:
             return np.zeros(len(comparison.mode), dtype=bool)
         own = comparison.mode == self.mode
         return np.asarray(own if self.channel is None else own & (comparison.channel == self.channel))
@@ -61,27 +58,15 @@ class Outlier:
         """Whether it is the shape of one mode: what changes a structure moves a frequency as well, a slip need not."""
         return self.channel in SHAPE
 
-    @property
-    def log_prior(self) -> float:
-        """Logarithm of its prior, relative to none [-]."""
-        if self.discrepancy:
-            return float(np.log(DISCREPANCY_PRIOR / len(DISCREPANCY_SIZES)))
-        return float(np.log(OUTLIER_PRIOR / len(OUTLIER_SCALES)))
-
     def scaled(self) -> list[Outlier]:
         """Return it at every scale; a tolerance that is off by more than the least of them is no longer that."""
         scales = OUTLIER_SCALES if self.tolerance is None else OUTLIER_SCALES[:1]
         return [replace(self, scale=scale) for scale in scales]
 
 
-def of_the_model() -> list[Outlier]:
-    """Return the model as a whole, off by every size."""
-    return [Outlier(discrepancy=size) for size in DISCREPANCY_SIZES]
-
-
 def log_price(outliers: Sequence[Outlier]) -> float:
     """Return the logarithm of the prior of a choice of outliers, relative to none [-]."""
-    return sum(outlier.log_prior for outlier in outliers)
+    return len(outliers) * float(np.log(OUTLIER_PRIOR / len(OUTLIER_SCALES)))
 
 
 def with_outliers(comparison: Comparison, outliers: Sequence[Outlier]) -> Comparison:
@@ -90,7 +75,6 @@ def with_outliers(comparison: Comparison, outliers: Sequence[Outlier]) -> Compar
         return comparison
     variance, nuisance = comparison.variance.copy(), comparison.nuisance.copy()
     for outlier in outliers:
-        variance[comparison.of("frequency")] += outlier.discrepancy**2
         variance[outlier.data(comparison)] *= outlier.scale**2
         if outlier.tolerance is not None:
             nuisance[:, comparison.tolerances[outlier.tolerance]] *= outlier.scale
@@ -139,4 +123,4 @@ def _groups(comparison: Comparison) -> list[Outlier]:
     return groups + [Outlier(source=int(s)) for s in np.unique(comparison.source[comparison.source >= 0])]
 
 
-__all__ = ["Outlier", "log_price", "of_the_model", "suspects", "with_outliers"]
+__all__ = ["Outlier", "log_price", "suspects", "with_outliers"]

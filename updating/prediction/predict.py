@@ -59,6 +59,8 @@ class Prediction(Displayed):
         Mode shapes in the coordinates of the reduced basis [kg^-1/2].
     slope : (n_modes,) array
         Relative change of each frequency per newton of the hits' peak force [1/N].
+    at_points : (n_points, n_modes) array
+        Mode shapes at the test's points [kg^-1/2].
     """
 
     frequency: FloatArray
@@ -70,6 +72,7 @@ class Prediction(Displayed):
     constants_by: FloatArray
     vectors: FloatArray
     slope: FloatArray
+    at_points: FloatArray
 
     def select(self, modes: IntArray) -> Prediction:
         """Return some of the modes, in the order given."""
@@ -83,6 +86,7 @@ class Prediction(Displayed):
             self.constants_by[:, modes],
             self.vectors[:, modes],
             self.slope[modes],
+            self.at_points[:, modes],
         )
 
 
@@ -248,6 +252,7 @@ class Predictor(Displayed):
             else np.zeros((len(self.measured.seen), len(chosen), 0)),
             vectors[:, chosen],
             total.slope + _gained(total, values[chosen], vectors[:, chosen]),
+            shapes["w"][: len(self.measured.points)],
         )
 
     @cached_property

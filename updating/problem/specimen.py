@@ -232,9 +232,9 @@ class SpecimenProblem:
         shift = np.zeros(len(self.names)) if shift is None else shift
         factors = dict(zip(self.names, np.exp(shift * self.sigmas).tolist(), strict=True))
         whole = state.plus(departure(self.predictor.spec, factors))
-        every = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
-        prediction = every.select(self._match(every))
-        view = View(prediction, self.predictor.base.plus(whole), doubt, every)
+        prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
+        prediction = prediction.select(self._match(prediction))
+        view = View(prediction, self.predictor.base.plus(whole), doubt)
         blocks = [quantity.block(view) for quantity in self.quantities]
         return assemble(blocks, self.sigmas, shift, prediction, scatter_prior(self.measured))
 

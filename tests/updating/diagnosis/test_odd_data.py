@@ -77,34 +77,6 @@ def test_one_odd_shape_is_no_gap_and_is_the_remainder(seed: int) -> None:
     assert "mode 3 shape" in found.remainder.carried_by
 
 
-@cache
-def unlike(seed: int, factor: float) -> Diagnosis:
-    """A beam of another modulus whose every frequency is off by 0.4 % more, as no cause has it."""
-    rng = np.random.default_rng(seed)
-    beam = specimen(rng)
-    test = struck(replace(beam, E=factor * beam.E), rng, modes=8)
-    off = np.exp(0.004 * rng.standard_normal(len(test.frequency)))
-    return diagnose(case_of(replace(test, frequency=test.frequency * off), BEAM), library=SOME)
-
-
-@pytest.mark.parametrize("seed", [3, 17])
-def test_a_model_a_little_off_hides_no_cause_and_leaves_a_remainder(seed: int) -> None:
-    found = unlike(seed, 0.8)
-    assert ("E",) in found.sets
-    assert found.remainder is not None
-    assert found.remainder.significant
-    estimate = next(row for row in found.ranking if row.effects == ("E",)).parameters["E.factor"]
-    assert estimate.low95 is not None
-    assert estimate.high95 is not None
-    assert estimate.low95 < 0.81
-    assert estimate.high95 > 0.79
-
-
-@pytest.mark.parametrize("seed", [3, 17])
-def test_a_model_a_little_off_is_no_cause(seed: int) -> None:
-    assert unlike(seed, 1.0).verdict in {"none", "unknown"}
-
-
 MASSES = ((0.12, 0.02), (0.30, 0.03))
 
 

@@ -43,7 +43,7 @@ def view(diagnosis_problem: SpecimenProblem, state: State = NOMINAL, doubt: Doub
     now = diagnosis_problem.predictor.predict(
         state, factors=diagnosis_problem.names, at_least=diagnosis_problem.reach
     ).select(np.arange(MODES))
-    return View(now, state, doubt or Doubt(), now)
+    return View(now, state, doubt or Doubt())
 
 
 @pytest.fixture(scope="module")

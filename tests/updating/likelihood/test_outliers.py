@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
-from updating.likelihood.outliers import Outlier, log_price, of_the_model, suspects, with_outliers
-from updating.thresholds import DISCREPANCY_PRIOR
+from updating.likelihood.outliers import Outlier, log_price, suspects, with_outliers
 
 MODES, ROWS = 5, 4
 
@@ -59,20 +58,6 @@ def test_a_whole_mode_a_channel_and_a_tolerance() -> None:
     wide = with_outliers(plain, [Outlier(tolerance=0, scale=3.0)])
     assert wide.nuisance[:, 0] == pytest.approx(3 * plain.nuisance[:, 0])
     assert wide.variance == pytest.approx(plain.variance)
-
-
-def test_a_model_that_is_off_is_in_doubt_of_every_frequency_and_of_nothing_else() -> None:
-    plain = comparison(1)
-    off = with_outliers(plain, [Outlier(discrepancy=2.0)])
-    assert off.variance[:MODES] == pytest.approx(1 + 2.0**2)
-    assert off.variance[MODES:] == pytest.approx(plain.variance[MODES:])
-    assert not Outlier(discrepancy=2.0).data(plain).any()
-
-
-def test_its_sizes_share_its_prior() -> None:
-    every = of_the_model()
-    assert len({one.discrepancy for one in every}) == len(every)
-    assert sum(np.exp(log_price([one])) for one in every) == pytest.approx(DISCREPANCY_PRIOR)
 
 
 def test_every_outlier_costs_the_same_and_none_nothing() -> None:

@@ -1,4 +1,4 @@
-"""What fits once a few data, or the model, are taken to be worse than stated, beside what fits as it stands."""
+"""What fits once a few data are taken to be worse than stated: weighed beside the same explanation as it stands."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from updating.diagnosis.search.fit import Point, sensitivities
 from updating.diagnosis.search.goodness import p_value
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
-from updating.likelihood.outliers import Outlier, log_price, of_the_model, suspects, with_outliers
+from updating.likelihood.outliers import Outlier, log_price, suspects, with_outliers
 from updating.thresholds import (
     MOST_ALONE,
     MOST_OUTLIERS,
@@ -69,28 +69,23 @@ def _choose(problem: DiagnosisProblem, explanation: Explanation) -> _Choice:
     free = replace(best.comparison, nuisance=np.hstack([best.comparison.nuisance, QUANTILE_SPREAD * columns]))
     chosen: tuple[Outlier, ...] = ()
     start = here = _point(free, best.coordinates)
-    for _ in range(MOST_OUTLIERS):
-        data = suspects(here.comparison, here.marginal.scale, SUSPECTS_TRIED)
-        further = [*(one for outlier in data for one in outlier.scaled()), *of_the_model()]
-        tried = [one for one in further if _may_be(one, chosen, alone=not explanation.names)]
-        points = [_point(with_outliers(free, (*chosen, one)), best.coordinates) for one in tried]
-        gains = [
-            point.marginal.log_likelihood - here.marginal.log_likelihood + one.log_prior
-            for one, point in zip(tried, points, strict=True)
+    for _ in range(MOST_OUTLIERS if explanation.names else MOST_ALONE):
+        tried = [
+            (*chosen, outlier)
+            for suspect in suspects(here.comparison, here.marginal.scale, SUSPECTS_TRIED)
+            for outlier in suspect.scaled()
+            if explanation.names or outlier.of_shape
         ]
-        if max(gains, default=0.0) <= 0:
+        if not tried:
             break
-        top = int(np.argmax(gains))
-        chosen, here = (*chosen, tried[top]), points[top]
+        points = [_point(with_outliers(free, outliers), best.coordinates) for outliers in tried]
+        top = int(np.argmax([point.marginal.log_likelihood for point in points]))
+        gain = points[top].marginal.log_likelihood - here.marginal.log_likelihood
+        if gain + log_price(tried[top][-1:]) <= 0:
+            break
+        chosen, here = tried[top], points[top]
     gained = here.marginal.log_likelihood - start.marginal.log_likelihood + log_price(chosen)
     return _Choice(chosen, gained, here)
-
-
-def _may_be(outlier: Outlier, chosen: Sequence[Outlier], *, alone: bool) -> bool:
-    """Tell whether an outlier may stand beside those chosen: one discrepancy; where there is no cause, one shape."""
-    if outlier.discrepancy:
-        return not any(one.discrepancy for one in chosen)
-    return not alone or (outlier.of_shape and sum(one.of_shape for one in chosen) < MOST_ALONE)
 
 
 def _point(comparison: Comparison, coordinates: FloatArray) -> Point:

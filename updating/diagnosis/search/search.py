@@ -78,11 +78,6 @@ class Compared:
         return self.explanation.names
 
     @property
-    def excused(self) -> bool:
-        """Whether it explains the data by no cause but a model that is off: there is a gap all the same."""
-        return not self.names and any(one.discrepancy for one in self.explanation.candidate.outliers)
-
-    @property
     def rejected(self) -> bool:
         """Whether it is no answer: it fits too badly (pairs, which have more freedom, must fit better), or only at a
         size beyond what is plausible.
@@ -218,11 +213,10 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
     for own in forms.values():
         top = max(own, key=lambda row: row.probability)
         total = float(logsumexp([row.explanation.log_evidence for row in own]))
-        speak = [row for row in own if row.probability >= FORM_SHARE * top.probability]
-        stated = max(row.as_stated for row in own)
-        fits = max((row.p_value for row in speak if not row.excused), default=stated)
+        fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
         probability = sum(row.probability for row in own)
         extreme = _extreme(problem, top.explanation) if probability > NEGLIGIBLE_PROBABILITY else ()
+        stated = max(row.as_stated for row in own)
         whole = replace(top.explanation, log_evidence=total)
         merged.append(Compared(whole, probability, fits, stated, extreme, _by_region(own, total)))
     return tuple(sorted(merged, key=lambda row: -row.probability))
