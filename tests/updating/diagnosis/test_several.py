@@ -184,14 +184,14 @@ def test_an_effect_that_cannot_be_on_one_specimen_is_sought_on_the_other(
     found = explain(problem, Candidate((ACROSS,)))
     values = problem.values(found.candidate, found.best.coordinates)
     whose = "" if shared else " (plate)"
-    assert list(values) == [f"orthotropy.ratio{whose}", f"orthotropy.shear_ratio{whose}"]
+    assert list(values) == [f"orthotropy.{name}{whose}" for name in ("ratio", "shear_ratio", "coupling")]
     assert next(iter(values.values())) == pytest.approx(RATIO, rel=0.1)
     states = problem.place(found.candidate, found.best.coordinates)
     assert [bool(state.stiffness) for state in states] == [k == "plate" for k in order]
     for i, kind in enumerate(order):
         part = found.restricted(*problem.part(found.candidate, i))
         assert part.names == (("orthotropy",) if kind == "plate" else ())
-        assert part.samples.shape[1] == 2 * (kind == "plate")
+        assert part.samples.shape[1] == 3 * (kind == "plate")
 
 
 def test_the_place_is_told_on_the_specimen_on_which_the_cause_acts() -> None:
