@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -80,16 +80,16 @@ def changes(design: Design, stations: Stations, worth: Gain) -> Iterator[Change]
     if design.shapes:
         yield from _points(design, stations, worth)
         if design.calibration > CALIBRATED and not design.baseline:
-            yield _calibrated(design)
+            yield calibrated(design)
     else:
         yield _shapes_too(design)
     if not design.baseline:
-        yield _baseline(design)
-        yield from _measured_sizes(design)
-    yield _wider(design, stations)
+        yield baseline(design)
+        yield from sizes(design, TOLERANCES)
+    yield wider(design, float(np.exp(stations.nominal[design.modes])) / (2 * np.pi))
     if design.repeatability:
-        yield _careful(design)
-    yield _more_hits(design, setup)
+        yield careful(design)
+    yield more_hits(design, setup.hits)
 
 
 def _points(design: Design, stations: Stations, worth: Gain) -> Iterator[Change]:
@@ -121,7 +121,8 @@ def _points(design: Design, stations: Stations, worth: Gain) -> Iterator[Change]
         )
 
 
-def _calibrated(design: Design) -> Change:
+def calibrated(design: Design) -> Change:
+    """Calibrate the chain."""
     return Change(
         "calibration",
         f"calibrate the chain with a known free mass: level to {100 * CALIBRATED:g} % "
@@ -140,7 +141,8 @@ def _shapes_too(design: Design) -> Change:
     )
 
 
-def _baseline(design: Design) -> Change:
+def baseline(design: Design) -> Change:
+    """Test the same structure before."""
     return Change(
         "baseline",
         "test the same structure in another state (before the change) as a baseline",
@@ -149,23 +151,25 @@ def _baseline(design: Design) -> Change:
     )
 
 
-def _measured_sizes(design: Design) -> Iterator[Change]:
-    known = {"thickness": MICROMETER, "width": MICROMETER, "density": MASS_KNOWN}
-    known_test = dict(zip(TOLERANCES, design.tolerances, strict=True))
-    better = {name: min(known.get(name, sigma), sigma) for name, sigma in known_test.items()}
-    if better == known_test:
+def sizes(design: Design, names: Sequence[str]) -> Iterator[Change]:
+    """Weigh, and gauge what has a thickness; ``names`` are the properties with a tolerance."""
+    reached = {"thickness": MICROMETER, "width": MICROMETER, "density": MASS_KNOWN}
+    now = dict(zip(names, design.tolerances, strict=True))
+    better = {name: min(reached.get(name, sigma), sigma) for name, sigma in now.items()}
+    if better == now:
         return
-    words = [f"{name} to {100 * value:g} %" for name, value in known.items() if known_test[name] > value]
+    words = [f"{name} to {100 * value:g} %" for name, value in reached.items() if now.get(name, 0.0) > value]
+    do = "weigh and gauge" if {"thickness", "width"} & set(names) else "weigh"
     yield Change(
         "sizes",
-        f"weigh and gauge the specimen: {', '.join(words)}",
+        f"{do} the specimen: {', '.join(words)}",
         replace(design, tolerances=tuple(better.values())),
         lambda s: replace(s, tolerances=Tolerances(**better, damping=s.tolerances.damping)),
     )
 
 
-def _wider(design: Design, stations: Stations) -> Change:
-    above = float(np.exp(stations.nominal[design.modes])) / (2 * np.pi)
+def wider(design: Design, above: float) -> Change:
+    """Look at the mode above the band too, at ``above`` [Hz]."""
 
     def follow(setup: Setup) -> Setup:
         top = float(f"{ABOVE * above:.3g}")
@@ -179,7 +183,8 @@ def _wider(design: Design, stations: Stations) -> Change:
     )
 
 
-def _careful(design: Design) -> Change:
+def careful(design: Design) -> Change:
+    """Mount with care."""
     better = design.repeatability / CARE
     return Change(
         "repeatability",
@@ -190,10 +195,11 @@ def _careful(design: Design) -> Change:
     )
 
 
-def _more_hits(design: Design, setup: Setup) -> Change:
+def more_hits(design: Design, hits: int) -> Change:
+    """Hit each point more often than ``hits`` times."""
     return Change(
         "hits",
-        f"hit each point {HITS * setup.hits} times instead of {setup.hits}",
+        f"hit each point {HITS * hits} times instead of {hits}",
         replace(design, noise=design.noise / np.sqrt(HITS)),
         lambda s: replace(s, hits=HITS * s.hits),
     )

@@ -161,7 +161,7 @@ def test_seen_is_where_the_closed_form_says(tmp_path: Path) -> None:
     assert found.threshold(found.sigma[0]) == pytest.approx(expected, rel=0.05)
 
 
-def test_a_hypothesis_is_told_or_in_a_class_like_any_effect(chained: Forecast) -> None:
+def test_a_hypothesis_is_named_or_in_a_class_like_any_effect(chained: Forecast) -> None:
     assert "spring 3 is cracked" in chained.now.names
     assert chained.now.limits["spring 3 is cracked"].clear == 1.0
     outcome = chained.now.outcomes["spring 3 is cracked"]
