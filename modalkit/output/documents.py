@@ -100,6 +100,7 @@ def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> di
         },
         "cause": {
             "verdict": diagnosis.verdict,
+            "lacks": diagnosis.lacks,
             "effects": diagnosis.effects,
             "sets": diagnosis.sets,
             "ranking": [_ranked_document(r, named=r.effects in diagnosis.sets) for r in diagnosis.ranking],

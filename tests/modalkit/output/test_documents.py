@@ -34,7 +34,7 @@ DIAGNOSIS = {"schema", "significant", "p_value", "gap", "where", "cause", "shrin
 PARTS = {
     "gap": {"frequency_rms_percent", "noise_floor_percent", "modes", "frac"},
     "where": {"channel", "channels", "location", "locations", "points", "zones"},
-    "cause": {"verdict", "effects", "sets", "ranking"},
+    "cause": {"verdict", "lacks", "effects", "sets", "ranking"},
     "shrink": {"metric", "before_percent", "after_percent", "held_out", "closed_percent"},
 }
 ENTRIES = {
@@ -134,6 +134,9 @@ def test_the_record_of_a_diagnosis(diagnosis: Diagnosis) -> None:
     check(record)
     assert record["cause"]["effects"] == ["E"]
     assert record["cause"]["sets"] == [["E"]]
+    assert record["cause"]["lacks"] is None
+    rejected = replace(diagnosis, verdict="unknown", sets=(), lacks="closing")
+    assert written(diagnosis_document(rejected))["cause"]["lacks"] == "closing"
     mode = record["gap"]["modes"][0]
     assert (mode["mac"], mode["test_damping"]) == (None, None)
     assert mode["error_percent"] == pytest.approx(100 * (1 / 0.9 - 1), rel=1e-3)
