@@ -160,24 +160,27 @@ def refined(curve: Curve, change: Change, white: FloatArray, have: IntArray) -> 
     family, known, data = curve.family, curve.family.grid, curve.data
 
     def far(missed: FloatArray, whole: FloatArray) -> BoolArray:
-        """Tell at which severities a curve is missed by more than is allowed."""
-        off, size = (np.linalg.norm(one[..., have] @ white.T, axis=2) for one in (missed, whole))
-        return np.asarray((off > np.hypot(MISSED, SHARE * curve.fidelity * size)).any(axis=0))
+        """Tell at which places and severities a curve is missed by more than is allowed."""
+        off, size = (np.linalg.norm(one[..., have] @ white.T, axis=-1) for one in (missed, whole))
+        return np.asarray(off > np.hypot(MISSED, SHARE * curve.fidelity * size))
 
     loud = far(data, 0 * data)
-    open_ends = loud[1:] | loud[:-1]
+    bends = loud[:, 1:] | loud[:, :-1]
     for _ in range(ROUNDS):
-        chosen = np.flatnonzero(open_ends)
+        chosen = np.flatnonzero(bends.any(axis=0))
         if not len(chosen):
             break
         middle = _middle(known, family)[chosen]
-        found = np.array([[change(family, float(q), float(place)) for q in middle] for place in family.sites])
-        bad = np.zeros(len(known) - 1, dtype=bool)
-        bad[chosen] = far(found - _between(known, data, middle, family), found)
-        halves = np.repeat(bad, np.where(open_ends, 2, 1))
+        found = _between(known, data, middle, family)
+        bad = np.zeros_like(bends)
+        for place, i in np.argwhere(bends[:, chosen]):  # where a curve is met already, what is between stands
+            solved = change(family, float(middle[i]), float(family.sites[place]))
+            bad[place, chosen[i]] = far(solved - found[place, i], solved)
+            found[place, i] = solved
+        halves = np.repeat(bad, np.where(bends.any(axis=0), 2, 1), axis=1)
         known = np.insert(known, chosen + 1, middle)
         data = np.insert(data, chosen + 1, found, axis=1)
-        open_ends = halves
+        bends = halves
     return replace(curve, dense=Dense(known, data))
 
 

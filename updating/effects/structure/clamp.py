@@ -11,11 +11,12 @@ from scipy import sparse
 from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, Variant, bending_stiffness
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import WAYS, centre_of, one_of, way
+from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
 from updating.effects.structure.length import clamped_places
 from updating.effects.structure.spring import own_stiffness
 from updating.models.base import Structure
 from updating.models.fields import Sparse
+from updating.models.imported.groups import Support
 from updating.models.state import State
 from updating.models.structure import FieldStructure
 from updating.prediction.predict import Predictor
@@ -90,9 +91,9 @@ class Clamp(Effect):
                 one_of(predictor.spec.imported.supports, values, "support"),
                 way(values, "direction"),
             )
-            load = Sparse(support.loads[:, [axis]])
+            pulled = on_basis(predictor, ("support", support.name, axis), lambda: _pulled(support, axis))
             soft = -1 / (support.own[axis, axis] + float(values["stiffness"]))
-            return State(stiffness=(predictor.reduced.project(Sparse(soft * (load @ load.T))),))
+            return State(stiffness=(soft * pulled,))
         unit = unit_edges(predictor, self.freed)
         return State(stiffness=(values["stiffness"] * unit,), released=frozenset({self.freed}))
 
@@ -135,6 +136,12 @@ class ClampTranslation(Clamp):
     units = ("N/m", "N/m per m")
     span = (5.0, 1e7)
     why = "from nearly as soft as the structure, 5 E I / L^3, to ten million E I / L^3, where nothing can see it"
+
+
+def _pulled(support: Support, axis: int) -> Sparse:
+    """Return l l^T of what a support that moves in a direction pulls at the structure, (n, n) [SI]."""
+    load = Sparse(support.loads[:, [axis]])
+    return Sparse(load @ load.T)
 
 
 def unit_edges(predictor: Predictor, freed: Literal["rotation", "translation"]) -> FloatArray:
