@@ -58,6 +58,10 @@ LEAST_CONSTANT_NOISE = 0.005
 Judged from transducers' data sheets: a cross sensitivity of some per cent, of motion across that is a tenth. Doubled:
 good shapes count a quarter as much."""
 
+LEAST_TURN = 0.005
+"""Shapes of close modes are held to turn into each other where their frequencies' scatter makes it so much [rad]: less
+is within ``LEAST_CONSTANT_NOISE``. Doubled: pairs twice as close are left as sharp as they are."""
+
 DELAY_FIT_ERROR = 0.01
 """Error of a modal constant, relative to the mode's r.m.s., per radian by which a delay turns it [1/rad]: no rational
 function is a delay. Doubled: a delay explains constants that it spoils twice as much."""

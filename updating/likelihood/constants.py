@@ -9,6 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
+from updating.likelihood.close_modes import CloseModes
 from updating.likelihood.comparison import Block
 from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
@@ -38,9 +39,12 @@ class Constants(Quantity):
         Test and model.
     phases : Phases
         The phases of the same constants, which say how a delay turns them.
+    further : (n_modes,) array
+        Variance of ln f that is no noise of the test [-].
     """
 
     phases: Phases
+    further: FloatArray
 
     @property
     def present(self) -> bool:
@@ -63,6 +67,10 @@ class Constants(Quantity):
     def _nodes(self) -> Nodes:
         return Nodes(self.setting)
 
+    @cached_property
+    def _close_modes(self) -> CloseModes:
+        return CloseModes(self.setting, self.further)
+
     def block(self, view: View) -> Block:
         """Return the constants beside a state, the calibration a named doubt where their level is data."""
         test, now, scale = self.setting.measured, view.now, self.scale
@@ -77,6 +85,7 @@ class Constants(Quantity):
             self._places.sensors(now.along_seen * level),
             self._places.together(now.along * level, now.along_seen * level),
             self._nodes.columns(now, level),
+            self._close_modes.columns(now, level),
             louder,
         ]
         gain = self._gains(predicted)

@@ -58,6 +58,10 @@ class Outlier:
         """Whether it is the shape of one mode: what changes a structure moves a frequency as well, a slip need not."""
         return self.channel in SHAPE
 
+    def about_the_same(self, other: Outlier) -> bool:
+        """Tell whether another one is of the same data, or tolerance: nothing is worse than thought twice."""
+        return replace(self, scale=other.scale) == other
+
     def scaled(self) -> list[Outlier]:
         """Return it at every scale; a tolerance that is off by more than the least of them is no longer that."""
         scales = OUTLIER_SCALES if self.tolerance is None else OUTLIER_SCALES[:1]

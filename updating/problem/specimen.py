@@ -244,10 +244,11 @@ class SpecimenProblem:
         setting = self.setting
         phases = Phases(setting)
         left_out, uneven = self._left_out()
+        further = self._accepted_variance() + uneven
         every = (
-            Frequencies(setting, self._accepted_variance() + uneven, left_out),
+            Frequencies(setting, further, left_out),
             Dampings(setting),
-            Constants(setting, phases),
+            Constants(setting, phases, further),
             phases,
             Levels(setting),
         )

@@ -74,7 +74,7 @@ def _choose(problem: DiagnosisProblem, explanation: Explanation) -> _Choice:
             (*chosen, outlier)
             for suspect in suspects(here.comparison, here.marginal.scale, SUSPECTS_TRIED)
             for outlier in suspect.scaled()
-            if explanation.names or outlier.of_shape
+            if (explanation.names or outlier.of_shape) and not any(map(outlier.about_the_same, chosen))
         ]
         if not tried:
             break
