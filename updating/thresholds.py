@@ -34,9 +34,10 @@ DAMPING_REPEATABILITY = 0.1
 down and put up again. Doubled: a gap in damping beside a baseline must be twice as large to be seen."""
 
 COMMON_DAMPING = 0.5
-"""Share of the variance of the doubt in the expected damping that all modes have in common [-]: the tolerance is that
-of each mode; whether all are off alike or each for itself nobody states, so half and half. Doubled, all of it: damping
-that is off alike shows by three quarters of the sigmas, that of one mode beside the others by its noise alone."""
+"""Variance of the doubt in the expected damping that all modes have in common, of that which each has for itself [-].
+The tolerance is that of each mode; whether all are off alike besides nobody states, so half as much. Doubled, as much:
+damping that is off alike shows by three quarters of the sigmas. A share of one variance rejects what is true where
+modes scatter each for itself: with five modes and half of it one cause in nine."""
 
 DAMPING_PER_SHIFT = 0.5
 """How much of a change of frequency (1 sigma of its logarithm) damping may follow otherwise than expected [-]. Ratios

@@ -19,7 +19,7 @@ class Tolerances:
     factors : mapping of str to float
         Tolerances of E, density, thickness, length, width.
     damping : float
-        Doubt in the expected damping of each mode, half of its variance common to all modes.
+        Doubt in the expected damping of each mode; half of its variance again is common to all modes.
     parts : mapping of str to float
         Of single parameters, by the names that an update has for them: ``web.E``.
     bounds : mapping of str to (float, float)

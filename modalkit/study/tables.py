@@ -353,7 +353,7 @@ class TolerancesTable(Strict):
     width: Share = 0.002
     """Likewise [-]."""
     damping: Doubt = Field(0.3, ge=1e-6)
-    """Doubt in the expected damping of each mode, half of its variance common to all modes [-]."""
+    """Doubt in the expected damping of each mode; half of its variance again is common to all modes [-]."""
     parts: dict[str, Doubt] = {}
     """Of single parameters, written ``web.E = 0.2`` or ``"web.E" = 0.2``: of a region, beside what all have in
     common (in an update in its place); and of numbers of a deck that an update turns [-].

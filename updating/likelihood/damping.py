@@ -52,9 +52,8 @@ class Dampings(Quantity):
         # ratios go up or down with frequency as the mechanism has it: viscous ones fall, those of stiffness rise
         moved = DAMPING_PER_SHIFT * np.log(now.frequency[rows] / self.setting.nominal.frequency[rows])
         doubt = view.doubt.damping
-        each, common = np.sqrt(1 - COMMON_DAMPING) * tolerance, np.sqrt(COMMON_DAMPING) * tolerance
-        variance = relative**2 + each**2 + doubt**2 + moved**2
-        level = np.stack([common, np.full(len(rows), doubt)], axis=1)[:, : 1 + (doubt > 0)]
+        variance = relative**2 + tolerance**2 + doubt**2 + moved**2
+        level = np.stack([np.sqrt(COMMON_DAMPING) * tolerance, np.full(len(rows), doubt)], axis=1)[:, : 1 + (doubt > 0)]
         return Block(
             "damping",
             np.log(test.damping[rows] / expected),

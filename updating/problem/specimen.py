@@ -181,8 +181,11 @@ class SpecimenProblem:
 
     @property
     def wide(self) -> bool:
-        """Whether tolerances are too wide for one linearisation, or bend what is measured beyond its noise."""
-        if not len(self.sigmas):
+        """Whether tolerances are too wide for one linearisation, or bend what is measured beyond its noise.
+
+        Never beside a baseline, see :meth:`compare`.
+        """
+        if not len(self.sigmas) or self.baseline is not None:
             return False
         return float(self.sigmas.max()) > WIDE_TOLERANCE or float(self.bending.max()) > BENT_DATA
 
@@ -209,8 +212,11 @@ class SpecimenProblem:
     def strain(self, shift: FloatArray) -> float:
         """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-].
 
-        What bends the data counts as that change of a property which a linearisation bears as well.
+        What bends the data counts as that change of a property which a linearisation bears as well. Beside a baseline
+        they make none.
         """
+        if self.baseline is not None:
+            return 0.0
         bent = np.sqrt(self.bending / BENT_DATA) * STRAINED_LINEARISATION
         moved = np.abs(shift[: len(self.names)]) * np.maximum(self.sigmas, bent)
         return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
@@ -225,11 +231,12 @@ class SpecimenProblem:
         state : State
             Departure from the nominal model.
         shift : (n_names,) array, optional
-            Tolerance nuisances applied to the model before it is linearised [standard deviations].
+            Tolerance nuisances applied to the model before it is linearised [standard deviations]. Beside a baseline
+            none is: it corrects any specimen to the same modes, and one moved by them alone would count them twice.
         doubt : Doubt
             What the state leaves in doubt.
         """
-        shift = np.zeros(len(self.names)) if shift is None else shift
+        shift = np.zeros(len(self.names)) if shift is None or self.baseline is not None else shift
         factors = dict(zip(self.names, np.exp(shift * self.sigmas).tolist(), strict=True))
         whole = state.plus(departure(self.predictor.spec, factors))
         prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
