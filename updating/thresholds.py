@@ -178,7 +178,11 @@ Doubled: pairs are tried in one test in 25 that needs none."""
 
 WELL_FITTED = 0.1
 """Where a single effect fits better than this a second cause is sought beside the best of each alone, and not from no
-effect at all [-]; nor are its odd data. Doubled: twice as many tests take the longer search, some 3 s on a beam."""
+effect at all [-]. Doubled: twice as many tests take the longer search, some 3 s on a beam."""
+
+ODD_DATA_BELOW = 0.2
+"""What fits better than this has no odd data to be sought [-]: above the p-value of a fit for which shapes that hits
+repeat have to be twice as noisy, as one mode that is no mode makes all of them. Doubled: twice the time it takes."""
 
 PROBABLE_BEHIND = 6.0
 """Explanations whose logarithm of the probability lies further behind the best have no say in whether one fits [-]:

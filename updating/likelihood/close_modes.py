@@ -60,9 +60,7 @@ class CloseModes:
         test, shape = self.setting.measured, now.at_points
         bare = (test.hit < 0)[:, None]
         seen, hit = shape[test.seen], np.where(bare, 1.0, shape[test.hit])
-        return np.asarray(
-            seen[:, other] * hit[:, mode] + np.where(bare, 0.0, seen[:, mode] * hit[:, other])
-        )
+        return np.asarray(seen[:, other] * hit[:, mode] + np.where(bare, 0.0, seen[:, mode] * hit[:, other]))
 
     @cached_property
     def _pairs(self) -> tuple[IntArray, FloatArray]:

@@ -53,7 +53,9 @@ class Dampings(Quantity):
         moved = DAMPING_PER_SHIFT * np.log(now.frequency[rows] / self.setting.nominal.frequency[rows])
         doubt = view.doubt.damping
         variance = relative**2 + tolerance**2 + doubt**2 + moved**2
-        level = np.stack([np.sqrt(COMMON_DAMPING) * tolerance, np.full(len(rows), doubt)], axis=1)[:, : 1 + (doubt > 0)]
+        level = np.stack([np.sqrt(COMMON_DAMPING) * tolerance, np.full(len(rows), doubt)], axis=1)[
+            :, : 1 + (doubt > 0)
+        ]
         return Block(
             "damping",
             np.log(test.damping[rows] / expected),

@@ -107,3 +107,10 @@ def test_a_datum_is_odd_from_four_sigma_on() -> None:
         tried = [[one] for one in Outlier(mode=0, channel=0).scaled()]
         best = max(marginal(with_outliers(plain, one)).log_likelihood + log_price(one) for one in tried)
         assert (best > start) == odd
+
+
+def test_what_is_about_the_same_data_is_no_further_outlier() -> None:
+    frequency = Outlier(mode=2, channel=0, scale=3.0)
+    assert frequency.about_the_same(Outlier(mode=2, channel=0, scale=100.0))
+    assert not frequency.about_the_same(Outlier(mode=3, channel=0, scale=3.0))
+    assert Outlier(tolerance=1).about_the_same(Outlier(tolerance=1))

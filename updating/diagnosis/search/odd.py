@@ -18,10 +18,10 @@ from updating.likelihood.outliers import Outlier, log_price, suspects, with_outl
 from updating.thresholds import (
     MOST_ALONE,
     MOST_OUTLIERS,
+    ODD_DATA_BELOW,
     QUANTILE_SPREAD,
     REJECTED_FIT,
     SUSPECTS_TRIED,
-    WELL_FITTED,
     WITHIN_REACH,
 )
 
@@ -50,7 +50,7 @@ def with_odd_data(problem: DiagnosisProblem, found: Sequence[Explanation]) -> li
     list of Explanation
         Those that fit with outliers and come within reach of the best, drafted.
     """
-    doubtful = [one for one in found if one.best.possible and one.p_value < WELL_FITTED]
+    doubtful = [one for one in found if one.best.possible and one.p_value < ODD_DATA_BELOW]
     choices = [(one, _choose(problem, one)) for one in doubtful]
     reached = [one.log_evidence + choice.gain for one, choice in choices]
     bar = max([one.log_evidence for one in found] + reached, default=-np.inf) - WITHIN_REACH

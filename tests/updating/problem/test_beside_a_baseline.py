@@ -1,0 +1,58 @@
+"""A baseline corrects the model of any specimen to the same modes: tolerances alone move nothing beside it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from updating_cases import BEAM, POINTS, blank
+
+from updating import LIBRARY, Case, Measured, Predictor, Tolerances
+from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search.evidence import explain
+from updating.models.state import NOMINAL, State
+from updating.problem.candidate import Candidate
+from updating.problem.specimen import SpecimenProblem
+
+SPECIMEN = {"E": 1.03, "thickness": 0.98}
+THICKER = 1.15
+
+
+def measured(factors: dict[str, float]) -> Measured:
+    evaluation = Predictor(BEAM, blank(POINTS))
+    truth = evaluation.predict(State(factors=factors), count=4)
+    return replace(
+        evaluation.measured,
+        frequency=truth.frequency,
+        frequency_sigma=1e-4 * truth.frequency,
+        damping=truth.damping,
+        damping_sigma=0.03 * truth.damping,
+        constants=truth.constants,
+        constants_sigma=0.01 * np.abs(truth.constants).max(axis=0) * np.ones_like(truth.constants),
+    )
+
+
+@pytest.fixture(scope="module")
+def problem() -> SpecimenProblem:
+    """A beam off by tolerances as wide as they come, and then thicker than it was."""
+    changed = {**SPECIMEN, "thickness": SPECIMEN["thickness"] * THICKER}
+    doubts = Tolerances({"E": 0.2, "thickness": 0.1, "length": 0.01})
+    case = Case("a beam", BEAM, measured(changed), measured(SPECIMEN), doubts)
+    return pose(case)[0]
+
+
+def test_a_shift_of_tolerances_is_not_counted_twice(problem: SpecimenProblem) -> None:
+    assert not problem.wide
+    as_it_is = problem.compare(NOMINAL)
+    shifted = problem.compare(NOMINAL, np.ones(len(problem.names)))
+    assert shifted.residual == pytest.approx(as_it_is.residual)
+    assert problem.strain(np.ones(len(problem.names))) == 0.0
+
+
+def test_what_has_changed_since_is_found_whatever_the_tolerances(problem: SpecimenProblem) -> None:
+    found = explain(problem, Candidate((LIBRARY["thickness"],)))
+    values = problem.values(found.candidate, found.best.coordinates)
+    assert values["thickness.factor"] == pytest.approx(THICKER, rel=0.005)
+    assert found.p_value > 0.05
+    assert found.log_evidence > explain(problem, Candidate()).log_evidence + 10
