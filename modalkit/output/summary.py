@@ -13,7 +13,7 @@ from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
 from updating.diagnosis.answer.verdict import NAME
 from updating.effects import Lack, Twin, in_a_set, twin_of
 from updating.effects.regions import PLACED
-from updating.thresholds import BELIEVED_DOUBT, BEYOND_NOTHING
+from updating.thresholds import BELIEVED_DOUBT, BEYOND_NOTHING, REJECTED_FIT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
 """Parameters that the line on the place tells."""
@@ -74,9 +74,15 @@ def _unknown(diagnosis: Diagnosis) -> str:
             "most measured modes have no partner in the model, and the few that have one name no cause; check axes, "
             "points, signs and boundary conditions first"
         )
-    if diagnosis.lacks in (None, "fit") or not diagnosis.ranking:
-        return "the gap is real, and nothing in the library explains it, alone or in the sets weighed"
+    nothing = "the gap is real, and nothing in the library explains it, alone or in the sets weighed"
+    if not diagnosis.ranking:
+        return nothing
     first = " + ".join(diagnosis.ranking[0].effects)
+    if diagnosis.lacks in (None, "fit"):
+        ends = [f"{name} = {e.bare}" for name, e in diagnosis.ranking[0].parameters.items() if e.at_bound]
+        if not ends or diagnosis.ranking[0].p_value < REJECTED_FIT:
+            return nothing
+        return f"the gap is real; {first} fits, at the end of what is believed of it: {', '.join(ends)}"
     if diagnosis.lacks == "closing":
         return f"the gap is real; {first} comes nearest, closes too little of it and leaves more than noise"
     if diagnosis.lacks == "one size":

@@ -118,6 +118,14 @@ def test_unknown_says_what_the_nearest_set_lacks(lacks: Shortcoming, words: str)
     assert ("sensor_mass" in message) == (lacks != "fit")
 
 
+def test_unknown_says_that_the_nearest_set_fits_at_an_unlikely_size() -> None:
+    heavy = replace(SENSOR, parameters={"sensor_mass.mass": replace(MASS, at_bound=True)}, plausible=False)
+    message = lines(replace(UNKNOWN, lacks="fit", ranking=(heavy, E)))["Cause"]
+    assert "sensor_mass fits, at the end of what is believed of it: sensor_mass.mass = 12.3 g" in message
+    badly = replace(heavy, p_value=1e-5)
+    assert "nothing in the library" in lines(replace(UNKNOWN, lacks="fit", ranking=(badly, E)))["Cause"]
+
+
 def test_a_likely_cause_of_a_gap_that_chance_might_make_is_named() -> None:
     message = lines(replace(NONE, ranking=NAMED.ranking))
     assert "should there be one, sensor_mass is its likeliest cause" in message["Cause"]
