@@ -259,7 +259,8 @@ def _sure(diagnosis: Diagnosis) -> str:
     total, fit = sum(row.probability for row in chosen), max(row.p_value for row in chosen)
     rest = [row for row in diagnosis.ranking if row.effects not in diagnosis.sets]
     behind = f"; next {' + '.join(rest[0].effects)} {probability(rest[0].probability)}" if rest else ""
-    fits = "fits within the noise" if fit >= 0.05 else "fits, but not well"
+    what = "all else fits" if _left(diagnosis) else "fits"
+    fits = f"{what} within the noise" if fit >= 0.05 else "fits, but not well"
     together = f"{probability(total)} probable" + (" together" if len(diagnosis.sets) > 1 else "")
     return f"{together}{behind}; {fits} ({p_value(fit)}); {chance}"
 

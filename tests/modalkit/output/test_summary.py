@@ -14,6 +14,7 @@ from updating.diagnosis.answer.result import (
     NextTest,
     ParameterEstimate,
     Ranked,
+    Remainder,
     Shortcoming,
     Shrink,
     Where,
@@ -124,6 +125,12 @@ def test_unknown_says_that_the_nearest_set_fits_at_an_unlikely_size() -> None:
     assert "sensor_mass fits, at the end of what is believed of it: sensor_mass.mass = 12.3 g" in message
     badly = replace(heavy, p_value=1e-5)
     assert "nothing in the library" in lines(replace(UNKNOWN, lacks="fit", ranking=(badly, E)))["Cause"]
+
+
+def test_what_fits_but_for_odd_data_says_so() -> None:
+    odd = replace(NAMED, remainder=Remainder(True, 0.3, 12.0, ("mode 9 shape",)))
+    assert "all else fits within the noise" in lines(odd)["Sure"]
+    assert "; fits within the noise" in lines(NAMED)["Sure"]
 
 
 def test_a_likely_cause_of_a_gap_that_chance_might_make_is_named() -> None:

@@ -58,7 +58,7 @@ def test_one_bad_group_of_data_hides_no_cause(seed: int, what: str) -> None:
     wanted = {
         "one frequency": "mode 3 frequency",
         "one damping": "mode 1 damping",
-        "one point": "point 3, all modes",
+        "one point": "point 3 in all modes",
     }
     assert wanted[what] in left.carried_by
     estimate = next(row for row in found.ranking if row.effects == ("E",)).parameters["E.factor"]

@@ -70,4 +70,4 @@ def _name_of(problem: DiagnosisProblem, titles: Sequence[str], best: Explanation
         return f"{title}mode {mode + 1} {KINDS[CHANNELS[int(comparison.channel[first])]]}"
     test = problem.specimens[which].measured
     roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
-    return f"{title}point {test.nodes[int(roving[source])]}, all modes"
+    return f"{title}point {test.nodes[int(roving[source])]} in all modes"
