@@ -326,7 +326,7 @@ def _assemble(
     noise = covariance.own_errors(fitted, factors, separation)[:, own]
     if fitted.held is not None:
         noise = np.sqrt(np.maximum(alone**2 - np.sum(shared**2, axis=2), noise**2))
-    shapes = mode_shapes(data, constants, alone)
+    shapes = mode_shapes(data, constants, alone, poles=poles)
     scatter = np.sqrt(separation.scatter[own, 1, 1])
     statement = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))

@@ -112,7 +112,7 @@ def from_sdypy(model: Any, frfs: FrfSet) -> ModalData:
     poles = 2 * np.pi * frequency * (-damping + 1j * np.sqrt(1 - damping**2))
     constants = modal_constants(np.asarray(model.A, dtype=complex)[:, order], poles) * signs(frfs)[:, None]
     equal = 1e-6 * np.abs(constants).max(axis=0, keepdims=True) * np.ones(constants.shape)
-    shapes = mode_shapes(frfs, constants, equal)
+    shapes = mode_shapes(frfs, constants, equal, poles=poles)
     return ModalData(
         frequency=frequency,
         frequency_sigma=np.full(len(frequency), np.nan),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from acquisition.quantities import quantity
 from acquisition.warned import Consequential
@@ -74,7 +74,9 @@ def _measured(plan: Arrangement, column: IntArray) -> list[int]:
     return [int(i) for i in np.flatnonzero(column >= 0) if plan.index[i, column[i]] >= 0]
 
 
-def contradicted(plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray) -> IntArray:
+def contradicted(
+    plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray, alone: BoolArray
+) -> IntArray:
     """Return the rows whose drive point is none: its constants are negative in some modes, positive in others.
 
     Parameters
@@ -85,17 +87,20 @@ def contradicted(plan: Arrangement, constants: tuple[ComplexArray, FloatArray], 
         Modal constants and their standard deviations [1/kg].
     column : (n_rows,) int array
         Column with the degree of freedom of each row, -1 where there is none.
+    alone : (n_modes,) bool array
+        Whether a mode overlaps with no other. Damping couples those that do, and of one such mode a constant at a drive
+        point may have any phase.
     """
     false = []
     for i in _measured(plan, column):
-        value, spread = (c[plan.index[i, column[i]]] for c in constants)
+        value, spread = (c[plan.index[i, column[i]]][alone] for c in constants)
         if np.any(value.real < -_CERTAIN * spread) and np.any(value.real > _CERTAIN * spread):
             false.append(i)
     return np.array(false, dtype=np.int64)
 
 
 def about_drive_points(
-    plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray
+    plan: Arrangement, constants: tuple[ComplexArray, FloatArray], column: IntArray, alone: BoolArray
 ) -> tuple[str, ...]:
     """Say where a drive point contradicts a passive structure; parameters as for :func:`contradicted`."""
     stated = []
@@ -103,10 +108,11 @@ def about_drive_points(
         frf = plan.index[i, column[i]]
         value, spread = constants[0][frf], np.maximum(constants[1][frf], 1e-300)
         angle = np.abs(np.angle(value))
-        negative = value.real < -_CERTAIN * spread
+        negative = alone & (value.real < -_CERTAIN * spread)
         wrong = np.flatnonzero(negative) + 1
         if len(wrong):
-            stated.append(_negative(str(plan.rows[i]), wrong, np.any(value.real > _CERTAIN * spread)))
+            others = np.any(alone & (value.real > _CERTAIN * spread))
+            stated.append(_negative(str(plan.rows[i]), wrong, others))
         doubt = spread / np.maximum(np.abs(value), 1e-300)
         late = np.flatnonzero((doubt < 1.0 / _CERTAIN) & (angle - 3.0 * doubt > _DELAYED) & ~negative) + 1
         if len(late):

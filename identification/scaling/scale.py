@@ -16,9 +16,14 @@ from identification.scaling.shapes import Shapes, turned
 _STEPS = 8
 _CERTAIN = 5.0
 _FINEST = 1e-12
+_APART = 2.0
+"""Modes further apart than so many sums of their half bandwidths are coupled by no damping [-]. A phase of 45 degrees
+takes one."""
 
 
-def mode_shapes(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> Shapes:
+def mode_shapes(
+    frfs: FrfSet, constants: ComplexArray, sigma: FloatArray, *, poles: ComplexArray | None = None
+) -> Shapes:
     """Turn modal constants A_ij = phi_i phi_j into shapes.
 
     The constants of one mode form a matrix of rank one, whose weighted least-squares factors are the shape
@@ -35,6 +40,8 @@ def mode_shapes(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> Sha
         Modal constants, signs of directions applied [1/kg].
     sigma : (n_frf, n_modes) array
         Standard deviations of their real and of their imaginary parts [1/kg].
+    poles : (n_modes,) complex array, optional
+        Of the modes: overlapping ones do not say whether a drive point is one; left out, none overlap [rad/s].
 
     Returns
     -------
@@ -51,8 +58,9 @@ def mode_shapes(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> Sha
     start = rank_one(values, weight)
     place = {d: j for j, d in enumerate(plan.columns)}
     column = np.array([place.get(d, -1) for d in plan.rows], dtype=np.int64)
-    about = notes.about_drive_points(plan, (constants, sigma), column)
-    false = notes.contradicted(plan, (constants, sigma), column)
+    alone = np.ones(constants.shape[1], dtype=bool) if poles is None else _alone(poles)
+    about = notes.about_drive_points(plan, (constants, sigma), column, alone)
+    false = notes.contradicted(plan, (constants, sigma), column, alone)
     column[false] = -1
     if np.all(column < 0):
         factors = _disagreement(values, weight, start, bonds=1)
@@ -64,6 +72,13 @@ def mode_shapes(frfs: FrfSet, constants: ComplexArray, sigma: FloatArray) -> Sha
     factors = _disagreement(values, weight, factors, bonds=int(np.sum(column >= 0)))
     stated = (*lost, *about, *notes.about_scale(plan, column, certainty))
     return _shapes(plan, _times(factors, np.sqrt(size)), scaled=True, warnings=stated)
+
+
+def _alone(poles: ComplexArray) -> BoolArray:
+    """Tell which modes overlap with no other."""
+    apart = np.abs(poles.imag[:, None] - poles.imag)
+    np.fill_diagonal(apart, np.inf)
+    return np.asarray((apart > -_APART * (poles.real[:, None] + poles.real)).all(axis=1))
 
 
 def _tied_together(plan: Arrangement) -> tuple[Arrangement, tuple[str, ...]]:

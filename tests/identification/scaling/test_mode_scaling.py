@@ -81,6 +81,20 @@ def test_a_drive_point_that_cannot_be_one_is_said(truth):
     assert any("in mode(s) 2 and a positive one in others" in w for w in shapes.warnings)
 
 
+def test_modes_that_overlap_say_nothing_of_a_drive_point(truth):
+    pairs = columns_of(4)
+    constants = constants_of(truth, pairs) * np.array([1.0, 1.0, -1.0])
+    sigma = np.full(constants.shape, EXACT)
+    apart = 2 * np.pi * np.array([-0.5 + 50.0j, -0.9 + 90.0j, -1.3 + 130.0j])
+    overlapping = np.append(apart[:2], 2 * np.pi * (-0.9 + 92.0j))
+    frfs = frfs_of(truth, pairs)
+    assert not mode_shapes(frfs, constants, sigma, poles=apart).scaled
+    shapes = mode_shapes(frfs, constants, sigma, poles=overlapping)
+    assert shapes.scaled
+    assert not any("negative" in w for w in shapes.warnings)
+    assert any("180 degrees in mode(s) 3: strongly complex" in w for w in shapes.warnings)
+
+
 def test_a_delay_between_the_channels_is_said(truth):
     shapes = scaled(truth, columns_of(4), change=lambda c: c * np.exp(1j * np.radians([5.0, 30.0, 60.0])))
     assert any("up to 60 degrees in mode(s) 2, 3" in w for w in shapes.warnings)
