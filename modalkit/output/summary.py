@@ -11,6 +11,7 @@ from acquisition.quantities import number, p_value, percent, place, probability
 from updating import Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
 from updating.diagnosis.answer.verdict import NAME
+from updating.diagnosis.answer.where import CHANNELS, acting_together
 from updating.effects import Lack, Twin, in_a_set, twin_of
 from updating.effects.regions import PLACED
 from updating.thresholds import BELIEVED_DOUBT, BEYOND_NOTHING, REJECTED_FIT
@@ -169,7 +170,9 @@ def _where(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unknown":
         band = f"{where.band} " if where.band else ""
         return f"{band}The {where.channel} is where the least bad explanations act; do not trust it."
-    text = f"{where.channel} ({probability(where.channels[where.channel])})"
+    acting = acting_together({**dict.fromkeys(CHANNELS, 0.0), **where.channels})
+    each = " each" if len(acting) > 1 else ""
+    text = f"{' and '.join(acting)} ({probability(where.channels[where.channel])}{each})"
     if where.location is None and not where.names:
         return text + (
             ", spread over the whole structure" if where.channel != "measurement" else _points(where.points)

@@ -127,6 +127,14 @@ def test_unknown_says_that_the_nearest_set_fits_at_an_unlikely_size() -> None:
     assert "nothing in the library" in lines(replace(UNKNOWN, lacks="fit", ranking=(badly, E)))["Cause"]
 
 
+def test_halves_of_a_pair_are_both_placed() -> None:
+    both = replace(
+        TIP, channels={"mass": 0.5, "stiffness": 0.495}, locations=((0.0, 0.0, 0.0), (0.376, 0.0, 0.0))
+    )
+    found = lines(replace(NAMED, where=replace(both, channel="stiffness", location=(0.0, 0.0, 0.0))))["Where"]
+    assert "stiffness and mass (50 % each), at x = 0 mm and x = 376 mm" in found
+
+
 def test_what_fits_but_for_odd_data_says_so() -> None:
     odd = replace(NAMED, remainder=Remainder(True, 0.3, 12.0, ("mode 9 shape",)))
     assert "all else fits within the noise" in lines(odd)["Sure"]

@@ -11,7 +11,7 @@ from updating_cases import PLATE, POINTS, ExactBeam, blank, case_of, observed, s
 from updating import LIBRARY, Case, Measured, Predictor
 from updating.diagnosis.answer.clusters import clusters
 from updating.diagnosis.answer.contributions import contributions
-from updating.diagnosis.answer.where import locate
+from updating.diagnosis.answer.where import acting_together, locate
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import Explanation, explain
 from updating.diagnosis.search.search import Search, search
@@ -104,6 +104,7 @@ def compared(truth: str) -> tuple[SpecimenProblem, Search]:
         "tip": {"masses": ((beam.length, 0.012),)},
         "unknown": {"soft": (0.0, 0.0376, 0.5)},
         "none": {},
+        "both": {"soft": (0.14, 0.16, 0.6), "masses": ((0.3, 0.02),)},
     }
     test = struck(replace(beam, **changes.get(truth, {})), rng)  # type: ignore[arg-type]
     if truth == "unknown":
@@ -132,6 +133,28 @@ def test_a_mass_on_the_sensor_is_at_its_node() -> None:
     assert where.channel == "mass"
     assert where.points == (5,)
     assert max(where.zones, key=lambda z: z.probability).name == "zone10"
+
+
+def test_two_causes_have_two_places() -> None:
+    problem, found = compared("both")
+    assert found.compared[0].names == ("lumped_mass", "local_stiffness") or found.compared[0].names == (
+        "local_stiffness",
+        "lumped_mass",
+    )
+    where = locate(problem, found, verdict="named")
+    assert where.channel == "stiffness"
+    assert sorted(round(place[0], 2) for place in where.locations) == [0.15, 0.3]
+    assert set(where.points) >= {2}
+
+
+def test_channels_that_act_as_halves_of_a_pair_come_together() -> None:
+    halves = {"stiffness": 0.495, "mass": 0.505, "damping": 0.0, "measurement": 0.0}
+    assert acting_together(halves) == ("stiffness", "mass")
+    assert acting_together({**halves, "stiffness": 0.3}) == ("mass",)
+    assert acting_together(dict.fromkeys(halves, 0.0) | {"measurement": 0.5, "damping": 0.5}) == (
+        "damping",
+        "measurement",
+    )
 
 
 def test_points_of_the_measurement_are_named() -> None:

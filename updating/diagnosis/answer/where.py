@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from acquisition.arrays import FloatArray
@@ -44,9 +46,10 @@ def locate(
         zones = _zones(problem, _by_explanations(problem, found))
         stated = {**shares, "none": nothing}
         return Where("none", stated, None, (), (), zones, modes=seen.modes, band=seen.summary)
-    top = _leading(shares)
+    together = acting_together(shares)
+    top = together[0]
     leader = next((row for row in found.compared if row.names), None)
-    likely_places = () if leader is None else clusters(problem, leader.explanation, top)
+    likely_places = () if leader is None else _likely_places(problem, leader, together)
     places = tuple(_place(cluster.place) for cluster in likely_places)
     unknown = verdict == "unknown"
     probability = _by_regions(problem, top) if unknown else _by_explanations(problem, found)
@@ -75,13 +78,24 @@ def _names(leader: Compared | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(str(name) for name in named))
 
 
-def _leading(shares: dict[str, float]) -> str:
-    """Return the most probable channel; of a pair that acts on measurement and structure alike, the structure's."""
-    top = max(shares, key=lambda n: shares[n])
-    if top != "measurement":
-        return top
-    structural = max((n for n in shares if n != top), key=lambda n: shares[n])
-    return structural if shares[structural] > shares[top] - TOGETHER_SHARE else top
+def acting_together(shares: Mapping[str, float]) -> tuple[str, ...]:
+    """Return the most probable channel, and those that act with it as halves of one pair, the structure's first.
+
+    Parameters
+    ----------
+    shares : mapping
+        Probability of each channel [-].
+    """
+    most = max(shares[name] for name in CHANNELS)
+    return tuple(name for name in CHANNELS if shares[name] > most - TOGETHER_SHARE)
+
+
+def _likely_places(
+    problem: SpecimenProblem, leader: Compared, channels: tuple[str, ...]
+) -> tuple[Cluster, ...]:
+    """Return the places of an explanation in all channels that act together."""
+    found = [cluster for name in channels for cluster in clusters(problem, leader.explanation, name)]
+    return tuple({tuple(cluster.place.tolist()): cluster for cluster in reversed(found)}.values())[::-1]
 
 
 def _channels(found: Search) -> tuple[dict[str, float], float]:
