@@ -1,0 +1,49 @@
+"""Two ends that changed places make strangers of the odd modes alone: pairs are found all the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from updating_cases import BEAM, blank
+
+from updating import Measured, Predictor
+from updating.prediction.predict import Prediction
+from updating.prediction.trusted_frfs import trusted_rows
+
+FREE = replace(BEAM, clamped=())
+ENDS = np.linspace(0.0, 0.376, 12)
+MODES = 5
+
+
+def struck(swapped: tuple[int, int] | None) -> tuple[Measured, Prediction]:
+    predictor = Predictor(FREE, blank(ENDS))
+    truth = predictor.predict(count=MODES)
+    order = np.arange(len(ENDS))
+    if swapped is not None:
+        order[list(swapped)] = order[list(swapped)[::-1]]
+    constants = truth.constants[order]
+    measured = replace(
+        predictor.measured,
+        frequency=truth.frequency,
+        frequency_sigma=1e-4 * truth.frequency,
+        damping=truth.damping,
+        damping_sigma=0.03 * truth.damping,
+        constants=constants,
+        constants_sigma=0.01 * np.ones_like(constants),
+    )
+    return measured, predictor.predict(count=MODES + 2)
+
+
+def test_modes_are_paired_without_two_ends_that_changed_places() -> None:
+    measured, prediction = struck((0, 11))
+    rows = trusted_rows(measured, prediction)
+    assert rows is not None
+    assert set(measured.hit[~rows]) | set(measured.seen[~rows]) >= {0, 11}
+    assert rows.sum() == len(ENDS) - 2
+
+
+@pytest.mark.parametrize("swapped", [None, (5, 6)])
+def test_points_that_hardly_matter_stay(swapped: tuple[int, int] | None) -> None:
+    assert trusted_rows(*struck(swapped)) is None
