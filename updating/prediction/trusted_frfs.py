@@ -128,9 +128,7 @@ def _exchanged(
     every = np.ones(len(measured.seen), dtype=bool)
     moved = [c.rows for c in channels if c.moved]
     pairs = [
-        (a, b)
-        for a, b in combinations(moved, 2)
-        if a.sum() == b.sum() and _enough(measured, every & ~a & ~b)
+        (a, b) for a, b in combinations(moved, 2) if a.sum() == b.sum() and _enough(measured, every & ~a & ~b)
     ]
     means = [float(_macs(_swapped(measured, a, b), prediction, every).mean()) for a, b in pairs]
     best = max(means, default=0.0)
