@@ -88,6 +88,15 @@ def test_a_shape_that_is_turned_round_changes_nothing(setting: Setting, signs: l
     assert turns(setting).columns(other, level) == pytest.approx(turns(setting).columns(now, level))
 
 
+def test_what_is_read_with_a_gain_turns_with_it(setting: Setting) -> None:
+    now = setting.nominal
+    quieter = setting.predictor.predict(State(gain=0.7), count=now.constants.shape[1])
+    level = np.ones_like(now.constants)
+    assert np.abs(quieter.constants) == pytest.approx(0.7 * np.abs(now.constants))
+    found, whole = (np.abs(turns(setting).columns(one, level)) for one in (quieter, now))
+    assert found == pytest.approx(0.7 * whole)
+
+
 def test_modes_known_to_the_last_digit_do_not_turn(setting: Setting) -> None:
     sharp = replace(setting, measured=replace(setting.measured, repeatability=0.0))
     assert turns(sharp).columns(setting.nominal, np.ones_like(setting.nominal.constants)).size == 0
