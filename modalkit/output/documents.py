@@ -9,7 +9,7 @@ from acquisition import HitVerdict, ModalData, rejected_points
 from identification import ModalModel, mpc
 from modalkit.workflow.existing import Modes
 from updating import Diagnosis
-from updating.diagnosis.answer.result import Ranked, Remainder
+from updating.diagnosis.answer.result import Ranked, Remainder, Shrink
 from updating.diagnosis.answer.verdict import NAME
 
 
@@ -80,7 +80,7 @@ def hit_document(hit: HitVerdict) -> dict[str, Any]:
 
 def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict[str, Any]:
     """Return a diagnosis as ``modalkit.diagnosis/1``."""
-    where, shrink = diagnosis.where, diagnosis.shrink
+    where = diagnosis.where
     return {
         "schema": "modalkit.diagnosis/1",
         "title": diagnosis.title,
@@ -105,33 +105,7 @@ def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> di
             "sets": diagnosis.sets,
             "ranking": [_ranked_document(r, named=r.effects in diagnosis.sets) for r in diagnosis.ranking],
         },
-        "shrink": {
-            "metric": shrink.metric,
-            "before_percent": shrink.before,
-            "after_percent": shrink.after,
-            "held_out": {
-                "before_percent": shrink.held_before,
-                "after_percent": shrink.held_after,
-                "runner_up_percent": shrink.held_runner_up,
-                "nuisance_only_percent": shrink.held_nuisance,
-                "noise_floor_percent": shrink.floor,
-                "nuisance_stretch_sigma": shrink.stretch,
-                "points": None
-                if shrink.points is None
-                else {
-                    "before_percent": shrink.points.before,
-                    "after_percent": shrink.points.after,
-                    "nuisance_only_percent": shrink.points.nuisance,
-                },
-            },
-            "closed_percent": None
-            if shrink.closed is None
-            else {
-                "value": shrink.closed.value,
-                "low95": shrink.closed.low95,
-                "high95": shrink.closed.high95,
-            },
-        },
+        "shrink": _shrink_document(diagnosis.shrink),
         "remainder": _remainder_document(diagnosis.remainder),
         "included": dict(diagnosis.included),
         "next_test": [
@@ -144,6 +118,36 @@ def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> di
         ],
         "not_examined": {name: str(why) for name, why in diagnosis.not_examined.items()},
         "warnings": [*diagnosis.warnings, *warnings],
+    }
+
+
+def _shrink_document(shrink: Shrink) -> dict[str, Any]:
+    return {
+        "metric": shrink.metric,
+        "before_percent": shrink.before,
+        "after_percent": shrink.after,
+        "held_out": {
+            "before_percent": shrink.held_before,
+            "after_percent": shrink.held_after,
+            "runner_up_percent": shrink.held_runner_up,
+            "nuisance_only_percent": shrink.held_nuisance,
+            "noise_floor_percent": shrink.floor,
+            "nuisance_stretch_sigma": shrink.stretch,
+            "points": None
+            if shrink.points is None
+            else {
+                "before_percent": shrink.points.before,
+                "after_percent": shrink.points.after,
+                "nuisance_only_percent": shrink.points.nuisance,
+            },
+        },
+        "closed_percent": None
+        if shrink.closed is None
+        else {
+            "value": shrink.closed.value,
+            "low95": shrink.closed.low95,
+            "high95": shrink.closed.high95,
+        },
     }
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from updating import Case, Damping, Material, Measured, Spec, Tolerances
+from updating import Case, Damping, Material, Measured, Predictor, Spec, Tolerances
+from updating.prediction.predict import Prediction
 
 STEEL = Material(210e9, 7850.0, 0.3)
 BEAM = Spec("beam", 0.376, 0.0305, 0.0047625, (40,), ("x0",), "timoshenko", STEEL, damping=Damping(2.0, 1e-6))
@@ -115,6 +117,20 @@ class ExactBeam:
         for place, mass in self.masses:
             total = total + mass * w[int(np.argmin(np.abs(x - place)))] ** 2
         return np.stack([np.interp(points, x, w[:, r]) for r in range(len(omega))], axis=1) / np.sqrt(total)
+
+
+def exactly(predictor: Predictor, truth: Prediction, *, sigma: float = 1e-4, **changes: Any) -> Measured:
+    """A test that found a prediction's modes to the last digit, and knows them to one in ten thousand."""
+    found = truth.constants
+    stated = {
+        "frequency": truth.frequency,
+        "frequency_sigma": sigma * truth.frequency,
+        "damping": truth.damping,
+        "damping_sigma": 0.03 * truth.damping,
+        "constants": found,
+        "constants_sigma": 0.01 * np.abs(found).max(axis=0) * np.ones_like(found),
+    }
+    return replace(predictor.measured, **{**stated, **changes})
 
 
 def blank(

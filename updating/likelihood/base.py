@@ -5,9 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
-import numpy as np
-
-from acquisition.arrays import FloatArray
 from updating.likelihood.baseline_prior import Before
 from updating.likelihood.comparison import Block
 from updating.models.state import State
@@ -103,20 +100,3 @@ class Quantity(ABC):
     @abstractmethod
     def block(self, view: View) -> Block:
         """Return residual, noise and nuisances of these data beside a state."""
-
-
-def gains(test: Measured, now: Prediction) -> FloatArray:
-    """Return with which gain each FRF reads what moves at its stated ends, over all modes, (n_frf, 1) [-].
-
-    Parameters
-    ----------
-    test : Measured
-        The test.
-    now : Prediction
-        Its modes.
-    """
-    shape = now.at_points
-    bare = (test.hit < 0)[:, None]
-    plain = shape[test.seen] * np.where(bare, 1.0, shape[test.hit])
-    power = np.maximum(np.sum(plain**2, axis=1, keepdims=True), 1e-300)
-    return np.asarray(np.sum(now.constants * plain, axis=1, keepdims=True) / power)

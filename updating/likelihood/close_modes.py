@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.likelihood.base import Setting, gains
+from updating.likelihood.base import Setting
 from updating.prediction.predict import Prediction
 from updating.thresholds import LEAST_TURN
 
@@ -56,15 +56,12 @@ class CloseModes:
         return np.asarray(np.where(alike < 0, -1.0, 1.0) * columns).reshape(level.size, len(angle))
 
     def _change(self, now: Prediction, mode: IntArray, other: IntArray) -> FloatArray:
-        """Return what constants of modes change by as others are added to their shapes, (n_frf, k) [1/kg].
-
-        Each FRF reads the change with the gain with which it reads the modes.
-        """
+        """Return what constants of modes change by as others are added to their shapes, (n_frf, k) [1/kg]."""
         test, shape = self.setting.measured, now.at_points
         bare = (test.hit < 0)[:, None]
         seen, hit = shape[test.seen], np.where(bare, 1.0, shape[test.hit])
         added = seen[:, other] * hit[:, mode] + np.where(bare, 0.0, seen[:, mode] * hit[:, other])
-        return np.asarray(gains(test, now) * added)
+        return np.asarray(now.gain[:, mode] * added)
 
     @cached_property
     def _pairs(self) -> tuple[IntArray, FloatArray]:

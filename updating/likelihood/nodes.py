@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.likelihood.base import Setting, gains
+from updating.likelihood.base import Setting
 from updating.prediction.predict import Prediction
 from updating.thresholds import LEAST_CONSTANT_NOISE
 
@@ -47,7 +47,7 @@ class Nodes:
             besides = LEAST_CONSTANT_NOISE * np.sqrt(np.mean(now.at_points**2, axis=0))
             # a shape has no sign of its own: one that leaps would be no smooth function of the state
             sign = np.where(np.sum(now.at_points * self.setting.nominal.at_points, axis=0) < 0, -1.0, 1.0)
-            change = gains(self.setting.measured, now) * now.at_points[roving] * besides * sign * level
+            change = now.gain * now.at_points[roving] * besides * sign * level
             for k, place in enumerate(self._shared):
                 there = np.flatnonzero(fixed == place)
                 columns[there[:, None], np.arange(n_modes), k, np.arange(n_modes)] = change[there]

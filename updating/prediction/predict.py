@@ -61,6 +61,8 @@ class Prediction(Displayed):
         Relative change of each frequency per newton of the hits' peak force [1/N].
     at_points : (n_points, n_modes) array
         Mode shapes at the test's points [kg^-1/2].
+    gain : (n_frf, n_modes) array
+        Factor of the constants over the product of the shapes at the points that they join [-].
     """
 
     frequency: FloatArray
@@ -73,6 +75,7 @@ class Prediction(Displayed):
     vectors: FloatArray
     slope: FloatArray
     at_points: FloatArray
+    gain: FloatArray
 
     def select(self, modes: IntArray) -> Prediction:
         """Return some of the modes, in the order given."""
@@ -87,6 +90,7 @@ class Prediction(Displayed):
             self.vectors[:, modes],
             self.slope[modes],
             self.at_points[:, modes],
+            self.gain[:, modes],
         )
 
 
@@ -253,6 +257,7 @@ class Predictor(Displayed):
             vectors[:, chosen],
             total.slope + _gained(total, values[chosen], vectors[:, chosen]),
             shapes["w"][: len(self.measured.points)],
+            np.asarray(level),
         )
 
     @cached_property

@@ -138,7 +138,7 @@ def _clamps(effect: Effect, predictor: Predictor) -> Iterator[Family]:
             name, _given(support, axis), 0.0, 1 / stiffness.low, 1 / (soft * stiffness.low),
             "a clamp softer than" if support is None else f"a support {support.name} softer than",
             lambda q: f"{severity(1 / q)} {stiffness.unit}", effect=effect.name,
-            at="" if support is None else support.name,            finest=max(stiffness.low / stiffness.high, FAINTEST),
+            at="" if support is None else support.name, finest=max(stiffness.low / stiffness.high, FAINTEST),
         )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from updating_cases import BEAM, DOUBTS, POINTS, blank
+from updating_cases import BEAM, DOUBTS, POINTS, blank, exactly
 
 from updating import Case, Measured, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
@@ -19,16 +19,7 @@ MODES = 4
 
 def measured() -> Measured:
     evaluation = Predictor(BEAM, blank(POINTS))
-    truth = evaluation.predict(count=MODES)
-    return replace(
-        evaluation.measured,
-        frequency=truth.frequency,
-        frequency_sigma=1e-4 * truth.frequency,
-        damping=truth.damping,
-        damping_sigma=0.03 * truth.damping,
-        constants=truth.constants,
-        constants_sigma=0.01 * np.abs(truth.constants).max(axis=0) * np.ones_like(truth.constants),
-    )
+    return exactly(evaluation, evaluation.predict(count=MODES))
 
 
 @pytest.fixture(scope="module")

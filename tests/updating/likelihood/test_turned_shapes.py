@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from updating_cases import PLATE, STEEL, blank
+from updating_cases import PLATE, STEEL, blank, exactly
 
 from acquisition.arrays import FloatArray
-from updating import Case, Measured, Predictor, Spec, Tolerances
+from updating import Case, Predictor, Spec, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.likelihood.base import Setting
 from updating.likelihood.close_modes import CloseModes
@@ -26,18 +26,7 @@ SQUARE = Spec("plate", 0.3, 0.302, 0.003, (10, 10), (), "kirchhoff", STEEL, damp
 def setting() -> Setting:
     x, y = np.meshgrid([0.02, 0.11, 0.19, 0.28], [0.01, 0.12, 0.2, 0.29], indexing="ij")
     evaluation = Predictor(SQUARE, blank(np.stack([x.ravel(), y.ravel()], axis=1)))
-    truth = evaluation.predict(count=5)
-    measured = replace(
-        evaluation.measured,
-        frequency=truth.frequency,
-        frequency_sigma=1e-6 * truth.frequency,
-        damping=truth.damping,
-        damping_sigma=0.03 * truth.damping,
-        constants=truth.constants,
-        constants_sigma=0.01 * np.abs(truth.constants).max(axis=0) * np.ones_like(truth.constants),
-        repeatability=SCATTER,
-    )
-    assert isinstance(measured, Measured)
+    measured = exactly(evaluation, evaluation.predict(count=5), sigma=1e-6, repeatability=SCATTER)
     return pose(Case("a plate", SQUARE, measured, tolerances=Tolerances({"E": 0.01})))[0].setting
 
 

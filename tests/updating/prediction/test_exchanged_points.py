@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from updating_cases import BEAM, blank
+from updating_cases import BEAM, blank, exactly
 
 from updating import Measured, Predictor
 from updating.prediction.predict import Prediction
@@ -23,16 +23,7 @@ def struck(swapped: tuple[int, int] | None) -> tuple[Measured, Prediction]:
     order = np.arange(len(ENDS))
     if swapped is not None:
         order[list(swapped)] = order[list(swapped)[::-1]]
-    constants = truth.constants[order]
-    measured = replace(
-        predictor.measured,
-        frequency=truth.frequency,
-        frequency_sigma=1e-4 * truth.frequency,
-        damping=truth.damping,
-        damping_sigma=0.03 * truth.damping,
-        constants=constants,
-        constants_sigma=0.01 * np.ones_like(constants),
-    )
+    measured = exactly(predictor, replace(truth, constants=truth.constants[order]))
     return measured, predictor.predict(count=MODES + 2)
 
 

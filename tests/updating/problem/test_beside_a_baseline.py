@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from updating_cases import BEAM, POINTS, blank
+from updating_cases import BEAM, POINTS, blank, exactly
 
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
@@ -21,16 +19,7 @@ THICKER = 1.15
 
 def measured(factors: dict[str, float]) -> Measured:
     evaluation = Predictor(BEAM, blank(POINTS))
-    truth = evaluation.predict(State(factors=factors), count=4)
-    return replace(
-        evaluation.measured,
-        frequency=truth.frequency,
-        frequency_sigma=1e-4 * truth.frequency,
-        damping=truth.damping,
-        damping_sigma=0.03 * truth.damping,
-        constants=truth.constants,
-        constants_sigma=0.01 * np.abs(truth.constants).max(axis=0) * np.ones_like(truth.constants),
-    )
+    return exactly(evaluation, evaluation.predict(State(factors=factors), count=4))
 
 
 @pytest.fixture(scope="module")

@@ -95,7 +95,10 @@ def _likely_places(
 ) -> tuple[Cluster, ...]:
     """Return the places of an explanation in all channels that act together."""
     found = [cluster for name in channels for cluster in clusters(problem, leader.explanation, name)]
-    return tuple({tuple(cluster.place.tolist()): cluster for cluster in reversed(found)}.values())[::-1]
+    first: dict[Place, Cluster] = {}
+    for cluster in found:
+        first.setdefault(_place(cluster.place), cluster)
+    return tuple(first.values())
 
 
 def _channels(found: Search) -> tuple[dict[str, float], float]:

@@ -105,7 +105,7 @@ class Specimen:
         return Prediction(
             frequency, np.full(len(frequency), np.nan), constants, nothing, nothing,
             np.zeros((len(frequency), 0)), np.zeros((*constants.shape, 0)), vectors,
-            np.zeros(len(frequency)), shape,
+            np.zeros(len(frequency)), shape, np.broadcast_to(self._gain, constants.shape),
         )  # fmt: skip
 
     def slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:
