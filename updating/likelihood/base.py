@@ -49,6 +49,8 @@ class Setting:
         Factors with a tolerance that the model knows.
     nominal : Prediction
         The nominal prediction of the measured modes.
+    missed : Prediction
+        That of the modes that the model has and the test has not.
     before : Before, optional
         What a baseline has already said.
     """
@@ -58,6 +60,7 @@ class Setting:
     tolerances: Tolerances
     names: tuple[str, ...]
     nominal: Prediction
+    missed: Prediction
     before: Before | None = None
 
 

@@ -11,6 +11,7 @@ from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.close_modes import CloseModes
 from updating.likelihood.comparison import Block
+from updating.likelihood.missed_modes import MissedModes
 from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
 from updating.likelihood.places import Places
@@ -71,6 +72,10 @@ class Constants(Quantity):
     def _close_modes(self) -> CloseModes:
         return CloseModes(self.setting, self.further)
 
+    @cached_property
+    def _missed_modes(self) -> MissedModes:
+        return MissedModes(self.setting)
+
     def block(self, view: View) -> Block:
         """Return the constants beside a state, the calibration a named doubt where their level is data."""
         test, now, scale = self.setting.measured, view.now, self.scale
@@ -86,6 +91,7 @@ class Constants(Quantity):
             self._places.together(now.along * level, now.along_seen * level),
             self._nodes.columns(now, level),
             self._close_modes.columns(now, level),
+            self._missed_modes.columns(now, level),
             louder,
         ]
         gain = self._gains(predicted)

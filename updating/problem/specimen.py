@@ -170,11 +170,19 @@ class SpecimenProblem:
         own, every = self.tolerances, self.names
         return np.array([own.regional(n) if "." in n else own.factors[n] for n in every])
 
-    @cached_property
+    @property
     def nominal(self) -> Prediction:
         """The nominal prediction of the matched modes."""
+        return self._nominal[0]
+
+    @cached_property
+    def _nominal(self) -> tuple[Prediction, Prediction]:
+        """The nominal prediction of the matched modes, and of those that the test has not."""
         prediction = self.predictor.predict(factors=self.names, at_least=self.reach)
-        return prediction.select(self._match(prediction))
+        order = self._match(prediction)
+        return prediction.select(order), prediction.select(
+            np.setdiff1d(np.arange(len(prediction.frequency)), order)
+        )
 
     def _match(self, prediction: Prediction) -> IntArray:
         return match(self.measured, prediction, self.order)
@@ -264,7 +272,9 @@ class SpecimenProblem:
     @cached_property
     def setting(self) -> Setting:
         """Test and model, as every kind of data needs the two."""
-        return Setting(self.predictor, self.measured, self.tolerances, self.names, self.nominal, self.before)
+        return Setting(
+            self.predictor, self.measured, self.tolerances, self.names, *self._nominal, self.before
+        )
 
     @property
     def damping_known(self) -> IntArray:
