@@ -9,7 +9,9 @@ if TYPE_CHECKING:
     from identification.band.informed import at_cut_edge, informed_band
     from identification.fit.equations.residues import Residues, fit_residues
     from identification.identify import Prepared, identify, prepare
+    from identification.levels.one_level import at_one_level, follows_level, is_smeared
     from identification.levels.slopes import LevelDependence, level_dependence, why_no_level_dependence
+    from identification.levels.stretched import Stretched, stretched_averages
     from identification.mac import (
         auto_mac,
         comac,
@@ -50,8 +52,10 @@ __all__ = [
     "Residues",
     "Shapes",
     "StabilisationChart",
+    "Stretched",
     "Subspace",
     "at_cut_edge",
+    "at_one_level",
     "auto_mac",
     "beside",
     "cmif",
@@ -62,12 +66,14 @@ __all__ = [
     "ecomac",
     "fdac",
     "fit_residues",
+    "follows_level",
     "frac",
     "frac_table",
     "frf_health",
     "from_sdypy",
     "identify",
     "informed_band",
+    "is_smeared",
     "level_dependence",
     "lsce",
     "lscf",
@@ -86,6 +92,7 @@ __all__ = [
     "real_modes",
     "second_opinion",
     "stabilise",
+    "stretched_averages",
     "subspace_mac",
     "to_sdypy",
     "why_no_level_dependence",
@@ -98,6 +105,8 @@ load_on_demand(
         ".band.health": "frf_health mode_coherence",
         ".identify": "Prepared identify prepare",
         ".band.informed": "at_cut_edge informed_band",
+        ".levels.one_level": "at_one_level follows_level is_smeared",
+        ".levels.stretched": "Stretched stretched_averages",
         ".levels.slopes": "LevelDependence level_dependence why_no_level_dependence",
         ".mac": (
             "auto_mac comac common_dofs coordinate_table ecomac fdac frac frac_table mac mac_table macx modes_table "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -16,6 +17,9 @@ from identification.arrangement import signs
 from identification.fit.equations import basis
 from identification.fit.equations.residues import Residues, synthesise
 from identification.poles.stabilisation import StabilisationChart
+
+if TYPE_CHECKING:
+    from identification.levels.slopes import LevelDependence
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +68,8 @@ class ModalModel(Shown, Animated):
         Points whose FRFs were left out, with the reason.
     carried : FrfSet, optional
         The data as they were fitted, carried over to common poles, where frequencies differ from FRF to FRF.
+    levels : LevelDependence, optional
+        How the modes follow the force of the hits, where it is known that they do.
     """
 
     modal: ModalData
@@ -85,6 +91,7 @@ class ModalModel(Shown, Animated):
     warnings: tuple[str, ...] = ()
     points_rejected: tuple[str, ...] = ()
     carried: FrfSet | None = None
+    levels: LevelDependence | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays."""

@@ -56,6 +56,8 @@ class LevelDependence(Displayed):
         Which point and run each hit belongs to.
     shifts, sigmas : (n_hits, n_modes) arrays
         ln f of each hit less that identified, and the standard deviation by the misfit of this hit alone [-].
+    damping_shifts : (n_hits, n_modes) array
+        Damping ratio of each hit less that identified [-].
     """
 
     slope: FloatArray
@@ -69,6 +71,7 @@ class LevelDependence(Displayed):
     point: IntArray
     shifts: FloatArray
     sigmas: FloatArray
+    damping_shifts: FloatArray
 
 
 def why_no_level_dependence(tests: Sequence[Judged]) -> str | None:
@@ -77,7 +80,11 @@ def why_no_level_dependence(tests: Sequence[Judged]) -> str | None:
 
 
 def level_dependence(
-    model: ModalModel, tests: Sequence[Judged], *, windows: Windows | None = None
+    model: ModalModel,
+    tests: Sequence[Judged],
+    *,
+    windows: Windows | None = None,
+    slope: FloatArray | None = None,
 ) -> LevelDependence | None:
     """Return how the modes depend on the level of the hits; None where the hits do not tell.
 
@@ -89,6 +96,8 @@ def level_dependence(
         The raw hits and what was decided on them; see `why_no_level_dependence`.
     windows : Windows, optional
         As when the FRFs were estimated.
+    slope : (n_modes,) array, optional
+        Slopes by which the poles of each hit are expected; left out, they are looked for about the common ones [1/N].
 
     Returns
     -------
@@ -101,26 +110,32 @@ def level_dependence(
     vibration dies away: a slope is one of this effective frequency. Standard deviations come from the scatter about
     the line, widened for its degrees of freedom so that 1.96 of them are a 95 % interval.
     """
-    rows = {pair: i for i, pair in enumerate(zip(model.frfs.responses, model.frfs.references, strict=True))}
-    entries = [e for e in used_hits(tests) if _known(e, rows)]
+    rows = rows_of(model)
+    entries = [e for e in used_hits(tests) if is_known(e, rows)]
     if why_not(entries) is not None:
         return None
     weights = weights_of(model)
     band = (float(model.frfs.frequency[0]), float(model.frfs.frequency[-1]))
-    found = [
-        _of_hit(model, f, weights, rows) for e in entries for f in e.single_frfs(windows=windows, band=band)
-    ]
+    levels, common = np.concatenate([e.levels for e in entries]), mean_level(entries)
+    expected = np.outer(levels - common, np.zeros(len(model)) if slope is None else slope)
+    singles = (f for e in entries for f in e.single_frfs(windows=windows, band=band))
+    found = [_of_hit(model, f, weights, rows, d) for f, d in zip(singles, expected, strict=True)]
     shifts, variances = (np.array(part) for part in zip(*found, strict=True))
-    levels = np.concatenate([e.levels for e in entries])
     point = np.repeat(np.arange(len(entries)), [len(e.levels) for e in entries])
     lines = [_line(levels, point, shifts[:, :, i], variances[:, :, i]) for i in range(2)]
     return LevelDependence(
-        *lines[0], *lines[1], mean_level(entries), float(levels.min()), float(levels.max()), levels, point,
-        shifts[:, :, 0], np.sqrt(variances[:, :, 0]),
+        *lines[0], *lines[1], common, float(levels.min()), float(levels.max()), levels, point,
+        shifts[:, :, 0], np.sqrt(variances[:, :, 0]), shifts[:, :, 1],
     )  # fmt: skip
 
 
-def _known(entry: UsedHits, rows: dict[tuple[Dof, Dof], int]) -> bool:
+def rows_of(model: ModalModel) -> dict[tuple[Dof, Dof], int]:
+    """Return the row of each response and reference among the FRFs of a model."""
+    return {pair: i for i, pair in enumerate(zip(model.frfs.responses, model.frfs.references, strict=True))}
+
+
+def is_known(entry: UsedHits, rows: dict[tuple[Dof, Dof], int]) -> bool:
+    """Tell whether any FRF of these hits is among the rows."""
     return any((response, entry.hits.reference) in rows for response in entry.hits.responses)
 
 
@@ -134,31 +149,50 @@ def weights_of(model: ModalModel) -> Weights:
     return noise_weights(frfs, residual, absorbed_by(frfs, fit, plain))[0]
 
 
-def _of_hit(
-    model: ModalModel, frfs: FrfSet, weights: Weights, rows: dict[tuple[Dof, Dof], int]
-) -> tuple[FloatArray, FloatArray]:
-    """Return shifts of (ln f, zeta) of each mode in one hit, (n_modes, 2), and their variances."""
+def of_single(
+    frfs: FrfSet, weights: Weights, rows: dict[tuple[Dof, Dof], int]
+) -> tuple[FrfSet, Weights, list[int]]:
+    """Return those FRFs of a single hit that a model has, their weights, and which of its responses they are."""
     pairs = list(zip(frfs.responses, frfs.references, strict=True))
     kept = [i for i, pair in enumerate(pairs) if pair in rows]
-    data, stated = frfs.select(kept), np.array([rows[pairs[i]] for i in kept])
+    stated = np.array([rows[pairs[i]] for i in kept])
     of_lines = weights.lines if len(weights.lines) == 1 else weights.full[stated].mean(axis=0, keepdims=True)
     level = weights.level[stated] if len(weights.lines) == 1 else np.ones(len(stated))
-    moved, covariance = _moved_poles(model, data, Weights(level, of_lines))
-    poles, size = model.poles, np.abs(model.poles)
+    return frfs.select(kept), Weights(level, of_lines), kept
+
+
+def _of_hit(
+    model: ModalModel,
+    frfs: FrfSet,
+    weights: Weights,
+    rows: dict[tuple[Dof, Dof], int],
+    expected: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return shifts of (ln f, zeta) of each mode in one hit, (n_modes, 2), and their variances.
+
+    They are looked for about the shifts of ln f (n_modes,) that are expected.
+    """
+    data, own, _ = of_single(frfs, weights, rows)
+    poles = model.poles * np.exp(expected)
+    moved, covariance = _moved_poles(model, poles, data, own)
+    size = np.abs(poles)
     frequency = np.stack([poles.real, poles.imag], axis=1) / size[:, None] ** 2
     damping = -np.stack([1 / size, np.zeros(len(size))], axis=1) + (poles.real / size)[:, None] * frequency
     turn = np.stack([frequency, damping], axis=1)
     shift = np.einsum("rij,rj->ri", turn, np.stack([moved.real, moved.imag], axis=1))
+    shift[:, 0] += expected
     return shift, np.einsum("rij,rjk,rik->ri", turn, covariance, turn)
 
 
-def _moved_poles(model: ModalModel, data: FrfSet, weights: Weights) -> tuple[ComplexArray, FloatArray]:
-    """Return how far the poles of one hit are from those identified, and its (n_modes, 2, 2) covariance [rad/s].
+def _moved_poles(
+    model: ModalModel, poles: ComplexArray, data: FrfSet, weights: Weights
+) -> tuple[ComplexArray, FloatArray]:
+    """Return how far the poles of one hit are from those given, and its (n_modes, 2, 2) covariance [rad/s].
 
     On the way, poles are held by a prior of a half-width, so that one which this hit does not show stays where it is.
     """
-    n, powers, at = len(model), model.background.powers, model.poles
-    width = np.abs(model.poles.real)
+    n, powers, at = len(poles), model.background.powers, poles
+    width = np.abs(poles.real)
     prior = np.repeat(1 / width**2, 2)
 
     def information() -> tuple[FloatArray, FloatArray]:
@@ -167,7 +201,7 @@ def _moved_poles(model: ModalModel, data: FrfSet, weights: Weights) -> tuple[Com
 
     for _ in range(STEPS):
         normal, gradient = information()
-        pull = gradient - prior * _flat(at - model.poles)
+        pull = gradient - prior * _flat(at - poles)
         change = _complex(np.asarray(np.linalg.solve(normal + np.diag(prior), pull)))
         at = decaying(np.asarray(at + change), at, data.decay)
         if np.abs(change / width).max() < AT_REST:
@@ -175,7 +209,7 @@ def _moved_poles(model: ModalModel, data: FrfSet, weights: Weights) -> tuple[Com
     normal, gradient = information()
     covariance = np.asarray(np.linalg.inv(normal + np.diag(1e-8 * prior)), dtype=np.float64)
     blocks = covariance.reshape(n, 2, n, 2)[np.arange(n), :, np.arange(n), :]
-    return np.asarray(at - model.poles + _complex(covariance @ gradient)), blocks
+    return np.asarray(at - poles + _complex(covariance @ gradient)), blocks
 
 
 def _information(step: Step, n_modes: int, data: FrfSet) -> tuple[FloatArray, FloatArray]:

@@ -306,7 +306,7 @@ def _with_levels(measured: Measured, processed: Processed, identified: ModalMode
         return measured
     windows = Windows(decay=stated.window) if stated.window else None
     judged = [(j.test, j.verdicts) for j in processed.judged]
-    found = level_dependence(identified, judged, windows=windows)
+    found = identified.levels or level_dependence(identified, judged, windows=windows)
     if found is None:
         return measured
     return replace(measured, slope=found.slope, slope_sigma=found.slope_sigma, level=found.level)

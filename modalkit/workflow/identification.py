@@ -33,7 +33,7 @@ from modalkit.workflow.files import Progress, read_files
 from modalkit.workflow.frf_checks import identical, without_constant
 from modalkit.workflow.hit_warnings import on_coherence, on_hits, on_window
 from modalkit.workflow.joining import together
-from modalkit.workflow.level_warnings import with_level_warning
+from modalkit.workflow.levels import with_levels
 from modalkit.workflow.mixed import with_read
 from modalkit.workflow.processing_options import ProcessingOptions
 from modalkit.workflow.references import among_references, with_references
@@ -134,7 +134,19 @@ class Processed(Shown):
         if self.processing.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
             return model
         windows = Windows(decay=self.processing.window) if self.processing.window else None
-        return with_level_warning(model, [(j.test, j.verdicts) for j in self.judged], windows=windows)
+        return with_levels(
+            model,
+            [(j.test, j.verdicts) for j in self.judged],
+            lambda data: self._of(data)._identified(band, order, add, drop),
+            windows=windows,
+        )
+
+    def _of(self, data: FrfSet | Sequence[HammerTest]) -> Processed:
+        """Return the same test with other FRFs, or those of other hits, all of which are used."""
+        if isinstance(data, FrfSet):
+            return replace(self, frfs=data)
+        frfs = _frfs_of([Judged(test, ()) for test in data], self.content, self.processing, [])
+        return replace(self, frfs=without_constant(frfs, []))
 
     def _identified(
         self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
@@ -332,9 +344,7 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
     judged = _judged(content.tests, processing, warnings)
     if judged:
         warnings += on_hits([(j.test, j.verdicts) for j in judged])
-        frfs = _estimated(judged, processing)
-        if content.frfs is not None:
-            frfs = with_read(frfs, content.frfs, content.tests, warnings, decay=processing.decay)
+        frfs = _frfs_of(judged, content, processing, warnings)
     elif content.frfs is not None:
         frfs = _as_read(content.frfs, processing, warnings)
     else:
@@ -441,11 +451,21 @@ def numbered(tests: Sequence[tuple[HitVerdict, ...]]) -> list[tuple[HitVerdict, 
     return answer
 
 
+def _frfs_of(
+    judged: Sequence[Judged], content: UffContent, processing: ProcessingOptions, warnings: list[str]
+) -> FrfSet:
+    """Return the FRFs of hits, and with them those that were read beside these."""
+    frfs = _estimated(judged, processing)
+    if content.frfs is None:
+        return frfs
+    return with_read(frfs, content.frfs, content.tests, warnings, decay=processing.decay)
+
+
 def _estimated(judged: Sequence[Judged], processing: ProcessingOptions) -> FrfSet:
     windows = Windows(decay=processing.window) if processing.window else None
     return together(
         [
             estimate_frfs(j.test, estimator=processing.estimator, verdicts=j.verdicts, windows=windows)
-            for j in [j for j in judged if any(v.used for v in j.verdicts)] or judged[:1]
+            for j in [j for j in judged if not j.verdicts or any(v.used for v in j.verdicts)] or judged[:1]
         ]
     )

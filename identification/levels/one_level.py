@@ -1,0 +1,190 @@
+"""Hits as though all had been equally hard.
+
+Where modes follow the force, an average over hits of different levels is that of several structures: peaks are smeared,
+or look like two. What the modes do at a hit's own level is therefore replaced by what they do at a common one. That
+takes modes to begin with, which :mod:`identification.levels.stretched` gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import scipy.fft
+
+from acquisition import HammerTest, Windows
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.hits.hammer import Hits
+from identification.fit.equations import basis
+from identification.fit.equations.residues import Residues, fit_residues, synthesise
+from identification.levels.hits import Judged, UsedHits, used_hits
+from identification.levels.slopes import LevelDependence, is_known, of_single, rows_of, weights_of
+from identification.model import ModalModel
+
+SURE = 4.0
+"""Slope over its standard deviation from which a mode follows the level. Doubled, weak joints go unnamed; halved, every
+other test of thirty modes names one by chance [-]."""
+
+SMEARED = 0.1
+"""Scatter of a mode's frequency over the hits at a point, over its half-power half-width, from which averages are not
+those of one structure: they broaden the peak by the square of it, 1 %. Doubled: by 4 %, a third of what repeated tests
+scatter in damping [-]."""
+
+PADDED = 4
+"""Length of the transform over that of the record, so that what rings at its end does not come round again [-]."""
+
+
+def follows_level(found: LevelDependence) -> BoolArray:
+    """Return which modes follow the level beyond doubt, (n_modes,)."""
+    return np.asarray(np.nan_to_num(np.abs(found.slope) / found.slope_sigma) > SURE)
+
+
+def is_smeared(model: ModalModel, found: LevelDependence) -> bool:
+    """Tell whether averages over the hits at a point are those of several structures.
+
+    Parameters
+    ----------
+    model : ModalModel
+        Identified from averages.
+    found : LevelDependence
+        How its modes follow the level.
+    """
+    levels = found.levels[:, None]
+    about = levels - _means(levels, found.point, np.ones_like(levels))
+    damping = -model.poles.real / np.abs(model.poles)
+    scatter = np.abs(found.slope) * np.sqrt(np.mean(about**2)) / np.maximum(damping, 1e-12)
+    return bool(np.any(scatter[follows_level(found)] > SMEARED))
+
+
+def at_one_level(
+    model: ModalModel, tests: Sequence[Judged], found: LevelDependence, *, windows: Windows | None = None
+) -> tuple[HammerTest, ...]:
+    """Return tests of the used hits as though all had had the level that the averages stand for.
+
+    Parameters
+    ----------
+    model : ModalModel
+        Its modes, told apart from each other at any one level.
+    tests : sequence of (HammerTest, verdicts)
+        The raw hits and what was decided on them.
+    found : LevelDependence
+        How the modes follow the level.
+    windows : Windows, optional
+        As when the FRFs were estimated.
+
+    Notes
+    -----
+    A hit's FRFs are fitted by the poles that its level gives, the residues free; what these modes add to its records is
+    then exchanged for what the same residues add at the poles of the common level. Noise, and all that is no mode of
+    the model, stays as it is.
+    """
+    weights, rows, shifts = weights_of(model), rows_of(model), _shifts(found)
+    first, moved = 0, []
+    for entry in used_hits(tests):
+        force, motion = _records(entry)
+        if is_known(entry, rows):
+            singles = entry.single_frfs(windows=windows, band=_band(model))
+            pulses = _spectra(force)
+            for hit, frfs in enumerate(singles):
+                data, own, which = of_single(frfs, weights, rows)
+                here, there = (_poles(model, shift[first + hit]) for shift in shifts)
+                linear = fit_residues(
+                    data,
+                    np.concatenate([here, model.background_poles]),
+                    powers=model.background.powers,
+                    weights=own,
+                )
+                change = _change(entry.test, pulses.shape[-1], linear.residues[:, : len(here)], here, there)
+                motion[hit, which] += _records_of(change * pulses[hit], motion.shape[-1])
+            first += len(force)
+        moved.append((entry, force, motion))
+    return _tests(moved)
+
+
+def _shifts(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
+    """Return (ln f, zeta) of the hits less those of the model, at their levels and at the common one.
+
+    What a point has of its own, a roving mass, stays. Modes that do not follow the level beyond doubt stay as well. No
+    joint follows a line for ever: a hit that shows a mode better than the line holds says itself where it is.
+
+    Returns
+    -------
+    here, there : (n_hits, n_modes, 2) arrays
+    """
+    moved = found.levels - found.level
+    line = np.outer(moved, np.where(follows_level(found), found.slope, 0.0))
+    weight = 1 / (found.sigmas**2 + np.median(found.sigmas, axis=0) ** 2)
+    offset = _means(found.shifts - line, found.point, weight)
+    beside = found.shifts - line - offset
+    scatter = np.median(np.abs(beside), axis=0) ** 2
+    beside = np.where(follows_level(found), beside * scatter / (scatter + found.sigmas**2), 0.0)
+    sure = np.nan_to_num(np.abs(found.damping_slope) / found.damping_slope_sigma) > SURE
+    by_level = np.outer(moved, np.where(sure, found.damping_slope, 0.0))
+    # averages that are smeared have broader peaks than any hit has
+    damping = np.broadcast_to(np.median(found.damping_shifts - by_level, axis=0), line.shape)
+    return np.stack([offset + line + beside, damping + by_level], axis=-1), np.stack(
+        [offset, damping], axis=-1
+    )
+
+
+def _poles(model: ModalModel, shift: FloatArray) -> ComplexArray:
+    """Return the poles of a model moved by (ln f, zeta), (n_modes, 2) [rad/s]."""
+    size = np.abs(model.poles) * np.exp(shift[:, 0])
+    ratio = np.clip(-model.poles.real / np.abs(model.poles) + shift[:, 1], 1e-6, 0.9)
+    return np.asarray(size * (-ratio + 1j * np.sqrt(1 - ratio**2)))
+
+
+def _change(
+    test: HammerTest, lines: int, residues: ComplexArray, here: ComplexArray, there: ComplexArray
+) -> ComplexArray:
+    """Return the change of FRFs as modes move from poles to others, (n_frf, lines) [by the test's form].
+
+    Modal constants stay, so that residues go as one over the damped frequency.
+    """
+    omega = 2 * np.pi * np.arange(lines) * test.rate / (2 * (lines - 1))
+    # at rest in the mean, no mode is of any account
+    laplace = np.asarray(np.where(omega > 0, 1j * omega, 1e-3j * omega[1]) + test.decay, complex)
+    axis = basis.Axis(laplace, test.form, test.decay)
+    nothing = np.zeros((len(residues), 0))
+    before, after = (
+        synthesise(axis, poles, Residues(residues * here.imag / poles.imag, nothing, ()))
+        for poles in (here, there)
+    )
+    return after - before
+
+
+def _records(entry: UsedHits) -> tuple[FloatArray, FloatArray]:
+    """Return force and motion of the used hits, (n_hits, n_samples) and (n_hits, n_responses, n_samples)."""
+    force, motion = entry.hits.force[entry.numbers], entry.hits.motion[entry.numbers]
+    return np.array(force, dtype=np.float64), np.array(motion, dtype=np.float64)
+
+
+def _spectra(records: FloatArray) -> ComplexArray:
+    return np.asarray(scipy.fft.rfft(records, PADDED * records.shape[-1], axis=-1))
+
+
+def _records_of(spectra: ComplexArray, samples: int) -> FloatArray:
+    return np.asarray(scipy.fft.irfft(spectra, PADDED * samples, axis=-1)[..., :samples])
+
+
+def _band(model: ModalModel) -> tuple[float, float]:
+    return float(model.frfs.frequency[0]), float(model.frfs.frequency[-1])
+
+
+def _means(values: FloatArray, group: IntArray, weight: FloatArray) -> FloatArray:
+    """Return each value's weighted mean over its group, (n, n_modes)."""
+    member = (group[:, None] == np.arange(group.max() + 1)).astype(np.float64)
+    total = np.maximum(member.T @ weight, np.finfo(float).tiny)
+    return np.asarray(member @ ((member.T @ (weight * values)) / total))
+
+
+def _tests(entries: Sequence[tuple[UsedHits, FloatArray, FloatArray]]) -> tuple[HammerTest, ...]:
+    """Return the tests that entries are from, with these forces and motions only."""
+    points: dict[int, list[Hits]] = {}
+    tests = {id(entry.test): entry.test for entry, _, _ in entries}
+    for entry, force, motion in entries:
+        points.setdefault(id(entry.test), []).append(
+            Hits(entry.hits.reference, entry.hits.responses, force, motion)
+        )
+    return tuple(replace(tests[key], points=tuple(hits)) for key, hits in points.items())
