@@ -41,23 +41,31 @@ class Places:
         return self._by_place(*self._seen, along)
 
     def together(self, hit: FloatArray, seen: FloatArray) -> FloatArray:
-        """Return a column for where the points as a whole lie along x."""
-        if not self.loose_length:
-            return np.zeros((hit[0].size, 0))
+        """Return a column for where the points as a whole lie along each axis that leaves it in doubt."""
         bare = (self.setting.measured.hit < 0)[:, None]
-        return np.asarray(self.loose_length * (np.where(bare, 0.0, hit[0]) + seen[0])).reshape(-1, 1)
+        columns = [
+            (loose * (np.where(bare, 0.0, hit[axis]) + seen[axis])).reshape(-1, 1)
+            for axis, loose in enumerate(self._loose.tolist())
+            if loose
+        ]
+        return np.hstack(columns) if columns else np.zeros((hit[0].size, 0))
 
     @cached_property
-    def loose_length(self) -> float:
-        """Doubt in where points lie along x, 0 where one end is clamped and they keep their distance from the other.
+    def _loose(self) -> FloatArray:
+        """Doubt in where points lie along the model's axes, of beams one, of plates two [m].
 
-        Else nobody says from which end they were measured: half of the doubt in the length. A baseline has the same.
+        It is 0 where one end is clamped and they keep their distance from the other. Else nobody says from which end
+        they were measured: half of the doubt in the size. A baseline has the same.
         """
-        spec = self.setting.predictor.spec
-        one_end = len({edge for edge in spec.clamped if edge[0] == "x"}) == 1
-        if one_end or self.setting.before is not None or not spec.outlined:
-            return 0.0
-        return REGISTRATION_SHARE * self.setting.tolerances.factors.get("length", 0.0) * spec.length
+        spec, tolerances = self.setting.predictor.spec, self.setting.tolerances.factors
+        if self.setting.before is not None or not spec.outlined:
+            return np.zeros(1)
+        sizes = {"length": spec.length} | ({"width": spec.width} if spec.kind == "plate" else {})
+        doubts = np.array(
+            [REGISTRATION_SHARE * tolerances.get(name, 0.0) * size for name, size in sizes.items()]
+        )
+        ends = [len({edge for edge in spec.clamped if edge[0] == axis}) for axis in "xy"[: len(sizes)]]
+        return np.where(np.array(ends) == 1, 0.0, doubts)
 
     @cached_property
     def _hit(self) -> tuple[IntArray, FloatArray]:
@@ -85,7 +93,9 @@ class Places:
 
     def _sigma(self, point: int, axis: int) -> float:
         """Return the doubt in a point's place; one at the end of the model was at the end of the specimen [m]."""
-        test, length = self.setting.measured, self.setting.predictor.spec.length
-        x = float(test.points[point, 0])
-        at_end = axis == 0 and min(x, length - x) < END_REACH * length
-        return float(np.hypot(test.position_sigma, 2 * self.loose_length)) if at_end else test.position_sigma
+        test, spec = self.setting.measured, self.setting.predictor.spec
+        if axis >= len(self._loose) or not self._loose[axis]:
+            return test.position_sigma
+        size, at = (spec.length, spec.width)[axis], float(test.points[point, axis])
+        at_end = min(at, size - at) < END_REACH * size
+        return float(np.hypot(test.position_sigma, 2 * self._loose[axis])) if at_end else test.position_sigma

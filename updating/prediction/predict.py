@@ -267,25 +267,42 @@ class Predictor(Displayed):
 
     def _rows(self, state: State, places: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return the rows of the basis at places, the test's points where none are given."""
-        stretch = state.factors.get("length", 1.0)
+        stretch = np.array([state.factors.get(name, 1.0) for name in self._sizes])
         elsewhere = places is not None and len(places) > len(self.measured.points)
-        if stretch == 1.0 and not elsewhere:
+        if (stretch == 1.0).all() and not elsewhere:
             return self.nominal_rows
-        points = np.array(places if elsewhere else self.measured.points)
-        points[:, 0] = (points[:, 0] + self.growth * (stretch - 1)) / stretch
+        points, axes = np.array(places if elsewhere else self.measured.points), len(stretch)
+        points[:, :axes] = (points[:, :axes] + self.growths * (stretch - 1)) / stretch
         rows = self.reduced.rows(points, self._directions(len(points)))
-        return {n: m / stretch if n == "wx" else m for n, m in rows.items()}
+        along = dict(zip(("wx", "wy"), stretch.tolist(), strict=False))
+        return {n: m / along.get(n, 1.0) for n, m in rows.items()}
 
     def _directions(self, count: int) -> FloatArray | None:
         stated = self.measured.directions
         return None if stated is None else stated[np.minimum(np.arange(count), len(stated) - 1)]
 
+    @cached_property
+    def _sizes(self) -> tuple[str, ...]:
+        """Factors that stretch the model along its axes."""
+        return ("length", "width") if self.spec.kind == "plate" else ("length",)
+
+    @cached_property
+    def growths(self) -> FloatArray:
+        """How far the origin moves per unit of stretch along each axis, (1,), of plates (2,) [m].
+
+        Points keep their distance from the free end; between two ends of a kind, from the middle.
+        """
+        sizes = {"x": self.spec.length, "y": self.spec.width}
+        clamped = [
+            {edge for edge in self.spec.clamped if edge[0] == axis} for axis in "xy"[: len(self._sizes)]
+        ]
+        share = [0.5 if len(edges) != 1 else float(edges < {"x0", "y0"}) for edges in clamped]
+        return np.array([part * sizes[axis] for part, axis in zip(share, "xy", strict=False)])
+
     @property
     def growth(self) -> float:
         """How far x = 0 moves per unit of stretch so that points keep their distance from the free end [m]."""
-        clamped = {edge for edge in self.spec.clamped if edge[0] == "x"}
-        share = {frozenset({"x0"}): 1.0, frozenset({"x1"}): 0.0}.get(frozenset(clamped), 0.5)
-        return share * self.spec.length
+        return float(self.growths[0])
 
     def _slopes(self, shapes: dict[str, FloatArray], read: MeasurementChain) -> FloatArray:
         names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
@@ -332,8 +349,10 @@ class Predictor(Displayed):
         weights = whole * np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
         weights[:, chosen, own] = -0.5 * heavier
         change = (rows["w"][:, :n] @ vectors) @ weights
-        if "length" in names:
-            change[names.index("length")] += ((self.growth - places[:, :1]) * rows["wx"][:, :n]) @ modes
+        for axis, (name, slope) in enumerate(zip(self._sizes, ("wx", "wy"), strict=False)):
+            if name in names:
+                moved = self.growths[axis] - places[:, axis : axis + 1]
+                change[names.index(name)] += (moved * rows[slope][:, :n]) @ modes
         return list(zip(whole[:, chosen, own] / (2 * np.maximum(lam, 1e-12)), change, strict=True))
 
     def _damping(self, state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:

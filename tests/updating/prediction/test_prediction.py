@@ -12,14 +12,14 @@ from updating import Damping, Predictor, Region, Spec
 from updating.models.state import NOMINAL, State
 
 FACTORS = ("E", "density", "thickness", "width", "length")
-CORNERS = np.array([[x, y] for x in np.linspace(0.09, 0.376, 4) for y in (0.0, 0.11, 0.2)])
+GRID = np.array([[x, y] for x in np.linspace(0.09, 0.376, 4) for y in (0.01, 0.11, 0.19)])
 LOOK = {
     "beam": Predictor(BEAM, blank(POINTS)),
     "free": Predictor(replace(BEAM, clamped=()), blank(np.linspace(0.03, 0.33, 5))),
     "other end": Predictor(replace(BEAM, clamped=("x1",)), blank(np.linspace(0.0, 0.3, 5))),
     "both": Predictor(replace(BEAM, clamped=("x0", "x1")), blank(POINTS - 0.03)),
     "shapes": Predictor(BEAM, blank(POINTS, shapes_only=True)),
-    "plate": Predictor(PLATE, blank(CORNERS)),
+    "plate": Predictor(PLATE, blank(GRID)),
 }
 
 
@@ -116,6 +116,17 @@ def test_points_keep_their_distance_from_the_free_end(name: str, grows: float, s
     moved = predictor.measured.points + grows * (longer.length - spec.length)
     fresh = Predictor(longer, replace(predictor.measured, points=moved)).predict(count=5)
     found = predictor.predict(State(factors={"length": stretch}), count=5)
+    assert found.frequency == pytest.approx(fresh.frequency, rel=1e-4)
+    np.testing.assert_allclose(found.constants, fresh.constants, atol=1e-3 * np.abs(fresh.constants).max())
+
+
+@pytest.mark.parametrize(("clamped", "grows"), [(("x0",), 0.5), (("y0",), 1.0), (("y1",), 0.0)])
+def test_points_of_a_wider_plate_stay_where_they_are(clamped: tuple[str, ...], grows: float) -> None:
+    stretch, spec = 1.02, replace(PLATE, clamped=clamped)
+    wider = replace(spec, width=stretch * spec.width)
+    moved = GRID + np.array([0.0, grows * (wider.width - spec.width)])
+    fresh = Predictor(wider, blank(moved)).predict(count=5)
+    found = Predictor(spec, blank(GRID)).predict(State(factors={"width": stretch}), count=5)
     assert found.frequency == pytest.approx(fresh.frequency, rel=1e-4)
     np.testing.assert_allclose(found.constants, fresh.constants, atol=1e-3 * np.abs(fresh.constants).max())
 
