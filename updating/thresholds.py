@@ -278,6 +278,10 @@ THEORY_BEYOND_NOISE = 0.3
 by more than this part of the noise [-]: less adds a tenth to the variance. Doubled: a bias of half a sigma goes
 unseen."""
 
+SOFTER_IN_SHEAR = 0.6
+"""Shear coefficient over a rectangle's, of a section of which area and second moment alone are stated, one standard
+deviation below it [-]: a thin tube. Halved, an I: the doubt doubles."""
+
 STRIP_ALONG = 40
 """Most elements along the plate that says what a theory of beams leaves out [-]: a clamp's hold on the section is
 resolved for beams wider than a thirtieth of their length. Doubled: twice the work for a remark."""

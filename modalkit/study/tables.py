@@ -38,6 +38,7 @@ Alpha = Annotated[float, in_unit("1/s"), Field(ge=0, lt=1e9)]
 Beta = Annotated[float, in_unit("s"), Field(ge=0, lt=1e3)]
 Area = Annotated[float, in_unit("m^2"), Field(gt=0)]
 SecondMoment = Annotated[float, in_unit("m^4"), Field(gt=0)]
+ShearCoefficient = Annotated[float, in_unit("-"), Field(gt=0, le=1)]
 Inertia = Annotated[float, in_unit("kg m^2"), Field(ge=0)]
 Weight = Annotated[float, Field(ge=0, lt=1e50)]
 Doubt = Annotated[float, in_unit(""), Field(ge=0)]
@@ -283,6 +284,8 @@ class RegionTable(Strict):
     """Of beams [m2]."""
     inertia: SecondMoment | None = None
     """Second moment of area, of beams [m4]."""
+    shear_coefficient: ShearCoefficient | None = None
+    """Shear coefficient of the section, of beams; left out, that of a rectangle: 0.5 a thin tube, 0.9 a rod [-]."""
     alpha: Alpha | None = None
     """As under damping [1/s]."""
     beta: Beta | None = None

@@ -31,6 +31,7 @@ class ExactBeam:
     poisson: float = 0.3
     shear: bool = True
     rotary: bool = True
+    softness: float = 1.0
     clamped: bool = True
     rotation: float = np.inf
     translation: float = np.inf
@@ -58,7 +59,7 @@ class ExactBeam:
         if self.soft is not None:
             low, high, loss = self.soft
             stiff = np.where((middle > low) & (middle < high), (1 - loss) * stiff, stiff)
-        kappa = 10 * (1 + self.poisson) / (12 + 11 * self.poisson)
+        kappa = 10 * (1 + self.poisson) / (12 + 11 * self.poisson) / self.softness
         rate = np.zeros((len(omega), len(size), 4, 4))
         rate[..., 0, 1] = 1.0
         rate[..., 0, 3] = 2 * (1 + self.poisson) / (kappa * stiff * self.area) if self.shear else 0.0

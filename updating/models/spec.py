@@ -71,6 +71,8 @@ class Region:
         Lower and upper limit [m]; ``y`` is None for a beam or for the whole width.
     E, density, thickness, area, inertia : float, optional
         Own values, in place of the model's [Pa, kg/m^3, m, m^2, m^4]; area and inertia for beams only.
+    shear_coefficient : float, optional
+        Shear coefficient of the section, of beams; left out, that of a rectangle [-].
     alpha, beta, loss_factor : float, optional
         Own damping: C = alpha M + beta K [1/s, s], structural loss factor [-].
     """
@@ -83,6 +85,7 @@ class Region:
     thickness: float | None = None
     area: float | None = None
     inertia: float | None = None
+    shear_coefficient: float | None = None
     alpha: float | None = None
     beta: float | None = None
     loss_factor: float | None = None

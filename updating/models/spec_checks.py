@@ -104,7 +104,7 @@ def _check_region(spec: Spec, region: Region) -> None:
     sides = {"x": region.x, "y": region.y or ()}
     if spec.kind == "beam" and region.y is not None:
         raise StudyError(f"model: {whose} has y; a beam reaches along x alone")
-    if spec.kind == "plate" and (region.area, region.inertia) != (None, None):
+    if spec.kind == "plate" and (region.area, region.inertia, region.shear_coefficient) != (None, None, None):
         raise StudyError(f"model: {whose} has area or inertia; those are of beams")
     for axis, ends in sides.items():
         if ends and not ends[0] < ends[1]:

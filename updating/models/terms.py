@@ -90,7 +90,7 @@ def beam_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[FieldTe
         return tuple(terms)
     nu = spec.material.poisson
     shear_modulus = modulus / (2 * (1 + nu))
-    stiff = w * shear_coefficient(nu) * shear_modulus * area
+    stiff = w * _local(spec, region_of, "shear_coefficient", shear_coefficient(nu)) * shear_modulus * area
     return (
         FieldTerm("stiffness", "rx", "rx", w * modulus * inertia, bending | {"length": -3.0}),
         FieldTerm("stiffness", "wx", "wx", stiff, shearing),

@@ -290,7 +290,7 @@ class SpecimenProblem:
         if found is None or not found.known or self.baseline is not None:
             n = len(self.measured.frequency)
             return np.zeros((n, 0)), np.zeros(n)
-        columns = [found.mesh, found.width] if found.width.any() else [found.mesh]
+        columns = [found.mesh, *(column for column in (found.width, found.shear) if column.any())]
         return np.stack(columns, axis=1), (MESH_UNEVENNESS * found.mesh) ** 2
 
     def _accepted_variance(self) -> FloatArray:

@@ -16,6 +16,7 @@ from updating.models.spec import Spec
 from updating.models.state import NOMINAL
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
+from updating.problem.shear import slackening
 from updating.problem.width import stiffening
 from updating.thresholds import LEAST_CONSTANT_NOISE, LEAST_FREQUENCY_NOISE, THEORY_BEYOND_NOISE
 
@@ -36,6 +37,8 @@ class TheoryError:
         ln of the better frequency over the model's; theory is 0 where nothing fuller is known [-].
     width : (n_modes,) array
         The same by bending across the width of a beam, see :mod:`updating.problem.width` [-].
+    shear : (n_modes,) array
+        The same by a section that is softer in shear than a rectangle, see :mod:`updating.problem.shear` [-].
     known : bool
         Whether anything is known; imported matrices cannot be refined.
     """
@@ -43,6 +46,7 @@ class TheoryError:
     mesh: FloatArray
     theory: FloatArray
     width: FloatArray
+    shear: FloatArray
     known: bool = True
 
     @property
@@ -77,10 +81,11 @@ def theory_error(predictor: Predictor, order: IntArray, *, count: int | None = N
     reduced = predictor.reduced
     if not reduced.structure.refinable:
         nothing = np.zeros(len(order))
-        return TheoryError(nothing, nothing, nothing, known=False)
+        return TheoryError(nothing, nothing, nothing, nothing, known=False)
     base, vectors = _elastic(reduced, needed)
     mesh, theory = _mesh(predictor.spec, base), _theory(predictor, base, vectors)
-    return TheoryError(mesh[order], theory[order], stiffening(predictor.spec, order))
+    of_section = stiffening(predictor.spec, order), slackening(predictor.spec, order)
+    return TheoryError(mesh[order], theory[order], *of_section)
 
 
 def _elastic(reduced: Reduced, count: int) -> tuple[FloatArray, FloatArray]:

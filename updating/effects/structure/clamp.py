@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar, Literal
 
 import numpy as np
 from scipy import sparse
 
 from acquisition.arrays import FloatArray
+from acquisition.errors import StudyError
 from updating.effects.base import Effect, Parameter, Values, Variant, bending_stiffness
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
@@ -26,6 +27,17 @@ NOT_HELD = (
     "the supports would do if they gave way is not known"
 )
 """Why supports of imported matrices cannot give way."""
+
+ALL = "all"
+"""Name of all clamps together, which give way alike."""
+
+ALIKE = 0.5
+"""Prior share of all clamps alike among the clamps of a structure that has several: made and tightened alike, or one of
+them loose. Doubled, one alone is out of the question."""
+
+RIGID = 1e7
+"""Stiffness of a clamp that holds beside one that gives way, in natural units [-]: it moves frequencies by a hundred
+thousandth. A hundred times as much costs the eigenvalues as many digits as it gains."""
 
 
 class Clamp(Effect):
@@ -63,9 +75,9 @@ class Clamp(Effect):
         return None if predictor.spec.clamped else Obstacle(Lack.MODEL, "the model has no clamped edge")
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return the one form there is; of imported matrices, each support in each direction in which it is held."""
+        """Return the forms: all clamps alike, and each alone; of imported matrices each support in each direction."""
         if predictor.spec.imported is None:
-            return super().variants(predictor)
+            return _clamps(predictor)
         ways = [
             {"support": support.name, "direction": WAYS[axis]}
             for support in predictor.spec.imported.supports
@@ -76,15 +88,18 @@ class Clamp(Effect):
 
     def sentence(self, values: Values) -> str:
         """Return the summary, and which support in which direction."""
-        if "support" not in values:
+        if values.get("support", ALL) == ALL:
             return self.summary
+        if "direction" not in values:
+            return f"{self.summary} It is the one at {values['support']}."
         return f"{self.summary} It is {values['support']}, {str(values['direction']).replace('r', 'about ')}."
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure on the spring.
 
         Imported matrices have lost the rows of their supports. That one moves in a direction, without mass on its
-        spring s, takes l l^T / (k + s) off the stiffness: l what it pulls at the structure, k at itself.
+        spring s, takes l l^T / (k + s) off the stiffness: l what it pulls at the structure, k at itself. Where one of
+        several clamps gives way, the others are springs that nothing moves.
         """
         if predictor.spec.imported is not None:
             support, axis = (
@@ -94,14 +109,43 @@ class Clamp(Effect):
             pulled = on_basis(predictor, ("support", support.name, axis), lambda: _pulled(support, axis))
             soft = -1 / (support.own[axis, axis] + float(values["stiffness"]))
             return State(stiffness=(soft * pulled,))
-        unit = unit_edges(predictor, self.freed)
-        return State(stiffness=(values["stiffness"] * unit,), released=frozenset({self.freed}))
+        own, others = _apart(predictor, values)
+        held = values["stiffness"] * unit_edges(predictor, self.freed, own)
+        if others:
+            firm = RIGID * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
+            held = held + firm * unit_edges(predictor, self.freed, others)
+        return State(stiffness=(held,), released=frozenset({self.freed}))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
-        """Return the clamped edges, or the support."""
+        """Return the clamped edges that give way, or the support."""
         if predictor.spec.imported is not None:
             return (centre_of(one_of(predictor.spec.imported.supports, values, "support")),)
-        return clamped_places(predictor)
+        return clamped_places(predictor, edges=_apart(predictor, values)[0])
+
+
+def _clamps(predictor: Predictor) -> tuple[Variant, ...]:
+    """Return each of several clamps, and all of them alike; the one form there is where there is one clamp."""
+    clamped = predictor.spec.clamped
+    if len(clamped) < 2:
+        return (Variant(),)
+    alone = tuple(Variant({"support": edge}, (1 - ALIKE) / len(clamped)) for edge in clamped)
+    return (Variant({"support": ALL}, ALIKE), *alone)
+
+
+def _apart(predictor: Predictor, values: Values) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the clamped edges that give way, and those that hold.
+
+    Raises
+    ------
+    StudyError
+        If the one that is named is not clamped.
+    """
+    clamped, named = tuple(predictor.spec.clamped), str(values.get("support", ALL))
+    if named == ALL:
+        return clamped, ()
+    if named not in clamped:
+        raise StudyError(f"support = {named!r} is no clamped edge; those are {', '.join(clamped) or 'none'}")
+    return (named,), tuple(edge for edge in clamped if edge != named)
 
 
 class ClampRotation(Clamp):
@@ -144,39 +188,45 @@ def _pulled(support: Support, axis: int) -> Sparse:
     return Sparse(load @ load.T)
 
 
-def unit_edges(predictor: Predictor, freed: Literal["rotation", "translation"]) -> FloatArray:
-    """Integrate the square of the slope, or of the displacement, across every clamped edge, as (r, r) [m in w]."""
+def unit_edges(
+    predictor: Predictor, freed: Literal["rotation", "translation"], edges: Sequence[str] | None = None
+) -> FloatArray:
+    """Integrate the square of the slope, or of the displacement, across clamped edges, as (r, r) [m in w].
+
+    Across all of them where no ``edges`` are named.
+    """
     reduced = predictor.reduced
+    named = tuple(predictor.spec.clamped if edges is None else edges)
 
     def build() -> FloatArray:
-        full = edge_slopes(reduced.structure) if freed == "rotation" else edge_shifts(reduced.structure)
-        return reduced.project(full)
+        across = edge_slopes if freed == "rotation" else edge_shifts
+        return reduced.project(across(reduced.structure, named))
 
-    return predictor.once(f"edge {freed}", build)
+    return predictor.once(f"edges {named} {freed}", build)
 
 
-def edge_slopes(structure: Structure) -> Sparse:
-    """Integrate the square of the slope across every clamped edge of the full model [m in w]."""
+def edge_slopes(structure: Structure, edges: Sequence[str] | None = None) -> Sparse:
+    """Integrate the square of the slope across clamped edges of the full model, or those named [m in w]."""
     assert isinstance(structure, FieldStructure)
     normal = {"x": "wx", "y": "wy"}
     if structure.spec.theory == "timoshenko":
         normal["x"] = "r"
     if structure.spec.theory == "mindlin":
         normal = {"x": "tx", "y": "ty"}
-    return _along_edges(structure, normal)
+    return _along_edges(structure, normal, structure.spec.clamped if edges is None else edges)
 
 
-def edge_shifts(structure: Structure) -> Sparse:
-    """Integrate the square of the displacement across every clamped edge of the full model [m in w]."""
+def edge_shifts(structure: Structure, edges: Sequence[str] | None = None) -> Sparse:
+    """Integrate the square of the displacement across clamped edges of the full model, or those named [m in w]."""
     assert isinstance(structure, FieldStructure)
-    return _along_edges(structure, {"x": "w", "y": "w"})
+    return _along_edges(structure, {"x": "w", "y": "w"}, structure.spec.clamped if edges is None else edges)
 
 
-def _along_edges(structure: FieldStructure, names: Mapping[str, str]) -> Sparse:
-    """Integrate the square of a field, named by the edge's normal, across every clamped edge."""
+def _along_edges(structure: FieldStructure, names: Mapping[str, str], edges: Sequence[str]) -> Sparse:
+    """Integrate the square of a field, named by the edge's normal, across edges."""
     spec, fields = structure.spec, structure.fields
     total = Sparse((fields.n_dofs, fields.n_dofs))
-    for edge in spec.clamped:
+    for edge in edges:
         name = names[edge[0]]
         place = {"x0": 0.0, "x1": spec.length, "y0": 0.0, "y1": spec.width}[edge]
         if spec.kind == "beam":

@@ -1,5 +1,7 @@
 """A length that differs from the drawing, penetration into a clamp included."""
 
+from collections.abc import Sequence
+
 from acquisition.errors import StudyError
 from updating.effects.base import Effect, Parameter, Values
 from updating.models.state import State
@@ -48,8 +50,10 @@ class Length(Effect):
         return clamped_places(predictor, "x")
 
 
-def clamped_places(predictor: Predictor, axes: str = "xy") -> tuple[tuple[float, float, float], ...]:
-    """Return the middle of every clamped edge across the given axes [m]."""
+def clamped_places(
+    predictor: Predictor, axes: str = "xy", *, edges: Sequence[str] | None = None
+) -> tuple[tuple[float, float, float], ...]:
+    """Return the middle of every clamped edge across the given axes, or of those named [m]."""
     spec = predictor.spec
     middle = 0.0 if spec.kind == "beam" else spec.width / 2
     places = {
@@ -58,4 +62,4 @@ def clamped_places(predictor: Predictor, axes: str = "xy") -> tuple[tuple[float,
         "y0": (spec.length / 2, 0.0, 0.0),
         "y1": (spec.length / 2, spec.width, 0.0),
     }
-    return tuple(places[edge] for edge in spec.clamped if edge[0] in axes)
+    return tuple(places[edge] for edge in (spec.clamped if edges is None else edges) if edge[0] in axes)
