@@ -326,6 +326,9 @@ def test_a_place_on_a_plate_is_no_place_along_a_beam(tmp_path: Path) -> None:
     path.write_text(text.format(test="points = [[0.2, 0.05]]"))
     with pytest.raises(StudyError, match="is no place along a beam"):
         bench_of(read_study(path))
+    path.write_text(PLATE.format(test="points = [[0.2, 0.05]]\nsensor = 0.3"))
+    with pytest.raises(StudyError, match=r"\[test\] points and sensor: 0.3 is a place along a beam"):
+        bench_of(read_study(path))
     path.write_text(PLATE.format(test='points = ["3+Z"]'))
     with pytest.raises(StudyError, match="node 3: a plate has no node numbers; write"):
         bench_of(read_study(path))
