@@ -1,4 +1,4 @@
-"""Pages of reference, made from what they describe: commands, study file, effects, thresholds, public names."""
+"""Pages of reference, made from what they describe: commands, study file, effects, JSON, thresholds, public names."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from itertools import pairwise
 from types import ModuleType
 from typing import Any, Literal, get_args, get_origin
 
+from json_fields import document_name, fields, in_words
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
@@ -165,6 +166,18 @@ def _range(parameter: dict[str, Any]) -> str:
     return f"{parameter['low']:.3g} to {parameter['high']:.3g}{unit}" + (", log" if parameter["log"] else "")
 
 
+def documents() -> str:
+    """Return the JSON documents with their fields, from the classes to which what writes them is held."""
+    from modalkit.output.schemas import DOCUMENTS
+
+    out = []
+    for document in DOCUMENTS:
+        rows = [(f"`{f.path}`", in_words(f.kind), f.unit, f.sentence) for f in fields(document)]
+        out += [f"## {document_name(document)}", "", _paragraphs(document.__doc__ or ""), ""]
+        out += [_table(("field", "type", "unit", "meaning"), rows), ""]
+    return "\n".join(out)
+
+
 def thresholds() -> str:
     """Return all numbers that the diagnosis decides by, with the reasons that stand beside them."""
     module = importlib.import_module("updating.thresholds")
@@ -241,6 +254,7 @@ MAKERS: dict[str, Callable[[], str]] = {
     "commands": commands,
     "study": study,
     "effects": effects,
+    "documents": documents,
     "thresholds": thresholds,
     **{f"api {room}": (lambda room=room: api(room)) for room in ROOMS},
 }

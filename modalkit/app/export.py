@@ -118,7 +118,7 @@ def _write(folder: Path, study: str, handed: Handed) -> None:
             write_text(folder / f"{kind}.html", page)
 
 
-def _json(path: Path, document: dict[str, Any]) -> None:
+def _json(path: Path, document: Mapping[str, object]) -> None:
     """Write a document as `--json` does."""
     write_text(path, json.dumps(plain(document), indent=1, allow_nan=False) + "\n")
 

@@ -23,7 +23,7 @@ from modalkit.cli.common import (
     working,
 )
 from modalkit.cli.options import Figures
-from modalkit.output.correlation import correlation_document
+from modalkit.output.correlation import comparison_document, correlation_document
 from modalkit.output.destinations import Kind, check_outputs, json_of, text_of
 from modalkit.output.whole import write_json, write_text
 from modalkit.study.read import read_study
@@ -112,7 +112,7 @@ def _correlate_tests(first: Path, second: Path, json: Path | None, figures: Path
         show_table(numbered, title, digits=dict.fromkeys(map(str, numbered.columns), 2))
     show_warnings(found.notes)
     if json is not None:
-        write_json(json, comparing.comparison_document(found))
+        write_json(json, comparison_document(found))
         out.print(f"written: {json}", markup=False)
     show_figures(figures, lambda: _drawn(found))
 

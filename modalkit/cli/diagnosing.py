@@ -24,6 +24,7 @@ from modalkit.cli.reporting import now, report_wanted, save_report, this_command
 from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.documents import diagnosis_document
 from modalkit.output.library import effects_document, effects_table
+from modalkit.output.schemas.effects import EffectEntry
 from modalkit.output.summary import separates, summary_text
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
@@ -145,7 +146,7 @@ def effects(
     out.print(f"\nPriors that scale with the specimen are shown for {record['specimen']}.", markup=False)
 
 
-def show_effect(effect: dict[str, Any]) -> None:
+def show_effect(effect: EffectEntry) -> None:
     """Print one effect: what it is, how it shows, its priors, and what it is mistaken for."""
     out.print(f"{effect['name']} ({effect['channel']}; {', '.join(effect['models'])})", style="bold")
     out.print(f"  {effect['summary']}", markup=False)

@@ -1,4 +1,4 @@
-"""A correlation as the plain record of its JSON file."""
+"""Modes side by side as the documents of their JSON files."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import Any
 
 import pandas as pd
 
+from identification import Correlation as Comparison
+from modalkit.output.schemas.correlation import ComparisonDocument, CorrelationDocument
 from updating.correlation.correlate import Correlation
 
 NAMES = {
@@ -22,7 +24,7 @@ NAMES = {
 }
 
 
-def correlation_document(correlation: Correlation, warnings: Sequence[str] = ()) -> dict[str, Any]:
+def correlation_document(correlation: Correlation, warnings: Sequence[str] = ()) -> CorrelationDocument:
     """Return a correlation as ``modalkit.correlation/1``.
 
     Parameters
@@ -45,5 +47,29 @@ def correlation_document(correlation: Correlation, warnings: Sequence[str] = ())
     }
 
 
-def _rows(table: pd.DataFrame) -> list[dict[str, Any]]:
+def comparison_document(found: Comparison, warnings: Sequence[str] = ()) -> ComparisonDocument:
+    """Return two tests compared as ``modalkit.comparison/1``; modes are counted from 1."""
+    first, second = found.test.frequency, found.model.frequency
+    return {
+        "schema": "modalkit.comparison/1",
+        "pairs": [
+            {
+                "first_mode": p.test + 1,
+                "second_mode": p.model + 1,
+                "first_hz": first[p.test],
+                "second_hz": second[p.model],
+                "difference_percent": 100 * p.error,
+                "mac": p.mac,
+            }
+            for p in found.pairs
+        ],
+        "mac": found.mac.tolist(),
+        "unpaired_first": [{"mode": i + 1, "frequency_hz": first[i]} for i in found.test_alone],
+        "unpaired_second": [{"mode": i + 1, "frequency_hz": second[i]} for i in found.model_alone],
+        "degrees_of_freedom": [str(dof) for dof in found.dofs],
+        "warnings": [*found.notes, *warnings],
+    }
+
+
+def _rows(table: pd.DataFrame) -> Any:
     return [{str(k): v for k, v in row.items()} for row in table.rename(columns=NAMES).to_dict("records")]

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from acquisition import HitVerdict, ModalData, rejected_points
 from identification import ModalModel, mpc
+from modalkit.output.schemas.diagnosis import (
+    DiagnosisDocument,
+    GapEntry,
+    GapMode,
+    RankedEntry,
+    RemainderEntry,
+    ShrinkEntry,
+)
+from modalkit.output.schemas.modes import HitEntry, ModeEntry, ModesDocument, ShapeEntry
 from modalkit.workflow.existing import Modes
 from updating import Diagnosis
 from updating.diagnosis.answer.result import Ranked, Remainder, Shrink
@@ -15,7 +23,7 @@ from updating.diagnosis.answer.verdict import NAME
 
 def modes_document(
     model: ModalModel | Modes, hits: Sequence[HitVerdict] = (), warnings: Sequence[str] = ()
-) -> dict[str, Any]:
+) -> ModesDocument:
     """Return an identification, or modes that were read, as ``modalkit.modes/1``.
 
     Beside the contract's keys it has ``nodes``, where their places are known, so that the file can be read back.
@@ -24,7 +32,7 @@ def modes_document(
     assert modal.damping is not None
     assert modal.damping_sigma is not None
     purity = None if modal.shapes is None else mpc(modal.shapes)
-    modes = [
+    modes: list[ModeEntry] = [
         {
             "frequency_hz": modal.frequency[r],
             "frequency_sigma_hz": modal.frequency_sigma[r],
@@ -53,7 +61,7 @@ def modes_document(
     }
 
 
-def _shape(modal: ModalData, mode: int) -> list[dict[str, Any]]:
+def _shape(modal: ModalData, mode: int) -> list[ShapeEntry]:
     if modal.shapes is None:
         return []
     return [
@@ -73,12 +81,12 @@ def without_hits(hits: Sequence[HitVerdict]) -> list[str]:
     return [f"{point}: none of its hits is used" for point in rejected_points(hits)]
 
 
-def hit_document(hit: HitVerdict) -> dict[str, Any]:
+def hit_document(hit: HitVerdict) -> HitEntry:
     """Return the verdict on one hit."""
     return {"point": str(hit.point), "hit": hit.hit, "used": hit.used, "reasons": list(hit.reasons)}
 
 
-def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> dict[str, Any]:
+def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> DiagnosisDocument:
     """Return a diagnosis as ``modalkit.diagnosis/1``."""
     where = diagnosis.where
     return {
@@ -121,7 +129,7 @@ def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> di
     }
 
 
-def _shrink_document(shrink: Shrink) -> dict[str, Any]:
+def _shrink_document(shrink: Shrink) -> ShrinkEntry:
     return {
         "metric": shrink.metric,
         "before_percent": shrink.before,
@@ -151,7 +159,7 @@ def _shrink_document(shrink: Shrink) -> dict[str, Any]:
     }
 
 
-def _remainder_document(left: Remainder | None) -> dict[str, Any] | None:
+def _remainder_document(left: Remainder | None) -> RemainderEntry | None:
     if left is None:
         return None
     return {
@@ -162,9 +170,9 @@ def _remainder_document(left: Remainder | None) -> dict[str, Any] | None:
     }
 
 
-def _gap_document(diagnosis: Diagnosis) -> dict[str, Any]:
+def _gap_document(diagnosis: Diagnosis) -> GapEntry:
     gap = diagnosis.gap
-    modes = [
+    modes: list[GapMode] = [
         {
             "study": row["study"],
             "test_hz": row["test [Hz]"],
@@ -181,11 +189,11 @@ def _gap_document(diagnosis: Diagnosis) -> dict[str, Any]:
         "frequency_rms_percent": gap.rms_percent,
         "noise_floor_percent": gap.floor_percent,
         "modes": modes,
-        "frac": gap.frac,
+        "frac": gap.frac.tolist(),
     }
 
 
-def _ranked_document(row: Ranked, *, named: bool) -> dict[str, Any]:
+def _ranked_document(row: Ranked, *, named: bool) -> RankedEntry:
     """Return a row of the ranking; points and sensors stand in the rows of the answer alone, all else in all."""
     aside = {n for n, e in row.parameters.items() if isinstance(e.value, tuple | str) and e.unit != NAME}
     stated = {n: e for n, e in row.parameters.items() if named or n not in aside}

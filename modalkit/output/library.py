@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import get_args
 
+from modalkit.output.schemas.effects import EffectEntry, EffectsDocument, PriorEntry
 from updating import LIBRARY, Effect, Parameter
 from updating.effects.specimens import SHOWN, example, kinds_of
 from updating.models.spec import Kind
 
 
-def effects_document() -> dict[str, Any]:
+def effects_document() -> EffectsDocument:
     """Return the library of effects as ``modalkit.effects/1``."""
     return {
         "schema": "modalkit.effects/1",
@@ -18,7 +19,7 @@ def effects_document() -> dict[str, Any]:
     }
 
 
-def effect_document(effect: Effect) -> dict[str, Any]:
+def effect_document(effect: Effect) -> EffectEntry:
     """Return one effect: sentences, and its parameters on the first kind of model that has each of them."""
     kinds = kinds_of(effect)
     named: dict[str, Parameter] = {}
@@ -46,7 +47,7 @@ def effect_document(effect: Effect) -> dict[str, Any]:
     }
 
 
-def effects_table(record: dict[str, Any]) -> str:
+def effects_table(record: EffectsDocument) -> str:
     """Return the library as a table in Markdown: one row for each effect."""
     rows = ["| effect | acts on | models | parameters and prior | mistaken for | separated by |"]
     rows.append("|---|---|---|---|---|---|")
@@ -67,7 +68,7 @@ def effects_table(record: dict[str, Any]) -> str:
     return "\n".join(rows) + "\n"
 
 
-def _prior(parameter: dict[str, Any]) -> str:
+def _prior(parameter: PriorEntry) -> str:
     unit = "" if parameter["unit"] == "-" else f" {parameter['unit']}"
     scale = ", log" if parameter["log"] else ""
     return f"`{parameter['name']}`: {parameter['low']:.3g} to {parameter['high']:.3g}{unit}{scale}"

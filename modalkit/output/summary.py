@@ -184,7 +184,8 @@ def _where(diagnosis: Diagnosis) -> str:
         return f"{text}, {' and '.join(where.names)}"
     text += ", at " + (" and ".join(places) if places else place(where.location))
     zone = min(where.zones, key=lambda z: math.dist(z.center, where.location or z.center), default=None)
-    if zone is not None and round(zone.probability, 2) >= LIKELY and len(places) < 2:
+    one_of_several = zone is not None and len(where.zones) > 1 and len(places) < 2
+    if zone is not None and one_of_several and round(zone.probability, 2) >= LIKELY:
         text += f", region {zone.name}"
     if where.nearest:
         text += f" (nearest test point{_listed(where.nearest)})"

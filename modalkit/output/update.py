@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from modalkit.output.schemas.update import ByFrfs, DeterminabilityEntry, UpdateDocument
 from updating.frf_update import FrfUpdate
 from updating.update import Update
 
 
-def to_json(update: Update) -> dict[str, Any]:
+def to_json(update: Update) -> UpdateDocument:
     """Return an update as ``modalkit.update/1``; what is not finite becomes None.
 
     Parameters
@@ -73,18 +74,23 @@ def to_json(update: Update) -> dict[str, Any]:
     }
 
 
-def _by_frfs(update: Update) -> dict[str, Any] | None:
+def _by_frfs(update: Update) -> ByFrfs | None:
     """Return what only an update by FRFs has; None for another."""
     if not isinstance(update, FrfUpdate):
         return None
-    damping = ("test_damping", "before_damping", "after_damping")
+    frac: list[dict[str, float | None]] = [
+        {str(name): int(v) if name in ("response", "force") else _number(v) for name, v in row.items()}
+        for row in update.frac.to_dict("records")
+    ]
     return {
-        "frac": [
-            {name: int(v) if name in ("response", "force") else _number(v) for name, v in row.items()}
-            for row in update.frac.to_dict("records")
-        ],
+        "frac": frac,
         "damping": [
-            {name: _number(row[name]) for name in damping} for row in update.pairs.to_dict("records")
+            {
+                "test_damping": _number(row["test_damping"]),
+                "before_damping": _number(row["before_damping"]),
+                "after_damping": _number(row["after_damping"]),
+            }
+            for row in update.pairs.to_dict("records")
         ],
         "iterations_by_stage": list(update.stages),
         "lines_hz": [list(lines) for lines in update.lines],
@@ -92,7 +98,7 @@ def _by_frfs(update: Update) -> dict[str, Any] | None:
     }
 
 
-def _determinability(update: Update) -> dict[str, Any] | None:
+def _determinability(update: Update) -> DeterminabilityEntry | None:
     stated = update.determinability
     if stated is None:
         return None

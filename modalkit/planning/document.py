@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from modalkit.output.schemas.plan import AdviceEntry, DesignEntry, PlanDocument
 from modalkit.planning.family import Family
 from modalkit.planning.forecast import Advice, DesignForecast, Forecast
 
-SCHEMA = "modalkit.plan/1"
 
-
-def to_json(found: Forecast) -> dict[str, Any]:
+def to_json(found: Forecast) -> PlanDocument:
     """Return a forecast as JSON.
 
     Parameters
@@ -25,7 +24,7 @@ def to_json(found: Forecast) -> dict[str, Any]:
         ``null`` stands for a severity that is never told.
     """
     return {
-        "schema": SCHEMA,
+        "schema": "modalkit.plan/1",
         "said": list(found.bench.statement),
         "left_out": list(found.bench.left_out),
         "not_forecast": list(found.bench.not_forecast),
@@ -34,7 +33,7 @@ def to_json(found: Forecast) -> dict[str, Any]:
     }
 
 
-def _design_forecast(evaluation: DesignForecast) -> dict[str, Any]:
+def _design_forecast(evaluation: DesignForecast) -> DesignEntry:
     matrix = evaluation.matrix
     return {
         "effects": [
@@ -63,7 +62,7 @@ def _design_forecast(evaluation: DesignForecast) -> dict[str, Any]:
     }
 
 
-def _advice(one: Advice) -> dict[str, Any]:
+def _advice(one: Advice) -> AdviceEntry:
     return {
         "change": one.change.key,
         "measure": one.change.measure,

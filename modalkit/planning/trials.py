@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from acquisition.errors import ModalkitError
 from modalkit.blind.answer import Answer
+from modalkit.output.schemas.plan import BlindCase, CheckedForecast
 from modalkit.planning.cases import Case, choose
 from modalkit.planning.forecast import Advice, Forecast
 from modalkit.planning.separability import SEEN, SURE
@@ -81,7 +81,7 @@ class Tried:
             return "told"
         return f"on the edge to {rival}" if self.sigma >= SEEN else f"not told from {rival}"
 
-    def row(self) -> dict[str, Any]:
+    def row(self) -> BlindCase:
         """Return a line of the table."""
         return {
             "effect": self.case.family.name,
@@ -126,7 +126,7 @@ class Check:
             lines.append(f"Advice followed: {self.advice.change.measure}")
         return tuple(lines)
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> CheckedForecast:
         """Return it as JSON can carry it."""
         return {
             "followed": None if self.advice is None else self.advice.change.measure,

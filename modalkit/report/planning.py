@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from datetime import datetime
-from typing import Any
 
 import numpy as np
 
+from modalkit.output.schemas.plan import PlanDocument
 from modalkit.planning import Forecast
 from modalkit.planning.document import to_json
 from modalkit.planning.note import note, separated, some
@@ -121,15 +121,23 @@ def thresholds_chart(found: Forecast) -> Chart:
     )
 
 
-def thresholds_table(document: dict[str, Any]) -> Raw:
+def thresholds_table(document: PlanDocument) -> Raw:
     """Return the severities in words."""
     columns = [
         Column(n) for n in ("effect", "seen from", "told from", "surely from", "asked about", "nearest")
     ]
     columns += [Column("σ from it", lambda v: f"{v:.1f}"), Column("expected")]
-    keys = ("name", "seen_from", "separated_from", "sure_from", "asked", "nearest")
     rows: list[list[Cell | Raw]] = [
-        [*(one[k] or "never" for k in keys), one["nearest_sigma"], one["outcome"]]
+        [
+            one["name"],
+            *(
+                size or "never"
+                for size in (one["seen_from"], one["separated_from"], one["sure_from"], one["asked"])
+            ),
+            one["nearest"],
+            one["nearest_sigma"],
+            one["outcome"],
+        ]
         for one in document["now"]["effects"]
     ]
     statement = f"Seen: {SEEN:g} standard deviations beyond what tolerances explain; surely: {SURE:g} from all others."

@@ -44,7 +44,8 @@ class HypothesisTable(Strict):
     the answer is ``NAME.value``.
     """
     range: Annotated[list[float | str], Field(min_length=2, max_length=2)] | None = None
-    """How far towards it, 0 being the model as it stands; of a parameter from, to in its unit, and needed."""
+    """How far towards it, 0 being the model as it stands; of a parameter from, to in its unit (factors without
+    ``[model.material]``), and needed."""
     why: str = ""
     """For people."""
 
@@ -159,12 +160,12 @@ def _supposed(
     return [(None if same else matrix, what) for matrix, same in zip(supposed, changed, strict=True)]
 
 
-def _range(table: HypothesisTable, unit: str) -> tuple[float, float]:
+def _range(table: HypothesisTable, unit: str, hint: str = "") -> tuple[float, float]:
     try:
         low, high = (float(si_value(end, unit)) for end in (table.range or [0.0, 1.0]))
         rising("range", (low, high))
     except ValueError as error:
-        raise StudyError(f"[[hypothesis]] {table.name!r}: {error}") from error
+        raise StudyError(f"[[hypothesis]] {table.name!r}: {error}{hint}") from error
     if not table.parameter and low <= 0.0 <= high and max(-low, high) <= 0:
         raise StudyError(f"[[hypothesis]] {table.name!r}: its range holds nothing but the model as it stands")
     return low, high
@@ -187,7 +188,8 @@ def _of_parameter(spec: Spec, table: HypothesisTable) -> Hypothesis:
     own = getattr(spec.regions[names.index(region)], factor) if region else None
     nominal = float(getattr(spec.material, factor) if own is None else own)
     unit = "-" if (spec.material.E, spec.material.density) == (1.0, 1.0) else UNITS[factor]
-    low, high = _range(table, "" if unit == "-" else unit)
+    factors = f"; {table.parameter} is a factor where the study has no [model.material]"
+    low, high = _range(table, "", factors) if unit == "-" else _range(table, unit)
     if not low > 0:
         raise StudyError(
             f"[[hypothesis]] {table.name!r}: {table.parameter} must be positive over its whole range"

@@ -38,7 +38,8 @@ def frf_names(frfs: FrfSet) -> list[str]:
 
 def _verdict(verdict: HitVerdict, *, decided: bool) -> dict[str, Any]:
     """Return the verdict on a hit, with what was proposed: a hit with a fault is not to be used."""
-    return hit_document(verdict) | {
+    return {
+        **hit_document(verdict),
         "proposed": not verdict.kind,
         "decided": decided,
         "peak": f"{number(verdict.peak)} N",

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -99,27 +98,3 @@ def compare(first: ModesOf, second: ModesOf) -> Correlation:
         Pairs, MAC, modes without a partner, close modes that are mixed.
     """
     return correlate_modes(modes_of(first), modes_of(second))
-
-
-def comparison_document(found: Correlation, warnings: Sequence[str] = ()) -> dict[str, Any]:
-    """Return two tests compared as ``modalkit.comparison/1``; modes are counted from 1."""
-    first, second = found.test.frequency, found.model.frequency
-    return {
-        "schema": "modalkit.comparison/1",
-        "pairs": [
-            {
-                "first_mode": p.test + 1,
-                "second_mode": p.model + 1,
-                "first_hz": first[p.test],
-                "second_hz": second[p.model],
-                "difference_percent": 100 * p.error,
-                "mac": p.mac,
-            }
-            for p in found.pairs
-        ],
-        "mac": found.mac,
-        "unpaired_first": [{"mode": i + 1, "frequency_hz": first[i]} for i in found.test_alone],
-        "unpaired_second": [{"mode": i + 1, "frequency_hz": second[i]} for i in found.model_alone],
-        "degrees_of_freedom": [str(dof) for dof in found.dofs],
-        "warnings": [*found.notes, *warnings],
-    }

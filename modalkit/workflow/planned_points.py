@@ -72,22 +72,22 @@ def planned_points(study: Study, spec: Spec) -> PlannedPoints | None:
     if not table.points:
         return None
     stated = [*table.points, *([] if table.sensor is None else [table.sensor])]
+    keys = "points" if table.sensor is None else "points and sensor"
     try:
         placed = _placed(stated, spec)
-        keys = placed.keys
-        points, _ = matched(placed.points, keys, spec, table.match_tolerance)
+        points, _ = matched(placed.points, placed.keys, spec, table.match_tolerance)
     except StudyError as error:
-        raise StudyError(f"{study.path}: [test] points: {error}") from error
+        raise StudyError(f"{study.path}: [test] {keys}: {error}") from error
     count = len(table.points)
     if len(placed.rows) < len(stated):
         lost = stated[min(set(range(len(stated))) - set(placed.rows.tolist()))]
         raise StudyError(
-            f"{study.path}: [test] points: {_written(lost)}: the model does not move that way there"
+            f"{study.path}: [test] {keys}: {_written(lost)}: the model does not move that way there"
         )
-    directions = None if spec.imported is None else np.array([key[1] for key in keys])
+    directions = None if spec.imported is None else np.array([key[1] for key in placed.keys])
     hit = tuple(dict.fromkeys(placed.index[:count].tolist()))
     return PlannedPoints(
-        points, tuple(key[0] for key in keys), directions, hit,
+        points, tuple(key[0] for key in placed.keys), directions, hit,
         None if table.sensor is None else int(placed.index[-1]),
     )  # fmt: skip
 

@@ -137,6 +137,8 @@ PRIVATE = {
 @pytest.mark.parametrize("room", ROOMS)
 def test_names_are_words_of_the_field(room: str) -> None:
     for path in sources(room):
+        if path.parent.name == "schemas":  # fields of documents keep the names that programs read them by
+            continue
         names = {
             token.string
             for token in tokenize.generate_tokens(io.StringIO(path.read_text(encoding="utf-8")).readline)

@@ -104,6 +104,15 @@ def test_a_parameter_is_supposed_in_its_unit(frame: Path) -> None:
     assert (supposed.factor, supposed.region, supposed.nominal) == ("E", 4, 210e9)
 
 
+def test_a_range_with_a_unit_is_refused_where_values_are_factors(frame: Path) -> None:
+    text = FIRST.replace('stiffness = "joint_1_loose.mtx"', 'parameter = "E"\nrange = ["60 GPa", "80 GPa"]')
+    other = frame.parent / "factors.toml"
+    model, end = frame.read_text().replace(FIRST, text).split("[model.material]")
+    other.write_text(model + end[end.index("[") :])
+    with pytest.raises(StudyError, match=r"E is a factor where the study has no \[model.material\]"):
+        read_study(other).spec()
+
+
 def test_hypotheses_are_of_models_given_by_matrices(frame: Path) -> None:
     other = frame.parent / "beam.toml"
     other.write_text(

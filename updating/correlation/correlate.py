@@ -15,6 +15,7 @@ from acquisition.quantities import percent
 from updating.case import Case
 from updating.correlation.frfs import CorrelatedFrfs, correlate_frfs
 from updating.nominal import predictor_of
+from updating.prediction.assignment import frac_of_constants
 from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Prediction
 from updating.simulation.identified import partners
@@ -38,7 +39,7 @@ class Correlation(Displayed):
         Model modes in the range of the test without a partner: mode and frequency [Hz].
     frac : DataFrame
         One row per FRF: points of response and force, and FRAC [-]: of the FRFs where these were given, else of
-        the modal constants over the paired modes.
+        the modal constants over the paired modes; empty where these have no level.
     warnings : tuple of str
         What the user ought to know.
     frfs : CorrelatedFrfs, optional
@@ -93,7 +94,7 @@ def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:
         _mac_matrix(case.measured, prediction),
         _alone(case.measured.frequency, test, case.measured.frequency.max()),
         _alone(prediction.frequency, partner, prediction.frequency[partner].max()),
-        _frac_of_constants(paired.measured, prediction.select(partner))
+        _frac_table(_ends(paired.measured), frac_of_constants(paired.measured, prediction.select(partner)))
         if both is None
         else _frac_table([(r.node, f.node) for r, f in _dofs(both.measured)], both.frac),
         (*case.measured.warnings, *paired.warnings),
@@ -140,13 +141,6 @@ def _alone(frequency: FloatArray, paired: IntArray, top: float) -> pd.DataFrame:
     return pd.DataFrame({"mode": left + 1, "frequency [Hz]": frequency[left]})
 
 
-def _frac_of_constants(measured: Measured, prediction: Prediction) -> pd.DataFrame:
-    a, b = measured.constants, prediction.constants
-    power = np.sum(a**2, axis=1) * np.sum(b**2, axis=1)
-    values = np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300)
-    return _frac_table(_ends(measured), np.asarray(values))
-
-
 def _ends(measured: Measured) -> list[tuple[int, int | None]]:
     """Return the nodes of response and force of every FRF; None for a mere shape."""
     pairs = zip(measured.seen.tolist(), measured.hit.tolist(), strict=True)
@@ -154,4 +148,6 @@ def _ends(measured: Measured) -> list[tuple[int, int | None]]:
 
 
 def _frac_table(ends: Sequence[tuple[int, int | None]], values: FloatArray) -> pd.DataFrame:
-    return pd.DataFrame({"response": [r for r, _ in ends], "force": [f for _, f in ends], "FRAC": values})
+    """Return one row per FRF; none where there are no values."""
+    rows = [(*end, value) for end, value in zip(ends, values, strict=False)]
+    return pd.DataFrame(rows, columns=["response", "force", "FRAC"])

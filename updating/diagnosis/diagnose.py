@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
 from updating.case import Case
 from updating.diagnosis.answer.consistency import Split, splits
@@ -28,6 +27,7 @@ from updating.diagnosis.search.search import Search, search
 from updating.effects import LIBRARY, Effect, hypotheses_of
 from updating.models.state import State
 from updating.nominal import predictor_of
+from updating.prediction.assignment import frac_of_constants
 from updating.prediction.baseline import correct, doubt_in_mass
 from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
@@ -253,21 +253,12 @@ def _gap(problem: DiagnosisProblem, titles: tuple[str, ...]) -> Gap:
         count = len(test.frequency)
         tables.append(pd.DataFrame(columns, index=pd.RangeIndex(1, count + 1, name="mode")))
     modes = pd.concat(tables)
-    frac = np.concatenate([_frac(one) for one in problem.specimens])
+    frac = np.concatenate([frac_of_constants(one.measured, one.nominal) for one in problem.specimens])
     return Gap(modes, _rms(modes["error [%]"]), _rms(modes["sigma [%]"]), frac)
 
 
 def _rms(values: pd.Series) -> float:
     return float(np.sqrt(np.mean(np.square(values.to_numpy(dtype=float)))))
-
-
-def _frac(problem: SpecimenProblem) -> FloatArray:
-    """Return, per FRF, the correlation of measured and nominal constants over the modes; none without level [-]."""
-    if not problem.measured.absolute:
-        return np.zeros(0)
-    a, b = problem.measured.constants, problem.nominal.constants
-    power = np.sum(a**2, axis=1) * np.sum(b**2, axis=1)
-    return np.asarray(np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300))
 
 
 def _shrink(

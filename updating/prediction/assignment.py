@@ -31,6 +31,26 @@ def mac_of_constants(
     return np.asarray((a.T @ b) ** 2 / np.maximum(power, 1e-300))
 
 
+def frac_of_constants(measured: Measured, prediction: Prediction) -> FloatArray:
+    """Return FRAC of the constants over paired modes, per FRF; none where the level of each mode is its own.
+
+    Parameters
+    ----------
+    measured, prediction : Measured, Prediction
+        Test and model, of the same modes in the same order.
+
+    Returns
+    -------
+    (n_frf,) or (0,) array
+        Between 0 and 1 [-].
+    """
+    if not measured.absolute:
+        return np.zeros(0)
+    a, b = measured.constants, prediction.constants * measured.same_signs(prediction.constants)
+    power = np.sum(a**2, axis=1) * np.sum(b**2, axis=1)
+    return np.asarray(np.sum(a * b, axis=1) ** 2 / np.maximum(power, 1e-300))
+
+
 AS_STATED = 1e3
 """What a stated pair gains over any other: more than all other pairs of any test cost together [-]."""
 

@@ -92,9 +92,16 @@ def real_markdown(document: Mapping[str, Any]) -> str:
         *_stated("The true effects taken out of the library", left_out),
     ]
     if whole:
-        facts = [{"case": c["name"], "withheld": c["withheld"], "known from": c["source"]} for c in whole]
-        parts += ["### What is known, and from where", "", *_rows(facts), ""]
+        parts += ["### What is known, and from where", "", *_rows(_known(whole)), ""]
     return "\n".join(parts)
+
+
+def _known(cases: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
+    """Return what is withheld and from where it is known, cases of which both are the same in one row."""
+    names: dict[tuple[str, str], list[str]] = {}
+    for case in cases:
+        names.setdefault((case["withheld"], case["source"]), []).append(case["name"])
+    return [{"case": "; ".join(n), "withheld": w, "known from": s} for (w, s), n in names.items()]
 
 
 def _stated(heading: str, cases: Sequence[Mapping[str, Any]]) -> list[str]:

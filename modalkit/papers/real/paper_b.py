@@ -16,8 +16,7 @@ _TAPED = Case(
     sources=(Source(Path("tape_taped/published.toml")),),
     withheld="the tape",
     known="tape on x = 0.5 to 0.8 m",
-    source="adhesive tape on both faces of segments 6 to 8; 'FE-model updating of beam structure presenting "
-    "non proportional damping', Tables 3 and 5",
+    source="adhesive tape on both faces of segments 6 to 8; paper B, Tables 3 and 5",
     accepted=sets("damping_patch"),
     equivalent=sets("uniform_damping"),
     stands_in=sets("uniform_damping"),

@@ -10,6 +10,7 @@ import numpy as np
 
 from modalkit.blind.answer import Answer, read_answer
 from modalkit.output.documents import diagnosis_document
+from modalkit.output.whole import plain
 from modalkit.simulation.setup import Options
 from modalkit.simulation.simulate import Prepared, simulate_test
 from modalkit.study.read import Study
@@ -43,7 +44,7 @@ def diagnosed(study: Study, ready: Prepared, case: Case, seed: list[int]) -> Ans
     with tempfile.TemporaryDirectory(prefix="test-", ignore_cleanup_errors=True) as folder:
         hits = Path(folder) / "hits.uff"
         hidden.write(hits)
-        return read_answer(diagnosis_document(diagnose_studies([with_hits(study, hits)])))
+        return read_answer(plain(diagnosis_document(diagnose_studies([with_hits(study, hits)]))))
 
 
 def with_hits(study: Study, hits: Path) -> Study:

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from blind_outcomes import diagnosis, honest_run, interval, outcome, run_of, truth
+from conforming import departures
 from scipy.stats import binomtest
 from scipy.stats import bootstrap as scipy_bootstrap
 
@@ -23,6 +24,7 @@ from modalkit.blind.scoring.markdown import BEGIN, END, into_page, score_markdow
 from modalkit.blind.scoring.score import score_again
 from modalkit.blind.shrunk import Shrinkage
 from modalkit.cli.scores import show_score, write_markdown
+from modalkit.output.schemas import BlindDocument
 
 
 @pytest.mark.parametrize(
@@ -248,6 +250,7 @@ def test_json_is_strict_whole_and_can_be_scored_again() -> None:
     text = json.dumps(first, allow_nan=False)
     back = json.loads(text)
     assert back["schema"] == "modalkit.blind/1"
+    assert not departures(back, BlindDocument)
     again = json.loads(json.dumps(score_again(back).to_json(), allow_nan=False))
     assert again == back
     assert len({row["salt"] for row in back["outcomes"]}) == 60

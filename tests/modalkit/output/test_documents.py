@@ -1,12 +1,14 @@
 """The JSON records: the keys of the contract, nothing that is not JSON, files whole or not at all."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from conforming import departures
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,6 +18,9 @@ from acquisition.errors import InputError
 from modalkit.output import whole
 from modalkit.output.documents import diagnosis_document, modes_document
 from modalkit.output.library import effects_document
+from modalkit.output.schemas.diagnosis import DiagnosisDocument
+from modalkit.output.schemas.effects import EffectsDocument
+from modalkit.output.schemas.modes import ModesDocument
 from modalkit.output.whole import plain, write_json, write_text
 from modalkit.study.read import read_study
 from modalkit.workflow.case import process
@@ -67,7 +72,7 @@ def diagnosis() -> Diagnosis:
     return diagnose(Case("beam", spec, measured), library=[LIBRARY["E"], LIBRARY["sensor_mass"]])
 
 
-def written(record: dict[str, Any]) -> dict[str, Any]:
+def written(record: Mapping[str, object]) -> dict[str, Any]:
     """The record as it comes back from strict JSON."""
 
     def refuse(name: str) -> None:
@@ -81,6 +86,7 @@ def test_the_record_of_an_identification(tmp_path: Path) -> None:
     study = read_study(SAMPLE)
     processed, model = process(study)
     record = written(modes_document(model, processed.hits, processed.warnings))
+    assert not departures(record, ModesDocument)
     assert set(record) >= MODES
     assert record["schema"] == "modalkit.modes/1"
     assert record["window_decay_removed"] == pytest.approx(8.0)
@@ -110,6 +116,7 @@ def test_the_record_of_a_hit() -> None:
 
 
 def check(record: dict[str, Any]) -> None:
+    assert not departures(record, DiagnosisDocument)
     assert set(record) >= DIAGNOSIS
     assert record["schema"] == "modalkit.diagnosis/1"
     assert isinstance(record["significant"], bool)
@@ -158,7 +165,7 @@ def test_what_may_be_missing_is_null_or_complete(diagnosis: Diagnosis) -> None:
 
 
 def test_the_library_can_be_written() -> None:
-    assert written(effects_document())["schema"] == "modalkit.effects/1"
+    assert not departures(written(effects_document()), EffectsDocument)
 
 
 numbers = st.one_of(

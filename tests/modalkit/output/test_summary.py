@@ -18,6 +18,7 @@ from updating.diagnosis.answer.result import (
     Shortcoming,
     Shrink,
     Where,
+    Zone,
 )
 
 HEADS = ["Cause:", "Where:", "Closes:", "Sure:", "Next:"]
@@ -278,3 +279,10 @@ def test_a_test_says_which_it_tells_from_which() -> None:
     one = NextTest("weigh", ("E", "density"), 5.2, ((a, b), (c, b)), whole=False)
     assert separated(one) == "separates density from E and length + thickness by 5 sigma"
     assert separated(NextTest("look", (), float("nan"), whole=False)) == ""
+
+
+def test_a_region_is_named_where_there_are_others() -> None:
+    tip, root = Zone("tip", (0.3, 0.0, 0.0), 0.9), Zone("root", (0.1, 0.0, 0.0), 0.1)
+    several = replace(NAMED, where=replace(TIP, zones=(root, tip)))
+    assert ", region tip" in summary_text(several)[1]
+    assert "region" not in summary_text(replace(NAMED, where=replace(TIP, zones=(tip,))))[1]

@@ -8,11 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conforming import departures
 from scipy.io import mmwrite
 from typer.testing import CliRunner
 
 from acquisition.errors import StudyError
 from modalkit.cli import app
+from modalkit.output.schemas.plan import CheckedForecast
+from modalkit.output.whole import plain
 from modalkit.planning import Forecast, forecast
 from modalkit.planning.document import to_json
 from modalkit.planning.from_study import bench_of
@@ -219,6 +222,7 @@ def test_a_trial_on_the_model_answers_as_was_forecast(tmp_path: Path) -> None:
     found = forecast(bench(tmp_path))
     checked = check(found, 3, 2)
     assert all(one.kept for one in checked.tried), checked.table.to_string()
+    assert not departures(plain(checked.to_json()), CheckedForecast)
 
 
 def test_softer_springs_at_the_foot_are_heavier_masses_at_the_end_to_frequencies_and_not_to_shapes(
@@ -321,6 +325,9 @@ def test_a_place_on_a_plate_is_no_place_along_a_beam(tmp_path: Path) -> None:
     text = PLATE.replace('type = "plate"', 'type = "beam"').replace("elements = [8, 4]", "")
     path.write_text(text.format(test="points = [[0.2, 0.05]]"))
     with pytest.raises(StudyError, match="is no place along a beam"):
+        bench_of(read_study(path))
+    path.write_text(PLATE.format(test="points = [[0.2, 0.05]]\nsensor = 0.3"))
+    with pytest.raises(StudyError, match=r"\[test\] points and sensor: 0.3 is a place along a beam"):
         bench_of(read_study(path))
     path.write_text(PLATE.format(test='points = ["3+Z"]'))
     with pytest.raises(StudyError, match="node 3: a plate has no node numbers; write"):

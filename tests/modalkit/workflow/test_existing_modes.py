@@ -11,9 +11,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from conforming import departures
 
 import modalkit as mk
 from acquisition import Dof, FrfSet, Geometry, InputError, ModalData, read_modes
+from modalkit.output.schemas import ComparisonDocument
 from modalkit.samples import sample_file
 
 Run = Callable[..., tuple[int, str, str]]
@@ -120,7 +122,9 @@ def test_the_commands_take_modes(tmp_path: Path, run: Run) -> None:
     target = tmp_path / "c.json"
     code, out, _ = run("correlate", first, second, "--json", target, "--figures", tmp_path / "f")
     assert code == 0 and "3 pairs" in out and (tmp_path / "f" / "mac.png").exists()
-    assert [p["mac"] for p in json.loads(target.read_text())["pairs"]] == pytest.approx([1.0, 1.0, 1.0])
+    document = json.loads(target.read_text())
+    assert not departures(document, ComparisonDocument)
+    assert [p["mac"] for p in document["pairs"]] == pytest.approx([1.0, 1.0, 1.0])
     for wrong in (
         ("identify", first, "--order", "10"),
         ("identify", first, "--decay", "3"),

@@ -63,6 +63,14 @@ def test_what_has_no_partner_is_listed_on_both_sides(model) -> None:
     assert any("99.00 Hz" in w for w in found.warnings)
 
 
+def test_frac_of_mere_shapes_knows_that_their_signs_are_free_and_needs_their_level(model) -> None:
+    """Constants of one FRF over the modes: a mode turned over is the same mode, one of another size is not."""
+    turned = model.constants * np.array([1.0, -1.0, -1.0, 1.0])
+    shapes = replace(seen(model.frequency, turned), hit=np.full(6, -1))
+    assert correlate(Case("scaled", BEAM, shapes)).frac["FRAC"].to_numpy() == pytest.approx(np.ones(6))
+    assert correlate(Case("free", BEAM, replace(shapes, absolute=False))).frac.empty
+
+
 def test_nothing_in_common_is_an_error(model) -> None:
     left = np.linalg.svd(model.constants)[0][:, 5:]
     with pytest.raises(EstimationError, match="looks like one of the model's"):

@@ -4,8 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conforming import departures
 
 from acquisition.errors import StudyError
+from modalkit.output.schemas import UpdateDocument
+from modalkit.output.update import to_json
+from modalkit.output.whole import plain
 from updating import Case, Material, Measured, Predictor, Region, Spec
 from updating.frf_update import FrfUpdate, bootstrap_frf_update, update_frfs
 from updating.frf_update.columns import columns
@@ -114,6 +118,10 @@ def test_frac_and_damping_are_told_before_and_after(result: FrfUpdate) -> None:
     assert result.damping_error_percent("after") < 1
     assert result.rms_percent("before") > 1
     assert result.rms_percent("after") < 0.02
+
+
+def test_the_document_is_what_is_declared(result: FrfUpdate) -> None:
+    assert not departures(plain(to_json(result)), UpdateDocument)
 
 
 def test_the_history_is_complete(result: FrfUpdate) -> None:

@@ -1,0 +1,196 @@
+"""The document of a diagnosis, ``modalkit.diagnosis/1``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Literal, TypedDict
+
+
+class GapMode(TypedDict):
+    """One measured mode beside its partner."""
+
+    study: Annotated[str, "title of the study"]
+    test_hz: Annotated[float, "measured frequency [Hz]"]
+    model_hz: Annotated[float, "the nominal model's [Hz]"]
+    error_percent: Annotated[float, "model minus test, over test [%]"]
+    sigma_percent: Annotated[float, "standard deviation of the measured frequency [%]"]
+    mac: Annotated[float | None, "MAC; null without shapes [-]"]
+    test_damping: Annotated[float | None, "measured damping ratio; null where none is known [-]"]
+    model_damping: Annotated[float | None, "what the study expects; null where it states none [-]"]
+
+
+class GapEntry(TypedDict):
+    """The gap before anything is explained."""
+
+    frequency_rms_percent: Annotated[float, "r.m.s. frequency error over the pairs [%]"]
+    noise_floor_percent: Annotated[float, "what repeating the test alone would give [%]"]
+    modes: Annotated[Sequence[GapMode], "mode by mode"]
+    frac: Annotated[
+        Sequence[float | None],
+        "FRAC of the modal constants over the modes, by FRF; empty without level, null if undefined [-]",
+    ]
+
+
+class ZoneEntry(TypedDict):
+    """A region of the model."""
+
+    name: Annotated[str, "name of the region"]
+    center: Annotated[Sequence[float], "its centre in model axes [m]"]
+    probability: Annotated[float, "probability that the cause sits in it [-]"]
+
+
+class WhereEntry(TypedDict):
+    """Where the cause acts."""
+
+    channel: Annotated[str, "the likeliest of stiffness, mass, damping and measurement; `none` without gap"]
+    channels: Annotated[
+        Mapping[str, float],
+        "probability of each channel given that there is a cause; `none`: that there is no cause at all [-]",
+    ]
+    location: Annotated[Sequence[float] | None, "most probable place, model axes; null where it has none [m]"]
+    locations: Annotated[
+        Sequence[Sequence[float]],
+        "all places with a notable share, mirrored ones too, most probable first [m]",
+    ]
+    points: Annotated[
+        Sequence[int], "test nodes concerned: at the places, or those an effect of the measurement names [-]"
+    ]
+    names: Annotated[
+        Sequence[str], "regions, node sets and joints of your own model that the first row names"
+    ]
+    zones: Annotated[Sequence[ZoneEntry], "regions of the model, with their probability"]
+
+
+class EstimateEntry(TypedDict):
+    """A parameter of an effect."""
+
+    value: Annotated[
+        float | str | Sequence[int] | None,
+        "its value; nodes or a name where it has no size; null if not finite [`unit`]",
+    ]
+    unit: Annotated[str, "unit; `-` for a ratio"]
+    low95: Annotated[
+        float | None, "lower end of the 95 % interval; null where the value is no number [`unit`]"
+    ]
+    high95: Annotated[float | None, "upper end; null likewise [`unit`]"]
+    at_bound: Annotated[bool, "whether the interval touches the end of the prior's range"]
+
+
+class RankedEntry(TypedDict):
+    """One set of effects."""
+
+    effects: Annotated[Sequence[str], "the set; one that occurs twice stands twice"]
+    probability: Annotated[float, "of this set, among all compared and no effect at all [-]"]
+    equivalents: Annotated[Sequence[Sequence[str]], "other rows that fit less than 2 sigma worse or better"]
+    parameters: Annotated[
+        Mapping[str, EstimateEntry],
+        "by `effect.parameter`, of a second one `effect#2.parameter`; nodes and sensors only in the rows of `sets`;"
+        " a place that is an end or a test point stands in `where.location` alone",
+    ]
+    plausible: Annotated[bool, "whether the sizes are believable for such a specimen"]
+    fit_p_value: Annotated[float, "chance of a misfit like this or worse if the set is true [-]"]
+
+
+class CauseEntry(TypedDict):
+    """The cause."""
+
+    verdict: Annotated[
+        Literal["named", "class", "unknown", "none"],
+        "one set; several these data cannot separate; a gap that no set explains; no gap",
+    ]
+    lacks: Annotated[
+        Literal["fit", "closing", "evidence", "partners", "one size"] | None,
+        "what the first row lacks to be an answer; null unless `verdict` is `unknown`",
+    ]
+    effects: Annotated[Sequence[str], "union of `sets`"]
+    sets: Annotated[
+        Sequence[Sequence[str]], "the answer: sets that hold 95 %; empty for `unknown` and `none`"
+    ]
+    ranking: Annotated[Sequence[RankedEntry], "all sets compared, most probable first"]
+
+
+class HeldPointsEntry(TypedDict):
+    """Errors of modal constants at points held out."""
+
+    before_percent: Annotated[float | None, "of the nominal model; null if undefined [%]"]
+    after_percent: Annotated[float | None, "with the first row; null if undefined [%]"]
+    nuisance_only_percent: Annotated[float | None, "with the tolerances alone; null if undefined [%]"]
+
+
+class HeldOut(TypedDict):
+    """R.m.s. errors on modes left out in turn and predicted from the others."""
+
+    before_percent: Annotated[float | None, "of the nominal model; null with one mode only [%]"]
+    after_percent: Annotated[float | None, "with the first row of the ranking; null likewise [%]"]
+    runner_up_percent: Annotated[float | None, "with the row behind it; null where there is none [%]"]
+    nuisance_only_percent: Annotated[float | None, "with the tolerances alone; null with one mode only [%]"]
+    noise_floor_percent: Annotated[
+        float | None, "what repeating the test alone would give; null if undefined [%]"
+    ]
+    nuisance_stretch_sigma: Annotated[
+        float | None,
+        "how far off a tolerance would have to be if tolerances alone were the cause; null if undefined [sigma]",
+    ]
+    points: Annotated[
+        HeldPointsEntry | None, "the same at points held out; null unless the gap shows in the FRFs"
+    ]
+
+
+class ClosedEntry(TypedDict):
+    """Share of the closable gap that closes on modes held out."""
+
+    value: Annotated[float, "the share [%]"]
+    low95: Annotated[float, "lower end of its 95 % interval [%]"]
+    high95: Annotated[float, "upper end [%]"]
+
+
+class ShrinkEntry(TypedDict):
+    """How far the gap shrinks."""
+
+    metric: Annotated[
+        Literal["frequency", "damping", "frf", "combined"],
+        "what the errors are of: what carries the gap; of `combined` 100 % is one standard deviation",
+    ]
+    before_percent: Annotated[float, "r.m.s. error of the nominal model [%]"]
+    after_percent: Annotated[float, "once the first row is fitted [%]"]
+    held_out: Annotated[HeldOut, "on modes left out"]
+    closed_percent: Annotated[
+        ClosedEntry | None, "share that closes; null where `before_percent` is within 1.5 times the floor"
+    ]
+
+
+class RemainderEntry(TypedDict):
+    """What the first row leaves."""
+
+    significant: Annotated[bool, "whether it is more than the stated noise makes"]
+    percent: Annotated[float, "r.m.s. left beyond noise, in `shrink.metric` [%]"]
+    sigma: Annotated[float, "largest residual of a mode or a channel [sigma]"]
+    carried_by: Annotated[Sequence[str], "which data carry it: `mode 11 frequency`"]
+
+
+class NextTestEntry(TypedDict):
+    """A measurement that would help."""
+
+    measure: Annotated[str, "what to do"]
+    separates: Annotated[Sequence[str], "effects of the explanations it separates"]
+    expected_sigma: Annotated[
+        float | None, "by how many sigma at least; null for advice that separates nothing [sigma]"
+    ]
+
+
+class DiagnosisDocument(TypedDict):
+    """Written by `modalkit diagnose --json`."""
+
+    schema: Annotated[Literal["modalkit.diagnosis/1"], "kind and version of the document"]
+    title: Annotated[str, "of the study, or the studies"]
+    significant: Annotated[bool, "whether test and model differ by more than tolerances and noise"]
+    p_value: Annotated[float, "chance of such a gap without any cause [-]"]
+    gap: Annotated[GapEntry, "how large the gap is"]
+    where: Annotated[WhereEntry, "where the cause acts"]
+    cause: Annotated[CauseEntry, "which effects make it"]
+    shrink: Annotated[ShrinkEntry, "how far the gap shrinks once they are in the model"]
+    remainder: Annotated[RemainderEntry | None, "what the first row leaves beyond noise; null without gap"]
+    included: Annotated[Mapping[str, float], "probability of each effect that it is among the causes [-]"]
+    next_test: Annotated[Sequence[NextTestEntry], "what to measure next, best first"]
+    not_examined: Annotated[Mapping[str, str], "effects that could not be examined, and why"]
+    warnings: Annotated[Sequence[str], "what the user ought to know"]
