@@ -36,6 +36,10 @@ from updating.models.whole import Whole
 from updating.test_data.chain import MeasurementChain, measurement_chain
 from updating.test_data.measured import Measured
 
+LARGEST_TURN = 1e3
+"""Largest derivative of a shape by the logarithm of a factor along another shape [-]: a whole mode at a thousandth of
+it, less than any tolerance. Doubled: columns of modes that lie closer than a part in a thousand grow as much."""
+
 
 @dataclass(frozen=True, eq=False)
 class Prediction(Displayed):
@@ -346,7 +350,9 @@ class Predictor(Displayed):
                 heavier[k] = np.sum(modes * (mass @ modes), axis=0)
         gap = lam - values[:, None]
         near = np.abs(gap) < 1e-9 * np.abs(lam).max()
-        weights = whole * np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
+        turn = whole * np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
+        # past a quarter of a turn no shape is another one's, and of modes that are all but double nothing is linear
+        weights = np.clip(turn, -LARGEST_TURN, LARGEST_TURN)
         weights[:, chosen, own] = -0.5 * heavier
         change = (rows["w"][:, :n] @ vectors) @ weights
         for axis, (name, slope) in enumerate(zip(self._sizes, ("wx", "wy"), strict=False)):

@@ -7,9 +7,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from updating_cases import BEAM, POINTS, blank, case_of, specimen, struck
+from updating_cases import BEAM, DOUBTS, POINTS, blank, case_of, exactly, specimen, struck
 
-from updating import LIBRARY, Case, Diagnosis, Measured, Predictor, diagnose
+from updating import LIBRARY, Case, Diagnosis, Measured, Predictor, Tolerances, diagnose
+from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search.evidence import explain
+from updating.diagnosis.search.sets import _in_other_forms
+from updating.diagnosis.search.together import join
 from updating.problem.candidate import Candidate
 from updating.thresholds import WELL_FITTED
 
@@ -19,6 +23,7 @@ FREE = replace(BEAM, length=0.5, clamped=()).with_elements(20)
 PLACES = np.linspace(0.0, 0.5, 7)
 SENSORS = (0, 4)
 BODY, AT = 0.03, 0.19
+CLAMP = Candidate((LIBRARY["clamp_translation"],))
 
 
 def two_sensors(*, upside_down: int | None, seed: int = 3) -> Measured:
@@ -134,3 +139,30 @@ def test_that_one_cause_fits_hides_no_second_one() -> None:
     single = next(row for row in found.ranking if row.effects == ("fluid_added_mass",))
     assert single.p_value > WELL_FITTED
     assert (found.verdict, {frozenset(s) for s in found.sets}) == ("named", {frozenset(both.names)})
+
+
+def test_which_law_a_damping_follows_shows_beside_a_clamp() -> None:
+    """All damping is two and a half times what is expected, on a clamp that shifts."""
+    short = replace(BEAM, length=0.3, regions=())
+    model = Predictor(short, blank(np.linspace(0.05, 0.3, 6), top=2500.0))
+    shifted = LIBRARY["clamp_translation"].state(model, {"stiffness": 4e6})
+    damped = LIBRARY["uniform_damping"].state(model, {"alpha": 1.5 * 2.0, "beta": 1.5e-6, "loss_factor": 0.0})
+    truth = model.predict(shifted.plus(damped), count=5)
+    scatter = 1 + 0.05 * np.random.default_rng(2).standard_normal(5)
+    test = exactly(model, truth, damping=scatter * truth.damping)
+    problem, _ = pose(Case("a beam", short, test, tolerances=Tolerances(DOUBTS, damping=0.15)))
+    laws = [
+        Candidate((LIBRARY["uniform_damping"],), chosen=(f,))
+        for f in problem.forms(LIBRARY["uniform_damping"])
+    ]
+    clamp, *damped_only = (explain(problem, one, laplace_only=True) for one in (CLAMP, *laws))
+    pairs = [
+        join(problem, (CLAMP, clamp.best.coordinates), (one.candidate, one.best.coordinates), -np.inf)
+        for one in damped_only
+    ]
+    pairs.sort(key=lambda pair: pair.log_evidence)
+    worst, best = pairs[0], pairs[-1]
+    assert best.log_evidence > worst.log_evidence + 3
+    others = _in_other_forms(problem, worst, [clamp, *damped_only], -np.inf)
+    assert max(pair.log_evidence for pair in others) > best.log_evidence - 0.5
+    assert _in_other_forms(problem, best, [clamp, *damped_only], -np.inf) == []

@@ -10,6 +10,7 @@ from updating_cases import BEAM, PLATE, POINTS, STEEL, ExactBeam, blank
 
 from updating import Damping, Predictor, Region, Spec
 from updating.models.state import NOMINAL, State
+from updating.prediction.predict import LARGEST_TURN
 
 FACTORS = ("E", "density", "thickness", "width", "length")
 GRID = np.array([[x, y] for x in np.linspace(0.09, 0.376, 4) for y in (0.01, 0.11, 0.19)])
@@ -129,6 +130,18 @@ def test_points_of_a_wider_plate_stay_where_they_are(clamped: tuple[str, ...], g
     found = Predictor(spec, blank(GRID)).predict(State(factors={"width": stretch}), count=5)
     assert found.frequency == pytest.approx(fresh.frequency, rel=1e-4)
     np.testing.assert_allclose(found.constants, fresh.constants, atol=1e-3 * np.abs(fresh.constants).max())
+
+
+@pytest.mark.parametrize("elements", [8, 12, 16])
+def test_modes_that_are_all_but_double_turn_no_faster_than_anything_bears(elements: int) -> None:
+    square = Spec("plate", 0.3, 0.3, 0.003, (elements, elements), (), "kirchhoff", PLATE.material)
+    points = np.stack(np.meshgrid([0.02, 0.11, 0.28], [0.01, 0.2, 0.29], indexing="ij"), axis=-1).reshape(
+        -1, 2
+    )
+    found = Predictor(square, blank(points)).predict(factors=("E", "length", "width"), count=9)
+    assert np.diff(np.log(found.frequency)).min() < 1e-6
+    size = np.abs(found.constants).max()
+    assert np.abs(found.constants_by).max() < 4 * LARGEST_TURN * size
 
 
 def damping(spec: Spec, state: State = NOMINAL) -> tuple[np.ndarray, np.ndarray]:

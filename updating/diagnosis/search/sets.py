@@ -82,7 +82,8 @@ def pairs_of(
     best_of = [pair for pair, _ in pairs]
     for i, (pair, places) in enumerate(pairs[:PAIRS_ANEW]):
         again = join(problem, *_parts_of_pair(problem, pair), bar, anew=True, places=places)
-        best_of[i] = max(pair, again, key=lambda e: e.log_evidence)
+        other = _in_other_forms(problem, pair, possible, bar)
+        best_of[i] = max(pair, again, *other, key=lambda e: e.log_evidence)
         bar = max(bar, best_of[i].best.marginal.log_likelihood)
     return best_of + _alike(problem, possible, best_of, bar)
 
@@ -152,11 +153,42 @@ def _best_forms(problem: DiagnosisProblem, chosen: list[_Draft], drafts: list[_D
 
 def _maximum_after_few_steps(problem: DiagnosisProblem, draft: _Draft) -> float:
     """Return the log-likelihood, with the forms' shares of the prior, that a pair reaches in a few steps."""
-    (one, a), (two, b) = ((e.candidate, e.best.coordinates) for e in (draft.first, draft.second))
+    parts = tuple((e.candidate, e.best.coordinates) for e in (draft.first, draft.second))
+    return _after_few_steps(problem, parts[0], parts[1], draft.places[:1])
+
+
+def _after_few_steps(problem: DiagnosisProblem, first: Part, second: Part, places: list[FloatArray]) -> float:
+    """Return the same of two parts, from the best of either alone and from other places of both."""
+    (one, a), (two, b) = first, second
     both = joined(one, two)
-    starts = [np.concatenate([a, b]), *draft.places[:1]]
+    starts = [np.concatenate([a, b]), *places]
     reached = [highest(problem, both, start, rounds=STEPS_TRIED).marginal.log_likelihood for start in starts]
     return max(reached) + both.log_weight
+
+
+def _in_other_forms(
+    problem: DiagnosisProblem, pair: Explanation, singles: list[Explanation], bar: float
+) -> list[Explanation]:
+    """Weigh a pair with either effect in another of its forms, where a short climb finds one that explains more.
+
+    Score tests choose the forms of a pair by a linear step from one effect's best, where the other is not yet what it
+    is beside it: which law a damping follows shows only once a clamp has taken its share.
+    """
+    parts, found = _parts_of_pair(problem, pair), []
+    data, reached = len(pair.best.comparison.residual), pair.best.marginal.log_likelihood
+    for (kept, place), (other, _) in (parts, parts[::-1]):
+        rivals = [
+            (single.candidate, single.best.coordinates)
+            for single in sorted(singles, key=lambda e: -e.log_evidence)
+            if single.names == other.names
+            and single.candidate.forms != other.forms
+            and len(place) + len(single.best.coordinates) < data
+        ]
+        heights = [_after_few_steps(problem, (kept, place), rival, []) for rival in rivals[:FORMS_TRIED]]
+        if heights and max(heights) > reached + pair.candidate.log_weight:
+            best = rivals[int(np.argmax(heights))]
+            found.append(join(problem, (kept, place), best, bar))
+    return found
 
 
 def _allowed(problem: DiagnosisProblem, singles: list[Explanation]) -> list[tuple[int, int]]:
