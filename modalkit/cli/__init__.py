@@ -65,7 +65,9 @@ def main() -> None:
     ) as error:
         if debug:
             raise
-        _fail(f"this should not have happened: {type(error).__name__}: {error}; run again with --debug")
+        _fail(
+            f"this should not have happened: {type(error).__name__}: {error}; `modalkit --debug ...` says where"
+        )
     else:
         sys.exit(code if isinstance(code, int) else 0)
 

@@ -47,6 +47,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         return f"no gap beyond tolerances and noise, once data that stand alone are left out: {odd}"
     if diagnosis.verdict == "none":
         sure = "" if diagnosis.suspected is None else "that is sure to be "
+        if not diagnosis.comparable:
+            return "no gap beyond tolerances and noise in the modes that have a partner; most have none"
         return f"no gap {sure}beyond tolerances and noise; {_suspected(diagnosis.suspected)}"
     if diagnosis.verdict == "unknown":
         return f"unknown: {_unknown(diagnosis)}"
@@ -253,10 +255,17 @@ def _stretched(shrink: Shrink) -> str:
     return f" (kept within {BELIEVED_DOUBT:g} sigma; {needed})"
 
 
+UNREMARKABLE = 0.05
+"""Chance of a gap from which its size says nothing [-]: of one point, say, among many that agree. Doubled, hardly any
+answer is worded otherwise."""
+
+
 def _sure(diagnosis: Diagnosis) -> str:
     chance = f"chance alone makes such a gap with {p_value(diagnosis.p_value)}"
     if diagnosis.verdict == "none":
         return chance
+    if diagnosis.p_value >= UNREMARKABLE:
+        chance += ", so that not its size but its pattern tells"
     if diagnosis.verdict == "unknown":
         return chance + _left_out(diagnosis)
     chosen = [row for row in diagnosis.ranking if row.effects in diagnosis.sets]
@@ -280,6 +289,8 @@ def _left_out(diagnosis: Diagnosis) -> str:
 def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none" and _odd(diagnosis):
         return "measure again what stands alone: points and signs there may be mistaken"
+    if diagnosis.verdict == "none" and not diagnosis.comparable:
+        return "see first why most modes have no partner in the model: points, signs, axes, units, clamps"
     if diagnosis.suspected:
         return "test again, with more hits and points and narrower tolerances, if it matters"
     if diagnosis.verdict == "none":

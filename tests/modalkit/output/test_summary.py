@@ -128,6 +128,19 @@ def test_unknown_says_that_the_nearest_set_fits_at_an_unlikely_size() -> None:
     assert "nothing in the library" in lines(replace(UNKNOWN, lacks="fit", ranking=(badly, E)))["Cause"]
 
 
+def test_no_gap_in_the_few_modes_that_are_paired_frees_no_model_for_use() -> None:
+    found = lines(replace(NONE, comparable=False))
+    assert "most have none" in found["Cause"]
+    assert "see first why most modes have no partner" in found["Next"]
+
+
+@pytest.mark.parametrize(("chance", "worded"), [(1e-4, False), (0.3, True)])
+def test_a_gap_that_is_not_remarkable_by_its_size_tells_by_its_pattern(
+    chance: float, *, worded: bool
+) -> None:
+    assert ("its pattern tells" in lines(replace(NAMED, p_value=chance))["Sure"]) is worded
+
+
 def test_halves_of_a_pair_are_both_placed() -> None:
     both = replace(
         TIP, channels={"mass": 0.5, "stiffness": 0.495}, locations=((0.0, 0.0, 0.0), (0.376, 0.0, 0.0))
