@@ -15,11 +15,13 @@ import scipy.fft
 
 from acquisition import HammerTest, Windows
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.frfs.frf import FrfSet
 from acquisition.hits.hammer import Hits
 from identification.fit.equations import basis
+from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.residues import Residues, fit_residues, synthesise
 from identification.levels.hits import Judged, UsedHits, used_hits
-from identification.levels.slopes import LevelDependence, is_known, of_single, rows_of, weights_of
+from identification.levels.slopes import LevelDependence, band_of, is_known, of_single, rows_of, weights_of
 from identification.model import ModalModel
 
 SURE = 4.0
@@ -79,27 +81,26 @@ def at_one_level(
     then exchanged for what the same residues add at the poles of the common level. Noise, and all that is no mode of
     the model, stays as it is.
     """
-    weights, rows, shifts = weights_of(model), rows_of(model), _shifts(found)
+    rows, weights, shifts = rows_of(model), weights_of(model), _shifts(found)
     first, moved = 0, []
     for entry in used_hits(tests):
         force, motion = _records(entry)
         if is_known(entry, rows):
-            singles = entry.single_frfs(windows=windows, band=_band(model))
-            pulses = _spectra(force)
+            singles = entry.single_frfs(windows=windows, band=band_of(model))
             for hit, frfs in enumerate(singles):
                 data, own, which = of_single(frfs, weights, rows)
                 here, there = (_poles(model, shift[first + hit]) for shift in shifts)
-                linear = fit_residues(
-                    data,
-                    np.concatenate([here, model.background_poles]),
-                    powers=model.background.powers,
-                    weights=own,
-                )
-                change = _change(entry.test, pulses.shape[-1], linear.residues[:, : len(here)], here, there)
-                motion[hit, which] += _records_of(change * pulses[hit], motion.shape[-1])
+                residues = _residues(model, data, here, own)
+                motion[hit, which] += _exchanged(entry.test, force[hit], residues, here, there)
             first += len(force)
         moved.append((entry, force, motion))
     return _tests(moved)
+
+
+def _residues(model: ModalModel, data: FrfSet, poles: ComplexArray, weights: Weights) -> ComplexArray:
+    """Return the residues of a hit's modes at its own poles, beside the model's background, (n_frf, n_modes)."""
+    every, powers = np.concatenate([poles, model.background_poles]), model.background.powers
+    return fit_residues(data, every, powers=powers, weights=weights).residues[:, : len(poles)]
 
 
 def _shifts(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
@@ -117,15 +118,14 @@ def _shifts(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
     weight = 1 / (found.sigmas**2 + np.median(found.sigmas, axis=0) ** 2)
     offset = _means(found.shifts - line, found.point, weight)
     beside = found.shifts - line - offset
-    scatter = np.median(np.abs(beside), axis=0) ** 2
+    scatter = np.maximum(np.median(np.abs(beside), axis=0) ** 2, np.finfo(float).tiny)
     beside = np.where(follows_level(found), beside * scatter / (scatter + found.sigmas**2), 0.0)
     sure = np.nan_to_num(np.abs(found.damping_slope) / found.damping_slope_sigma) > SURE
     by_level = np.outer(moved, np.where(sure, found.damping_slope, 0.0))
     # averages that are smeared have broader peaks than any hit has
     damping = np.broadcast_to(np.median(found.damping_shifts - by_level, axis=0), line.shape)
-    return np.stack([offset + line + beside, damping + by_level], axis=-1), np.stack(
-        [offset, damping], axis=-1
-    )
+    here = np.stack([offset + line + beside, damping + by_level], axis=-1)
+    return here, np.stack([offset, damping], axis=-1)
 
 
 def _poles(model: ModalModel, shift: FloatArray) -> ComplexArray:
@@ -135,14 +135,15 @@ def _poles(model: ModalModel, shift: FloatArray) -> ComplexArray:
     return np.asarray(size * (-ratio + 1j * np.sqrt(1 - ratio**2)))
 
 
-def _change(
-    test: HammerTest, lines: int, residues: ComplexArray, here: ComplexArray, there: ComplexArray
-) -> ComplexArray:
-    """Return the change of FRFs as modes move from poles to others, (n_frf, lines) [by the test's form].
+def _exchanged(
+    test: HammerTest, force: FloatArray, residues: ComplexArray, here: ComplexArray, there: ComplexArray
+) -> FloatArray:
+    """Return what a hit's records change by as modes move from poles to others, (n_frf, n_samples) [by the form].
 
     Modal constants stay, so that residues go as one over the damped frequency.
     """
-    omega = 2 * np.pi * np.arange(lines) * test.rate / (2 * (lines - 1))
+    pulse = scipy.fft.rfft(force, PADDED * len(force))
+    omega = 2 * np.pi * np.fft.rfftfreq(PADDED * len(force), 1 / test.rate)
     # at rest in the mean, no mode is of any account
     laplace = np.asarray(np.where(omega > 0, 1j * omega, 1e-3j * omega[1]) + test.decay, complex)
     axis = basis.Axis(laplace, test.form, test.decay)
@@ -151,25 +152,13 @@ def _change(
         synthesise(axis, poles, Residues(residues * here.imag / poles.imag, nothing, ()))
         for poles in (here, there)
     )
-    return after - before
+    return np.asarray(scipy.fft.irfft((after - before) * pulse, PADDED * len(force))[..., : len(force)])
 
 
 def _records(entry: UsedHits) -> tuple[FloatArray, FloatArray]:
     """Return force and motion of the used hits, (n_hits, n_samples) and (n_hits, n_responses, n_samples)."""
     force, motion = entry.hits.force[entry.numbers], entry.hits.motion[entry.numbers]
     return np.array(force, dtype=np.float64), np.array(motion, dtype=np.float64)
-
-
-def _spectra(records: FloatArray) -> ComplexArray:
-    return np.asarray(scipy.fft.rfft(records, PADDED * records.shape[-1], axis=-1))
-
-
-def _records_of(spectra: ComplexArray, samples: int) -> FloatArray:
-    return np.asarray(scipy.fft.irfft(spectra, PADDED * samples, axis=-1)[..., :samples])
-
-
-def _band(model: ModalModel) -> tuple[float, float]:
-    return float(model.frfs.frequency[0]), float(model.frfs.frequency[-1])
 
 
 def _means(values: FloatArray, group: IntArray, weight: FloatArray) -> FloatArray:

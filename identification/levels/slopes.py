@@ -115,7 +115,7 @@ def level_dependence(
     if why_not(entries) is not None:
         return None
     weights = weights_of(model)
-    band = (float(model.frfs.frequency[0]), float(model.frfs.frequency[-1]))
+    band = band_of(model)
     levels, common = np.concatenate([e.levels for e in entries]), mean_level(entries)
     expected = np.outer(levels - common, np.zeros(len(model)) if slope is None else slope)
     singles = (f for e in entries for f in e.single_frfs(windows=windows, band=band))
@@ -132,6 +132,11 @@ def level_dependence(
 def rows_of(model: ModalModel) -> dict[tuple[Dof, Dof], int]:
     """Return the row of each response and reference among the FRFs of a model."""
     return {pair: i for i, pair in enumerate(zip(model.frfs.responses, model.frfs.references, strict=True))}
+
+
+def band_of(model: ModalModel) -> tuple[float, float]:
+    """Return the lowest and the highest line that a model was identified from [Hz]."""
+    return float(model.frfs.frequency[0]), float(model.frfs.frequency[-1])
 
 
 def is_known(entry: UsedHits, rows: dict[tuple[Dof, Dof], int]) -> bool:

@@ -17,7 +17,7 @@ from acquisition import Windows
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from identification.levels.hits import Judged, mean_level, used_hits
-from identification.levels.slopes import is_known, rows_of
+from identification.levels.slopes import band_of, is_known, rows_of
 from identification.model import ModalModel
 
 LARGEST, STEPS = 0.15, 121
@@ -64,7 +64,7 @@ class _Singles:
         Which FRF of a set each is one of.
     beyond : (n,) array
         Level of the hit less the common one, over that [-].
-    weight : (n, ) array
+    weight : (n,) array
         Power of the hit [N^2].
     """
 
@@ -113,7 +113,7 @@ def stretched_averages(
 def _singles(model: ModalModel, tests: Sequence[Judged], windows: Windows | None) -> tuple[float, _Singles]:
     """Return the common level [N], and the FRFs of the single hits that the model has."""
     rows = rows_of(model)
-    band = float(model.frfs.frequency[0]), float(model.frfs.frequency[-1])
+    band = band_of(model)
     entries = [e for e in used_hits(tests) if is_known(e, rows)]
     level = mean_level(entries)
     found = [

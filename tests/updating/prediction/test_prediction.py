@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 from updating_cases import BEAM, PLATE, POINTS, STEEL, ExactBeam, blank
 
 from updating import Damping, Predictor, Region, Spec
+from updating.models.spec import PointMass
 from updating.models.state import NOMINAL, State
-from updating.prediction.predict import LARGEST_TURN
 
 FACTORS = ("E", "density", "thickness", "width", "length")
+# none at an edge: beyond it there is nothing to hit, and a plate that narrows takes such a point along
 GRID = np.array([[x, y] for x in np.linspace(0.09, 0.376, 4) for y in (0.01, 0.11, 0.19)])
 LOOK = {
     "beam": Predictor(BEAM, blank(POINTS)),
@@ -132,16 +133,18 @@ def test_points_of_a_wider_plate_stay_where_they_are(clamped: tuple[str, ...], g
     np.testing.assert_allclose(found.constants, fresh.constants, atol=1e-3 * np.abs(fresh.constants).max())
 
 
-@pytest.mark.parametrize("elements", [8, 12, 16])
-def test_modes_that_are_all_but_double_turn_no_faster_than_anything_bears(elements: int) -> None:
-    square = Spec("plate", 0.3, 0.3, 0.003, (elements, elements), (), "kirchhoff", PLATE.material)
+@pytest.mark.parametrize("mass", [0.0, 1e-7, 1e-6])
+def test_modes_that_are_all_but_double_turn_no_faster_than_anything_bears(mass: float) -> None:
+    """A speck in a corner makes of two double modes two that a change of width mixes at once."""
+    speck = (PointMass((0.3, 0.3), mass),) if mass else ()
+    square = Spec("plate", 0.3, 0.3, 0.003, (8, 8), (), "kirchhoff", PLATE.material, masses=speck)
     points = np.stack(np.meshgrid([0.02, 0.11, 0.28], [0.01, 0.2, 0.29], indexing="ij"), axis=-1).reshape(
         -1, 2
     )
     found = Predictor(square, blank(points)).predict(factors=("E", "length", "width"), count=9)
-    assert np.diff(np.log(found.frequency)).min() < 1e-6
+    assert np.diff(np.log(found.frequency)).min() < 1e-5
     size = np.abs(found.constants).max()
-    assert np.abs(found.constants_by).max() < 4 * LARGEST_TURN * size
+    assert np.abs(found.constants_by).max() < 1e4 * size  # all of another shape at a ten thousandth
 
 
 def damping(spec: Spec, state: State = NOMINAL) -> tuple[np.ndarray, np.ndarray]:

@@ -109,7 +109,7 @@ class Clamp(Effect):
             pulled = on_basis(predictor, ("support", support.name, axis), lambda: _pulled(support, axis))
             soft = -1 / (support.own[axis, axis] + float(values["stiffness"]))
             return State(stiffness=(soft * pulled,))
-        own, others = _apart(predictor, values)
+        own, others = _released_edges(predictor, values)
         held = values["stiffness"] * unit_edges(predictor, self.freed, own)
         if others:
             firm = RIGID * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
@@ -120,7 +120,7 @@ class Clamp(Effect):
         """Return the clamped edges that give way, or the support."""
         if predictor.spec.imported is not None:
             return (centre_of(one_of(predictor.spec.imported.supports, values, "support")),)
-        return clamped_places(predictor, edges=_apart(predictor, values)[0])
+        return clamped_places(predictor, edges=_released_edges(predictor, values)[0])
 
 
 def _clamps(predictor: Predictor) -> tuple[Variant, ...]:
@@ -132,7 +132,7 @@ def _clamps(predictor: Predictor) -> tuple[Variant, ...]:
     return (Variant({"support": ALL}, ALIKE), *alone)
 
 
-def _apart(predictor: Predictor, values: Values) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _released_edges(predictor: Predictor, values: Values) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the clamped edges that give way, and those that hold.
 
     Raises
