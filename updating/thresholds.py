@@ -14,6 +14,10 @@ MESH_UNEVENNESS = 0.5
 """How much of the mesh's own error is in doubt mode by mode, beside all of it in common [-]. Judged. Doubled: on a
 coarse mesh modes of short waves count a quarter as much once this is their whole noise."""
 
+STATED_MASS_DOUBT = 0.02
+"""By how much a body weighs more or less than stated, relative (1 sigma) [-]. Judged: a data sheet's rounding, wax and
+the cable's end. Doubled: a change of a sensor's mass must be twice as large to be seen."""
+
 CARRIED_DOUBT = 0.3
 """How far what the model missed in the baseline may miss differently now, relative to what it missed [-]. Judged.
 Doubled: a baseline of a model that was far off says half as much."""

@@ -3,7 +3,7 @@
 A change dK that the model does not know has elements between modes as large as those on the diagonal, which shift the
 frequencies. These scatter by a relative s, so a shape takes up of another one by 1 sigma 2 s f_i f_j / (f_j^2 - f_i^2)
 (perturbation of first order, as of Fox and Kapoor, AIAA Journal 6, 2426, 1968): of modes 1 % apart that scatter by
-0.05 %, 5 % of it.
+0.05 %, 5 % of it. So it does of a mode that the test has not, because its sensor sits at a node of it.
 """
 
 from __future__ import annotations
@@ -45,32 +45,40 @@ class CloseModes:
             What predicted constants are multiplied by [kg].
         """
         (first, second), angle = self._pairs
-        before = self.setting.nominal
+        before, count = self.setting.nominal, level.shape[1]
         columns = np.zeros((*level.shape, len(angle)))
-        every = np.arange(len(angle))
         for mode, other, turn in ((first, second, angle), (second, first, -angle)):
-            change = self._change(now, mode, other)
-            columns[:, mode, every] = turn * level[:, mode] * change
+            seen = np.flatnonzero(mode < count)
+            change = self._change(now, mode[seen], other[seen])
+            columns[:, mode[seen], seen] = turn[seen] * level[:, mode[seen]] * change
         # shapes have no sign of their own: a column that leaps would be no smooth function of the state
         alike = np.sum(self._change(now, first, second) * self._change(before, first, second), axis=0)
         return np.asarray(np.where(alike < 0, -1.0, 1.0) * columns).reshape(level.size, len(angle))
 
     def _change(self, now: Prediction, mode: IntArray, other: IntArray) -> FloatArray:
         """Return what constants of modes change by as others are added to their shapes, (n_frf, k) [1/kg]."""
-        test, shape = self.setting.measured, now.at_points
-        bare = (test.hit < 0)[:, None]
-        seen, hit = shape[test.seen], np.where(bare, 1.0, shape[test.hit])
-        added = seen[:, other] * hit[:, mode] + np.where(bare, 0.0, seen[:, mode] * hit[:, other])
-        return np.asarray(now.gain[:, mode] * added)
+        lost = self.setting.missed
+        seen, hit = np.hstack([now.seen, lost.seen])[:, other], np.hstack([now.hit, lost.hit])[:, other]
+        both = now.seen[:, mode] * np.where((self.setting.measured.hit < 0)[:, None], 0.0, hit)
+        return np.asarray(now.gain[:, mode] * (seen * now.hit[:, mode] + both))
 
     @cached_property
     def _pairs(self) -> tuple[IntArray, FloatArray]:
-        """Return the pairs (2, k) of modes that are close enough, and by how much they turn, (k,) [rad]."""
-        test = self.setting.measured
-        i, j = np.triu_indices(len(test.frequency), 1)
+        """Return pairs (2, k) of modes that are close enough, and by how much they turn, (k,) [rad].
+
+        The first is measured; so is the second, or it counts on as one that the test misses.
+        """
+        test, before, lost = self.setting.measured, self.setting.nominal, self.setting.missed
+        count = len(test.frequency)
+        i, j = np.triu_indices(count, 1, count + len(lost.frequency))
         scatter = test.repeatability**2 + self.further
-        far = np.abs(test.frequency[j] ** 2 - test.frequency[i] ** 2)
-        together = test.frequency[i] * test.frequency[j]
-        angle = 2 * np.sqrt((scatter[i] + scatter[j]) / 2) * together / np.maximum(far, 1e-12 * together)
+        measured = j < count
+        # the model knows best how far a missed mode is from one that it has itself
+        predicted = np.concatenate([before.frequency, lost.frequency])
+        f = np.where(measured, test.frequency[i], before.frequency[i])
+        g = np.where(measured, np.resize(test.frequency, len(predicted))[j], predicted[j])
+        further = np.where(measured, np.resize(scatter, len(predicted))[j], scatter[i])
+        far = np.abs(g**2 - f**2)
+        angle = 2 * np.sqrt((scatter[i] + further) / 2) * f * g / np.maximum(far, 1e-12 * f * g)
         shows = angle > LEAST_TURN
         return np.stack([i, j])[:, shows], np.minimum(angle[shows], 1.0)

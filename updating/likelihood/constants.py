@@ -86,9 +86,7 @@ class Constants(Quantity):
         variance = own_errors + self._late(view) ** 2
         uneven, louder = self._idealised(predicted, view.doubt.fidelity)
         own = [
-            self._places.hits(now.along * level),
-            self._places.sensors(now.along_seen * level),
-            self._places.together(now.along * level, now.along_seen * level),
+            *self._places.columns(now, level, test.constants / scale),
             self._nodes.columns(now, level),
             self._close_modes.columns(now, level),
             self._missed_modes.columns(now, level),

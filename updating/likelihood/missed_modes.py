@@ -40,11 +40,9 @@ class MissedModes:
         level : (n_frf, n_modes) array
             What predicted constants are multiplied by [kg].
         """
-        test, before = self.setting.measured, self.setting.nominal
+        before, lost = self.setting.nominal, self.setting.missed
         (mode, missed), share = self._pairs
-        bare = (test.hit < 0)[:, None]
-        shape = self.setting.missed.at_points[:, missed]
-        added = shape[test.seen] * np.where(bare, 1.0, shape[test.hit])
+        added = (lost.seen * lost.hit)[:, missed]
         # a shape has no sign of its own: a column that leaps would be no smooth function of the state
         sign = np.where(np.sum(now.constants * before.constants, axis=0) < 0, -1.0, 1.0)
         columns = np.zeros((*level.shape, len(share)))

@@ -15,6 +15,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
 from updating.prediction.predict import Prediction
+from updating.test_data.chain import roving
 from updating.thresholds import LEAST_CONSTANT_NOISE
 
 
@@ -43,22 +44,26 @@ class Nodes:
         n_frf, n_modes = now.constants.shape
         columns = np.zeros((n_frf, n_modes, len(self._shared), n_modes))
         if len(self._shared):
-            fixed, roving = self._roles
-            besides = LEAST_CONSTANT_NOISE * np.sqrt(np.mean(now.at_points**2, axis=0))
+            fixed = self._fixed
+            moved, before = self._elsewhere(now), self._elsewhere(self.setting.nominal)
+            besides = LEAST_CONSTANT_NOISE * np.sqrt(np.mean(moved**2, axis=0))
             # a shape has no sign of its own: one that leaps would be no smooth function of the state
-            sign = np.where(np.sum(now.at_points * self.setting.nominal.at_points, axis=0) < 0, -1.0, 1.0)
-            change = now.gain * now.at_points[roving] * besides * sign * level
+            sign = np.where(np.sum(moved * before, axis=0) < 0, -1.0, 1.0)
+            change = now.gain * moved * besides * sign * level
             for k, place in enumerate(self._shared):
                 there = np.flatnonzero(fixed == place)
                 columns[there[:, None], np.arange(n_modes), k, np.arange(n_modes)] = change[there]
         return columns.reshape(n_frf * n_modes, -1)
 
     @cached_property
-    def _roles(self) -> tuple[IntArray, IntArray]:
-        """Return the point of every FRF that is one of few, and the other, (n_frf,) each."""
+    def _fixed(self) -> IntArray:
+        """Point of the transducer of every FRF that several share, (n_frf,)."""
         test = self.setting.measured
-        few = len(np.unique(test.seen)) <= len(np.unique(test.hit))
-        return (test.seen, test.hit) if few else (test.hit, test.seen)
+        return test.hit if roving(test) == "seen" else test.seen
+
+    def _elsewhere(self, now: Prediction) -> FloatArray:
+        """Return the shapes where the other one was, (n_frf, n_modes) [kg^-1/2]."""
+        return now.seen if roving(self.setting.measured) == "seen" else now.hit
 
     @cached_property
     def _shared(self) -> IntArray:
@@ -66,5 +71,5 @@ class Nodes:
         test = self.setting.measured
         if not test.absolute or np.any(test.hit < 0):
             return np.zeros(0, dtype=np.int64)
-        points, count = np.unique(self._roles[0], return_counts=True)
+        points, count = np.unique(self._fixed, return_counts=True)
         return np.asarray(points[count > 1], dtype=np.int64)

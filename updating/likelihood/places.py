@@ -9,6 +9,8 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
+from updating.prediction.predict import Prediction
+from updating.test_data.chain import roving
 from updating.thresholds import END_REACH, REGISTRATION_SHARE
 
 
@@ -24,31 +26,56 @@ class Places:
 
     setting: Setting
 
-    def hits(self, along: FloatArray) -> FloatArray:
-        """Return one column per point hit and direction: the effect of having hit beside it.
+    def columns(self, now: Prediction, level: FloatArray, measured: FloatArray) -> list[FloatArray]:
+        """Return the change of the constants per standard deviation of what roves, of sensors, of all, (n, k) each [-].
 
         Parameters
         ----------
-        along : (dim, n_frf, n_modes) array
-            Derivatives of the constants by the position of the hit, relative to their scale [1/m].
+        now : Prediction
+            The modes.
+        level : (n_frf, n_modes) array
+            What predicted constants are multiplied by [kg].
+        measured : (n_frf, n_modes) array
+            The constants that they are to be [-].
         """
-        return self._by_place(*self._hit, along)
-
-    def sensors(self, along: FloatArray) -> FloatArray:
-        """Return one column per sensor and direction: the effect of having mounted it beside its point."""
-        if (self.setting.measured.hit < 0).all():
-            return np.zeros((along[0].size, 0))
-        return self._by_place(*self._seen, along)
-
-    def together(self, hit: FloatArray, seen: FloatArray) -> FloatArray:
-        """Return a column for where the points as a whole lie along each axis that leaves it in doubt."""
-        bare = (self.setting.measured.hit < 0)[:, None]
-        columns = [
-            (loose * (np.where(bare, 0.0, hit[axis]) + seen[axis])).reshape(-1, 1)
-            for axis, loose in enumerate(self._loose.tolist())
-            if loose
+        test = self.setting.measured
+        bare = (test.hit < 0)[:, None]
+        seen, hit = self._as_measured(now, level, measured)
+        by_hit = level * now.gain * seen * now.hit_slopes
+        by_sensor = level * now.gain * hit * now.seen_slopes
+        return [
+            self._by_place(*self._hit, np.where(bare, by_sensor, by_hit)),
+            self._by_place(*self._seen, np.where(bare.all(), 0.0, by_sensor)),
+            self._together(by_hit + by_sensor),
         ]
-        return np.hstack(columns) if columns else np.zeros((hit[0].size, 0))
+
+    def _as_measured(
+        self, now: Prediction, level: FloatArray, measured: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the shapes at sensor and force, (n_frf, n_modes); where FRFs share one of them, as it was measured.
+
+        Near a node the model says little of how far a mode moves there, for it is the place that decides, and the other
+        ends' errors go with that.
+        """
+        test = self.setting.measured
+        ends = {"seen": now.seen, "hit": now.hit}
+        shared = "hit" if roving(test) == "seen" else "seen"
+        point = getattr(test, shared)
+        alike = (point[:, None] == point) & (test.hit >= 0)
+        others = level * now.gain * ends[roving(test)]
+        power = alike @ others**2
+        known = (np.sum(alike, axis=1) > 1)[:, None] & (power > 0)
+        ends[shared] = np.where(
+            known, alike @ (others * measured) / np.where(known, power, 1.0), ends[shared]
+        )
+        return ends["seen"], ends["hit"]
+
+    def _together(self, along: FloatArray) -> FloatArray:
+        """Return a column for where the points as a whole lie along each axis that leaves it in doubt."""
+        columns = [
+            (loose * along[axis]).reshape(-1, 1) for axis, loose in enumerate(self._loose.tolist()) if loose
+        ]
+        return np.hstack(columns) if columns else np.zeros((along[0].size, 0))
 
     @cached_property
     def _loose(self) -> FloatArray:

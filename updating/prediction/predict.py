@@ -33,6 +33,7 @@ from updating.models.shear import sheared
 from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State
 from updating.models.whole import Whole
+from updating.prediction.bodies import body_changes
 from updating.test_data.chain import MeasurementChain, measurement_chain
 from updating.test_data.measured import Measured
 
@@ -53,8 +54,10 @@ class Prediction(Displayed):
         Damping ratios, nan where nothing is expected [-].
     constants : (n_frf, n_modes) array
         Modal constants phi_response * phi_reference, the gain included [1/kg].
-    along, along_seen : (dim, n_frf, n_modes) arrays
-        Derivatives of the constants by the position of the hit, and of the sensor [1/(kg m)].
+    seen, hit : (n_frf, n_modes) arrays
+        Mode shapes at the response and at the force of every FRF; 1 where there is none [kg^-1/2].
+    seen_slopes, hit_slopes : (dim, n_frf, n_modes) arrays
+        Their derivatives by the position of the sensor, and of the hit; 0 where there is none [1/(kg^1/2 m)].
     log_frequency_by : (n_modes, n_factors) array
         Derivatives of ln f by the logarithms of the factors asked for [-].
     constants_by : (n_frf, n_modes, n_factors) array
@@ -63,8 +66,6 @@ class Prediction(Displayed):
         Mode shapes in the coordinates of the reduced basis [kg^-1/2].
     slope : (n_modes,) array
         Relative change of each frequency per newton of the hits' peak force [1/N].
-    at_points : (n_points, n_modes) array
-        Mode shapes at the test's points [kg^-1/2].
     gain : (n_frf, n_modes) array
         Factor of the constants over the product of the shapes at the points that they join [-].
     """
@@ -72,13 +73,14 @@ class Prediction(Displayed):
     frequency: FloatArray
     damping: FloatArray
     constants: FloatArray
-    along: FloatArray
-    along_seen: FloatArray
+    seen: FloatArray
+    hit: FloatArray
+    seen_slopes: FloatArray
+    hit_slopes: FloatArray
     log_frequency_by: FloatArray
     constants_by: FloatArray
     vectors: FloatArray
     slope: FloatArray
-    at_points: FloatArray
     gain: FloatArray
 
     def select(self, modes: IntArray) -> Prediction:
@@ -87,15 +89,26 @@ class Prediction(Displayed):
             self.frequency[modes],
             self.damping[modes],
             self.constants[:, modes],
-            self.along[:, :, modes],
-            self.along_seen[:, :, modes],
+            self.seen[:, modes],
+            self.hit[:, modes],
+            self.seen_slopes[:, :, modes],
+            self.hit_slopes[:, :, modes],
             self.log_frequency_by[modes],
             self.constants_by[:, modes],
             self.vectors[:, modes],
             self.slope[modes],
-            self.at_points[:, modes],
             self.gain[:, modes],
         )
+
+    @cached_property
+    def along(self) -> FloatArray:
+        """Derivatives of the constants by the position of the hit, 0 where none is known, (dim, n_frf, n_modes)."""
+        return np.asarray(self.gain * self.seen * self.hit_slopes)
+
+    @cached_property
+    def along_seen(self) -> FloatArray:
+        """Derivatives of the constants by the position of the sensor, (dim, n_frf, n_modes)."""
+        return np.asarray(self.gain * self.seen_slopes * self.hit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,6 +252,7 @@ class Predictor(Displayed):
             count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
         chosen = np.arange(first, min(first + count, len(values)))
         read = measurement_chain(self.measured, total)
+        axes = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         rows = self._rows(total, read.points)
         shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
         by = self._by_factors(total, values, vectors, chosen, factors, rows, read.points) if factors else []
@@ -252,15 +266,16 @@ class Predictor(Displayed):
             frequency,
             self._damping(total, values[chosen], vectors[:, chosen]),
             level * read.product(shapes["w"], shapes["w"]),
-            level * self._slopes(shapes, read),
-            level * self._sensor_slopes(shapes, read),
+            shapes["w"][read.seen],
+            read.at_hit(shapes["w"], 1.0),
+            np.stack([shapes[n][read.seen] for n in axes]),
+            np.stack([read.at_hit(shapes[n], 0.0) for n in axes]),
             np.stack([b[0] for b in by], axis=-1) if by else np.zeros((len(chosen), 0)),
             level[:, :, None] * np.stack([_change(shapes["w"], b[1], read) for b in by], axis=-1)
             if by
             else np.zeros((len(self.measured.seen), len(chosen), 0)),
             vectors[:, chosen],
             total.slope + _gained(total, values[chosen], vectors[:, chosen]),
-            shapes["w"][: len(self.measured.points)],
             np.asarray(level),
         )
 
@@ -286,6 +301,11 @@ class Predictor(Displayed):
         return None if stated is None else stated[np.minimum(np.arange(count), len(stated) - 1)]
 
     @cached_property
+    def body_changes(self) -> dict[str, FloatArray]:
+        """What masses and places of the stated bodies change, see :mod:`updating.prediction.bodies`."""
+        return body_changes(self.reduced, self.spec)
+
+    @cached_property
     def _sizes(self) -> tuple[str, ...]:
         """Factors that stretch the model along its axes."""
         return ("length", "width") if self.spec.kind == "plate" else ("length",)
@@ -307,17 +327,6 @@ class Predictor(Displayed):
     def growth(self) -> float:
         """How far x = 0 moves per unit of stretch so that points keep their distance from the free end [m]."""
         return float(self.growths[0])
-
-    def _slopes(self, shapes: dict[str, FloatArray], read: MeasurementChain) -> FloatArray:
-        names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
-        bare = read.hit[:, None] < 0
-        seen = shapes["w"][read.seen]
-        slopes = [np.where(bare, shapes[n][read.seen], seen * shapes[n][read.hit]) for n in names]
-        return np.stack(slopes)
-
-    def _sensor_slopes(self, shapes: dict[str, FloatArray], read: MeasurementChain) -> FloatArray:
-        names = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
-        return np.stack([read.product(shapes[n], shapes["w"]) for n in names])
 
     def _by_factors(
         self,
@@ -344,6 +353,12 @@ class Predictor(Displayed):
         own = np.arange(len(chosen))
         heavier = -(powers * heavy) @ parts[:, chosen, own] / np.where(lam == 0, 1.0, lam)
         for k, (regions, factor) in enumerate(regions_of(self.spec, name) for name in names):
+            if names[k] in self.body_changes:
+                mass = self.body_changes[names[k]][:n, :n]
+                whole[k], heavier[k] = (
+                    -vectors.T @ (mass @ modes * lam),
+                    np.sum(modes * (mass @ modes), axis=0),
+                )
             if regions:
                 stiffness, mass = self.reduced.regional_sensitivity(state, factor, regions)
                 whole[k] = vectors.T @ (stiffness @ modes - mass @ modes * lam)

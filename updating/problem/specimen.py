@@ -39,6 +39,7 @@ from updating.thresholds import (
     BENT_DATA,
     MESH_UNEVENNESS,
     SHAPE_NOISE_SCALES,
+    STATED_MASS_DOUBT,
     STRAINED_LINEARISATION,
     WIDE_TOLERANCE,
 )
@@ -140,12 +141,12 @@ class SpecimenProblem:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Factors with a tolerance that the model knows: of the whole, then those of regions."""
+        """What is doubted alike by all data: factors of the whole and of regions, masses and places of bodies."""
         known = {name for term in self.predictor.reduced.structure.terms for name in term.powers}
         whole = [n for n in FACTORS if n in known and self.tolerances.factors.get(n, 0.0) > 0]
         own = dict.fromkeys([*self.tolerances.parts, *self.tolerances.bounds])
         regional = [n for n in own if self.tolerances.regional(n) > 0 and self._of_regions(n, known)]
-        return (*whole, *regional)
+        return (*whole, *regional, *self.predictor.body_changes)
 
     def _of_regions(self, name: str, known: set[str]) -> bool:
         """Tell whether a name is a factor of regions of the model."""
@@ -166,9 +167,21 @@ class SpecimenProblem:
 
     @cached_property
     def sigmas(self) -> FloatArray:
-        """Their standard deviations [-]."""
-        own, every = self.tolerances, self.names
-        return np.array([own.regional(n) if "." in n else own.factors[n] for n in every])
+        """Their standard deviations [-, of places m]."""
+        return np.array([self._sigma(name) for name in self.names])
+
+    def _sigma(self, name: str) -> float:
+        if name in self.predictor.body_changes:
+            return self.measured.position_sigma if name.endswith(("x", "y")) else STATED_MASS_DOUBT
+        return self.tolerances.regional(name) if "." in name else self.tolerances.factors[name]
+
+    def departure(self, shift: FloatArray) -> State:
+        """Return the departure that nuisances (n_names,) make in what all data doubt alike [standard deviations]."""
+        moved = dict(zip(self.names, (shift * self.sigmas).tolist(), strict=True))
+        bodies = self.predictor.body_changes
+        factors = {name: float(np.exp(by)) for name, by in moved.items() if name not in bodies}
+        masses = tuple(by * bodies[name] for name, by in moved.items() if name in bodies and by)
+        return departure(self.predictor.spec, factors).plus(State(mass=masses))
 
     @property
     def nominal(self) -> Prediction:
@@ -245,8 +258,7 @@ class SpecimenProblem:
             What the state leaves in doubt.
         """
         shift = np.zeros(len(self.names)) if shift is None or self.baseline is not None else shift
-        factors = dict(zip(self.names, np.exp(shift * self.sigmas).tolist(), strict=True))
-        whole = state.plus(departure(self.predictor.spec, factors))
+        whole = state.plus(self.departure(shift))
         prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
         prediction = prediction.select(self._match(prediction))
         view = View(prediction, self.predictor.base.plus(whole), doubt)

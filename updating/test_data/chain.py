@@ -43,8 +43,12 @@ class MeasurementChain:
         -------
         (n_frf, ...) array
         """
-        bare = (self.hit < 0).reshape(-1, *[1] * (at_hit.ndim - 1))
-        return np.asarray(at_seen[self.seen] * np.where(bare, 1.0, at_hit[self.hit]))
+        return np.asarray(at_seen[self.seen] * self.at_hit(at_hit, 1.0))
+
+    def at_hit(self, values: FloatArray, otherwise: float) -> FloatArray:
+        """Return a quantity (n_points, ...) at the force of every FRF, or what stands there where none is known."""
+        bare = (self.hit < 0).reshape(-1, *[1] * (values.ndim - 1))
+        return np.where(bare, otherwise, values[self.hit])
 
 
 def measurement_chain(measured: Measured, state: State) -> MeasurementChain:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from acquisition.arrays import FloatArray
 from updating import Case, Diagnosis, Predictor
 from updating.diagnosis.answer.result import ParameterEstimate
@@ -48,8 +46,7 @@ class Fitted:
         problem, stage = self.problem, self.candidate.stage(self.problem.predictor)
         state = self.candidate.assemble(stage, self.candidate.split(stage, self.point.coordinates.tolist()))
         shift = self.point.marginal.shift[: len(problem.names)]
-        factors = dict(zip(problem.names, np.exp(shift * problem.sigmas).tolist(), strict=True))
-        whole = state.plus(State(factors=factors))
+        whole = state.plus(problem.departure(shift))
         return stage.for_test(stage.measured, (*stage.additions, lambda _: whole)), whole
 
 

@@ -31,7 +31,7 @@ def test_the_level_of_a_mode_is_in_doubt_by_how_little_it_moves_where_all_frfs_m
     now, test = setting.nominal, setting.measured
     columns = Nodes(setting).columns(now, np.ones_like(now.constants)).reshape(*now.constants.shape, -1)
     shapes = setting.predictor.nominal_rows["w"][:, : len(now.vectors)] @ now.vectors
-    shapes = shapes * np.sign(np.sum(shapes * now.at_points, axis=0))
+    shapes = shapes * np.sign(np.sum(shapes[test.hit] * now.hit, axis=0))
     (there,) = np.unique(test.seen)
     for m in range(MODES):
         share = columns[:, m, m] / now.constants[:, m]
@@ -48,5 +48,5 @@ def test_no_level_no_doubt_in_it(setting: Setting) -> None:
 def test_a_shape_that_is_turned_round_changes_nothing(setting: Setting) -> None:
     now = setting.nominal
     level = np.ones_like(now.constants)
-    turned = replace(now, vectors=-now.vectors, at_points=-now.at_points)
+    turned = replace(now, vectors=-now.vectors, seen=-now.seen, hit=-now.hit)
     assert Nodes(setting).columns(turned, level) == pytest.approx(Nodes(setting).columns(now, level))

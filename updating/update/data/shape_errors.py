@@ -75,10 +75,10 @@ def _misplaced(test: Measured, at: Prediction) -> FloatArray:
     A point's error is the same for all modes and all sensors: one cause for each direction, (n_frf, n_modes, k).
     """
     rows, modes = test.constants.shape
-    if test.position_sigma <= 0 or not at.along.shape[0]:
+    if test.position_sigma <= 0 or not len(at.seen_slopes):
         return np.zeros((rows, modes, 0))
     bare = test.hit < 0
-    hit = _by_point(at.along, np.asarray(np.where(bare, test.seen, test.hit)), len(test.points))
+    hit = _by_point(_along(test, at), np.asarray(np.where(bare, test.seen, test.hit)), len(test.points))
     seen = _by_point(at.along_seen * ~bare[:, None], test.seen, len(test.points))
     return np.asarray(test.position_sigma * np.concatenate([hit, seen], axis=2) * _level(test, at)[:, None])
 
@@ -92,10 +92,10 @@ def _curved(test: Measured, at: Prediction) -> tuple[FloatArray, FloatArray]:
     n_sensors) [1/kg].
     """
     rows, modes = test.constants.shape
-    if test.position_sigma <= 0 or not at.along.shape[0]:
+    if test.position_sigma <= 0 or not len(at.seen_slopes):
         return np.zeros((1, modes)), np.zeros((rows, modes, 0))
     power = np.maximum(np.mean(at.constants**2, axis=0), 1e-300)
-    wave = np.sum(np.mean(at.along**2, axis=1), axis=0) / power
+    wave = np.sum(np.mean(_along(test, at) ** 2, axis=1), axis=0) / power
     part = np.sqrt(0.75) * test.position_sigma**2 * wave
     crest = np.sqrt(1 + np.sum(np.mean(at.along_seen**2, axis=1), axis=0) / np.maximum(wave * power, 1e-300))
     stretch = at.constants * _level(test, at) * part * crest
@@ -103,6 +103,11 @@ def _curved(test: Measured, at: Prediction) -> tuple[FloatArray, FloatArray]:
     causes = [(stretch * own[:, None])[..., None] * np.eye(modes) for own in sensors]
     stretched = np.concatenate(causes, axis=2) if causes else np.zeros((rows, modes, 0))
     return np.asarray(part**2 * np.mean(test.constants**2, axis=0))[None], stretched
+
+
+def _along(test: Measured, at: Prediction) -> FloatArray:
+    """Return the constants' derivatives by the place of what roves, the sensor where no force is known."""
+    return np.where((test.hit < 0)[:, None], at.along_seen, at.along)
 
 
 def _by_point(slopes: FloatArray, point: IntArray, count: int) -> FloatArray:

@@ -100,12 +100,13 @@ class Specimen:
         frequency = np.sqrt(np.maximum(values[self.model.rigid :], 0.0)) / (2 * np.pi)
         shape = self.model.shape_rows[:, : len(vectors)] @ vectors
         hit = np.where(self.measured.hit[:, None] < 0, 1.0, shape[self.measured.hit])
-        constants = self._gain * shape[self.measured.seen] * hit
+        seen = shape[self.measured.seen]
+        constants = self._gain * seen * hit
         nothing = np.zeros((0, *constants.shape))
         return Prediction(
-            frequency, np.full(len(frequency), np.nan), constants, nothing, nothing,
+            frequency, np.full(len(frequency), np.nan), constants, seen, hit, nothing, nothing,
             np.zeros((len(frequency), 0)), np.zeros((*constants.shape, 0)), vectors,
-            np.zeros(len(frequency)), shape, np.broadcast_to(self._gain, constants.shape),
+            np.zeros(len(frequency)), np.broadcast_to(self._gain, constants.shape),
         )  # fmt: skip
 
     def slopes(self, values: Sequence[float], at: Evaluation) -> FloatArray:
