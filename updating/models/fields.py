@@ -279,7 +279,9 @@ NARROWER = 0.7
 def mindlin_fields(length: float, width: float, elements: tuple[int, int], thickness: float) -> ShearFields:
     """Bicubic displacement w, biquadratic rotations of the section about both axes, narrow elements at the edges."""
     sides = zip((length, width), elements, strict=True)
-    mesh = skfem.MeshQuad.init_tensor(*(_lines(*side, [layer * thickness for layer in LAYERS]) for side in sides))
+    mesh = skfem.MeshQuad.init_tensor(
+        *(_lines(*side, [layer * thickness for layer in LAYERS]) for side in sides)
+    )
     deflection = skfem.Basis(mesh, skfem.ElementQuadBFS(), intorder=6)
     rotation = skfem.Basis(mesh, skfem.ElementQuad2(), intorder=6)
     first, count = int(deflection.N), int(rotation.N)
