@@ -23,7 +23,7 @@ EffectValues = tuple[str, Mapping[str, Any]]
 
 def departure(name: str, values: Mapping[str, Any]) -> Callable[[Predictor], State]:
     """Return the function that puts an effect into a predictor's model."""
-    return lambda predictor: effects_of(predictor.spec)[name].state(predictor, values)
+    return lambda predictor: effects_of(predictor.spec)[name].state(predictor, predictor.unstretched(values))
 
 
 def effects_of(spec: Spec) -> Mapping[str, Effect]:

@@ -149,7 +149,7 @@ def accepted_state(predictor: Predictor, name: str, values: Mapping[str, Any]) -
             f"found {', '.join(sorted(values)) or 'none'}"
         )
     check_values(parameters, values, f"[[model.effect]] {name}")
-    return effect.state(predictor, values)
+    return effect.state(predictor, predictor.unstretched(values))
 
 
 __all__ = [

@@ -6,9 +6,10 @@ all modes of the reduced basis (Fox and Kapoor 1968).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import linalg
@@ -322,6 +323,25 @@ class Predictor(Displayed):
         ]
         share = [0.5 if len(edges) != 1 else float(edges < {"x0", "y0"}) for edges in clamped]
         return np.array([part * sizes[axis] for part, axis in zip(share, "xy", strict=False)])
+
+    def unstretched(self, values: Mapping[str, Any], state: State = NOMINAL) -> dict[str, Any]:
+        """Return values of an effect whose places ``x`` and ``y`` are those of the model before it was stretched.
+
+        Parameters
+        ----------
+        values : mapping
+            The effect's parameters, places as the study has its coordinates [m].
+        state : State
+            Departure from ``base``, which may be stretched itself.
+        """
+        found, total = dict(values), self.base.plus(state).factors
+        for axis, (name, place) in enumerate(zip(self._sizes, "xy", strict=False)):
+            stretch = total.get(name, 1.0)
+            if place in found and stretch != 1.0:
+                size = (self.spec.length, self.spec.width)[axis]
+                before = (found[place] + self.growths[axis] * (stretch - 1)) / stretch
+                found[place] = float(np.clip(before, 0.0, size))
+        return found
 
     @property
     def growth(self) -> float:

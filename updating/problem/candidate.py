@@ -17,6 +17,9 @@ from updating.models.spec import FULLER
 from updating.models.state import State, combine
 from updating.prediction.predict import Predictor
 
+PLACED = {"x", "y"}
+"""Parameters that say where an effect sits, as the study has its coordinates."""
+
 MIDDLE = 0.5
 """Quantile that stands in for a parameter that a variant fixes."""
 
@@ -112,9 +115,13 @@ class Candidate:
         return self.assemble(stage, self.split(stage, coordinates))
 
     def assemble(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
-        """Return the state of the model at values of the effects' parameters."""
+        """Return the state of the model at values of the effects, places those on the stretched structure."""
         theory = State(theory=FULLER.get(stage.spec.kind) if self.fuller else None)
-        return combine([*(effect.state(stage, values) for effect, values in parts), theory])
+        spread = combine([effect.state(stage, v) for effect, v in parts if not PLACED & v.keys()])
+        placed = [
+            effect.state(stage, stage.unstretched(v, spread)) for effect, v in parts if PLACED & v.keys()
+        ]
+        return combine([spread, *placed, theory])
 
     def locations(
         self, predictor: Predictor, coordinates: Sequence[float], *, channel: str | None = None

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from updating.diagnosis.answer.verdict import decide
+from updating.diagnosis.answer.verdict import decide, is_significant
 
 
 def row(names: str, probability: float, log_likelihood: float, *, fits: float = 0.5) -> Any:
@@ -14,9 +14,10 @@ def row(names: str, probability: float, log_likelihood: float, *, fits: float = 
     marginal = SimpleNamespace(log_likelihood=log_likelihood)
     size = len(names.split())
     explanation = SimpleNamespace(
+        candidate=SimpleNamespace(log_weight=0.0),
         names=tuple(names.split()),
         log_evidence=log_likelihood - 5,
-        best=SimpleNamespace(marginal=marginal, coordinates=np.full(size, 0.5)),
+        best=SimpleNamespace(marginal=marginal, coordinates=np.full(size, 0.5), possible=True),
         samples=np.full((2, size), 0.5),
         weights=np.array([0.5, 0.5]),
     )
@@ -44,3 +45,15 @@ def test_another_cause_that_holds_the_rest_is_a_rival() -> None:
 def test_a_faint_second_cause_beside_a_rival_does_not_make_the_rival_go() -> None:
     _, sets = answer(row("E", 0.6, 100.0), row("density", 0.3, 99.8), row("E taper", 0.1, 100.5))
     assert sets == (("E",), ("density",))
+
+
+@pytest.mark.parametrize(("nothing", "gap"), [(0.25, False), (0.01, True)])
+def test_a_fit_that_chance_seldom_makes_shows_a_gap_once_nothing_at_all_is_not_credible(
+    nothing: float, gap: bool
+) -> None:
+    """Four units of log evidence, twelve of log likelihood: chance makes that once in 100 000 tries."""
+    empty, cause = row("", nothing, 92.0), row("E", 1 - nothing, 104.0)
+    empty.explanation.log_evidence, cause.explanation.log_evidence = 95.0, 99.0
+    found: Any = SimpleNamespace(compared=(cause, empty), empty=empty)
+    assert is_significant(found, p_value=0.9) is gap
+    assert is_significant(found, p_value=1e-4)

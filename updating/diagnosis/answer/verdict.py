@@ -39,11 +39,15 @@ def is_significant(found: Search, p_value: float) -> bool:
     """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
 
     A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it.
+    Where it does so by chance alone seldom, and nothing at all stays credible, there is no gap that is sure.
     """
     fitting = [row for row in found.compared if row.names and not row.rejected]
     gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
     gain -= found.empty.explanation.log_evidence
-    return bool(p_value < SIGNIFICANT_GAP or gain > FAR_BETTER or _by_chance(found) < CHANCE_OF_A_FIT)
+    if p_value < SIGNIFICANT_GAP or gain > FAR_BETTER:
+        return True
+    nothing = found.empty.probability / sum(row.probability for row in found.compared)
+    return bool(nothing < 1 - CREDIBLE_SHARE and _by_chance(found) < CHANCE_OF_A_FIT)
 
 
 def _by_chance(found: Search) -> float:
