@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from accessible import grave_findings
 from opening import FAINT
 
 CHROMIUM = os.environ.get("MODALKIT_CHROMIUM") or shutil.which("chromium")
@@ -321,6 +322,21 @@ def test_nothing_is_wider_than_the_page_and_everything_has_a_name(browser, shown
         assert page.tab.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), where
         assert page.tab.evaluate(NAMELESS) == [], where
     assert page.faults == []
+
+
+@pytest.mark.parametrize(
+    ("width", "scheme"), [(1400, "light"), (1400, "dark"), (390, "light"), (390, "dark")]
+)
+def test_axe_has_nothing_grave_to_say(browser, shown, width, scheme):
+    """Contrast, names, roles and order of every page, as axe-core sees them."""
+    page = Page(
+        browser, shown, viewport={"width": width, "height": 900}, color_scheme=scheme, bypass_csp=True
+    )
+    for where in ("hits", "modes", "shapes", "model", "update", "diagnosis"):
+        page.open(where)
+        page.tab.wait_for_timeout(300)
+        assert grave_findings(page.tab) == [], where
+    assert page.foreign == []
 
 
 NAMELESS = """[...document.querySelectorAll("main button, main input, main select, main textarea, header button")]

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from accessible import grave_findings
 from glider import make_glider
 from test_localisation_figure import diagnosis_with
 from test_report import complete
@@ -112,6 +113,18 @@ def test_a_report_is_silent_alone_and_no_wider_than_the_page(
     colours = tab.page.evaluate("getComputedStyle(document.body).backgroundColor")
     light = sum(int(part) for part in re.findall(r"\d+", colours)[:3]) > 3 * 128
     assert light is (scheme == "light")
+    tab.close()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1400, 390])
+@pytest.mark.parametrize("name", DATA)
+def test_axe_has_nothing_grave_to_say(
+    browser: Any, reports: dict[str, Path], name: str, width: int, scheme: str
+) -> None:
+    tab = Tab(browser, reports[name], width=width, scheme=scheme)
+    tab.moving()
+    assert grave_findings(tab.page) == []
     tab.close()
 
 
