@@ -13,6 +13,7 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.prior import holds
 from updating.diagnosis.search.search import Compared, Search
+from updating.problem.candidate import Candidate
 from updating.thresholds import (
     BEYOND_NOTHING,
     CHANCE_OF_A_FIT,
@@ -30,6 +31,9 @@ from updating.thresholds import (
     SIGNIFICANT_GAP,
     USUAL_SHARE,
 )
+
+TWO_SIDED = 1.96
+"""Standard deviations to either side that hold 95 % of a normal distribution [-]."""
 
 NAME = "name"
 """Unit of what is a name of the user's own model."""
@@ -234,6 +238,7 @@ def estimates(
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
         aside = parameter.default is not None
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
+    result |= {name: place for name, place in _at_form_places(problem, candidate).items() if name in drawn[0]}
     labels = [f"{effect.key}.{label}" for effect in candidate.effects for label in effect.labels]
     sensors = [f"{effect.key}.channel" for effect in candidate.effects if effect.of_sensor]
     own = [f"{effect.key}.{name}" for effect in candidate.effects for name in effect.named]
@@ -246,6 +251,20 @@ def estimates(
         low, middle, high = _quantiles(np.array([d[name][0] for d in derived]), weights)
         result[name] = ParameterEstimate(middle, unit, low, high, at_bound=False)
     return result
+
+
+def _at_form_places(problem: DiagnosisProblem, candidate: Candidate) -> dict[str, ParameterEstimate]:
+    """Return the places that forms fix, an end or a test point, as well known as the test's points are."""
+    here = problem.specimens[0]
+    spec, found = here.predictor.spec, {}
+    sizes = {"x": spec.length, "y": spec.width} if spec.outlined else {}
+    for effect, form in zip(candidate.effects, candidate.forms, strict=True):
+        for axis, size in sizes.items():
+            if axis in form.values:
+                at, beside = float(form.values[axis]), TWO_SIDED * here.measured.position_sigma
+                low, high = max(at - beside, 0.0), min(at + beside, size)
+                found[f"{effect.key}.{axis}"] = ParameterEstimate(at, "m", low, high, at_bound=False)
+    return found
 
 
 def _quantiles(values: FloatArray, weights: FloatArray) -> tuple[float, float, float]:
