@@ -68,17 +68,16 @@ class CloseModes:
 
         The first is measured; so is the second, or it counts on as one that the test misses.
         """
-        test, before, lost = self.setting.measured, self.setting.nominal, self.setting.missed
+        test, before, lost = self.setting.measured, self.setting.nominal, self.setting.missed.frequency
         count = len(test.frequency)
-        i, j = np.triu_indices(count, 1, count + len(lost.frequency))
-        scatter = test.repeatability**2 + self.further
-        measured = j < count
-        # the model knows best how far a missed mode is from one that it has itself
-        predicted = np.concatenate([before.frequency, lost.frequency])
-        f = np.where(measured, test.frequency[i], before.frequency[i])
-        g = np.where(measured, np.resize(test.frequency, len(predicted))[j], predicted[j])
-        further = np.where(measured, np.resize(scatter, len(predicted))[j], scatter[i])
+        i, j = np.triu_indices(count, 1, count + len(lost))
+        both = j < count
+        # how far a missed mode is from another one the model alone says, of both
+        f = np.where(both, test.frequency[i], before.frequency[i])
+        g = np.concatenate([test.frequency, lost])[j]
+        scatter = np.concatenate([test.repeatability**2 + self.further, np.zeros(len(lost))])
+        mean = np.where(both, (scatter[i] + scatter[j]) / 2, scatter[i])
         far = np.abs(g**2 - f**2)
-        angle = 2 * np.sqrt((scatter[i] + further) / 2) * f * g / np.maximum(far, 1e-12 * f * g)
+        angle = 2 * np.sqrt(mean) * f * g / np.maximum(far, 1e-12 * f * g)
         shows = angle > LEAST_TURN
         return np.stack([i, j])[:, shows], np.minimum(angle[shows], 1.0)
