@@ -9,7 +9,9 @@ import pytest
 from updating.diagnosis.answer.verdict import decide, is_significant
 
 
-def row(names: str, probability: float, log_likelihood: float, *, fits: float = 0.5) -> Any:
+def row(
+    names: str, probability: float, log_likelihood: float, *, fits: float = 0.5, without: float = -np.inf
+) -> Any:
     """Return a set that was weighed, its parameters in the middle of their priors and determined."""
     marginal = SimpleNamespace(log_likelihood=log_likelihood)
     size = len(names.split())
@@ -22,6 +24,7 @@ def row(names: str, probability: float, log_likelihood: float, *, fits: float = 
         weights=np.array([0.5, 0.5]),
     )
     share = {"probability": probability, "p_value": fits, "as_stated": fits, "rejected": False}
+    share |= {"without": without}
     return SimpleNamespace(names=explanation.names, explanation=explanation, **share)
 
 
@@ -57,3 +60,9 @@ def test_a_fit_that_chance_seldom_makes_shows_a_gap_once_nothing_at_all_is_not_c
     found: Any = SimpleNamespace(compared=(cause, empty), empty=empty)
     assert is_significant(found, p_value=0.9) is gap
     assert is_significant(found, p_value=1e-4)
+
+
+def test_what_setting_data_aside_explains_by_itself_is_no_cause() -> None:
+    """Two modes out of line, set aside, leave nothing to explain; the set beside them closes nothing."""
+    assert answer(row("E", 1.0, 100.0, without=60.0)) == ("named", (("E",),))
+    assert answer(row("E", 1.0, 100.0, without=94.0))[1] == ()

@@ -118,10 +118,10 @@ def shortcoming(
 
 
 def _better(found: Search) -> list[Compared]:
-    """Return the sets that fit and whose evidence is beyond that of the empty one."""
-    least = found.empty.explanation.log_evidence + BEYOND_NOTHING
+    """Return the sets that fit and whose evidence is beyond that of the empty one, with the same data set aside."""
+    nothing = found.empty.explanation.log_evidence
     rows = [row for row in found.compared if row.names and not row.rejected]
-    return [row for row in rows if row.explanation.log_evidence > least]
+    return [row for row in rows if row.explanation.log_evidence > max(nothing, row.without) + BEYOND_NOTHING]
 
 
 def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:

@@ -63,6 +63,8 @@ class Compared:
         Parameters that the data push to an end of their range that is no natural one.
     regions : mapping of str to float
         How its probability is shared among the regions that its forms name; a form that names two gives each half [-].
+    without : float
+        Log evidence of no effect at all with the same data set aside; of none where none are [-].
     """
 
     explanation: Explanation
@@ -71,6 +73,7 @@ class Compared:
     as_stated: float
     extreme: tuple[str, ...] = ()
     regions: Mapping[str, float] = field(default_factory=dict)
+    without: float = -np.inf
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -215,11 +218,21 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
         total = float(logsumexp([row.explanation.log_evidence for row in own]))
         fits = max(row.p_value for row in own if row.probability >= FORM_SHARE * top.probability)
         probability = sum(row.probability for row in own)
-        extreme = _extreme(problem, top.explanation) if probability > NEGLIGIBLE_PROBABILITY else ()
+        matters = probability > NEGLIGIBLE_PROBABILITY
+        extreme = _extreme(problem, top.explanation) if matters else ()
+        without = _without_effects(problem, top.explanation.candidate) if matters else -np.inf
         stated = max(row.as_stated for row in own)
         whole = replace(top.explanation, log_evidence=total)
-        merged.append(Compared(whole, probability, fits, stated, extreme, _by_region(own, total)))
+        merged.append(Compared(whole, probability, fits, stated, extreme, _by_region(own, total), without))
     return tuple(sorted(merged, key=lambda row: -row.probability))
+
+
+def _without_effects(problem: DiagnosisProblem, candidate: Candidate) -> float:
+    """Return the log evidence of no effect with the data set aside that a set sets aside: what explains may be that."""
+    if not candidate.outliers or not candidate.effects:
+        return -np.inf
+    alone = Candidate(fuller=candidate.fuller, outliers=candidate.outliers)
+    return explain(problem, alone, laplace_only=True).log_evidence
 
 
 def _by_region(own: list[Compared], total: float) -> dict[str, float]:
