@@ -18,8 +18,10 @@ from updating.thresholds import (
     FRESH_PARAMETERS,
     HOPELESS_BEHIND,
     LITTLE_GAIN,
+    NOISE_SHARE,
     PATIENT_STEPS,
     RELINEARISATIONS,
+    SHORTEST_STEP,
     STRAINED_LINEARISATION,
     UNDERSTEPPED,
 )
@@ -128,16 +130,27 @@ def _linearised(
 
 def sensitivities(problem: DiagnosisProblem, candidate: Candidate, point: Point) -> FloatArray:
     """Return the change of the prediction per prior quantile, by differences, shape (n, k)."""
-    return _differences(problem, candidate, point, None)[0]
+    return _differences(problem, candidate, point, None, _plain_steps(point))[0]
+
+
+def _plain_steps(point: Point) -> FloatArray:
+    return np.full(len(point.coordinates), DIFFERENCE_STEP)
 
 
 def _differences(
-    problem: DiagnosisProblem, candidate: Candidate, point: Point, keep: BoolArray | None
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    point: Point,
+    keep: BoolArray | None,
+    sizes: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the change of the prediction (n, k) and of the log-likelihood (k,) per prior quantile, and the steps."""
+    """Return the change of the prediction (n, k) and of the log-likelihood (k,) per prior quantile, and the steps.
+
+    ``sizes`` (k,) are those of the steps, which go towards the middle.
+    """
     columns, rises, steps = [], [], []
-    for i, u in enumerate(point.coordinates):
-        step = DIFFERENCE_STEP if u < 0.5 else -DIFFERENCE_STEP
+    for i, (u, size) in enumerate(zip(point.coordinates, sizes.tolist(), strict=True)):
+        step = size if u < 0.5 else -size
         moved = point.coordinates.copy()
         moved[i] += step
         there = problem.at(candidate, moved, point.about)
@@ -175,8 +188,27 @@ class _Slope:
 
 
 def _slope(problem: DiagnosisProblem, candidate: Candidate, point: Point, keep: BoolArray | None) -> _Slope:
-    """Take the slope at a point by differences."""
-    columns, rise, steps = _differences(problem, candidate, point, keep)
+    """Take the slope at a point by differences, by shorter ones where the likelihood is narrower than a step.
+
+    What it changes by beside the data's own pull is the noise, by no more than some units over a standard deviation:
+    else the step has left the parabola, as that of close modes that turn into each other.
+    """
+    sizes = _plain_steps(point)
+    slope = _sloped(problem, candidate, point, keep, sizes)
+    width = 1.0 / np.sqrt(np.maximum(np.diag(slope.normal), 1e-300))
+    if np.any((width < sizes) & (np.abs(slope.noise_gradient) * width > NOISE_SHARE)):
+        return _sloped(problem, candidate, point, keep, np.clip(0.5 * width, SHORTEST_STEP, sizes))
+    return slope
+
+
+def _sloped(
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    point: Point,
+    keep: BoolArray | None,
+    sizes: FloatArray,
+) -> _Slope:
+    columns, rise, steps = _differences(problem, candidate, point, keep, sizes)
     normal, load = _curvature(point, columns, keep)
     rise = rise + 0.5 * steps * np.diag(normal)  # a difference is the slope half a step away
     return _Slope(columns, normal, load, _finite(rise - load), fresh=True)
@@ -237,7 +269,29 @@ def _ascend(
     rounds: int,
     bar: float,
 ) -> tuple[Point, _Slope | None]:
-    """Return where a climb ends and the slope it was last on; None where that is to be taken anew."""
+    """Return where a climb ends and the slope it was last on; None where that is to be taken anew.
+
+    On its way it takes along where tolerances came to rest. Where they rest higher from their own middle, as they may
+    where close modes have changed places meanwhile, it goes on from there.
+    """
+    point, slope = _climb(problem, candidate, start, keep, rounds, bar)
+    if point.about is None or not point.possible:
+        return point, slope
+    afresh = evaluate(problem, candidate, point.coordinates, keep=keep)
+    if afresh.marginal.log_likelihood > point.marginal.log_likelihood + AT_REST:
+        return _climb(problem, candidate, afresh, keep, rounds, bar)
+    return point, slope
+
+
+def _climb(
+    problem: DiagnosisProblem,
+    candidate: Candidate,
+    start: FloatArray | Point,
+    keep: BoolArray | None,
+    rounds: int,
+    bar: float,
+) -> tuple[Point, _Slope | None]:
+    """Step uphill as long as it gains; see :func:`_ascend`."""
     point = start if isinstance(start, Point) else evaluate(problem, candidate, start, keep=keep)
     damping, stretch = 1e-3, 1.0
     slope: _Slope | None = None
