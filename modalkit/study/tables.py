@@ -256,9 +256,9 @@ class MassTable(Strict):
     """``[[model.mass]]``."""
 
     at: Annotated[list[Length], Field(min_length=1, max_length=3)]
-    """Where it sits [m]."""
+    """Where it sits; of beams and plates in doubt by `position_sigma` [m]."""
     mass: Mass
-    """A mass that the modeller knows of [kg]."""
+    """A mass that the modeller knows of; of beams and plates in doubt by 2 % [kg]."""
     inertia: Inertia = 0.0
     """Its rotary inertia [kg m2]."""
 

@@ -46,7 +46,7 @@ class Setting:
     tolerances : Tolerances
         The modeller's doubts.
     names : tuple of str
-        Factors with a tolerance that the model knows.
+        What all data doubt alike: factors with a tolerance that the model knows, masses and places of bodies.
     nominal : Prediction
         The nominal prediction of the measured modes.
     missed : Prediction

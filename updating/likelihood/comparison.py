@@ -29,7 +29,8 @@ class Block:
     residual, variance : (n,) arrays
         Measured minus predicted, and the variance of the independent noise [-].
     factors : (n, n_names) array
-        Change of the prediction per unit of the logarithm of each factor with a tolerance [-].
+        Change of the prediction per unit of what all data doubt alike: the logarithm of a factor with a tolerance
+        or of a body's mass [-], a body's place [1/m].
     named, own : (n, p) arrays
         Change per standard deviation of the nuisances of this channel alone: those that bear a name, whose
         stretching is a finding, and the rest [-].

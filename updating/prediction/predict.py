@@ -60,9 +60,9 @@ class Prediction(Displayed):
     seen_slopes, hit_slopes : (dim, n_frf, n_modes) arrays
         Their derivatives by the position of the sensor, and of the hit; 0 where there is none [1/(kg^1/2 m)].
     log_frequency_by : (n_modes, n_factors) array
-        Derivatives of ln f by the logarithms of the factors asked for [-].
+        Derivatives of ln f by the logarithms of the factors and masses asked for [-], and by bodies' places [1/m].
     constants_by : (n_frf, n_modes, n_factors) array
-        Derivatives of the constants by the same [1/kg].
+        Derivatives of the constants by the same [1/kg, 1/(kg m)].
     vectors : (r, n_modes) array
         Mode shapes in the coordinates of the reduced basis [kg^-1/2].
     slope : (n_modes,) array
