@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from imported_cases import beam_matrices, beam_table, clamp, write_rsa
 from scipy import sparse
-from scipy.io import hb_write, mmwrite
+from scipy.io import hb_write, mmwrite, savemat
 
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
@@ -62,6 +62,9 @@ WRITERS = {
     "coo.npz": lambda path: sparse.save_npz(path, sparse.coo_matrix(K)),
     "plain.npz": lambda path: np.savez(path, K=K.toarray()),
     "k.sti": lambda path: write_triplets(path, K),
+    "k.mat": lambda path: savemat(path, {"K": sparse.csc_array(K), "order": 3, "made": "by hand"}),
+    "packed.mat": lambda path: savemat(path, {"K": K.toarray()}, do_compression=True),
+    "packed sparse.mat": lambda path: savemat(path, {"K": sparse.csc_array(K)}, do_compression=True),
     "k.npy": lambda path: np.save(path, K.toarray()),
     "dia.npz": lambda path: sparse.save_npz(path, sparse.dia_array(K)),
     "stored whole.mtx": stored_whole,
@@ -92,7 +95,20 @@ def complex_sparse() -> bytes:
     return plain.getvalue()
 
 
+def matlab(**values: object) -> bytes:
+    plain = io.BytesIO()
+    savemat(plain, values, do_compression=True)
+    return plain.getvalue()
+
+
 BROKEN = [
+    ("k.mat", b"", "not a .mat of version 5 to 7"),
+    ("k.mat", matlab(K=np.eye(3))[:-20], "not a whole .mat"),
+    ("k.mat", b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(512), "version 7.3"),
+    ("k.mat", matlab(K=np.eye(3), M=np.eye(3)), "holds 2 matrices"),
+    ("k.mat", matlab(order=3), "holds 0 matrices"),
+    ("k.mat", matlab(K=np.eye(3) * 1j), "complex"),
+    ("k.mat", matlab(K=np.zeros((2000, 2000))), "unpack to more than"),
     ("k.xyz", b"1", "no reader for .xyz"),
     ("k.mtx", b"1 2 3\n", "not a MatrixMarket file"),
     ("k.mtx", b"%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1.0 2.0\n", "complex"),

@@ -143,7 +143,14 @@ def _pointers(values: AnyArray, rows: int, entries: int) -> AnyArray:
     return found
 
 
-def _compressed(arrays: Arrays, data: AnyArray, shape: tuple[int, int], *, by_row: bool) -> sparse.coo_array:
+def compressed(arrays: Arrays, data: AnyArray, shape: tuple[int, int], *, by_row: bool) -> sparse.coo_array:
+    """Return a matrix of its entries, ``indices`` and ``indptr`` by rows or columns, which are checked before.
+
+    Raises
+    ------
+    ValueError
+        If pointers or indices lead nowhere.
+    """
     entries, (lines, limit) = len(data), shape if by_row else shape[::-1]
     if data.ndim != 1:
         raise ValueError(f"entries of shape {data.shape}")
@@ -187,8 +194,8 @@ _BUILDERS: Mapping[
     str, Callable[[Arrays, AnyArray, tuple[int, int]], sparse.coo_array | sparse.dia_array]
 ] = MappingProxyType(
     {
-        "csr": lambda arrays, data, shape: _compressed(arrays, data, shape, by_row=True),
-        "csc": lambda arrays, data, shape: _compressed(arrays, data, shape, by_row=False),
+        "csr": lambda arrays, data, shape: compressed(arrays, data, shape, by_row=True),
+        "csc": lambda arrays, data, shape: compressed(arrays, data, shape, by_row=False),
         "bsr": _blocks,
         "coo": _triplets,
         "dia": _diagonals,

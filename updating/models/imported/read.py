@@ -13,6 +13,7 @@ from updating.models.imported.calculix import read_triplets
 from updating.models.imported.deck import read_deck
 from updating.models.imported.labelled import is_labelled, read_labelled, rows_of
 from updating.models.imported.market import read_market
+from updating.models.imported.matlab import read_matlab
 from updating.models.imported.matrices import Imported
 from updating.models.imported.nodes import (
     NodeTable,
@@ -34,6 +35,7 @@ READERS: dict[str, Callable[[Path], Sparse]] = {
     ".psa": read_boeing,
     ".npz": read_archive,
     ".npy": read_archive,
+    ".mat": read_matlab,
     ".sti": read_triplets,
     ".mas": read_triplets,
 }
@@ -41,7 +43,7 @@ READERS: dict[str, Callable[[Path], Sparse]] = {
 
 
 def read_matrix(path: Path | str) -> Sparse:
-    """Read a matrix by its rows: MatrixMarket, Harwell-Boeing, .npz or CalculiX.
+    """Read a matrix by its rows: MatrixMarket, Harwell-Boeing, .npz, .mat or CalculiX.
 
     Raises
     ------
