@@ -22,8 +22,12 @@ def predictor_of(case: Case) -> Predictor:
 def accepted_additions(
     accepted: Iterable[tuple[str, Mapping[str, float]]],
 ) -> tuple[Callable[[Predictor], State], ...]:
-    """Return what puts accepted effects, each a name and its values, into a predictor's model."""
-    return tuple(_accepted(name, values) for name, values in accepted)
+    """Return what puts accepted effects, each a name and its values, into a predictor's model.
+
+    Those with a place come last: it is one on the structure that the others have stretched.
+    """
+    ordered = sorted(accepted, key=lambda entry: bool({"x", "y"} & entry[1].keys()))
+    return tuple(_accepted(name, values) for name, values in ordered)
 
 
 def _accepted(name: str, values: Mapping[str, float]) -> Callable[[Predictor], State]:

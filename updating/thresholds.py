@@ -199,6 +199,10 @@ explanation leaves [standard deviations]. Doubled: only the plainest is pointed 
 CREDIBLE_SHARE = 0.95
 """Probability that the sets of an answer hold together [-]. The contract's."""
 
+TWO_SIDED = 1.96
+"""Standard deviations to either side that hold 95 % of a normal distribution [-]: of a place that a form fixes. The
+contract's interval."""
+
 RIVAL_SHARE = 0.02
 """A rival that fits as well as the first is kept from this share of its probability on [-]. Below, its prior alone,
 by how wide its parameters range, is odds of 50. Doubled: odds of 25 name an effect among equals."""

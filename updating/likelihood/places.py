@@ -43,11 +43,9 @@ class Places:
         seen, hit = self._as_measured(now, level, measured)
         by_hit = level * now.gain * seen * now.hit_slopes
         by_sensor = level * now.gain * hit * now.seen_slopes
-        return [
-            self._by_place(*self._hit, np.where(bare, by_sensor, by_hit)),
-            self._by_place(*self._seen, np.where(bare.all(), 0.0, by_sensor)),
-            self._together(by_hit + by_sensor),
-        ]
+        sensors = [] if bare.all() else [self._by_place(*self._seen, by_sensor)]
+        moved = self._by_place(*self._hit, np.where(bare, by_sensor, by_hit))
+        return [moved, *sensors, self._together(by_hit + by_sensor)]
 
     def _as_measured(
         self, now: Prediction, level: FloatArray, measured: FloatArray

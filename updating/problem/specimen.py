@@ -175,10 +175,25 @@ class SpecimenProblem:
             return self.measured.position_sigma if name.endswith(("x", "y")) else STATED_MASS_DOUBT
         return self.tolerances.regional(name) if "." in name else self.tolerances.factors[name]
 
-    def departure(self, shift: FloatArray) -> State:
-        """Return the departure that nuisances (n_names,) make in what all data doubt alike [standard deviations]."""
+    @cached_property
+    def _relative_sigmas(self) -> FloatArray:
+        """The standard deviations, those of places relative to the size of the model [-]."""
+        size = self.predictor.spec.length
+        places = [name in self.predictor.body_changes and name.endswith(("x", "y")) for name in self.names]
+        return np.where(places, self.sigmas / max(size, 1e-300), self.sigmas)
+
+    def departure(self, shift: FloatArray, stage: Predictor) -> State:
+        """Return the departure that nuisances make in what all data doubt alike.
+
+        Parameters
+        ----------
+        shift : (n_names,) array
+            Nuisances [standard deviations].
+        stage : Predictor
+            What it is put on: this specimen's, under one theory or another, each with a basis of its own.
+        """
         moved = dict(zip(self.names, (shift * self.sigmas).tolist(), strict=True))
-        bodies = self.predictor.body_changes
+        bodies = stage.body_changes
         factors = {name: float(np.exp(by)) for name, by in moved.items() if name not in bodies}
         masses = tuple(by * bodies[name] for name, by in moved.items() if name in bodies and by)
         return departure(self.predictor.spec, factors).plus(State(mass=masses))
@@ -208,7 +223,7 @@ class SpecimenProblem:
         """
         if not len(self.sigmas) or self.baseline is not None:
             return False
-        return float(self.sigmas.max()) > WIDE_TOLERANCE or float(self.bending.max()) > BENT_DATA
+        return float(self._relative_sigmas.max()) > WIDE_TOLERANCE or float(self.bending.max()) > BENT_DATA
 
     @cached_property
     def bending(self) -> FloatArray:
@@ -239,7 +254,7 @@ class SpecimenProblem:
         if self.baseline is not None:
             return 0.0
         bent = np.sqrt(self.bending / BENT_DATA) * STRAINED_LINEARISATION
-        moved = np.abs(shift[: len(self.names)]) * np.maximum(self.sigmas, bent)
+        moved = np.abs(shift[: len(self.names)]) * np.maximum(self._relative_sigmas, bent)
         return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
 
     def compare(
@@ -258,7 +273,9 @@ class SpecimenProblem:
             What the state leaves in doubt.
         """
         shift = np.zeros(len(self.names)) if shift is None or self.baseline is not None else shift
-        whole = state.plus(self.departure(shift))
+        theory = self.predictor.base.plus(state).theory
+        stage = self.predictor if theory is None else self.predictor.under(theory)
+        whole = state.plus(self.departure(shift, stage))
         prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
         prediction = prediction.select(self._match(prediction))
         view = View(prediction, self.predictor.base.plus(whole), doubt)

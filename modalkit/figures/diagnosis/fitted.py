@@ -46,7 +46,7 @@ class Fitted:
         problem, stage = self.problem, self.candidate.stage(self.problem.predictor)
         state = self.candidate.assemble(stage, self.candidate.split(stage, self.point.coordinates.tolist()))
         shift = self.point.marginal.shift[: len(problem.names)]
-        whole = state.plus(problem.departure(shift))
+        whole = state.plus(problem.departure(shift, stage))
         return stage.for_test(stage.measured, (*stage.additions, lambda _: whole)), whole
 
 

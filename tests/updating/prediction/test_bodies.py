@@ -6,11 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from updating_cases import BEAM, PLATE, POINTS, blank
+from updating_cases import BEAM, PLATE, POINTS, blank, exactly
 
-from updating import Predictor, Spec
+from updating import Case, Predictor, Spec, Tolerances
+from updating.diagnosis.diagnose import pose
 from updating.models.spec import PointMass
 from updating.prediction.predict import Prediction
+from updating.problem.candidate import Candidate
+from updating.thresholds import STATED_MASS_DOUBT
 
 MASS = 0.2
 MODES = 4
@@ -62,6 +65,20 @@ def agree(here: Prediction, low: Prediction, high: Prediction, step: float) -> N
     size = np.abs(constants).max()
     assert size > 0
     assert here.constants_by[..., 0] == pytest.approx(constants, rel=5e-3, abs=5e-3 * size)
+
+
+@pytest.mark.parametrize("fuller", [False, True])
+def test_a_body_is_in_doubt_under_every_theory(fuller: bool) -> None:
+    beam = replace(carrying(BEAM, middle(BEAM)), theory="euler-bernoulli")
+    predictor = Predictor(beam, blank(POINTS))
+    test = exactly(predictor, predictor.predict(count=MODES))
+    problem, _ = pose(Case("a body", beam, test, tolerances=Tolerances({"E": 0.05})))
+    heavier = np.array([3.0 * (name == "mass 1") for name in problem.names])
+    state = Candidate(fuller=fuller).state(problem.predictor, np.zeros(0))
+    found = problem.compare(state, heavier).prediction.frequency
+    mass = MASS * (1 + 3 * STATED_MASS_DOUBT)
+    other = replace(carrying(beam, middle(beam), mass), theory="timoshenko" if fuller else beam.theory)
+    assert found == pytest.approx(at_rest(other).frequency, rel=1e-6)
 
 
 def test_a_model_without_bodies_has_none_in_doubt() -> None:

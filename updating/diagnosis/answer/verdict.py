@@ -29,11 +29,9 @@ from updating.thresholds import (
     PLACES_PER_FORM,
     RIVAL_SHARE,
     SIGNIFICANT_GAP,
+    TWO_SIDED,
     USUAL_SHARE,
 )
-
-TWO_SIDED = 1.96
-"""Standard deviations to either side that hold 95 % of a normal distribution [-]."""
 
 NAME = "name"
 """Unit of what is a name of the user's own model."""
@@ -43,7 +41,7 @@ def is_significant(found: Search, p_value: float) -> bool:
     """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
 
     A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it.
-    Where it does so by chance alone seldom, and nothing at all stays credible, there is no gap that is sure.
+    Where that fit is one which chance makes seldom, and the empty set stays credible, there is no gap that is sure.
     """
     fitting = [row for row in found.compared if row.names and not row.rejected]
     gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)

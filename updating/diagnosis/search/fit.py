@@ -274,16 +274,16 @@ def _ascend(
     On its way it takes along where tolerances came to rest. Where they rest higher from their own middle, as they may
     where close modes have changed places meanwhile, it goes on from there.
     """
-    point, slope = _climb(problem, candidate, start, keep, rounds, bar)
+    point, slope = _uphill(problem, candidate, start, keep, rounds, bar)
     if point.about is None or not point.possible:
         return point, slope
     afresh = evaluate(problem, candidate, point.coordinates, keep=keep)
     if afresh.marginal.log_likelihood > point.marginal.log_likelihood + AT_REST:
-        return _climb(problem, candidate, afresh, keep, rounds, bar)
+        return _uphill(problem, candidate, afresh, keep, rounds, bar)
     return point, slope
 
 
-def _climb(
+def _uphill(
     problem: DiagnosisProblem,
     candidate: Candidate,
     start: FloatArray | Point,
