@@ -74,11 +74,12 @@ class Orthotropy(Effect):
         )
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
-        """Start from the same sheet both ways, and from a grid: where modes change places there are more maxima."""
-        ratio, shear, coupling = self.parameters(predictor)
+        """Start from a grid: where modes change places the likelihood has maxima of its own."""
+        _, shear, coupling = self.parameters(predictor)
         middle, usual = shear.coordinate(HUBER), coupling.coordinate(HUBER)
-        grid = ((u, v, usual) for v in (middle - 0.25, middle, middle + 0.15) for u in (0.2, 0.4, 0.6, 0.8))
-        return ((ratio.coordinate(1.0), middle, usual), *grid)
+        return tuple(
+            (u, v, usual) for v in (middle - 0.25, middle, middle + 0.15) for u in (0.2, 0.4, 0.6, 0.8)
+        )
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the plate with its terms across and in twist scaled."""
