@@ -76,7 +76,7 @@ class Comparison:
     doubts : (k,) int array
         Which nuisances are named doubts: tolerances, level of damping, calibration.
     tolerances : (t,) int array
-        Which of them are tolerances of the model.
+        Which of them all data doubt alike: tolerances of the model, masses and places of its bodies.
     """
 
     residual: FloatArray
@@ -124,7 +124,7 @@ def assemble(
     blocks : sequence of Block
         One per channel, in the order of ``CHANNELS``.
     sigmas : (n_names,) array
-        Standard deviations of the factors [-].
+        Standard deviations of what all data doubt alike [-, of places m].
     shift : (n_names,) array
         Where they stand in the prediction [standard deviations].
     prediction, scale_prior

@@ -56,7 +56,7 @@ class Prediction(Displayed):
     constants : (n_frf, n_modes) array
         Modal constants phi_response * phi_reference, the gain included [1/kg].
     seen, hit : (n_frf, n_modes) arrays
-        Mode shapes at the response and at the force of every FRF; 1 where there is none [kg^-1/2].
+        Mode shapes at the response and at the force of every FRF; 1 where no force is known [kg^-1/2].
     seen_slopes, hit_slopes : (dim, n_frf, n_modes) arrays
         Their derivatives by the position of the sensor, and of the hit; 0 where there is none [1/(kg^1/2 m)].
     log_frequency_by : (n_modes, n_factors) array
@@ -326,6 +326,8 @@ class Predictor(Displayed):
 
     def unstretched(self, values: Mapping[str, Any], state: State = NOMINAL) -> dict[str, Any]:
         """Return values of an effect whose places ``x`` and ``y`` are those of the model before it was stretched.
+
+        Regions, and the bodies that the study states, stretch with the model.
 
         Parameters
         ----------
