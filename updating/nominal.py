@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from updating.case import Case
 from updating.effects import accepted_state
 from updating.models.state import State
-from updating.prediction.predict import Predictor
+from updating.prediction.predict import Predictor, is_placed
 
 
 def predictor_of(case: Case) -> Predictor:
@@ -26,7 +26,7 @@ def accepted_additions(
 
     Those with a place come last: it is one on the structure that the others have stretched.
     """
-    ordered = sorted(accepted, key=lambda entry: bool({"x", "y"} & entry[1].keys()))
+    ordered = sorted(accepted, key=lambda entry: is_placed(entry[1]))
     return tuple(_accepted(name, values) for name, values in ordered)
 
 

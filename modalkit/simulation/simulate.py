@@ -24,6 +24,7 @@ from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.joining import together
 from updating import Predictor, Spec
 from updating.models.state import State
+from updating.prediction.predict import is_placed
 from updating.simulation import damped_modes, simulated
 from updating.test_data.chain import measurement_chain
 
@@ -174,7 +175,7 @@ def simulate_test(
         check_effect(nominal, name, values, where="[[model.effect]]" if own else "--effect")
     departures = [
         *known_sensors(ready.study, test_setup),
-        *(departure(name, values) for name, values in whole),
+        *(departure(name, values) for name, values in sorted(whole, key=lambda entry: is_placed(entry[1]))),
     ]
     state = nominal.for_test(nominal.measured, (*nominal.additions, *departures)).base
     model = simulated(nominal, *departures, points=_places(test_setup, state))

@@ -34,7 +34,7 @@ from updating.models.shear import sheared
 from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State
 from updating.models.whole import Whole
-from updating.prediction.bodies import body_changes
+from updating.prediction.bodies import BodyChange, body_changes
 from updating.test_data.chain import MeasurementChain, measurement_chain
 from updating.test_data.measured import Measured
 
@@ -302,7 +302,7 @@ class Predictor(Displayed):
         return None if stated is None else stated[np.minimum(np.arange(count), len(stated) - 1)]
 
     @cached_property
-    def body_changes(self) -> dict[str, FloatArray]:
+    def body_changes(self) -> dict[str, BodyChange]:
         """What masses and places of the stated bodies change, see :mod:`updating.prediction.bodies`."""
         return body_changes(self.reduced, self.spec)
 
@@ -376,12 +376,12 @@ class Predictor(Displayed):
         heavier = -(powers * heavy) @ parts[:, chosen, own] / np.where(lam == 0, 1.0, lam)
         for k, (regions, factor) in enumerate(regions_of(self.spec, name) for name in names):
             if names[k] in self.body_changes:
-                mass = self.body_changes[names[k]][:n, :n]
+                mass = self.body_changes[names[k]].mass[:n, :n]
                 whole[k], heavier[k] = (
                     -vectors.T @ (mass @ modes * lam),
                     np.sum(modes * (mass @ modes), axis=0),
                 )
-            if regions:
+            elif regions:
                 stiffness, mass = self.reduced.regional_sensitivity(state, factor, regions)
                 whole[k] = vectors.T @ (stiffness @ modes - mass @ modes * lam)
                 heavier[k] = np.sum(modes * (mass @ modes), axis=0)
@@ -496,6 +496,11 @@ class Predictor(Displayed):
             return self.under(total.theory).receptance(laplace, replace(state, theory=None))
         seen, hit = self.frf_rows(state)
         return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
+
+
+def is_placed(values: Mapping[str, Any]) -> bool:
+    """Tell whether an effect has a place in the study's coordinates, which others may stretch under it."""
+    return bool({"x", "y"} & values.keys())
 
 
 def _gained(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:

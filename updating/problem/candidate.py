@@ -15,10 +15,7 @@ from updating.likelihood.base import Doubt
 from updating.likelihood.outliers import Outlier, log_price
 from updating.models.spec import FULLER
 from updating.models.state import State, combine
-from updating.prediction.predict import Predictor
-
-PLACED = {"x", "y"}
-"""Parameters that say where an effect sits, as the study has its coordinates."""
+from updating.prediction.predict import Predictor, is_placed
 
 MIDDLE = 0.5
 """Quantile that stands in for a parameter that a variant fixes."""
@@ -117,10 +114,8 @@ class Candidate:
     def assemble(self, stage: Predictor, parts: Sequence[tuple[Effect, Values]]) -> State:
         """Return the state of the model at values of the effects, places those on the stretched structure."""
         theory = State(theory=FULLER.get(stage.spec.kind) if self.fuller else None)
-        spread = combine([effect.state(stage, v) for effect, v in parts if not PLACED & v.keys()])
-        placed = [
-            effect.state(stage, stage.unstretched(v, spread)) for effect, v in parts if PLACED & v.keys()
-        ]
+        spread = combine([effect.state(stage, v) for effect, v in parts if not is_placed(v)])
+        placed = [effect.state(stage, stage.unstretched(v, spread)) for effect, v in parts if is_placed(v)]
         return combine([spread, *placed, theory])
 
     def locations(

@@ -171,16 +171,16 @@ class SpecimenProblem:
         return np.array([self._sigma(name) for name in self.names])
 
     def _sigma(self, name: str) -> float:
-        if name in self.predictor.body_changes:
-            return self.measured.position_sigma if name.endswith(("x", "y")) else STATED_MASS_DOUBT
+        if (change := self.predictor.body_changes.get(name)) is not None:
+            return self.measured.position_sigma if change.of_place else STATED_MASS_DOUBT
         return self.tolerances.regional(name) if "." in name else self.tolerances.factors[name]
 
     @cached_property
     def _relative_sigmas(self) -> FloatArray:
         """The standard deviations, those of places relative to the size of the model [-]."""
-        size = self.predictor.spec.length
-        places = [name in self.predictor.body_changes and name.endswith(("x", "y")) for name in self.names]
-        return np.where(places, self.sigmas / max(size, 1e-300), self.sigmas)
+        places = {name for name, change in self.predictor.body_changes.items() if change.of_place}
+        size = [self.predictor.spec.length if name in places else 1.0 for name in self.names]
+        return np.asarray(self.sigmas / size)
 
     def departure(self, shift: FloatArray, stage: Predictor) -> State:
         """Return the departure that nuisances make in what all data doubt alike.
@@ -195,7 +195,7 @@ class SpecimenProblem:
         moved = dict(zip(self.names, (shift * self.sigmas).tolist(), strict=True))
         bodies = stage.body_changes
         factors = {name: float(np.exp(by)) for name, by in moved.items() if name not in bodies}
-        masses = tuple(by * bodies[name] for name, by in moved.items() if name in bodies and by)
+        masses = tuple(by * bodies[name].mass for name, by in moved.items() if name in bodies and by)
         return departure(self.predictor.spec, factors).plus(State(mass=masses))
 
     @property

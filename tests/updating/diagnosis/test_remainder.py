@@ -63,6 +63,6 @@ def test_an_effect_is_included_as_often_as_the_sets_that_hold_it(what: str) -> N
         assert share == pytest.approx(rows, abs=1e-9)
         assert 0 <= share <= 1 + 1e-9
     if what == "softer":
-        # modal constants and frequencies of a beam know a stiffness from its two causes hardly
+        # frequencies of a beam rise alike with either, and its level hardly tells them apart
         first = sorted(found.included, key=lambda name: -found.included[name])
         assert set(first[:2]) == {"E", "thickness"}

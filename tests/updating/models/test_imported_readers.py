@@ -95,6 +95,14 @@ def complex_sparse() -> bytes:
     return plain.getvalue()
 
 
+def test_room_for_more_entries_in_a_mat_is_no_entry(tmp_path: Path) -> None:
+    roomy = sparse.csc_array(K)
+    roomy.data = np.append(roomy.data, np.full(7, np.nan))
+    roomy.indices = np.append(roomy.indices, np.full(7, -1, dtype=roomy.indices.dtype))
+    savemat(tmp_path / "k.mat", {"K": roomy})
+    np.testing.assert_allclose(read_matrix(tmp_path / "k.mat").toarray(), K.toarray(), rtol=1e-12)
+
+
 def matlab(**values: object) -> bytes:
     plain = io.BytesIO()
     savemat(plain, values, do_compression=True)

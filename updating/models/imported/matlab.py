@@ -118,8 +118,9 @@ def _variable(body: bytes, order: str, path: Path) -> _Variable | None:
         raise StudyError(f"{path}: {called} holds complex values; stiffness and mass are real")
     rows, columns = shape
     if kind == _SPARSE:
-        entries = _real(_numbers(parts[2], order), path)
         indices, pointers = (_numbers(part, order) for part in parts[:2])
+        # room for more entries than there are may follow them
+        entries = _real(_numbers(parts[2], order)[: int(pointers[-1])], path)
         check_order(max(shape), len(entries), path)
         arrays = {"indices": indices[: len(entries)], "indptr": pointers}
         return _Variable(called, Sparse(compressed(arrays, entries, (rows, columns), by_row=False).tocsr()))
