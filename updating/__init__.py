@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from updating.effects import LIBRARY, Effect, Parameter, register
     from updating.environment import Environment
     from updating.models import Damping, Material, PointMass, Region, Spec, Structure, build_structure
-    from updating.prediction.predict import Prediction, Predictor
+    from updating.prediction.predict import Predictor
+    from updating.prediction.prediction import Prediction
     from updating.test_data.axes import Axes
     from updating.test_data.measured import Measured, measured_from_identified, measured_from_modes
     from updating.tolerances import Tolerances

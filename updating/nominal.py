@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from updating.case import Case
 from updating.effects import accepted_state
 from updating.models.state import State
-from updating.prediction.predict import Predictor, is_placed
+from updating.prediction.predict import Predictor
+from updating.prediction.stretch import is_placed
 
 
 def predictor_of(case: Case) -> Predictor:

@@ -24,7 +24,7 @@ from modalkit.workflow.case import Session, open_study
 from modalkit.workflow.joining import together
 from updating import Predictor, Spec
 from updating.models.state import State
-from updating.prediction.predict import is_placed
+from updating.prediction.stretch import is_placed
 from updating.simulation import damped_modes, simulated
 from updating.test_data.chain import measurement_chain
 

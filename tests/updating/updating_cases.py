@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from updating import Case, Damping, Material, Measured, Predictor, Spec, Tolerances
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 
 STEEL = Material(210e9, 7850.0, 0.3)
 BEAM = Spec("beam", 0.376, 0.0305, 0.0047625, (40,), ("x0",), "timoshenko", STEEL, damping=Damping(2.0, 1e-6))

@@ -17,7 +17,7 @@ from updating.correlation.frfs import CorrelatedFrfs, correlate_frfs
 from updating.nominal import predictor_of
 from updating.prediction.assignment import frac_of_constants
 from updating.prediction.matching import Paired, mac_of_constants, pair_modes
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.simulation.identified import partners
 from updating.test_data.measured import Measured
 

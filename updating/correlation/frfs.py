@@ -13,7 +13,8 @@ from acquisition.display import Displayed
 from identification import frac
 from identification.arrangement import signs
 from updating.prediction.matching import Paired
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.simulation import UNKNOWN_DAMPING, identified_ratios, receptances, simulated, with_ratios
 from updating.test_data.measured import Measured
 

@@ -14,7 +14,7 @@ from updating.frf_update.solve import DROWNED, Solved
 from updating.frf_update.stage import Stage, modal_shares, whitened
 from updating.frf_update.step import Step
 from updating.models.damping import Matrices
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.update.data.specimen import Specimen
 
 WEAK = 0.2

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from updating.likelihood.baseline_prior import Before
 from updating.likelihood.comparison import Block
 from updating.models.state import State
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 from updating.tolerances import Tolerances
 

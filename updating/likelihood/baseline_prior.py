@@ -17,7 +17,8 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.state import NOMINAL, State
 from updating.prediction.matching import match
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.test_data.chain import measurement_chain
 from updating.test_data.measured import Measured
 from updating.test_data.same_places import same_rows

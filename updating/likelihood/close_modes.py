@@ -15,7 +15,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.thresholds import LEAST_TURN
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 
 CHANNELS = ("frequency", "damping", "frf", "phase", "level")
 """What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force."""

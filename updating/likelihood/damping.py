@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.thresholds import (
     COMMON_DAMPING,
     DAMPING_PER_SHIFT,

@@ -9,7 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.base import Setting
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.test_data.chain import roving
 from updating.thresholds import END_REACH, REGISTRATION_SHARE
 

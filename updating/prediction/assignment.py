@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 
 FREQUENCY_WEIGHT = 0.5

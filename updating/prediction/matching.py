@@ -11,7 +11,7 @@ from acquisition.errors import EstimationError
 from acquisition.quantities import hertz, percent
 from identification import pair
 from updating.prediction.assignment import mac_of_constants, match
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.prediction.trusted_frfs import left_out, trusted_rows
 from updating.test_data.measured import NO_PARTNER, UNSTATED, Measured
 

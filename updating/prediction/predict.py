@@ -1,8 +1,4 @@
-"""What a model predicts for the points of a test, with its sensitivities.
-
-Eigenvalue sensitivities are paper A's Eqs. 16 and 17; eigenvector sensitivities are the modal expansion over
-all modes of the reduced basis (Fox and Kapoor 1968).
-"""
+"""What a model predicts for the points of a test, with its sensitivities."""
 
 from __future__ import annotations
 
@@ -27,7 +23,6 @@ from updating.models.damping import (
     modal_damping,
     modal_losses,
 )
-from updating.models.named_factors import regions_of
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.response import receptance
 from updating.models.shear import sheared
@@ -35,81 +30,11 @@ from updating.models.spec import Damping, Spec, Theory
 from updating.models.state import NOMINAL, State
 from updating.models.whole import Whole
 from updating.prediction.bodies import BodyChange, body_changes
+from updating.prediction.prediction import Prediction
+from updating.prediction.sensitivities import sensitivities
+from updating.prediction.stretch import Stretch
 from updating.test_data.chain import MeasurementChain, measurement_chain
 from updating.test_data.measured import Measured
-
-LARGEST_TURN = 1e3
-"""Largest derivative of a shape by the logarithm of a factor along another shape [-]: a whole mode at a thousandth of
-it, less than any tolerance. Doubled: columns of modes that lie closer than a part in a thousand grow as much."""
-
-
-@dataclass(frozen=True, eq=False)
-class Prediction(Displayed):
-    """Modes of a model at the points of a test.
-
-    Parameters
-    ----------
-    frequency : (n_modes,) array
-        Natural frequencies, nan where the state has lost its stiffness [Hz].
-    damping : (n_modes,) array
-        Damping ratios, nan where nothing is expected [-].
-    constants : (n_frf, n_modes) array
-        Modal constants phi_response * phi_reference, the gain included [1/kg].
-    seen, hit : (n_frf, n_modes) arrays
-        Mode shapes at the response and at the force of every FRF; 1 where no force is known [kg^-1/2].
-    seen_slopes, hit_slopes : (dim, n_frf, n_modes) arrays
-        Their derivatives by the position of the sensor, and of the hit; 0 where there is none [1/(kg^1/2 m)].
-    log_frequency_by : (n_modes, n_factors) array
-        Derivatives of ln f by the logarithms of the factors and masses asked for [-], and by bodies' places [1/m].
-    constants_by : (n_frf, n_modes, n_factors) array
-        Derivatives of the constants by the same [1/kg, 1/(kg m)].
-    vectors : (r, n_modes) array
-        Mode shapes in the coordinates of the reduced basis [kg^-1/2].
-    slope : (n_modes,) array
-        Relative change of each frequency per newton of the hits' peak force [1/N].
-    gain : (n_frf, n_modes) array
-        Factor of the constants over the product of the shapes at the points that they join [-].
-    """
-
-    frequency: FloatArray
-    damping: FloatArray
-    constants: FloatArray
-    seen: FloatArray
-    hit: FloatArray
-    seen_slopes: FloatArray
-    hit_slopes: FloatArray
-    log_frequency_by: FloatArray
-    constants_by: FloatArray
-    vectors: FloatArray
-    slope: FloatArray
-    gain: FloatArray
-
-    def select(self, modes: IntArray) -> Prediction:
-        """Return some of the modes, in the order given."""
-        return Prediction(
-            self.frequency[modes],
-            self.damping[modes],
-            self.constants[:, modes],
-            self.seen[:, modes],
-            self.hit[:, modes],
-            self.seen_slopes[:, :, modes],
-            self.hit_slopes[:, :, modes],
-            self.log_frequency_by[modes],
-            self.constants_by[:, modes],
-            self.vectors[:, modes],
-            self.slope[modes],
-            self.gain[:, modes],
-        )
-
-    @cached_property
-    def along(self) -> FloatArray:
-        """Derivatives of the constants by the position of the hit, 0 where none is known, (dim, n_frf, n_modes)."""
-        return np.asarray(self.gain * self.seen * self.hit_slopes)
-
-    @cached_property
-    def along_seen(self) -> FloatArray:
-        """Derivatives of the constants by the position of the sensor, (dim, n_frf, n_modes)."""
-        return np.asarray(self.gain * self.seen_slopes * self.hit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -256,7 +181,9 @@ class Predictor(Displayed):
         axes = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         rows = self._rows(total, read.points)
         shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
-        by = self._by_factors(total, values, vectors, chosen, factors, rows, read.points) if factors else []
+        by, changes = np.zeros((0, len(chosen))), np.zeros((0, len(read.points), len(chosen)))
+        if factors:
+            by, changes = self._by_factors(total, (values, vectors), chosen, factors, rows, read.points)
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
         moved = shift * slowing * coupled(total, values, vectors, chosen)
@@ -271,10 +198,8 @@ class Predictor(Displayed):
             read.at_hit(shapes["w"], 1.0),
             np.stack([shapes[n][read.seen] for n in axes]),
             np.stack([read.at_hit(shapes[n], 0.0) for n in axes]),
-            np.stack([b[0] for b in by], axis=-1) if by else np.zeros((len(chosen), 0)),
-            level[:, :, None] * np.stack([_change(shapes["w"], b[1], read) for b in by], axis=-1)
-            if by
-            else np.zeros((len(self.measured.seen), len(chosen), 0)),
+            by.T,
+            level[:, :, None] * _change(shapes["w"], changes, read),
             vectors[:, chosen],
             total.slope + _gained(total, values[chosen], vectors[:, chosen]),
             np.asarray(level),
@@ -287,13 +212,12 @@ class Predictor(Displayed):
 
     def _rows(self, state: State, places: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return the rows of the basis at places, the test's points where none are given."""
-        stretch = np.array([state.factors.get(name, 1.0) for name in self._sizes])
+        stretch = self.stretch.by(state.factors)
         elsewhere = places is not None and len(places) > len(self.measured.points)
         if (stretch == 1.0).all() and not elsewhere:
             return self.nominal_rows
-        points, axes = np.array(places if elsewhere else self.measured.points), len(stretch)
-        points[:, :axes] = (points[:, :axes] + self.growths * (stretch - 1)) / stretch
-        rows = self.reduced.rows(points, self._directions(len(points)))
+        points = places if places is not None and elsewhere else self.measured.points
+        rows = self.reduced.rows(self.stretch.undone(points, stretch), self._directions(len(points)))
         along = dict(zip(("wx", "wy"), stretch.tolist(), strict=False))
         return {n: m / along.get(n, 1.0) for n, m in rows.items()}
 
@@ -307,96 +231,33 @@ class Predictor(Displayed):
         return body_changes(self.reduced, self.spec)
 
     @cached_property
-    def _sizes(self) -> tuple[str, ...]:
-        """Factors that stretch the model along its axes."""
-        return ("length", "width") if self.spec.kind == "plate" else ("length",)
-
-    @cached_property
-    def growths(self) -> FloatArray:
-        """How far the origin moves per unit of stretch along each axis, (1,), of plates (2,) [m].
-
-        Points keep their distance from the free end; between two ends of a kind, from the middle.
-        """
-        sizes = {"x": self.spec.length, "y": self.spec.width}
-        clamped = [
-            {edge for edge in self.spec.clamped if edge[0] == axis} for axis in "xy"[: len(self._sizes)]
-        ]
-        share = [0.5 if len(edges) != 1 else float(edges < {"x0", "y0"}) for edges in clamped]
-        return np.array([part * sizes[axis] for part, axis in zip(share, "xy", strict=False)])
+    def stretch(self) -> Stretch:
+        """How the model stretches under the points of the test."""
+        return Stretch(self.spec)
 
     def unstretched(self, values: Mapping[str, Any], state: State = NOMINAL) -> dict[str, Any]:
-        """Return values of an effect whose places ``x`` and ``y`` are those of the model before it was stretched.
-
-        Regions, and the bodies that the study states, stretch with the model.
-
-        Parameters
-        ----------
-        values : mapping
-            The effect's parameters, places as the study has its coordinates [m].
-        state : State
-            Departure from ``base``, which may be stretched itself.
-        """
-        found, total = dict(values), self.base.plus(state).factors
-        for axis, (name, place) in enumerate(zip(self._sizes, "xy", strict=False)):
-            stretch = total.get(name, 1.0)
-            if place in found and stretch != 1.0:
-                size = (self.spec.length, self.spec.width)[axis]
-                before = (found[place] + self.growths[axis] * (stretch - 1)) / stretch
-                found[place] = float(np.clip(before, 0.0, size))
-        return found
-
-    @property
-    def growth(self) -> float:
-        """How far x = 0 moves per unit of stretch so that points keep their distance from the free end [m]."""
-        return float(self.growths[0])
+        """Return values of an effect with its places on the model before ``base`` and ``state`` stretched it."""
+        return self.stretch.unstretched(values, self.base.plus(state).factors)
 
     def _by_factors(
         self,
         state: State,
-        values: FloatArray,
-        vectors: FloatArray,
+        eigen: tuple[FloatArray, FloatArray],
         chosen: IntArray,
         names: Sequence[str],
         rows: dict[str, FloatArray],
         places: FloatArray,
-    ) -> list[tuple[FloatArray, FloatArray]]:
-        """Return derivatives of ln f and of the shapes at the points by the logarithms of factors."""
-        modes, lam = vectors[:, chosen], values[chosen]
-        terms = self.reduced.terms(state)
-        sized = np.array([term.scale(state.factors) for term, _ in terms])
-        heavy = np.array([term.kind == "mass" for term, _ in terms])
-        powers = np.array([[term.powers.get(name, 0.0) for term, _ in terms] for name in names])
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return derivatives of ln f and of the shapes at places by the logarithms of factors."""
+        by, turns = sensitivities(self.reduced, self.spec, state, eigen, chosen, names, self.body_changes)
+        vectors = eigen[1]
         n = len(vectors)
-        forces = np.stack([matrix[:n, :n] @ modes for _, matrix in terms])
-        parts = vectors.T @ (
-            forces * np.where(heavy[:, None], -sized[:, None] * lam, sized[:, None])[:, None]
-        )
-        whole = np.tensordot(powers, parts, axes=1)
-        own = np.arange(len(chosen))
-        heavier = -(powers * heavy) @ parts[:, chosen, own] / np.where(lam == 0, 1.0, lam)
-        for k, (regions, factor) in enumerate(regions_of(self.spec, name) for name in names):
-            if names[k] in self.body_changes:
-                mass = self.body_changes[names[k]].mass[:n, :n]
-                whole[k], heavier[k] = (
-                    -vectors.T @ (mass @ modes * lam),
-                    np.sum(modes * (mass @ modes), axis=0),
-                )
-            elif regions:
-                stiffness, mass = self.reduced.regional_sensitivity(state, factor, regions)
-                whole[k] = vectors.T @ (stiffness @ modes - mass @ modes * lam)
-                heavier[k] = np.sum(modes * (mass @ modes), axis=0)
-        gap = lam - values[:, None]
-        near = np.abs(gap) < 1e-9 * np.abs(lam).max()
-        turn = whole * np.where(near, 0.0, 1.0 / np.where(near, 1.0, gap))
-        # past a quarter of a turn no shape is another one's, and of modes that are all but double nothing is linear
-        weights = np.clip(turn, -LARGEST_TURN, LARGEST_TURN)
-        weights[:, chosen, own] = -0.5 * heavier
-        change = (rows["w"][:, :n] @ vectors) @ weights
-        for axis, (name, slope) in enumerate(zip(self._sizes, ("wx", "wy"), strict=False)):
+        change = (rows["w"][:, :n] @ vectors) @ turns
+        for axis, (name, slope) in enumerate(zip(self.stretch.names, ("wx", "wy"), strict=False)):
             if name in names:
-                moved = self.growths[axis] - places[:, axis : axis + 1]
-                change[names.index(name)] += (moved * rows[slope][:, :n]) @ modes
-        return list(zip(whole[:, chosen, own] / (2 * np.maximum(lam, 1e-12)), change, strict=True))
+                moved = self.stretch.growths[axis] - places[:, axis : axis + 1]
+                change[names.index(name)] += (moved * rows[slope][:, :n]) @ vectors[:, chosen]
+        return by, change
 
     def _damping(self, state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
         """Return modal damping ratios: what is expected of the specimen, plus what the state adds."""
@@ -498,11 +359,6 @@ class Predictor(Displayed):
         return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
 
 
-def is_placed(values: Mapping[str, Any]) -> bool:
-    """Tell whether an effect has a place in the study's coordinates, which others may stretch under it."""
-    return bool({"x", "y"} & values.keys())
-
-
 def _gained(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
     """Return d ln f per newton of modes (r, n_modes), by the strain energy in what stiffens with the force [1/N]."""
     total = np.zeros(len(values))
@@ -512,8 +368,9 @@ def _gained(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray
     return np.asarray(total / (2 * np.maximum(values, 1e-12)))
 
 
-def _change(shape: FloatArray, change: FloatArray, read: MeasurementChain) -> FloatArray:
-    """Return the change of the constants that a change of the shapes makes, both (n_points, n_modes)."""
+def _change(shape: FloatArray, changes: FloatArray, read: MeasurementChain) -> FloatArray:
+    """Return what changes (k, n_points, n_modes) of the shapes change the constants by, (n_frf, n_modes, k)."""
     left, right = shape[read.seen], shape[read.hit]
-    d_left, d_right = change[read.seen], change[read.hit]
-    return np.asarray(np.where(read.hit[:, None] < 0, d_left, d_left * right + left * d_right))
+    d_left, d_right = changes[:, read.seen], changes[:, read.hit]
+    whole = np.where(read.hit[:, None] < 0, d_left, d_left * right + left * d_right)
+    return np.asarray(np.moveaxis(whole, 0, -1))

@@ -10,7 +10,7 @@ import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.assignment import mac_of_constants, match
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.test_data.chain import roving
 from updating.test_data.measured import Measured
 

@@ -15,7 +15,8 @@ from updating.likelihood.base import Doubt
 from updating.likelihood.outliers import Outlier, log_price
 from updating.models.spec import FULLER
 from updating.models.state import State, combine
-from updating.prediction.predict import Predictor, is_placed
+from updating.prediction.predict import Predictor
+from updating.prediction.stretch import is_placed
 
 MIDDLE = 0.5
 """Quantile that stands in for a parameter that a variant fixes."""

@@ -31,7 +31,8 @@ from updating.models.base import FACTORS
 from updating.models.named_factors import departure, regions_of
 from updating.models.state import NOMINAL, State
 from updating.prediction.matching import match
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate
 from updating.problem.theory_error import TheoryError
 from updating.test_data.measured import Measured

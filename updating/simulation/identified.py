@@ -10,7 +10,8 @@ from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.models.spec import Damping
 from updating.prediction.matching import Paired, pair_modes
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 
 UNKNOWN_DAMPING = 0.005

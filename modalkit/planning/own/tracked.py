@@ -14,7 +14,7 @@ from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.prediction.assignment import FREQUENCY_WEIGHT
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.problem.specimen import SpecimenProblem
 
 

@@ -9,7 +9,7 @@ import pytest
 from updating_cases import BEAM, blank, exactly
 
 from updating import Measured, Predictor
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.prediction.trusted_frfs import trusted_rows
 
 FREE = replace(BEAM, clamped=())

@@ -13,7 +13,7 @@ from acquisition.quantities import hertz
 from updating import Measured, Predictor
 from updating.models.state import State
 from updating.prediction.matching import mac_of_constants, match, pair_modes
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 
 LOOK = Predictor(BEAM, blank(POINTS))
 MODEL = LOOK.predict(count=6)

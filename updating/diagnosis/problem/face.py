@@ -9,7 +9,8 @@ from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import Obstacle
 from updating.likelihood.comparison import Comparison
 from updating.models.state import State
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate
 from updating.test_data.measured import Measured
 

@@ -16,7 +16,8 @@ from updating.effects.obstacles import Lack, Obstacle
 from updating.likelihood.comparison import Comparison, join
 from updating.likelihood.outliers import with_outliers
 from updating.models.state import State
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.problem.candidate import Candidate
 from updating.problem.gates import TheoryError
 from updating.problem.specimen import SpecimenProblem

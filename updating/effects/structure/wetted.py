@@ -154,7 +154,7 @@ def wetted(predictor: Predictor, around: Environment) -> Wetted:
     predictor.reduced.refuse_whole(COUPLES)
     spec = predictor.spec
     stretch = predictor.base.factors.get("length", 1.0)
-    start = -predictor.growth * (stretch - 1.0)
+    start = -predictor.stretch.growths[0] * (stretch - 1.0)
     end = start + spec.length * stretch
     low = max(start, 0.0) if "x0" in spec.clamped else start
     high = min(end, spec.length) if "x1" in spec.clamped else end

@@ -12,7 +12,8 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.prediction.matching import match
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 from updating.update.data.shape_errors import constant_errors
 from updating.update.data.whitening import Whitening

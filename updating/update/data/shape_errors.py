@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 from updating.test_data.measured import Measured
 from updating.update.data.whitening import Whitening, whitening
 

@@ -11,7 +11,8 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.models.reduced import Reduced
 from updating.models.structure import FieldStructure
 from updating.prediction.matching import mac_of_constants, match
-from updating.prediction.predict import Prediction, Predictor
+from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.test_data.chain import level_of
 from updating.test_data.measured import Measured
 from updating.update.data.nominal import Evaluation, Nominal, UpdatedModel

@@ -7,7 +7,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.models.reduced import Reduced
 from updating.models.state import State
-from updating.prediction.predict import Prediction
+from updating.prediction.prediction import Prediction
 
 
 def log_frequency_by(

@@ -1,0 +1,80 @@
+"""Modes that a model predicts for the points of a test."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from acquisition.arrays import FloatArray, IntArray
+from acquisition.display import Displayed
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction(Displayed):
+    """Modes of a model at the points of a test.
+
+    Parameters
+    ----------
+    frequency : (n_modes,) array
+        Natural frequencies, nan where the state has lost its stiffness [Hz].
+    damping : (n_modes,) array
+        Damping ratios, nan where nothing is expected [-].
+    constants : (n_frf, n_modes) array
+        Modal constants phi_response * phi_reference, the gain included [1/kg].
+    seen, hit : (n_frf, n_modes) arrays
+        Mode shapes at the response and at the force of every FRF; 1 where no force is known [kg^-1/2].
+    seen_slopes, hit_slopes : (dim, n_frf, n_modes) arrays
+        Their derivatives by the position of the sensor, and of the hit; 0 where there is none [1/(kg^1/2 m)].
+    log_frequency_by : (n_modes, n_factors) array
+        Derivatives of ln f by the logarithms of the factors and masses asked for [-], and by bodies' places [1/m].
+    constants_by : (n_frf, n_modes, n_factors) array
+        Derivatives of the constants by the same [1/kg, 1/(kg m)].
+    vectors : (r, n_modes) array
+        Mode shapes in the coordinates of the reduced basis [kg^-1/2].
+    slope : (n_modes,) array
+        Relative change of each frequency per newton of the hits' peak force [1/N].
+    gain : (n_frf, n_modes) array
+        Factor of the constants over the product of the shapes at the points that they join [-].
+    """
+
+    frequency: FloatArray
+    damping: FloatArray
+    constants: FloatArray
+    seen: FloatArray
+    hit: FloatArray
+    seen_slopes: FloatArray
+    hit_slopes: FloatArray
+    log_frequency_by: FloatArray
+    constants_by: FloatArray
+    vectors: FloatArray
+    slope: FloatArray
+    gain: FloatArray
+
+    def select(self, modes: IntArray) -> Prediction:
+        """Return some of the modes, in the order given."""
+        return Prediction(
+            self.frequency[modes],
+            self.damping[modes],
+            self.constants[:, modes],
+            self.seen[:, modes],
+            self.hit[:, modes],
+            self.seen_slopes[:, :, modes],
+            self.hit_slopes[:, :, modes],
+            self.log_frequency_by[modes],
+            self.constants_by[:, modes],
+            self.vectors[:, modes],
+            self.slope[modes],
+            self.gain[:, modes],
+        )
+
+    @cached_property
+    def along(self) -> FloatArray:
+        """Derivatives of the constants by the position of the hit, 0 where none is known, (dim, n_frf, n_modes)."""
+        return np.asarray(self.gain * self.seen * self.hit_slopes)
+
+    @cached_property
+    def along_seen(self) -> FloatArray:
+        """Derivatives of the constants by the position of the sensor, (dim, n_frf, n_modes)."""
+        return np.asarray(self.gain * self.seen_slopes * self.hit)
