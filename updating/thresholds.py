@@ -177,12 +177,12 @@ REJECTED_FIT = 0.003
 stated."""
 
 DOUBTED_FIT = 0.02
-"""Where no single effect fits better than this, pairs are weighed beside them, which must fit as well themselves [-].
-Doubled: pairs are tried in one test in 25 that needs none."""
+"""Pairs must fit as well as this [-]: more freedom fits better. Doubled: one true pair in 25 is rejected."""
 
 WELL_FITTED = 0.1
-"""Where a single effect fits better than this a second cause is sought beside the best of each alone, and not from no
-effect at all [-]. Doubled: twice as many tests take the longer search, some 3 s on a beam."""
+"""Where no single effect fits better than this the most promising pairs are weighed beside them, whatever they promise
+[-]: a linear step from a single that explains most, but not all, errs by more than the evidence differs. Doubled:
+one test in five that needs no pair takes the longer search, some 5 s on a beam."""
 
 ODD_DATA_BELOW = 0.2
 """What fits better than this has no odd data to be sought [-]: above the p-value of a fit for which shapes that hits
@@ -353,6 +353,21 @@ SAME_PEAK = 0.02
 
 PEAK_BEHIND = 12.0
 """Peaks whose log-likelihood lies further behind the highest are left out [-]: they hold less than 1e-5 of it."""
+
+RIDGE_FLAT = 30.0
+"""Information along the flattest direction of a maximum below which it may be a ridge, in prior quantiles [-]: a
+standard deviation of a fifth of the range. Doubled: ridges half as long as the range are followed, too."""
+
+RIDGE_STEEP = 1000.0
+"""Information along the steepest direction above which it is one [-]: a ridge narrower than a thirtieth of the range,
+which a parabola along its tangent leaves as soon as it bends. Doubled: wider ones are left to the tangent."""
+
+RIDGE_STEP = 0.2
+"""How far apart places of a ridge are, in prior quantiles [-]. Doubled: a ridge that bends is lost sooner."""
+
+RIDGE_STEPS = 4
+"""How many places are taken either way: with the step, four fifths of the range. Doubled: twice the evaluations, some
+five per place."""
 
 STARTS_TRIED = 12
 """From how many of the starting places at most a climb is tried..."""

@@ -28,7 +28,8 @@ ASTRAY = 0.5
 """A pair whose logarithm of the frequency ratio lies so far from the others' median is no pair..."""
 
 SAME = 0.95
-"""...unless the shapes are the same."""
+"""...unless the shapes are the same, and it is not `NOTHING_IN_COMMON` times that median or more: on few points a
+structure that bounces on its supports looks like a mode far above the band."""
 
 LOWEST_MAC = 0.4
 """Below this MAC a measured mode has no partner, however near; the least MAC rises from here to `SAME` with the
@@ -89,8 +90,9 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     order = match(measured, prediction, np.arange(len(measured.frequency)), trusted)
     mac = mac_of_constants(measured, prediction, trusted)[np.arange(len(order)), order]
     ratio = np.log(measured.frequency / prediction.frequency[order])
-    distance = np.minimum(np.abs(ratio - np.median(ratio)) / ASTRAY, 1.0)
-    keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * distance
+    beside = np.abs(ratio - np.median(ratio))
+    keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * np.minimum(beside / ASTRAY, 1.0)
+    keep &= beside < np.log(NOTHING_IN_COMMON)
     keep = _as_stated(measured, prediction, keep)
     if not keep.any():
         raise EstimationError(

@@ -141,7 +141,7 @@ def axially_loaded(force: float, count: int) -> np.ndarray:
     return np.array([optimize.brentq(tip, grid[i], grid[i + 1], xtol=1e-10) for i in found])
 
 
-@pytest.mark.parametrize("share", [-0.7, 0.5, 4.0])
+@pytest.mark.parametrize("share", [-0.9, -0.7, 0.5, 4.0])
 def test_a_beam_under_tension_and_thrust(share: float) -> None:
     force = share * np.pi**2 * EI / (4 * BEAM.length**2)
     assert predicted("axial_load", "beam", force=force) == pytest.approx(axially_loaded(force, 5), rel=2e-5)

@@ -225,3 +225,14 @@ def test_sensors_that_agree_are_all_kept() -> None:
     evaluation = two_sensors()
     paired = pair_modes(*reversed_at(evaluation, np.zeros(14, dtype=bool)))
     assert paired.trusted is None and paired.warnings == ()
+
+
+def test_a_structure_that_bounces_on_its_supports_is_no_mode_far_above_the_band() -> None:
+    """On few points a straight line looks like a high mode: the same shape at an eightieth of its frequency."""
+    model = LOOK.predict(count=10)
+    test = seen_as(model.select(np.array([9, 0, 1, 2, 3])))
+    test = replace(test, frequency=np.r_[0.9 * model.frequency[0] / 3, test.frequency[1:]])
+    paired = pair_modes(test, model)
+    assert paired.order.tolist() == [0, 1, 2, 3]
+    assert len(paired.warnings) == 1
+    assert "no partner" in paired.warnings[0]

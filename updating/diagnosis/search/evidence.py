@@ -20,6 +20,7 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.fit import Peak, Point, evaluate, highest, maximise
 from updating.diagnosis.search.goodness import p_value
+from updating.diagnosis.search.ridges import along_ridge
 from updating.problem.candidate import Candidate
 from updating.thresholds import (
     CLIMBS,
@@ -152,6 +153,7 @@ def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int 
 
 def _sampled(problem: DiagnosisProblem, candidate: Candidate, peaks: list[Peak], density: int) -> Explanation:
     count = min(density * 2 ** len(peaks[0].gradient), MOST_SAMPLES)
+    peaks = [*peaks, *along_ridge(problem, candidate, peaks[0])]
     for _ in range(SAMPLING_ROUNDS):
         samples, proposal = _draw(peaks, count)
         points = [evaluate(problem, candidate, u, near=peaks[0].point) for u in samples]

@@ -143,7 +143,7 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     found = _with_odd(problem, [], [nothing, *_singles(problem, effects, nothing, both=both)])
     far = not _explained(problem, found, well=True)
     if far or _by_its_doubt(problem, found):
-        pairs = pairs_of(problem, _as_stated(found), least=not _explained(problem, found), far=far)
+        pairs = pairs_of(problem, _as_stated(found), far=far)
         found = _with_odd(problem, found, pairs)
     for causes in range(3, len(COUNT_PRIOR)):
         if not _explained(problem, found):

@@ -29,9 +29,7 @@ from updating.thresholds import (
 )
 
 
-def pairs_of(
-    problem: DiagnosisProblem, found: list[Explanation], *, least: bool, far: bool = True
-) -> list[Explanation]:
+def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) -> list[Explanation]:
     """Weigh the pairs that promise the most, from the best of either effect alone and from no effect at all.
 
     Parameters
@@ -40,12 +38,10 @@ def pairs_of(
         Test and model.
     found : list of Explanation
         No effect, and every single one.
-    least : bool
-        Whether the most promising are weighed in any case: no single effect explains the data. Else only those are
-        that promise to come near the best.
     far : bool
-        Whether pairs are tested from no effect at all, too, about every starting place of either: an evaluation of
-        each, and some for its sensitivities.
+        Whether no single effect explains the data well: the most promising pairs are weighed in any case, and tested
+        from no effect at all, too, about every starting place of either, an evaluation of each and some for its
+        sensitivities. Else only those are weighed that promise to come near the best.
     """
     singles = [e for e in found if e.names]
     possible = [e for e in singles if e.best.possible]
@@ -56,17 +52,19 @@ def pairs_of(
     volume = [e.best.marginal.log_likelihood - e.log_evidence for e in possible]  # what their parameters cost
     nominal = next(e.best for e in found if not e.names)
     allowed = _allowed(problem, possible)
-    reached = score_tests(problem, possible)
+    reached, beside = score_tests(problem, possible)
     reaches = [_reaches(problem, nominal, e.candidate) for e in possible] if far else []
     both: list[Together] = _together(nominal, reaches, allowed) if far else [[]] * len(allowed)
     drafts = []
     for (i, j), together in zip(allowed, both, strict=True):
         first, second = possible[i], possible[j]
         second = once_more(second) if first.names == second.names else second
-        cost = log_prior(2, examined) - volume[i] - volume[j]
+        cost = log_prior(2, examined) - min(
+            volume[i] + min(volume[j], beside[i, j]), volume[j] + min(volume[i], beside[j, i])
+        )
         near = max(reached[i, j], reached[j, i]) if i != j else -np.inf
         away = together[0][0] if together else -np.inf
-        if least or max(near, away) + cost > best - SET_MARGIN:
+        if far or max(near, away) + cost > best - SET_MARGIN:
             drafts.append(_Draft(first, second, near + cost, away + cost, [u for _, u in together]))
     pairs: list[tuple[Explanation, list[FloatArray]]] = []
     bar = max(e.best.marginal.log_likelihood for e in possible)

@@ -14,6 +14,10 @@ from updating.models.state import State
 from updating.models.structure import FieldStructure
 from updating.prediction.predict import Predictor
 
+NEAR_BUCKLING = 0.95
+"""Largest thrust, of the load that buckles the model [-]: it leaves 5 % of the lowest mode's stiffness, and less would
+be less than tolerances of the stiffness are."""
+
 
 class AxialLoad(Effect):
     """A force along the structure that keeps its direction: heat between two clamps, a cable, a dead weight.
@@ -36,8 +40,8 @@ class AxialLoad(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the force."""
         critical = buckling_load(predictor)
-        why = f"from 0.8 of the load that buckles the model, {critical:.3g} N, to five times it in tension"
-        return (Parameter("force", "N", -0.8 * critical, 5 * critical, why),)
+        why = f"from all but the load that buckles the model, {critical:.3g} N, to five times it in tension"
+        return (Parameter("force", "N", -NEAR_BUCKLING * critical, 5 * critical, why, natural=("low",)),)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need a support to push against."""
