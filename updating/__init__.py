@@ -54,7 +54,8 @@ load_on_demand(
         ".environment": "Environment",
         ".test_data.measured": "Measured measured_from_identified measured_from_modes",
         ".models": "Damping Material PointMass Region Spec Structure build_structure",
-        ".prediction.predict": "Prediction Predictor",
+        ".prediction.predict": "Predictor",
+        ".prediction.prediction": "Prediction",
         ".tolerances": "Tolerances",
     },
 )

@@ -81,6 +81,6 @@ def _drafts(problem: DiagnosisProblem, base: Explanation, singles: list[Explanat
     ]
     if not others:
         return
-    reached = score_tests(problem, [base, *others])[0][0, 1:]
+    reached = score_tests(problem, [base, *others])[0, 1:]
     for other, height in zip(others, reached, strict=True):
         yield _Draft(base, other, float(height) + other.candidate.log_weight)

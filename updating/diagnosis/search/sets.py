@@ -52,16 +52,14 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) 
     volume = [e.best.marginal.log_likelihood - e.log_evidence for e in possible]  # what their parameters cost
     nominal = next(e.best for e in found if not e.names)
     allowed = _allowed(problem, possible)
-    reached, beside = score_tests(problem, possible)
+    reached = score_tests(problem, possible)
     reaches = [_reaches(problem, nominal, e.candidate) for e in possible] if far else []
     both: list[Together] = _together(nominal, reaches, allowed) if far else [[]] * len(allowed)
     drafts = []
     for (i, j), together in zip(allowed, both, strict=True):
         first, second = possible[i], possible[j]
         second = once_more(second) if first.names == second.names else second
-        cost = log_prior(2, examined) - min(
-            volume[i] + min(volume[j], beside[i, j]), volume[j] + min(volume[i], beside[j, i])
-        )
+        cost = log_prior(2, examined) - volume[i] - volume[j]
         near = max(reached[i, j], reached[j, i]) if i != j else -np.inf
         away = together[0][0] if together else -np.inf
         if far or max(near, away) + cost > best - SET_MARGIN:

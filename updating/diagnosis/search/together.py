@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import FloatArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation, explain
 from updating.diagnosis.search.fit import sensitivities
@@ -59,17 +59,13 @@ def once_more(single: Explanation) -> Explanation:
     return replace(single, candidate=again)
 
 
-def score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> tuple[FloatArray, FloatArray]:
-    """Return what a linear step from each single's best, with each other, would reach, and what the other costs there.
+def score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> FloatArray:
+    """Return the log-likelihood that a linear step from each single's best, with each other, would reach.
 
     Returns
     -------
-    reached : (n, n) array
-        Log-likelihood; row: whose best is the start; column: whose whole shift, and its sensitivities there, are
-        added [-].
-    cost : (n, n) array
-        What the log evidence of both lies below it for the parameters of the other: how much of their range the data
-        leave beside the first. Alone, on a gap that it does not explain, an effect is held far more closely [-].
+    (n, n) array
+        Row: whose best is the start; column: whose whole shift, and its sensitivities there, are added [-].
     """
     nominal = problem.at(Candidate(), np.zeros(0)).residual
     own = [np.nan_to_num(sensitivities(problem, e.candidate, e.best)) for e in singles]
@@ -77,25 +73,13 @@ def score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> tuple[
     everything = np.nan_to_num(np.hstack([np.hstack(pair) for pair in zip(shifts, own, strict=True)]))
     ends = np.cumsum([0, *(1 + part.shape[1] for part in own)])
     reached = np.full((len(singles), len(singles)), -np.inf)
-    cost = np.full((len(singles), len(singles)), np.inf)
     for i, leader in enumerate(singles):
         normal, load = normal_equations(leader.best.comparison, everything, leader.best.marginal.scale)
         start = leader.best.marginal.log_likelihood
         mine = np.arange(ends[i] + 1, ends[i + 1])
-        for j, other in enumerate(singles):
+        for j in range(len(singles)):
             if j != i:
                 columns = np.concatenate([mine, np.arange(ends[j], ends[j + 1])])
                 step = np.linalg.lstsq(normal[np.ix_(columns, columns)], load[columns], rcond=1e-10)[0]
                 reached[i, j] = start + 0.5 * float(load[columns] @ step)
-                cost[i, j] = (
-                    _cost(normal, mine, np.arange(ends[j] + 1, ends[j + 1])) - other.candidate.log_weight
-                )
-    return reached, cost
-
-
-def _cost(normal: FloatArray, mine: IntArray, others: IntArray) -> float:
-    """Return minus the log of how much of the range of others is left to them, mine free within their own range."""
-    both = normal[np.ix_(others, mine)]
-    own = np.linalg.solve(normal[np.ix_(mine, mine)] + np.eye(len(mine)), both.T)
-    known = np.linalg.eigvalsh(normal[np.ix_(others, others)] - both @ own)
-    return float(0.5 * np.sum(np.log(np.maximum(known / (2 * np.pi), 1.0))))
+    return reached
