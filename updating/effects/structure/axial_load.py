@@ -40,7 +40,7 @@ class AxialLoad(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the force."""
         critical = buckling_load(predictor)
-        why = f"from all but the load that buckles the model, {critical:.3g} N, to five times it in tension"
+        why = f"from {NEAR_BUCKLING} of the load that buckles the model, {critical:.3g} N, to five times it in tension"
         return (Parameter("force", "N", -NEAR_BUCKLING * critical, 5 * critical, why, natural=("low",)),)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
