@@ -27,6 +27,9 @@ from acquisition import (
 from acquisition.uff.functions.measurements import simplest_within
 from acquisition.uff.writing.data_sets import field13
 
+PART = st.just(0.0) | st.floats(1e-30, 1e9) | st.floats(-1e9, -1e-30)
+"""What a rig measures; of less than 1e-30 the last byte may be that of a line end, and such a file is refused."""
+
 FINITE = st.floats(-1e12, 1e12, allow_nan=False)
 SAME_FOLDER = settings(
     max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None
@@ -60,7 +63,7 @@ def test_hammer_test_comes_back(tmp_path, rng, rate, decay):
 
 
 @SAME_FOLDER
-@given(values=hnp.arrays(np.complex128, (2, 9), elements=st.complex_numbers(max_magnitude=1e9)))
+@given(values=hnp.arrays(np.complex128, (2, 9), elements=st.builds(complex, PART, PART)))
 def test_frfs_come_back_bit_for_bit(tmp_path: Path, values):
     frfs = FrfSet(
         np.arange(9) * 0.5, values, (Dof(1, 3), Dof(2, -3)), (Dof(5, 1), Dof(5, 1)), "mobility", decay=1.5
