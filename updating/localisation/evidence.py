@@ -61,7 +61,8 @@ class RegionPosterior:
     @property
     def probability(self) -> FloatArray:
         """Probability of each kind and region, given that one region is changed, (n_kinds, n_regions) [-]."""
-        score = self.log_evidence + np.log(self.prior)
+        with np.errstate(divide="ignore"):  # a region without an area is none that may be changed
+            score = self.log_evidence + np.log(self.prior)
         if not np.isfinite(score).any():
             return np.broadcast_to(self.prior / len(self.kinds), score.shape)
         return np.asarray(np.exp(score - logsumexp(score)))

@@ -31,7 +31,7 @@ from updating.localisation import (
     regions_at,
 )
 from updating.localisation.changes import NODES, changes, columns
-from updating.localisation.evidence import DOUBT
+from updating.localisation.evidence import DOUBT, RegionPosterior
 from updating.localisation.force_residual import region_parts
 from updating.localisation.severity import Between, integrate, refine
 from updating.localisation.shapes import dynamic, serep, shapes_of
@@ -294,3 +294,9 @@ def test_the_order_of_the_points_does_not_matter() -> None:
     turned = pose(case_of(other, BEAM))[0]
     for method in METHODS:
         assert method.scores(turned) == pytest.approx(method.scores(problem), rel=1e-3, abs=1e-6)
+
+
+def test_a_region_without_an_area_has_no_probability():
+    evidence = np.array([[3.0, 1.0]])
+    posterior = RegionPosterior(("stiffness",), evidence, np.array([0.0, 1.0]), np.zeros((1, 2)))
+    assert posterior.probability.tolist() == [[0.0, 1.0]]

@@ -12,7 +12,7 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import Point, evaluate, highest, sensitivities
 from updating.diagnosis.search.prior import log_prior
-from updating.diagnosis.search.together import Part, join, joined, once_more, score_tests
+from updating.diagnosis.search.together import Part, join, joined, linear_step, once_more, score_tests
 from updating.effects import Effect
 from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
@@ -268,7 +268,7 @@ def _together(nominal: Point, reaches: list[list[_Reach]], pairs: list[tuple[int
         """Return where a linear step leads from two places, both shifts whole."""
         shifts, free = ends[[a, b]], np.r_[ends[a] + 1 : ends[a + 1], ends[b] + 1 : ends[b + 1]]
         left = load[free] - normal[np.ix_(free, shifts)].sum(axis=1) / SHIFT_SPREAD
-        step = QUANTILE_SPREAD * np.linalg.solve(normal[np.ix_(free, free)], left)
+        step = QUANTILE_SPREAD * linear_step(normal[np.ix_(free, free)], left)
         return np.clip(np.concatenate([flat[a].place, flat[b].place]) + step, *STEP_INSIDE)
 
     found = []
@@ -278,7 +278,7 @@ def _together(nominal: Point, reaches: list[list[_Reach]], pairs: list[tuple[int
             if i == j and a >= b:
                 continue
             columns = np.r_[ends[a] : ends[a + 1], ends[b] : ends[b + 1]]
-            step = np.linalg.solve(normal[np.ix_(columns, columns)], load[columns])
+            step = linear_step(normal[np.ix_(columns, columns)], load[columns])
             reached = nominal.marginal.log_likelihood + 0.5 * float(load[columns] @ step)
             own.append((reached, (a, b)))
         own.sort(key=lambda one: -one[0])

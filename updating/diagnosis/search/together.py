@@ -83,3 +83,19 @@ def score_tests(problem: DiagnosisProblem, singles: list[Explanation]) -> FloatA
                 step = np.linalg.lstsq(normal[np.ix_(columns, columns)], load[columns], rcond=1e-10)[0]
                 reached[i, j] = start + 0.5 * float(load[columns] @ step)
     return reached
+
+
+def linear_step(normal: FloatArray, load: FloatArray) -> FloatArray:
+    """Return the step that normal equations promise, the shortest one where effects do the same to the data.
+
+    Two springs beside each other may shift the data so far that no prior's unit is left on the diagonal.
+
+    Parameters
+    ----------
+    normal : (k, k) array
+        Fisher information with that of the prior, so that its diagonal is positive [-].
+    load : (k,) array
+        Slope of the log-likelihood [-].
+    """
+    size = np.sqrt(np.diag(normal))
+    return np.asarray(np.linalg.lstsq(normal / np.outer(size, size), load / size, rcond=1e-10)[0] / size)
