@@ -38,9 +38,11 @@ class Tolerances:
             return self.parts.get(name, 0.0)
         return self.factors.get(general, 0.0)
 
-    def regional(self, name: str) -> float:
-        """Return the 1-sigma of a factor's logarithm by its tolerance, or by its bounds; 0 for neither [-]."""
+    def factor(self, name: str) -> float:
+        """Return the 1-sigma of a factor's logarithm: by its tolerance, its bounds, or that of the property [-]."""
+        if name in self.factors:
+            return self.factors[name]
         if name in self.parts or name not in self.bounds:
-            return self.parts.get(name, 0.0)
+            return self.of(name, name.rpartition(".")[2])
         low, high = self.bounds[name]
         return log(high / low) / UNIFORM if low > 0 else 0.0

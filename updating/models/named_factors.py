@@ -7,10 +7,29 @@ from collections.abc import Mapping
 from updating.models.spec import Spec
 from updating.models.state import State
 
+UNASSIGNED = "unassigned"
+"""What stands for a region's name where imported matrices hold more than the sum of their parts.
+
+That may be steel which nobody listed, and follow the modulus of the whole; or bolts, feet and lumped machines, which
+do not. A factor of its own, beside that of the whole, leaves both open.
+"""
+
+
+def unassigned(spec: Spec) -> tuple[str, ...]:
+    """Return the factors of what imported matrices hold in no region, none where that is nothing."""
+    found = () if spec.imported is None else spec.imported.unassigned
+    named = {region.name for region in spec.regions}
+    return () if UNASSIGNED in named else tuple(f"{UNASSIGNED}.{factor}" for factor in found)
+
 
 def regions_of(spec: Spec, name: str) -> tuple[tuple[int, ...], str]:
-    """Return the regions that a factor is of, none for the whole structure, and which property it scales."""
+    """Return the regions that a factor is of, none for the whole structure, and which property it scales.
+
+    What imported matrices hold in no region comes after all regions.
+    """
     region, _, factor = name.rpartition(".")
+    if name in unassigned(spec):
+        return (len(spec.regions),), factor
     return tuple(i for i, r in enumerate(spec.regions) if region and r.name == region), factor
 
 

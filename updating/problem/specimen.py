@@ -28,7 +28,7 @@ from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
 from updating.models.base import FACTORS
-from updating.models.named_factors import departure, regions_of
+from updating.models.named_factors import departure, regions_of, unassigned
 from updating.models.state import NOMINAL, State
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
@@ -145,8 +145,10 @@ class SpecimenProblem:
         """What is doubted alike by all data: factors of the whole and of regions, masses and places of bodies."""
         known = {name for term in self.predictor.reduced.structure.terms for name in term.powers}
         whole = [n for n in FACTORS if n in known and self.tolerances.factors.get(n, 0.0) > 0]
-        own = dict.fromkeys([*self.tolerances.parts, *self.tolerances.bounds])
-        regional = [n for n in own if self.tolerances.regional(n) > 0 and self._of_regions(n, known)]
+        own = dict.fromkeys(
+            [*self.tolerances.parts, *self.tolerances.bounds, *unassigned(self.predictor.spec)]
+        )
+        regional = [n for n in own if self._sigma(n) > 0 and self._of_regions(n, known)]
         return (*whole, *regional, *self.predictor.body_changes)
 
     def _of_regions(self, name: str, known: set[str]) -> bool:
@@ -174,7 +176,7 @@ class SpecimenProblem:
     def _sigma(self, name: str) -> float:
         if (change := self.predictor.body_changes.get(name)) is not None:
             return self.measured.position_sigma if change.of_place else STATED_MASS_DOUBT
-        return self.tolerances.regional(name) if "." in name else self.tolerances.factors[name]
+        return self.tolerances.factor(name)
 
     @cached_property
     def _relative_sigmas(self) -> FloatArray:

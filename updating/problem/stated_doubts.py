@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from acquisition.errors import StudyError
+from updating.models.named_factors import unassigned
 from updating.models.spec import Spec
 from updating.tolerances import Tolerances
 
@@ -32,12 +33,14 @@ def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] =
     own = list(dict.fromkeys(region.name for region in spec.regions))
     for name in (*tolerances.parts, *tolerances.bounds):
         region, _, prop = name.rpartition(".")
-        if name in parameters or (region in own and prop in REGIONAL):
+        if name in parameters or name in unassigned(spec) or (region in own and prop in REGIONAL):
             continue
         named = ", ".join(own[:6]) + (", ..." if len(own) > 6 else "")
+        beyond = " or ".join(unassigned(spec))
         raise StudyError(
-            f"[tolerances] {name}: neither E, density, thickness, area or inertia of a region ({named}) nor among the "
-            "parameters of [update]; correct the name or leave it out"
+            f"[tolerances] {name}: neither E, density, thickness, area or inertia of a region ({named}) nor "
+            f"{f'{beyond}, of what is in no region, nor ' if beyond else ''}among the parameters of [update]; correct "
+            "the name or leave it out"
         )
 
 
@@ -45,7 +48,8 @@ def of_updates_alone(tolerances: Tolerances, spec: Spec) -> tuple[str, ...]:
     """Say which doubts are of nothing that a diagnosis turns: numbers of a deck, and effects."""
     regions = {region.name for region in spec.regions}
     every = dict.fromkeys([*tolerances.parts, *tolerances.bounds])
-    others = [name for name in every if name.rpartition(".")[0] not in regions]
+    known = unassigned(spec)
+    others = [name for name in every if name not in known and name.rpartition(".")[0] not in regions]
     if not others:
         return ()
     return (f"doubts in {', '.join(others)} are for updates; a diagnosis knows those of regions' properties",)

@@ -13,6 +13,9 @@ from updating_cases import case_of, specimen, struck
 from modalkit.output.documents import diagnosis_document
 from modalkit.output.summary import summary_text
 from updating import LIBRARY, Diagnosis, diagnose
+from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search.evidence import explain
+from updating.diagnosis.search.odd import with_odd_data
 from updating.nominal import predictor_of
 from updating.problem.candidate import Candidate
 
@@ -119,3 +122,18 @@ def test_values_of_two_of_one_cause_go_back_to_their_quantiles() -> None:
     values = both.values(predictor, quantiles.tolist())
     assert values["lumped_mass.x"] < values["lumped_mass#2.x"]
     assert both.coordinates(predictor, values) == pytest.approx(quantiles)
+
+
+def test_no_cause_sets_a_shape_aside_that_nothing_alone_may_not() -> None:
+    rng = np.random.default_rng(3)
+    test = struck(specimen(rng), rng)
+    third = np.arange(len(test.frequency)) == 2
+    scattered = 1 + 0.4 * rng.standard_normal(len(test.hit))[:, None] * third
+    problem, _ = pose(case_of(replace(test, constants=test.constants * scattered), BEAM))
+    nothing = explain(problem, Candidate())
+    cause = explain(problem, Candidate((LIBRARY["calibration_gain"],)))
+    nothing.__dict__["p_value"] = 1.0  # as where it is one shape among hundreds of data that fit well
+    weighed = {one.names: one for one in with_odd_data(problem, [nothing, cause])}
+    assert set(weighed) == {(), ("calibration_gain",)}
+    assert weighed[()].candidate.outliers == weighed[("calibration_gain",)].candidate.outliers
+    assert weighed[()].log_evidence > nothing.log_evidence

@@ -32,6 +32,7 @@ from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
 from updating.models.imported.checks import negative_pivots
 from updating.models.imported.ordering import factored
+from updating.models.named_factors import departure, unassigned
 from updating.models.reduced import Reduced, reduce_structure
 from updating.models.state import NOMINAL, State
 
@@ -165,6 +166,13 @@ def test_what_the_parts_leave_out_belongs_to_no_region() -> None:
     softer = structure.matrices(State(regional={(0, "E"): 0.5}))[0]
     expected = whole.stiffness_parts[0] + 0.5 * whole.stiffness_parts[1]
     np.testing.assert_allclose(softer.toarray(), expected.toarray(), rtol=1e-9, atol=1e-3)
+    assert unassigned(structure.spec) == ("unassigned.E", "unassigned.density")
+    assert unassigned(spec_of(whole)) == ()
+    heavier = structure.matrices(
+        departure(structure.spec, {"density": 1.2, "part1.density": 0.9, "unassigned.density": 1.1})
+    )[1]
+    expected = 1.2 * (1.1 * whole.mass_parts[0] + 0.9 * whole.mass_parts[1])
+    np.testing.assert_allclose(heavier.toarray(), expected.toarray(), rtol=1e-9, atol=1e-9 * LINE)
 
 
 def test_lumped_masses_without_rotary_inertia_are_condensed() -> None:

@@ -13,10 +13,12 @@ from scipy import linalg, optimize, sparse
 from acquisition import StudyError
 from updating import Case, Measured, Tolerances
 from updating.diagnosis.diagnose import diagnose, pose
+from updating.diagnosis.search.evidence import explain
 from updating.models import Region
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
 from updating.models.named_factors import departure
+from updating.problem.candidate import Candidate
 from updating.problem.stated_doubts import check_doubts
 from updating.update import Update, update
 
@@ -40,9 +42,18 @@ def frequencies(logs: np.ndarray, modes: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def storeys(
-    logs: np.ndarray, modes: int, tolerances: Tolerances, *, sigma: float = 1e-4, shapes: float = 0.0
+    logs: np.ndarray,
+    modes: int,
+    tolerances: Tolerances,
+    *,
+    sigma: float = 1e-4,
+    shapes: float = 0.0,
+    of: int | None = None,
 ) -> Case:
-    """Return storeys measured at all floors, or their frequencies alone, beside a model of equal ones."""
+    """Return storeys measured at all floors, or their frequencies alone, beside a model of equal ones.
+
+    The upper ones are regions, ``of`` of them where it says how many; the rest is in no region.
+    """
     n = len(logs)
     f, moved = frequencies(logs, modes)
     size = shapes * np.sqrt(np.mean(moved**2, axis=0)) * np.ones_like(moved)
@@ -50,11 +61,12 @@ def storeys(
     rows, nothing = len(moved), np.full(modes, np.nan)
     points = np.stack([np.zeros(n), np.zeros(n), 3.0 * (np.arange(n) + 1)], axis=1)
     unit = np.eye(n)
-    parts = tuple(Sparse(sparse.csr_array(chain(STIFFNESS * unit[i]))) for i in range(n))
+    own = range(n - (n if of is None else of), n)
+    parts = tuple(Sparse(sparse.csr_array(chain(STIFFNESS * unit[i]))) for i in own)
     table = NodeTable(np.arange(n) + 1, points, np.ones(n, dtype=int), np.arange(n))
     whole = Sparse(sparse.csr_array(chain(STIFFNESS * np.ones(n))))
     imported = Imported(whole, Sparse(sparse.csr_array(MASS * np.eye(n))), table, parts, ())
-    spec = spec_of(imported, regions=tuple(Region(f"storey_{i + 1}", (0, 1), (0, 1)) for i in range(n)))
+    spec = spec_of(imported, regions=tuple(Region(f"storey_{i + 1}", (0, 1), (0, 1)) for i in own))
     test = Measured(
         f, np.zeros(modes), nothing, nothing, points[:rows], tuple(range(1, rows + 1)), np.arange(rows),
         np.full(rows, -1), moved, size, absolute=False, repeated=False, repeatability=sigma, position_sigma=0.0,
@@ -145,6 +157,26 @@ def test_doubts_of_what_there_is_not_are_refused() -> None:
         check_doubts(case.tolerances, case.spec)
     check_doubts(Tolerances(bounds={"storey_1.E": (0.5, 2)}), case.spec)
     check_doubts(Tolerances(bounds={"lumped_mass.mass": (0, 2)}), case.spec, ["lumped_mass.mass"])
+
+
+def test_what_is_in_no_region_need_not_follow_the_modulus_of_the_whole() -> None:
+    """Five storeys of eight are 3 % stiffer than modelled; the lower three are not, and nobody listed them."""
+    logs = np.where(np.arange(8) < 3, 0.0, 0.03)
+    fits = {}
+    for name, tolerances in {
+        "as wide as E": Tolerances({"E": 0.02}),
+        "stated": Tolerances({"E": 0.02}, parts={"unassigned.E": 0.04}),
+        "denied": Tolerances({"E": 0.02}, parts={"unassigned.E": 0.0}),
+    }.items():
+        case = storeys(logs, 8, tolerances, sigma=3e-4, shapes=0.01, of=5)
+        check_doubts(case.tolerances, case.spec)
+        problem, warnings = pose(case)
+        assert not any("for updates" in warning for warning in warnings)
+        assert problem.names == (("E",) if name == "denied" else ("E", "unassigned.E"))
+        fits[name] = explain(problem, Candidate()).p_value
+    assert fits["as wide as E"] > 0.1
+    assert fits["stated"] > 0.1
+    assert fits["denied"] < 1e-6
 
 
 def test_a_diagnosis_doubts_regions_by_their_own_tolerances_and_bounds() -> None:

@@ -36,7 +36,9 @@ class _Choice:
 
 
 def with_odd_data(problem: DiagnosisProblem, found: Sequence[Explanation]) -> list[Explanation]:
-    """Weigh again, with outliers, what does not fit but would with them.
+    """Weigh again, with outliers, what does not fit but would with them, and beside it what has as much evidence.
+
+    No effect at all is among the latter, or a cause would be believed for the data that it alone may set aside.
 
     Parameters
     ----------
@@ -52,6 +54,13 @@ def with_odd_data(problem: DiagnosisProblem, found: Sequence[Explanation]) -> li
     """
     doubtful = [one for one in found if one.best.possible and one.p_value < ODD_DATA_BELOW]
     choices = [(one, _choose(problem, one)) for one in doubtful]
+    taken = [one.log_evidence for one, choice in choices if choice.outliers]
+    if taken:  # the same data may be odd beside what fits without: a fit of many data hides one
+        level = min(taken)
+        beside = [
+            one for one in found if one not in doubtful and one.best.possible and one.log_evidence >= level
+        ]
+        choices += [(one, _choose(problem, one)) for one in beside]
     reached = [one.log_evidence + choice.gain for one, choice in choices]
     bar = max([one.log_evidence for one in found] + reached, default=-np.inf) - WITHIN_REACH
     return [

@@ -45,6 +45,11 @@ class Imported:
     deck : DeckModel, optional
         The deck that CalculiX made them of.
 
+    Attributes
+    ----------
+    unassigned : tuple of str
+        ``E`` where the stiffness, ``density`` where the mass has something beyond the sum of its parts.
+
     Raises
     ------
     StudyError
@@ -59,6 +64,7 @@ class Imported:
     source: str = "model"
     deck: DeckModel | None = None
     massless: bool = field(init=False, default=False)
+    unassigned: tuple[str, ...] = field(init=False, default=())
     rest: dict[str, Sparse | None] = field(init=False, default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -84,6 +90,12 @@ class Imported:
         for name, parts in (("stiffness", self.stiffness_parts), ("mass", self.mass_parts)):
             whole: Sparse = getattr(self, name)
             self.rest[name] = check_sum(whole, parts, named[: len(parts)], name)
+        beyond = [
+            factor
+            for factor, name in (("E", "stiffness"), ("density", "mass"))
+            if self.rest[name] is not None
+        ]
+        object.__setattr__(self, "unassigned", tuple(beyond))
         object.__setattr__(self, "massless", bool((self.mass.diagonal() == 0).any()))
         bare = self.mass
         object.__setattr__(self, "mass", with_mass_everywhere(self.stiffness, bare, self.source))

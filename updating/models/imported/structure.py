@@ -135,7 +135,7 @@ class ImportedStructure(Structure):
         total = {"stiffness": self.imported.stiffness, "mass": self.imported.mass}
         for term in self.terms:
             parts = self.parts(term.kind)
-            scale = np.ones(len(self.spec.regions))
+            scale = np.ones(len(parts))
             for (region, factor), value in state.regional.items():
                 scale[region] *= value ** term.powers.get(factor, 0.0)
             for region in np.flatnonzero(scale != 1.0).tolist():
