@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from acquisition.arrays import ComplexArray
+from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.errors import EstimationError
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import background
@@ -132,22 +132,34 @@ def _higher(
 def find_split_mode(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
     """Return two poles of a fit that are one mode, the weaker first, or None.
 
-    They are the halves of one by their shapes, or one pole for each FRF explains the FRFs as well.
+    Their shapes look like the halves of one, and one pole for each FRF leaves little more than they do; or it leaves
+    no more. Fewer than four FRFs do not tell it.
     """
     places, residues = sorted_frfs(frfs), fit.linear.residues
-    found = residual_peaks.split_mode_pairs(fit.poles, residues, places)
-    if found is not None or len(residues) < residual_peaks.FEW:
-        return found
+    halves = residual_peaks.split_mode_pairs(fit.poles, residues, places)
+    energy = np.sum(np.abs(residues) ** 2, axis=0) / np.abs(fit.poles.real)
+    if len(residues) < residual_peaks.FEW:
+        return _weaker_first(halves[0], energy) if halves else None
     disagreement = None if places is None else residual_peaks.two_by_references(residues, places)
     groups = split_modes.clusters(fit.poles, disagreement)
-    if not groups:
+    if not halves and not groups:
         return None
     residual, weights = left_over(frfs, fit), search_weights(frfs, fit)
+    comparable = split_modes.alike_wide(fit.poles)
+    for pair in halves:
+        told = split_modes.misfits(frfs, fit.poles, residues, residual, weights, pair)
+        if told is None or not comparable[*pair] or not told.clearly_more:
+            return _weaker_first(pair, energy)
     for group in groups:
-        if split_modes.is_one_mode(frfs, fit.poles, residues, residual, weights, group):
-            energy = np.sum(np.abs(residues[:, group]) ** 2, axis=0) / np.abs(fit.poles[group].real)
-            return int(group[energy.argmin()]), int(group[energy.argmax()])
+        told = split_modes.misfits(frfs, fit.poles, residues, residual, weights, group)
+        if told is not None and told.one_mode:
+            return _weaker_first(group, energy)
     return None
+
+
+def _weaker_first(group: IntArray, energy: FloatArray) -> tuple[int, int]:
+    """Return the weakest pole of a group and the strongest."""
+    return int(group[energy[group].argmin()]), int(group[energy[group].argmax()])
 
 
 def without_split_modes(frfs: FrfSet, fit: Fit) -> Fit:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, ComplexArray
+from acquisition.arrays import BoolArray, ComplexArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.noise.levels import local_mean
@@ -61,14 +61,14 @@ def trial_poles(
 
 def split_mode_pairs(
     poles: ComplexArray, residues: ComplexArray, places: Sorted | None = None
-) -> tuple[int, int] | None:
-    """Return two poles that are the halves of one mode, the weaker first, or None.
+) -> list[IntArray]:
+    """Return pairs of poles that may be the halves of one mode, the nearest first.
 
     FRFs measured one after the other do not agree to the last digit on a frequency; a second pole beside
     the first then fits the difference. Two modes have shapes whose components lie on a line and that differ;
     the halves of one mode do not lie on a line, or, under one half-power half-width apart, move together
-    at all points. Under a quarter of that half-width a drift from FRF to FRF and a second mode look alike, and
-    it is taken for a drift. Fewer than four FRFs cannot tell, and poles that near are then taken for halves.
+    at all points. Under a quarter of that half-width a drift from FRF to FRF and a second mode look alike by
+    their shapes. Fewer than four FRFs cannot tell, and poles that near are then taken for halves.
     With several references two modes also differ in both their shapes and their participations, whatever
     their distance; the halves of one do not, since what drifts does so from response to response, from
     reference to reference, or from FRF to FRF.
@@ -83,28 +83,21 @@ def split_mode_pairs(
         Where each FRF stands in the matrix of responses by references, where there are several.
     """
     if len(poles) < 2:
-        return None
+        return []
     width = np.maximum(np.abs(poles.real)[:, None], np.abs(poles.real)[None, :])
     distance = np.abs(poles[:, None] - poles[None, :]) / width
     straight, size = mpc(residues), np.abs(residues)
     together = np.abs(residues.conj().T @ residues) / np.maximum(size.T @ size, np.finfo(float).tiny)
     crooked = np.minimum(straight[:, None], straight[None, :]) < _REAL
     if len(residues) < FEW:
-        find_split_mode = distance < 1.0
+        halves = distance < 1.0
     else:
-        find_split_mode = (
-            (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
-        )
-    if places is not None and find_split_mode.any():
-        find_split_mode &= ~two_by_references(residues, places)
-    first, second = np.nonzero(np.triu(find_split_mode, 1))
-    if len(first) == 0:
-        return None
-    nearest = int(distance[first, second].argmin())
-    pair = [int(first[nearest]), int(second[nearest])]
-    energy = np.sum(size**2, axis=0) / np.abs(poles.real)
-    weaker, stronger = sorted(pair, key=lambda r: float(energy[r]))
-    return weaker, stronger
+        halves = (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
+    if places is not None and halves.any():
+        halves &= ~two_by_references(residues, places)
+    first, second = np.nonzero(np.triu(halves, 1))
+    order = np.argsort(distance[first, second], kind="stable")
+    return [np.array([first[i], second[i]]) for i in order]
 
 
 def two_by_references(residues: ComplexArray, places: Sorted) -> BoolArray:

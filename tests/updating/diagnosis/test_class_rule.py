@@ -66,3 +66,12 @@ def test_what_setting_data_aside_explains_by_itself_is_no_cause() -> None:
     """Two modes out of line, set aside, leave nothing to explain; the set beside them closes nothing."""
     assert answer(row("E", 1.0, 100.0, without=60.0)) == ("named", (("E",),))
     assert answer(row("E", 1.0, 100.0, without=94.0))[1] == ()
+
+
+@pytest.mark.parametrize(("without", "gap"), [(-np.inf, True), (94.0, False)])
+def test_data_as_well_set_aside_by_themselves_show_no_gap(without: float, gap: bool) -> None:
+    """Three points out of line make the data no less likely than chance does once in thirty tests."""
+    empty, cause = row("", 0.0, 65.0), row("E", 1.0, 100.0, without=without)
+    found: Any = SimpleNamespace(compared=(cause, empty), empty=empty)
+    assert is_significant(found, p_value=0.03) is gap
+    assert is_significant(found, p_value=1e-4)

@@ -40,30 +40,42 @@ NAME = "name"
 def is_significant(found: Search, p_value: float) -> bool:
     """Tell whether there is a gap: tolerances and noise do not explain the data, or an effect does far better.
 
-    A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it.
+    A change in a few data is lost among many in a chi-squared over all; an effect that makes just that change sees it,
+    if it is not as well explained by setting data aside as that effect does, and nothing else.
     Where that fit is one which chance makes seldom, and the empty set stays credible, there is no gap that is sure.
     """
-    fitting = [row for row in found.compared if row.names and not row.rejected]
-    gain = max((row.explanation.log_evidence for row in fitting), default=-np.inf)
-    gain -= found.empty.explanation.log_evidence
-    if p_value < SIGNIFICANT_GAP or gain > FAR_BETTER:
+    rows = [row for row in found.compared if row.names]
+    gains = [row.explanation.log_evidence - _of_nothing(found, row) for row in rows if not row.rejected]
+    if p_value < SIGNIFICANT_GAP or max(gains, default=-np.inf) > FAR_BETTER:
         return True
-    nothing = found.empty.probability / sum(row.probability for row in found.compared)
-    return bool(nothing < 1 - CREDIBLE_SHARE and _by_chance(found) < CHANCE_OF_A_FIT)
+    set_aside = max((_of_nothing(found, row) for row in rows), default=-np.inf)
+    nothing = found.empty.probability * np.exp(set_aside - found.empty.explanation.log_evidence)
+    share = nothing / (nothing + sum(row.probability for row in rows))
+    return bool(share < 1 - CREDIBLE_SHARE and _by_chance(found) < CHANCE_OF_A_FIT)
+
+
+def _of_nothing(found: Search, row: Compared) -> float:
+    """Return the log evidence of no effect, with the data set aside that a row sets aside if that is more [-]."""
+    return max(found.empty.explanation.log_evidence, row.without)
 
 
 def _by_chance(found: Search) -> float:
     """Return the chance that noise alone makes one of the single effects that fit so much more likely (Wilks 1938)."""
-    singles = [row.explanation for row in found.compared if len(row.names) == 1 and not row.rejected]
+    singles = [row for row in found.compared if len(row.names) == 1 and not row.rejected]
     empty = found.empty.explanation
     least = empty.best.marginal.log_likelihood + empty.candidate.log_weight
-    chances = [
-        chi2.sf(2 * (one.best.marginal.log_likelihood - least), one.samples.shape[1])
-        * np.exp(-one.candidate.log_weight)
-        for one in singles
-        if one.samples.shape[1] and one.best.possible
-    ]
+    chances = [_chance(row, least) for row in singles if row.explanation.samples.shape[1]]
     return float(min(1.0, PLACES_PER_FORM * len(singles) * min(chances, default=1.0)))
+
+
+def _chance(row: Compared, least: float) -> float:
+    """Return the chance of a single's gain over no effect, and over no effect with the same data set aside."""
+    one = row.explanation
+    if not one.best.possible:
+        return 1.0
+    best, weight = one.best.marginal.log_likelihood, one.candidate.log_weight
+    gains = (best - least, best + weight - row.without)
+    return float(max(chi2.sf(2 * gain, one.samples.shape[1]) for gain in gains) * np.exp(-weight))
 
 
 def decide(
@@ -117,9 +129,8 @@ def shortcoming(
 
 def _better(found: Search) -> list[Compared]:
     """Return the sets that fit and whose evidence is beyond that of the empty one, with the same data set aside."""
-    nothing = found.empty.explanation.log_evidence
     rows = [row for row in found.compared if row.names and not row.rejected]
-    return [row for row in rows if row.explanation.log_evidence > max(nothing, row.without) + BEYOND_NOTHING]
+    return [row for row in rows if row.explanation.log_evidence > _of_nothing(found, row) + BEYOND_NOTHING]
 
 
 def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
