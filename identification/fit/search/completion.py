@@ -147,12 +147,12 @@ def find_split_mode(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
     residual, weights = left_over(frfs, fit), search_weights(frfs, fit)
     comparable = split_modes.alike_wide(fit.poles)
     for pair in halves:
-        told = split_modes.misfits(frfs, fit.poles, residues, residual, weights, pair)
-        if told is None or not comparable[*pair] or not told.clearly_more:
+        left = split_modes.misfits(frfs, fit.poles, residues, residual, weights, pair)
+        if left is None or not comparable[*pair] or not left.clearly_more:
             return _weaker_first(pair, energy)
     for group in groups:
-        told = split_modes.misfits(frfs, fit.poles, residues, residual, weights, group)
-        if told is not None and told.one_mode:
+        left = split_modes.misfits(frfs, fit.poles, residues, residual, weights, group)
+        if left is not None and left.one_mode:
             return _weaker_first(group, energy)
     return None
 

@@ -24,6 +24,7 @@ from updating.diagnosis.search.odd import with_odd_data
 from updating.diagnosis.search.prior import log_prior
 from updating.diagnosis.search.sets import pairs_of
 from updating.effects import Effect, Lack, Obstacle, Variant
+from updating.likelihood.outliers import Outlier
 from updating.problem.candidate import Candidate
 from updating.problem.theory_error import theory_shows
 from updating.thresholds import (
@@ -213,6 +214,7 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
     for row in rows:
         forms.setdefault(tuple(sorted(row.names)), []).append(row)
     merged = []
+    without: dict[tuple[bool, tuple[Outlier, ...]], float] = {}  # of no effect, with the same data set aside
     for own in forms.values():
         top = max(own, key=lambda row: row.probability)
         total = float(logsumexp([row.explanation.log_evidence for row in own]))
@@ -220,19 +222,22 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
         probability = sum(row.probability for row in own)
         matters = probability > NEGLIGIBLE_PROBABILITY
         extreme = _extreme(problem, top.explanation) if matters else ()
-        without = _without_effects(problem, top.explanation.candidate) if matters else -np.inf
+        set_aside = top.explanation.candidate.fuller, top.explanation.candidate.outliers
+        if set_aside not in without:
+            without[set_aside] = _without_effects(problem, *set_aside)
         stated = max(row.as_stated for row in own)
         whole = replace(top.explanation, log_evidence=total)
-        merged.append(Compared(whole, probability, fits, stated, extreme, _by_region(own, total), without))
+        merged.append(
+            Compared(whole, probability, fits, stated, extreme, _by_region(own, total), without[set_aside])
+        )
     return tuple(sorted(merged, key=lambda row: -row.probability))
 
 
-def _without_effects(problem: DiagnosisProblem, candidate: Candidate) -> float:
+def _without_effects(problem: DiagnosisProblem, fuller: bool, outliers: tuple[Outlier, ...]) -> float:
     """Return the log evidence of no effect with the data set aside that a set sets aside: what explains may be that."""
-    if not candidate.outliers or not candidate.effects:
+    if not outliers:
         return -np.inf
-    alone = Candidate(fuller=candidate.fuller, outliers=candidate.outliers)
-    return explain(problem, alone, laplace_only=True).log_evidence
+    return explain(problem, Candidate(fuller=fuller, outliers=outliers), laplace_only=True).log_evidence
 
 
 def _by_region(own: list[Compared], total: float) -> dict[str, float]:
