@@ -167,6 +167,8 @@ def _where(diagnosis: Diagnosis) -> str:
     where = diagnosis.where
     if diagnosis.verdict == "none" and _odd(diagnosis):
         return "nowhere else: every other datum agrees"
+    if diagnosis.suspected:
+        return "nowhere that is sure"
     if diagnosis.verdict == "none" or where.channel == "none":
         return "nowhere: every channel agrees"
     if diagnosis.verdict == "unknown":

@@ -132,27 +132,27 @@ def _higher(
 def find_split_mode(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
     """Return two poles of a fit that are one mode, the weaker first, or None.
 
-    Their shapes look like the halves of one, and one pole for each FRF leaves little more than they do; or it leaves
-    no more. Fewer than four FRFs do not tell it.
+    Their shapes look like those of a split one, and one pole for each FRF leaves little more than they do; or it leaves
+    no more, whatever the shapes. With fewer than four FRFs the distance decides.
     """
     places, residues = sorted_frfs(frfs), fit.linear.residues
-    halves = residual_peaks.split_mode_pairs(fit.poles, residues, places)
+    suspected = residual_peaks.split_mode_pairs(fit.poles, residues, places)
     energy = np.sum(np.abs(residues) ** 2, axis=0) / np.abs(fit.poles.real)
     if len(residues) < residual_peaks.FEW:
-        return _weaker_first(halves[0], energy) if halves else None
+        return _weaker_first(suspected[0], energy) if suspected else None
     disagreement = None if places is None else residual_peaks.two_by_references(residues, places)
     groups = split_modes.clusters(fit.poles, disagreement)
-    if not halves and not groups:
+    if not suspected and not groups:
         return None
     residual, weights = left_over(frfs, fit), search_weights(frfs, fit)
     comparable = split_modes.alike_wide(fit.poles)
-    for pair in halves:
-        left = split_modes.misfits(frfs, fit.poles, residues, residual, weights, pair)
-        if left is None or not comparable[*pair] or not left.clearly_more:
+    for pair in suspected:
+        found = split_modes.misfits(frfs, fit.poles, residues, residual, weights, pair)
+        if found is None or not comparable[*pair] or not found.two_modes:
             return _weaker_first(pair, energy)
     for group in groups:
-        left = split_modes.misfits(frfs, fit.poles, residues, residual, weights, group)
-        if left is not None and left.one_mode:
+        found = split_modes.misfits(frfs, fit.poles, residues, residual, weights, group)
+        if found is not None and found.one_mode:
             return _weaker_first(group, energy)
     return None
 
@@ -163,7 +163,7 @@ def _weaker_first(group: IntArray, energy: FloatArray) -> tuple[int, int]:
 
 
 def without_split_modes(frfs: FrfSet, fit: Fit) -> Fit:
-    """Make one of poles that are the halves of one mode."""
+    """Make one of poles that split one mode between them."""
     while (pair := find_split_mode(frfs, fit)) is not None:
         rest = np.delete(fit.poles, pair[0])
         weights, powers = search_weights(frfs, fit), fit.linear.powers

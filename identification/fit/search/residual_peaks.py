@@ -90,12 +90,14 @@ def split_mode_pairs(
     together = np.abs(residues.conj().T @ residues) / np.maximum(size.T @ size, np.finfo(float).tiny)
     crooked = np.minimum(straight[:, None], straight[None, :]) < _REAL
     if len(residues) < FEW:
-        halves = distance < 1.0
+        suspected = distance < 1.0
     else:
-        halves = (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
-    if places is not None and halves.any():
-        halves &= ~two_by_references(residues, places)
-    first, second = np.nonzero(np.triu(halves, 1))
+        suspected = (
+            (distance < 3.0) & crooked | (distance < 1.0) & (together > _TOGETHER) | (distance < _SAME)
+        )
+    if places is not None and suspected.any():
+        suspected &= ~two_by_references(residues, places)
+    first, second = np.nonzero(np.triu(suspected, 1))
     order = np.argsort(distance[first, second], kind="stable")
     return [np.array([first[i], second[i]]) for i in order]
 

@@ -24,10 +24,11 @@ _REACH = 6.0  # half-widths about them over which the FRFs are compared
 _STEPS = 10
 _DOUBT = 3.0  # standard deviations of chi-squared by which one pole each may fit worse
 _LEAST_LINES = 6
-_CLEARLY = 20.0
-"""How many times the misfit of two poles one pole for each FRF must leave where two are two modes though they look like
-halves of one [-]. Modes that drift, smear or do not decay as modes do leave up to a dozen times it, pairs of modes a
-quarter to one half-width apart 25 to 500 times, in tests with 1 % of noise. Doubled: pairs in noisier tests are one."""
+_RATIO_OF_TWO = 20.0
+"""How many times the misfit of two poles one pole for each FRF must leave where two are two modes though their shapes
+are those of a split one [-]. Modes that drift, smear or do not decay as modes do leave up to a dozen times it, pairs of
+modes a fifth to one half-width from each other 25 to 500 times, both in FRFs whose peaks stand 50 dB and more above
+their noise. Doubled: pairs nearer to the noise are taken for one."""
 
 
 def clusters(poles: ComplexArray, disagreement: BoolArray | None = None) -> list[IntArray]:
@@ -84,9 +85,9 @@ class Misfits:
         return bool(self.each < self.common + _DOUBT * np.sqrt(2.0 * self.size))
 
     @property
-    def clearly_more(self) -> bool:
+    def two_modes(self) -> bool:
         """Whether the common poles explain what no shift from FRF to FRF can, be their shapes as alike as may be."""
-        return self.each > _CLEARLY * self.common
+        return self.each > _RATIO_OF_TWO * self.common
 
 
 def misfits(

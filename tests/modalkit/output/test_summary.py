@@ -158,6 +158,7 @@ def test_what_fits_but_for_odd_data_says_so() -> None:
 def test_a_likely_cause_of_a_gap_that_chance_might_make_is_named() -> None:
     message = lines(replace(NONE, ranking=NAMED.ranking))
     assert "should there be one, sensor_mass is its likeliest cause" in message["Cause"]
+    assert "nowhere that is sure" in message["Where"]
     assert "test again" in message["Next"]
 
 

@@ -57,10 +57,8 @@ def with_odd_data(problem: DiagnosisProblem, found: Sequence[Explanation]) -> li
     taken = [one.log_evidence for one, choice in choices if choice.outliers]
     if taken:  # the same data may be odd beside what fits without: a fit of many data hides one
         level = min(taken)
-        beside = [
-            one for one in found if one not in doubtful and one.best.possible and one.log_evidence >= level
-        ]
-        choices += [(one, _choose(problem, one)) for one in beside]
+        further = [one for one in found if one not in doubtful and one.best.possible]
+        choices += [(one, _choose(problem, one)) for one in further if one.log_evidence >= level]
     reached = [one.log_evidence + choice.gain for one, choice in choices]
     bar = max([one.log_evidence for one in found] + reached, default=-np.inf) - WITHIN_REACH
     return [
