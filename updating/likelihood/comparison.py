@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -16,6 +16,23 @@ CHANNELS = ("frequency", "damping", "frf", "phase", "level")
 
 SCALED = "frf"
 """The channel whose noise has an unknown scale."""
+
+
+@dataclass(frozen=True, eq=False)
+class Idealised:
+    """How far the idealisation of a candidate's effects may be off in the data of one kind, at its full size.
+
+    Parameters
+    ----------
+    variance : (n,) array
+        In each datum by itself, part of a block's variance [-].
+    named, own : int
+        How many of a block's nuisances, the last ones of either sort, are of it.
+    """
+
+    variance: FloatArray
+    named: int = 0
+    own: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +55,8 @@ class Block:
         Measured mode each datum belongs to.
     source : (n,) int array, optional
         Measuring channel it comes from; left out, none: the test as a whole.
+    idealised : Idealised, optional
+        What of that a candidate's idealisation leaves in doubt; left out, nothing.
     """
 
     channel: str
@@ -48,6 +67,7 @@ class Block:
     own: FloatArray
     mode: IntArray
     source: IntArray | None = None
+    idealised: Idealised | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +97,10 @@ class Comparison:
         Which nuisances are named doubts: tolerances, level of damping, calibration.
     tolerances : (t,) int array
         Which of them all data doubt alike: tolerances of the model, masses and places of its bodies.
+    idealised : (n,) array, optional
+        What of the variance the candidate's idealisation adds, at its full size [-]; left out, that size is settled.
+    idealised_columns : (m,) int array, optional
+        Which nuisances are of it.
     """
 
     residual: FloatArray
@@ -89,6 +113,8 @@ class Comparison:
     scale_prior: tuple[float, ...]
     doubts: IntArray
     tolerances: IntArray
+    idealised: FloatArray | None = None
+    idealised_columns: IntArray | None = None
 
     @property
     def prediction(self) -> Prediction:
@@ -108,6 +134,17 @@ class Comparison:
     def noise(self, scale: float) -> FloatArray:
         """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
         return np.where(self.scaled, scale**2, 1.0) * self.variance
+
+    def settled(self, share: float) -> Comparison:
+        """Return the comparison with the doubt in the candidate's idealisation at a share of its full size."""
+        if self.idealised is None:
+            return self
+        if share == 1:
+            return replace(self, idealised=None, idealised_columns=None)
+        nuisance = self.nuisance.copy()
+        nuisance[:, self.idealised_columns] *= share
+        variance = self.variance - (1 - share**2) * self.idealised
+        return replace(self, nuisance=nuisance, variance=variance, idealised=None, idealised_columns=None)
 
 
 def assemble(
@@ -151,7 +188,26 @@ def assemble(
         scale_prior,
         np.arange(named[-1]),
         np.arange(count),
+        *_idealised(blocks, named, own),
     )
+
+
+def _idealised(
+    blocks: Sequence[Block], named: IntArray, own: IntArray
+) -> tuple[FloatArray, IntArray] | tuple[None, None]:
+    """Return what of the variance, and which nuisances, are a candidate's idealisation; None where none is in doubt.
+
+    ``named`` and ``own`` say where the nuisances of each block begin, and end.
+    """
+    if all(block.idealised is None for block in blocks):
+        return None, None
+    parts = [block.idealised or Idealised(np.zeros(len(block.residual))) for block in blocks]
+    columns = [
+        np.arange(end - count, end)
+        for part, ends in zip(parts, zip(named[1:], own[1:], strict=True), strict=True)
+        for end, count in zip(ends, (part.named, part.own), strict=True)
+    ]
+    return np.concatenate([part.variance for part in parts]), np.concatenate(columns)
 
 
 def _source(block: Block) -> IntArray:
@@ -181,4 +237,18 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         max((part.scale_prior for part in parts), key=lambda prior: -prior[0]),
         np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),
         np.concatenate([part.tolerances + first for part, first in zip(parts, starts, strict=False)]),
+        *_join_idealised(parts, starts),
+    )
+
+
+def _join_idealised(
+    parts: Sequence[Comparison], starts: IntArray
+) -> tuple[FloatArray, IntArray] | tuple[None, None]:
+    if all(part.idealised is None for part in parts):
+        return None, None
+    none = np.zeros(0, dtype=int)
+    variance = [np.zeros(len(p.residual)) if p.idealised is None else p.idealised for p in parts]
+    columns = [none if p.idealised_columns is None else p.idealised_columns for p in parts]
+    return np.concatenate(variance), np.concatenate(
+        [own + first for own, first in zip(columns, starts, strict=False)]
     )

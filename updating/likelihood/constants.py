@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.close_modes import CloseModes
-from updating.likelihood.comparison import Block
+from updating.likelihood.comparison import Block, Idealised
 from updating.likelihood.missed_modes import MissedModes
 from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
@@ -104,6 +104,7 @@ class Constants(Quantity):
             np.hstack(own),
             np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel(),
             np.repeat(np.arange(len(predicted)), predicted.shape[1]),
+            Idealised(uneven.ravel(), own=1) if view.doubt.fidelity else None,
         )
 
     def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -132,13 +133,13 @@ class Constants(Quantity):
         late = 2 * np.pi * self.setting.measured.frequency * abs(view.state.delay)
         return np.asarray(DELAY_FIT_ERROR * np.minimum(late, np.pi))
 
-    def _idealised(self, predicted: FloatArray, fidelity: float) -> tuple[FloatArray | float, FloatArray]:
+    def _idealised(self, predicted: FloatArray, fidelity: float) -> tuple[FloatArray, FloatArray]:
         """Return variance and a column of doubt by how far a candidate's idealisation may be off.
 
         A change of the modes' levels errs as a whole, what is no mere change of level point by point.
         """
         if not fidelity:
-            return 0.0, np.zeros((predicted.size, 0))
+            return np.zeros_like(predicted), np.zeros((predicted.size, 0))
         nominal = self.setting.nominal.constants
         before = nominal * self.setting.measured.same_signs(nominal) / self.scale
         share = _projection(predicted, before, axis=0)

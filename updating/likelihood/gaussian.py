@@ -3,19 +3,23 @@
 How well shapes were measured is known only so far: cross-talk, oblique hits and rounded positions leave no
 trace in the coherence. So the noise of the shapes has an unknown scale, summed over a few values by their
 prior; a misfit of shapes then counts for as much as their noise, judged by all of them, allows.
+
+How far the idealisation of an effect is off is known as little: it is a judgement of what it may be at most. So its
+size is summed over likewise: a region that is softened just so is not made less believable by a doubt it has no need
+of, and one that is not still has it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import Comparison
-from updating.thresholds import LARGEST_SENSITIVITY, SHAPE_NOISE_SCALES
+from updating.thresholds import IDEALISATION_SHARES, LARGEST_SENSITIVITY, SHAPE_NOISE_SCALES
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +38,8 @@ class Marginal:
         Number of data.
     scale : float
         The most probable scale of the noise of the shapes [-].
+    share : float
+        The most probable size of the doubt in the idealisation, as a share of the largest [-].
     """
 
     log_likelihood: float
@@ -41,10 +47,11 @@ class Marginal:
     shift: FloatArray
     count: int
     scale: float
+    share: float = 1.0
 
 
 def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
-    """Integrate nuisances and scale out of a comparison.
+    """Integrate nuisances, scale and the size of the doubt in the idealisation out of a comparison.
 
     Parameters
     ----------
@@ -63,13 +70,17 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
         return Marginal(-np.inf, np.inf, nothing, len(comparison.residual), 1.0)
     shapes = comparison.scaled if keep is None else comparison.scaled & keep
     scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
-    parts = gaussian(comparison, scales, keep)
-    prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,))
-    score = np.array([part.log_likelihood for part in parts]) + prior
+    shares = (1.0,) if comparison.idealised is None else IDEALISATION_SHARES
+    prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,)) - np.log(len(shares))
+    parts = [
+        replace(part, share=share)
+        for share in shares
+        for part in gaussian(comparison.settled(share), scales, keep)
+    ]
+    score = np.array([part.log_likelihood for part in parts]) + np.tile(prior, len(shares))
     top = parts[int(np.argmax(score))]
     peak = float(score.max())
-    total = peak + float(np.log(np.sum(np.exp(score - peak))))
-    return Marginal(total, top.chi2, top.shift, top.count, top.scale)
+    return replace(top, log_likelihood=peak + float(np.log(np.sum(np.exp(score - peak)))))
 
 
 def _sound(comparison: Comparison) -> bool:

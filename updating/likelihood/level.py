@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from updating.likelihood.base import Quantity, View
-from updating.likelihood.comparison import Block
+from updating.likelihood.comparison import Block, Idealised
 from updating.thresholds import DRIFT_SHARE, LEAST_DRIFT
 
 
@@ -27,8 +27,8 @@ class Levels(Quantity):
         assert test.slope_sigma is not None
         level = test.level or 1.0
         n = len(test.slope)
-        uneven = view.doubt.fidelity * slope * level
         known = np.isfinite(test.slope)
+        uneven = np.where(known, view.doubt.fidelity * slope * level, 0.0)
         return Block(
             "level",
             level * np.where(known, test.slope - slope, 0.0),
@@ -37,6 +37,7 @@ class Levels(Quantity):
             np.zeros((n, 0)),
             np.zeros((n, 0)),
             np.arange(n),
+            idealised=Idealised(uneven**2) if view.doubt.fidelity else None,
         )
 
     @property

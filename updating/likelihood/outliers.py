@@ -77,12 +77,13 @@ def with_outliers(comparison: Comparison, outliers: Sequence[Outlier]) -> Compar
     """Return a comparison with the noise of outliers as much larger as they say."""
     if not outliers:
         return comparison
-    variance, nuisance = comparison.variance.copy(), comparison.nuisance.copy()
+    worse, nuisance = np.ones(len(comparison.variance)), comparison.nuisance.copy()
     for outlier in outliers:
-        variance[outlier.data(comparison)] *= outlier.scale**2
+        worse[outlier.data(comparison)] *= outlier.scale**2
         if outlier.tolerance is not None:
             nuisance[:, comparison.tolerances[outlier.tolerance]] *= outlier.scale
-    return replace(comparison, variance=variance, nuisance=nuisance)
+    idealised = None if comparison.idealised is None else worse * comparison.idealised
+    return replace(comparison, variance=worse * comparison.variance, nuisance=nuisance, idealised=idealised)
 
 
 def suspects(comparison: Comparison, scale: float, most: int) -> list[Outlier]:

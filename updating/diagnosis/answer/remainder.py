@@ -38,7 +38,7 @@ def remainder_of(
     point, outliers = best.best, best.candidate.outliers
     comparison = point.comparison
     as_stated = problem.at(replace(best.candidate, outliers=()), point.coordinates, point.about)
-    stated = as_stated.noise(point.marginal.scale)
+    stated = as_stated.settled(point.marginal.share).noise(point.marginal.scale)
     off = np.abs(point.left_over) / np.sqrt(stated)
     group = cells(comparison)
     strength = np.sqrt(group.sums(off**2) / np.maximum(group.size, 1))

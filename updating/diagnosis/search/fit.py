@@ -36,7 +36,7 @@ class Point:
     coordinates : (k,) array
         Prior quantiles [-].
     comparison : Comparison
-        Data against prediction there.
+        Data against prediction there, at the most probable size of the doubt in the idealisation.
     marginal : Marginal
         Its marginal likelihood.
     about : (p,) array, optional
@@ -125,7 +125,8 @@ def _linearised(
     keep: BoolArray | None,
 ) -> Point:
     comparison = problem.at(candidate, coordinates, about)
-    return Point(coordinates, comparison, marginal(comparison, keep), about)
+    found = marginal(comparison, keep)
+    return Point(coordinates, comparison.settled(found.share), found, about)
 
 
 def sensitivities(problem: DiagnosisProblem, candidate: Candidate, point: Point) -> FloatArray:

@@ -186,7 +186,7 @@ def _by_its_doubt(problem: DiagnosisProblem, found: list[Explanation]) -> bool:
     """
     top = max(_compare(found), key=lambda row: row.probability).explanation
     for one, now in zip(problem.specimens, top.best.comparison.predictions, strict=True):
-        test, doubt = one.measured, top.candidate.doubt_on(one.predictor).fidelity
+        test, doubt = one.measured, top.best.marginal.share * top.candidate.doubt_on(one.predictor).fidelity
         noise = np.hypot(test.frequency_sigma / test.frequency, test.repeatability)
         if np.any(doubt * np.abs(np.log(now.frequency / one.nominal.frequency)) > DOUBT_BEYOND_NOISE * noise):
             return True
