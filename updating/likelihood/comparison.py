@@ -19,23 +19,6 @@ SCALED = "frf"
 
 
 @dataclass(frozen=True, eq=False)
-class Idealised:
-    """How far the idealisation of a candidate's effects may be off in the data of one kind, at its full size.
-
-    Parameters
-    ----------
-    variance : (n,) array
-        In each datum by itself, part of a block's variance [-].
-    named, own : int
-        How many of a block's nuisances, the last ones of either sort, are of it.
-    """
-
-    variance: FloatArray
-    named: int = 0
-    own: int = 0
-
-
-@dataclass(frozen=True, eq=False)
 class Block:
     """The data of one kind.
 
@@ -55,8 +38,8 @@ class Block:
         Measured mode each datum belongs to.
     source : (n,) int array, optional
         Measuring channel it comes from; left out, none: the test as a whole.
-    idealised : Idealised, optional
-        What of that a candidate's idealisation leaves in doubt; left out, nothing.
+    idealised : (n,) array, optional
+        What of the variance a candidate's idealisation adds, mode by mode, at the most [-]; left out, nothing.
     """
 
     channel: str
@@ -67,7 +50,7 @@ class Block:
     own: FloatArray
     mode: IntArray
     source: IntArray | None = None
-    idealised: Idealised | None = None
+    idealised: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +81,7 @@ class Comparison:
     tolerances : (t,) int array
         Which of them all data doubt alike: tolerances of the model, masses and places of its bodies.
     idealised : (n,) array, optional
-        What of the variance the candidate's idealisation adds, at its full size [-]; left out, that size is settled.
-    idealised_columns : (m,) int array, optional
-        Which nuisances are of it.
+        What of the variance the candidate's idealisation adds, at the most [-]; left out, its size is settled.
     """
 
     residual: FloatArray
@@ -114,7 +95,6 @@ class Comparison:
     doubts: IntArray
     tolerances: IntArray
     idealised: FloatArray | None = None
-    idealised_columns: IntArray | None = None
 
     @property
     def prediction(self) -> Prediction:
@@ -136,15 +116,14 @@ class Comparison:
         return np.where(self.scaled, scale**2, 1.0) * self.variance
 
     def settled(self, share: float) -> Comparison:
-        """Return the comparison with the doubt in the candidate's idealisation at a share of its full size."""
+        """Return the comparison with the doubt in the candidate's idealisation at a share of the most it may be.
+
+        That is the doubt which each datum bears by itself. Whether the whole shift is a few per cent too large no data
+        show, since the effect's own size makes up for it: that doubt stays.
+        """
         if self.idealised is None:
             return self
-        if share == 1:
-            return replace(self, idealised=None, idealised_columns=None)
-        nuisance = self.nuisance.copy()
-        nuisance[:, self.idealised_columns] *= share
-        variance = self.variance - (1 - share**2) * self.idealised
-        return replace(self, nuisance=nuisance, variance=variance, idealised=None, idealised_columns=None)
+        return replace(self, variance=self.variance - (1 - share**2) * self.idealised, idealised=None)
 
 
 def assemble(
@@ -188,26 +167,18 @@ def assemble(
         scale_prior,
         np.arange(named[-1]),
         np.arange(count),
-        *_idealised(blocks, named, own),
+        _idealised([(block.idealised, len(block.residual)) for block in blocks]),
     )
 
 
-def _idealised(
-    blocks: Sequence[Block], named: IntArray, own: IntArray
-) -> tuple[FloatArray, IntArray] | tuple[None, None]:
-    """Return what of the variance, and which nuisances, are a candidate's idealisation; None where none is in doubt.
+def _idealised(parts: Sequence[tuple[FloatArray | None, int]]) -> FloatArray | None:
+    """Return what of the variance is a candidate's idealisation; None where none is in doubt.
 
-    ``named`` and ``own`` say where the nuisances of each block begin, and end.
+    Each part comes with the number of its data.
     """
-    if all(block.idealised is None for block in blocks):
-        return None, None
-    parts = [block.idealised or Idealised(np.zeros(len(block.residual))) for block in blocks]
-    columns = [
-        np.arange(end - count, end)
-        for part, ends in zip(parts, zip(named[1:], own[1:], strict=True), strict=True)
-        for end, count in zip(ends, (part.named, part.own), strict=True)
-    ]
-    return np.concatenate([part.variance for part in parts]), np.concatenate(columns)
+    if all(part is None for part, _ in parts):
+        return None
+    return np.concatenate([np.zeros(count) if part is None else part for part, count in parts])
 
 
 def _source(block: Block) -> IntArray:
@@ -237,18 +208,5 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         max((part.scale_prior for part in parts), key=lambda prior: -prior[0]),
         np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),
         np.concatenate([part.tolerances + first for part, first in zip(parts, starts, strict=False)]),
-        *_join_idealised(parts, starts),
-    )
-
-
-def _join_idealised(
-    parts: Sequence[Comparison], starts: IntArray
-) -> tuple[FloatArray, IntArray] | tuple[None, None]:
-    if all(part.idealised is None for part in parts):
-        return None, None
-    none = np.zeros(0, dtype=int)
-    variance = [np.zeros(len(p.residual)) if p.idealised is None else p.idealised for p in parts]
-    columns = [none if p.idealised_columns is None else p.idealised_columns for p in parts]
-    return np.concatenate(variance), np.concatenate(
-        [own + first for own, first in zip(columns, starts, strict=False)]
+        _idealised([(part.idealised, len(part.residual)) for part in parts]),
     )

@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.close_modes import CloseModes
-from updating.likelihood.comparison import Block, Idealised
+from updating.likelihood.comparison import Block
 from updating.likelihood.missed_modes import MissedModes
 from updating.likelihood.nodes import Nodes
 from updating.likelihood.phase import Phases
@@ -104,7 +104,7 @@ class Constants(Quantity):
             np.hstack(own),
             np.broadcast_to(np.arange(predicted.shape[1]), predicted.shape).ravel(),
             np.repeat(np.arange(len(predicted)), predicted.shape[1]),
-            Idealised(uneven.ravel(), own=1) if view.doubt.fidelity else None,
+            uneven.ravel() if view.doubt.fidelity else None,
         )
 
     def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, FloatArray]:

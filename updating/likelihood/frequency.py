@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
-from updating.likelihood.comparison import Block, Idealised
+from updating.likelihood.comparison import Block
 from updating.thresholds import LEAST_FREQUENCY_NOISE
 
 
@@ -51,7 +51,7 @@ class Frequencies(Quantity):
             # an idealisation errs in the size of the whole shift, and again in each mode
             doubtful = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)
             variance, named = variance + doubtful**2, np.column_stack([named, doubtful])
-            idealised = Idealised(doubtful**2, named=1)
+            idealised = doubtful**2
         residual = np.log(test.frequency / now.frequency)
         return Block(
             "frequency", residual, variance, by, named, np.zeros((n, 0)), np.arange(n), idealised=idealised

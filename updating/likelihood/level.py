@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from updating.likelihood.base import Quantity, View
-from updating.likelihood.comparison import Block, Idealised
+from updating.likelihood.comparison import Block
 from updating.thresholds import DRIFT_SHARE, LEAST_DRIFT
 
 
@@ -37,7 +37,7 @@ class Levels(Quantity):
             np.zeros((n, 0)),
             np.zeros((n, 0)),
             np.arange(n),
-            idealised=Idealised(uneven**2) if view.doubt.fidelity else None,
+            idealised=uneven**2 if view.doubt.fidelity else None,
         )
 
     @property

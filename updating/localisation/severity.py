@@ -16,7 +16,7 @@ from scipy.special import logsumexp
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import Comparison
-from updating.thresholds import SHAPE_NOISE_SCALES
+from updating.thresholds import IDEALISATION_SHARES, SHAPE_NOISE_SCALES
 
 LOOKS = 12
 """How often the severities are refined at most."""
@@ -90,8 +90,26 @@ class Between:
         excess = self._excess(severity)
         return np.asarray(self._least + np.where(self._shifting, excess**2, np.maximum(excess, 0.0)))
 
+    @cached_property
+    def _settled(self) -> tuple[Between, ...]:
+        """The same at each size of the doubt in a change's idealisation, where there is one."""
+        if all(evaluation.idealised is None for evaluation in self._ordered):
+            return (self,)
+        return tuple(
+            Between({s: evaluation.settled(share) for s, evaluation in self.evaluations.items()})
+            for share in IDEALISATION_SHARES
+        )
+
     def log_likelihoods(self, severity: FloatArray) -> FloatArray:
-        """Return the log-likelihood at severities, nuisances and the shapes' noise integrated out, (m,) [-]."""
+        """Return the log-likelihood at severities, (m,) [-].
+
+        Nuisances, the shapes' noise and the size of the doubt in the idealisation are integrated out.
+        """
+        found = np.stack([one._at_its_size(severity) for one in self._settled])
+        return np.asarray(logsumexp(found, axis=0) - np.log(len(found)))
+
+    def _at_its_size(self, severity: FloatArray) -> FloatArray:
+        """Return the log-likelihood at severities with the doubt in the idealisation as it stands, (m,) [-]."""
         first = self._ordered[0]
         shapes = first.scaled
         scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]

@@ -114,3 +114,10 @@ def test_what_is_about_the_same_data_is_no_further_outlier() -> None:
     assert frequency.about_the_same(Outlier(mode=2, channel=0, scale=100.0))
     assert not frequency.about_the_same(Outlier(mode=3, channel=0, scale=3.0))
     assert Outlier(tolerance=1).about_the_same(Outlier(tolerance=1))
+
+
+def test_an_outlier_is_as_much_more_in_doubt_by_the_idealisation() -> None:
+    doubtful = replace(comparison(1), idealised=np.full(MODES * (1 + ROWS), 0.5))
+    worse = with_outliers(doubtful, [Outlier(mode=2, channel=0, scale=10.0)])
+    assert worse.idealised is not None
+    assert worse.idealised / worse.variance == pytest.approx(np.full(MODES * (1 + ROWS), 0.5))
