@@ -25,7 +25,7 @@ from modalkit.output.destinations import check_outputs, json_of
 from modalkit.output.documents import diagnosis_document
 from modalkit.output.library import effects_document, effects_table
 from modalkit.output.schemas.effects import EffectEntry
-from modalkit.output.summary import separates, summary_text
+from modalkit.output.summary import searched_text, separates, summary_text
 from modalkit.output.whole import write_json
 from modalkit.study.read import read_study
 from modalkit.workflow.case import Session, open_study
@@ -107,6 +107,8 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
             for t in diagnosis.next_test
         ]
         show_table(pd.DataFrame(rows), "What to measure next")
+    if diagnosis.searched:
+        out.print(f"Searched: {searched_text(diagnosis)}", markup=False)
     if diagnosis.not_examined:
         out.print("Not examined: " + _not_examined(diagnosis.not_examined), markup=False)
     show_warnings([*diagnosis.warnings, *warnings_of(sessions)])

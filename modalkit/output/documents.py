@@ -124,6 +124,9 @@ def diagnosis_document(diagnosis: Diagnosis, warnings: Sequence[str] = ()) -> Di
             }
             for t in diagnosis.next_test
         ],
+        "searched": [
+            {"causes": s.causes, "sets": s.sets, "possible": s.possible} for s in diagnosis.searched
+        ],
         "not_examined": {name: str(why) for name, why in diagnosis.not_examined.items()},
         "warnings": [*diagnosis.warnings, *warnings],
     }

@@ -314,6 +314,21 @@ def _next(diagnosis: Diagnosis) -> str:
     return ways
 
 
+SIZES = {1: "single causes", 2: "pairs", 3: "sets of three", 4: "sets of four"}
+"""Sets of causes, by how many causes they have."""
+
+
+def searched_text(diagnosis: Diagnosis) -> str:
+    """Say how many of the possible sets of causes were searched."""
+    parts = [
+        f"{'all' if one.sets == one.possible else f'{one.sets} of'} {one.possible} {SIZES[one.causes]}"
+        for one in diagnosis.searched
+    ]
+    if all(one.sets == one.possible for one in diagnosis.searched):
+        return ", ".join(parts)
+    return f"{', '.join(parts)}, those that score tests find the most promising; the others are not ruled out"
+
+
 def separated(test: NextTest) -> str:
     """Say what a test separates, and how well."""
     what = separates(test)

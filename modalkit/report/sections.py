@@ -9,7 +9,7 @@ import pandas as pd
 from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
 from modalkit.figures.words import METRICS
-from modalkit.output.summary import answers, separates
+from modalkit.output.summary import answers, searched_text, separates
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
 from updating import Diagnosis, Effect
 from updating.diagnosis.answer.result import Ranked
@@ -335,8 +335,9 @@ def the_next_test(diagnosis: Diagnosis) -> Raw:
 
 def not_examined(diagnosis: Diagnosis) -> Raw:
     """Return the effects that were left out, by the reason."""
+    extent = element("p", f"Searched: {searched_text(diagnosis)}.")
     if not diagnosis.not_examined:
-        return element("p", "Every effect of the library was weighed.")
+        return joined(element("p", "Every effect of the library was weighed."), extent)
     by_reason: dict[str, list[str]] = {}
     for name, why in diagnosis.not_examined.items():
         by_reason.setdefault(str(why), []).append(name)
@@ -345,6 +346,7 @@ def not_examined(diagnosis: Diagnosis) -> Raw:
     return joined(
         table("Effects that could not be weighed, and why.", [Column("effects"), Column("why")], rows),
         element("p", words),
+        extent,
     )
 
 

@@ -166,6 +166,7 @@ def _diagnose(
         included(found),
         own,
         lacks if verdict == "unknown" else None,
+        found.searched,
     )
 
 

@@ -178,6 +178,14 @@ class NextTestEntry(TypedDict):
     ]
 
 
+class SearchedEntry(TypedDict):
+    """How much of what there is was searched."""
+
+    causes: Annotated[int, "causes in a set [-]"]
+    sets: Annotated[int, "how many sets were searched: those that score tests found the most promising [-]"]
+    possible: Annotated[int, "how many there are [-]"]
+
+
 class DiagnosisDocument(TypedDict):
     """Written by `modalkit diagnose --json`."""
 
@@ -192,5 +200,6 @@ class DiagnosisDocument(TypedDict):
     remainder: Annotated[RemainderEntry | None, "what the first row leaves beyond noise; null without gap"]
     included: Annotated[Mapping[str, float], "probability of each effect that it is among the causes [-]"]
     next_test: Annotated[Sequence[NextTestEntry], "what to measure next, best first"]
+    searched: Annotated[Sequence[SearchedEntry], "how many sets of causes were searched"]
     not_examined: Annotated[Mapping[str, str], "effects that could not be examined, and why"]
     warnings: Annotated[Sequence[str], "what the user ought to know"]

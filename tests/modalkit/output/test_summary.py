@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from modalkit.output.summary import separated, summary_text
+from modalkit.output.summary import searched_text, separated, summary_text
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import (
     Closed,
@@ -20,6 +20,7 @@ from updating.diagnosis.answer.result import (
     Where,
     Zone,
 )
+from updating.diagnosis.search.search import Searched
 
 HEADS = ["Cause:", "Where:", "Closes:", "Sure:", "Next:"]
 MASS = ParameterEstimate(0.0123, "kg", 0.0119, 0.0127, False)
@@ -300,3 +301,11 @@ def test_a_region_is_named_where_there_are_others() -> None:
     several = replace(NAMED, where=replace(TIP, zones=(root, tip)))
     assert ", region tip" in summary_text(several)[1]
     assert "region" not in summary_text(replace(NAMED, where=replace(TIP, zones=(tip,))))[1]
+
+
+def test_how_many_sets_were_searched_is_stated() -> None:
+    singles, pairs = Searched(1, 26, 26), Searched(2, 10, 331)
+    message = searched_text(replace(NAMED, searched=(singles, pairs)))
+    assert message.startswith("all 26 single causes, 10 of 331 pairs")
+    assert "not ruled out" in message
+    assert searched_text(replace(NAMED, searched=(singles,))) == "all 26 single causes"

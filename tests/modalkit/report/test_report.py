@@ -281,8 +281,9 @@ def test_a_real_test_shows_its_frfs_before_and_after(tmp_path: Path) -> None:
     page = diagnosis_report(stated, [session], when=NOON)
     found = re.search(r"median FRAC ([0-9.]+) before, ([0-9.]+) after", page)
     assert found is not None
-    # surface and bottom are fitted to the level, too, which leaves 1 % in a frequency: half a FRAC on peaks this sharp
-    assert float(found[1]) < 0.1 and float(found[2]) > 0.5
+    # the fit leaves 0.4 % in the frequencies: of resonances with 0.1 to 0.6 % of damping, 1 / (1 + (0.4 / 2 zeta)^2)
+    # of the correlation, 0.2 to 0.9
+    assert float(found[1]) < 0.1 and float(found[2]) > 0.2
     assert len(page) < 2_000_000
     for drawing in drawings(stated, [session]).values():
         assert_legible(drawing.figure)

@@ -163,6 +163,10 @@ def test_probabilities_are_probabilities(truth: str) -> None:
     assert not found.sets or held >= 0.95 * fitting - 1e-9
     examined = {n for r in found.ranking for n in r.effects}
     assert examined | set(found.not_examined) == set(LIBRARY)
+    assert [(one.causes, one.sets, one.possible) for one in found.searched][:1] == [
+        (1, len(LIBRARY) - len(found.not_examined), len(LIBRARY) - len(found.not_examined))
+    ]
+    assert all(one.sets <= one.possible for one in found.searched)
 
 
 def some(*names: str) -> list:

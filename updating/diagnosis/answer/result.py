@@ -21,6 +21,7 @@ from acquisition.quantities import (
     quantity,
     sigmas,
 )
+from updating.diagnosis.search.search import Searched
 from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
 from updating.thresholds import LIKELY_ALL_THE_SAME
@@ -355,6 +356,8 @@ class Diagnosis(Shown):
         The study's hypotheses.
     lacks : str, optional
         What the most probable set lacks, where the verdict is unknown.
+    searched : tuple of Searched
+        How many sets of one cause, of two and so on were searched, and how many there are.
     """
 
     title: str
@@ -374,6 +377,7 @@ class Diagnosis(Shown):
     included: Mapping[str, float] = field(default_factory=dict)
     own: Mapping[str, Effect] = field(default_factory=dict)
     lacks: Shortcoming | None = None
+    searched: tuple[Searched, ...] = ()
 
     @property
     def suspected(self) -> Ranked | None:

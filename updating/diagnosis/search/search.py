@@ -9,6 +9,7 @@ effect's prior, and their evidence is added up.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -21,7 +22,7 @@ from updating.diagnosis.search.evidence import Explanation, explain, finish
 from updating.diagnosis.search.fewer import with_parts
 from updating.diagnosis.search.larger import one_more
 from updating.diagnosis.search.odd import with_odd_data
-from updating.diagnosis.search.prior import log_prior
+from updating.diagnosis.search.prior import count_sets, log_prior
 from updating.diagnosis.search.sets import pairs_of
 from updating.effects import Effect, Lack, Obstacle, Variant
 from updating.likelihood.outliers import Outlier
@@ -89,6 +90,23 @@ class Compared:
         return bool(self.extreme) or self.p_value < (DOUBTED_FIT if len(self.names) > 1 else REJECTED_FIT)
 
 
+@dataclass(frozen=True)
+class Searched:
+    """How many of the sets of so many causes were searched: those that score tests found the most promising.
+
+    Parameters
+    ----------
+    causes : int
+        Causes in a set.
+    sets, possible : int
+        How many were searched, and how many there are.
+    """
+
+    causes: int
+    sets: int
+    possible: int
+
+
 @dataclass(frozen=True, eq=False)
 class Search:
     """All that was weighed.
@@ -103,12 +121,25 @@ class Search:
         Effects left out, and why.
     both : bool
         Whether every set was weighed on the model's theory and on the fuller one.
+    examined : tuple of Effect
+        Effects that the sets are made of.
     """
 
     nothing: Explanation
     compared: tuple[Compared, ...]
     not_examined: dict[str, Obstacle]
     both: bool = False
+    examined: tuple[Effect, ...] = ()
+
+    @property
+    def searched(self) -> tuple[Searched, ...]:
+        """How many sets of one cause, of two and so on were searched, up to the largest that any was."""
+        counts = Counter(len(row.names) for row in self.compared if row.names)
+        once, repeated = len(self.examined), sum(effect.repeats for effect in self.examined)
+        return tuple(
+            Searched(causes, counts[causes], count_sets(causes, once, repeated))
+            for causes in range(1, 1 + max(counts, default=0))
+        )
 
     @property
     def empty(self) -> Compared:
@@ -150,7 +181,7 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
         if not _explained(problem, found):
             found = _with_odd(problem, found, one_more(problem, _as_stated(found), causes))
     found = _finished(problem, with_parts(problem, found))
-    return Search(nothing, _merged(problem, _compare(found)), obstacles, both)
+    return Search(nothing, _merged(problem, _compare(found)), obstacles, both, tuple(effects))
 
 
 def _with_odd(
