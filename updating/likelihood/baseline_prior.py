@@ -4,6 +4,10 @@ The same specimen was tested before the effect was there. What tolerances did to
 so only the difference of the sensitivities is left in doubt; and what the model's modal constants missed then
 they miss now, in proportion to the level of the mode. Modes are carried over by their overlap, so that a mode
 that mixes two of the baseline takes its share of each.
+
+How much of it is missed still depends on what misses it. What a stiffness does to a shape stays where all of a mode
+becomes heavier; what a mass does falls with its share of the modal mass, as the square of the frequency. So as much as
+lies between the two is in doubt, of each mode as a whole.
 """
 
 from __future__ import annotations
@@ -23,6 +27,28 @@ from updating.test_data.chain import measurement_chain
 from updating.test_data.measured import Measured
 from updating.test_data.same_places import same_rows
 from updating.thresholds import CARRIED_DOUBT, UNREACHED_MODE_DOUBT
+
+
+@dataclass(frozen=True, eq=False)
+class Missed:
+    """What the present constants are held to miss.
+
+    Parameters
+    ----------
+    constants : (n_frf, n_modes) array
+        To be added to the prediction [1/kg].
+    variance : (n_frf, n_modes) array
+        Its variance [1/kg^2].
+    known : (n_frf, n_modes, n_factors) array
+        Sensitivities already known [1/kg].
+    carried : (n_frf, n_modes) array
+        How much more or less of it may be missed still, of each mode as a whole (1 sigma) [1/kg].
+    """
+
+    constants: FloatArray
+    variance: FloatArray
+    known: FloatArray
+    carried: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,25 +83,34 @@ class Before:
         return prediction.select(match(self.baseline, prediction, self.order))
 
     @cached_property
-    def _uneven(self) -> FloatArray:
-        """That part of the correction of ln f which is no common factor, shape (n_baseline,) [-]."""
+    def _correction(self) -> FloatArray:
+        """What the baseline corrected ln f of its modes by, shape (n_baseline,) [-]."""
         base = self.baseline
         plain = self.predictor.for_test(base, ())
         prediction = plain.predict(at_least=int(self.order.max()) + 3)
         prediction = prediction.select(match(base, prediction, self.order))
-        correction = np.log(base.frequency / prediction.frequency)
-        return np.asarray(correction - np.median(correction))
+        return np.asarray(np.log(base.frequency / prediction.frequency))
 
     @cached_property
-    def relative_variance(self) -> FloatArray:
-        """Variance of what the baseline says of ln f, shape (n_baseline,) [-].
+    def _uneven(self) -> FloatArray:
+        """That part of it which is no common factor, shape (n_baseline,) [-]."""
+        return np.asarray(self._correction - np.median(self._correction))
+
+    def common(self, now: Prediction) -> FloatArray:
+        """Return how much of that common factor of ln f may be gone, since masses made it (1 sigma), (n_modes,) [-]."""
+        gone = np.sum(self.shares(now) * (1 - self._least_carried(now)), axis=1)
+        return np.asarray(gone / 2 * np.median(self._correction))
+
+    def _variance(self, now: Prediction) -> FloatArray:
+        """Return the variance of what the baseline's modes say of ln f of the present ones, (n_modes, n_baseline) [-].
 
         It holds identification, re-mounting, and a share of that part of the correction which is no common
         factor: a model that missed some modes more than others has wrong shapes, too.
         """
         base = self.baseline
         noise = (base.frequency_sigma / base.frequency) ** 2 + base.repeatability**2
-        return np.asarray(noise + (CARRIED_DOUBT * self._uneven) ** 2)
+        doubt = np.hypot(CARRIED_DOUBT, 1 - self._least_carried(now))
+        return np.asarray(noise + (doubt * self._uneven) ** 2)
 
     def seen(self, now: Prediction) -> FloatArray:
         """Return how much of each present mode the baseline's modes make up together, (n_modes,) [-]."""
@@ -121,7 +156,7 @@ class Before:
         shares, seen = self.shares(now), self.seen(now)
         beyond = (1 - seen) * (np.var(self._uneven) + UNREACHED_MODE_DOUBT**2)
         known = seen[:, None] * (shares @ self.prediction.log_frequency_by)
-        return shares @ self.relative_variance + beyond, known
+        return np.sum(shares * self._variance(now), axis=1) + beyond, known
 
     @cached_property
     def _rows(self) -> tuple[IntArray, IntArray]:
@@ -135,7 +170,7 @@ class Before:
         true = measurement_chain(self.measured, State(exchanged=state.exchanged))
         return same_rows(replace(self.measured, seen=true.seen, hit=true.hit), self.baseline)
 
-    def shapes(self, now: Prediction, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def shapes(self, now: Prediction, state: State) -> Missed:
         """Return what the baseline says the present constants miss.
 
         It is the structure that the model misses, so that the present measurement reads what is missed as it reads the
@@ -147,21 +182,12 @@ class Before:
             The present modes.
         state : State
             Of the present measurement.
-
-        Returns
-        -------
-        missed : (n_frf, n_modes) array
-            To be added to the prediction [1/kg].
-        variance : (n_frf, n_modes) array
-            Its variance [1/kg^2].
-        known : (n_frf, n_modes, n_factors) array
-            Sensitivities already known [1/kg].
         """
         here, there = self._read(state)
-        missed, variance = np.zeros_like(now.constants), np.zeros_like(now.constants)
+        missed, variance, carried = (np.zeros_like(now.constants) for _ in range(3))
         known = np.zeros_like(now.constants_by)
         if not (self.measured.absolute and self.baseline.absolute and len(here)):
-            return missed, variance, known
+            return Missed(missed, variance, known, carried)
         gain = measurement_chain(self.measured, state).gain[here, None]
         predicted = self.prediction.constants[there]
         error = self.baseline.constants[there] - predicted
@@ -171,7 +197,8 @@ class Before:
             (np.sum((now.constants[here] / gain) ** 2, axis=0)[:, None] + unseen)
             / (np.sum(predicted**2, axis=0) + unseen)
         )
-        weights = self.shares(now) * level
+        least = self._least_carried(now)
+        weights = self.shares(now) * level * (1 + least) / 2
         missed[here] = gain * (error @ weights.T)
         variance[here] = (
             gain**2 * (self.baseline.constants_sigma[there] ** 2 @ (weights**2).T)
@@ -180,4 +207,13 @@ class Before:
         known[here] = gain[:, :, None] * np.einsum(
             "fkp,mk->fmp", self.prediction.constants_by[there], weights
         )
-        return missed, variance, known
+        carried[here] = gain * (error @ (weights * (1 - least) / (1 + least)).T)
+        return Missed(missed, variance, known, carried)
+
+    def _least_carried(self, now: Prediction) -> FloatArray:
+        """Return what of a mode of the baseline is missed still if only masses missed it, (n_modes, n_baseline) [-].
+
+        Where a mode has become lighter or stiffer it may be more; as much is in doubt.
+        """
+        ratio = (now.frequency[:, None] / self.prediction.frequency) ** 2
+        return np.asarray(np.minimum(ratio, 1 / ratio))

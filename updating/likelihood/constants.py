@@ -9,6 +9,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
+from updating.likelihood.baseline_prior import Missed
 from updating.likelihood.close_modes import CloseModes
 from updating.likelihood.comparison import Block
 from updating.likelihood.missed_modes import MissedModes
@@ -79,10 +80,12 @@ class Constants(Quantity):
     def block(self, view: View) -> Block:
         """Return the constants beside a state, the calibration a named doubt where their level is data."""
         test, now, scale = self.setting.measured, view.now, self.scale
-        constants, by, doubt = self._corrected(view)
+        constants, by, missed = self._corrected(view)
         level = self._level(constants, view)
         predicted, by = constants * level, by * level[:, :, None]
-        own_errors = (test.constants_sigma / scale) ** 2 + doubt * level**2 + LEAST_CONSTANT_NOISE**2
+        own_errors = (
+            (test.constants_sigma / scale) ** 2 + missed.variance * level**2 + LEAST_CONSTANT_NOISE**2
+        )
         variance = own_errors + self._late(view) ** 2
         uneven, louder = self._idealised(predicted, view.doubt.fidelity)
         own = [
@@ -90,6 +93,7 @@ class Constants(Quantity):
             self._nodes.columns(now, level),
             self._close_modes.columns(now, level),
             self._missed_modes.columns(now, level),
+            *self._carried(missed, level),
             louder,
         ]
         gain = self._gains(predicted)
@@ -107,13 +111,24 @@ class Constants(Quantity):
             uneven.ravel() if view.doubt.fidelity else None,
         )
 
-    def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return predicted constants, their sensitivities and their variance, what a baseline has said put in."""
+    def _corrected(self, view: View) -> tuple[FloatArray, FloatArray, Missed]:
+        """Return predicted constants and their sensitivities, what a baseline has said put in, and what that is."""
         now = view.now
         if self.setting.before is None:
-            return now.constants, now.constants_by, np.zeros_like(now.constants)
-        missed, doubt, known = self.setting.before.shapes(now, view.state)
-        return now.constants + missed, now.constants_by - known, doubt
+            nothing = np.zeros_like(now.constants)
+            return now.constants, now.constants_by, Missed(nothing, nothing, now.constants_by, nothing)
+        missed = self.setting.before.shapes(now, view.state)
+        return now.constants + missed.constants, now.constants_by - missed.known, missed
+
+    def _carried(self, missed: Missed, level: FloatArray) -> list[FloatArray]:
+        """Return a column for each mode: by how much more or less of what a baseline missed is missed still."""
+        if self.setting.before is None:
+            return []
+        frfs, modes = level.shape
+        columns = np.zeros((frfs, modes, modes))
+        every = np.arange(modes)
+        columns[:, every, every] = missed.carried * level
+        return [columns.reshape(level.size, modes)]
 
     def _level(self, constants: FloatArray, view: View) -> FloatArray:
         """Return what predicted constants are multiplied by: sign and scale, and where no level is known the best."""

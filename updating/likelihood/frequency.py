@@ -47,6 +47,8 @@ class Frequencies(Quantity):
         variance = variance + self.further
         n = len(test.frequency)
         named, idealised = self.common, None
+        if before is not None:
+            named = np.column_stack([named, before.common(now)])
         if view.doubt.fidelity:
             # an idealisation errs in the size of the whole shift, and again in each mode
             doubtful = view.doubt.fidelity * np.log(now.frequency / self.setting.nominal.frequency)

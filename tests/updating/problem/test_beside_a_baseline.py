@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from updating_cases import BEAM, POINTS, blank, exactly
+from updating_cases import BEAM, POINTS, blank, case_of, exactly, specimen, struck
 
 from updating import LIBRARY, Case, Measured, Predictor, Tolerances
+from updating.diagnosis.answer.verdict import estimates
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.models.state import NOMINAL, State
@@ -45,3 +46,26 @@ def test_what_has_changed_since_is_found_whatever_the_tolerances(problem: Specim
     assert values["thickness.factor"] == pytest.approx(THICKER, rel=0.005)
     assert found.p_value > 0.05
     assert found.log_evidence > explain(problem, Candidate()).log_evidence + 10
+
+
+HEAVIER = 2.3
+
+
+@pytest.mark.parametrize(
+    "missed",
+    [{"masses": ((0.3008, 0.05),)}, {"soft": (0.10, 0.13, 0.6)}],
+    ids=["a body on it", "a soft spot"],
+)
+def test_what_the_model_misses_matters_less_or_as_much_once_all_is_heavier(missed: dict[str, object]) -> None:
+    """A body adds to each mode a share of its mass, which falls; a soft spot bends all the same."""
+    rng = np.random.default_rng(5)
+    before = struck(specimen(rng, **missed), rng)
+    rng = np.random.default_rng(5)
+    after = struck(specimen(rng, density=HEAVIER, **missed), rng)
+    posed, _ = pose(case_of(after, baseline=before))
+    found = explain(posed, Candidate((LIBRARY["density"],)))
+    size = estimates(posed, found)["density.factor"]
+    assert size.low95 is not None and size.high95 is not None
+    assert size.low95 < HEAVIER < size.high95 < 1.1 * HEAVIER
+    assert found.best.marginal.scale == 1
+    assert found.p_value > 0.05
