@@ -90,8 +90,8 @@ class Geometry(Displayed):
         missing = sorted({n for n in wanted if n not in row})
         if missing:
             raise InputError(
-                f"no coordinates for node(s) {missing}; add them to data set 15 or 2411 of the test file, or to a "
-                "table of modes as rows x, y, z in place of a frequency"
+                f"no coordinates for node(s) {missing}; state them as places in the study's [test], or add them to "
+                "data set 15 or 2411 of the test file, or to a table of modes as rows x, y, z in place of a frequency"
             )
         return np.array(self.coordinates[[row[n] for n in wanted]]).reshape(-1, 3)
 

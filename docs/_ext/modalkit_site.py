@@ -20,10 +20,7 @@ LOGGER = logging.getLogger(__name__)
 LONG_LINE = 200
 """Lines longer than this are sentences, which wrap; the widest table of an output is narrower [characters]."""
 
-SLOW = (
-    "*Too long for every build: kept from a run of its own, which `uv run python docs/_ext/commands.py --slow` repeats "
-    "and `pytest --slow` compares.*\n\n"
-)
+SLOW = "*Slow, so not run by every build; `pytest --slow` checks it.*\n\n"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

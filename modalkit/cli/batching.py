@@ -35,9 +35,9 @@ def add_commands(app: typer.Typer) -> None:
 
 
 def batch(
-    folder: Annotated[Path, typer.Argument(help="folder of studies; those in folders of it too")],
+    folder: Annotated[Path, typer.Argument(help="folder of studies, including subfolders")],
     output: Annotated[Path, typer.Option("--output", "-o", help="table to write: .parquet or .csv")],
-    workers: Annotated[int, typer.Option(help="studies in flight at a time")] = 2,
+    workers: Annotated[int, typer.Option(help="studies run in parallel")] = 2,
     scheduler: Annotated[
         str | None, typer.Option(help="address of a Dask scheduler whose workers run the studies")
     ] = None,

@@ -33,28 +33,32 @@ _DOCUMENTS = {"": "blind", "STUDY": "plan", "--real": "real", "--check": "blind"
 OwnStudy = Annotated[
     Path | None, typer.Argument(help="your own study: what can its test tell apart? (docs/tutorials/plan.md)")
 ]
-Trials = Annotated[int | None, typer.Option(help="number of trials; left out: 60, with a STUDY none")]
-Seed = Annotated[int | None, typer.Option(help="seed of the run; left out: drawn, and said at the end")]
-Workers = Annotated[int, typer.Option(help="trials in flight at a time")]
+Trials = Annotated[int | None, typer.Option(help="number of trials; default 60, with a STUDY none")]
+Seed = Annotated[int | None, typer.Option(help="seed of the run; default: drawn at random and printed")]
+Workers = Annotated[int, typer.Option(help="trials run in parallel")]
 Scheduler = Annotated[
     str | None, typer.Option(help="address of a Dask scheduler whose workers run the trials")
 ]
-StoreFile = Annotated[Path | None, typer.Option(help="file for commitments and outcomes as they come")]
-Resume = Annotated[bool, typer.Option("--resume", help="go on with the store of a run")]
-Kinds = Annotated[
-    str, typer.Option(help="specimens, of beam, plate and solid (needs CalculiX); left out: beam,plate")
+StoreFile = Annotated[
+    Path | None, typer.Option(help="file for commitments and outcomes, written as they arrive")
 ]
-Effects = Annotated[str, typer.Option(help="what may be hidden, comma-separated; left out: all")]
+Resume = Annotated[bool, typer.Option("--resume", help="continue the run of a store")]
+Kinds = Annotated[
+    str, typer.Option(help="specimens: beam, plate, solid (needs CalculiX); default beam,plate")
+]
+Effects = Annotated[str, typer.Option(help="effects that may be hidden, comma-separated; default all")]
 LeaveOut = Annotated[
-    bool, typer.Option("--leave-out", help="take the true effect out of the library in every trial")
+    bool, typer.Option("--leave-out", help="remove the true effect from the library in every trial")
 ]
 Real = Annotated[
-    bool, typer.Option("--real", help="real structures with their cause withheld, in place of trials")
+    bool, typer.Option("--real", help="real structures with their cause withheld, instead of trials")
 ]
 Data = Annotated[Path | None, typer.Option(help="folder of measured data for --real")]
-Check = Annotated[Path | None, typer.Option(help="check the seals of a stored run, and run nothing")]
+Check = Annotated[Path | None, typer.Option(help="check the seals of a stored run; run nothing")]
 Json = Annotated[Path | None, typer.Option("--json", help="file for the score as JSON")]
-Markdown = Annotated[Path | None, typer.Option(help="file for the score as markdown; marks in it are kept")]
+Markdown = Annotated[
+    Path | None, typer.Option(help="Markdown page to put the score into, between its marks or at its end")
+]
 
 
 def add_commands(app: typer.Typer) -> None:

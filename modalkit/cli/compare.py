@@ -130,7 +130,7 @@ def tables(
     form: Annotated[TableFormat, typer.Option("--format", help="md, csv or latex")] = TableFormat.md,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="file to write")] = None,
     fluid: Annotated[
-        bool, typer.Option("--fluid", help="paper A's wet tables with the water computed, in every way")
+        bool, typer.Option("--fluid", help="paper A's wet tables with computed water, every variant")
     ] = False,
     figures: Figures = None,
 ) -> None:

@@ -43,11 +43,9 @@ def add_commands(app: typer.Typer) -> None:
 def diagnose(
     studies: Annotated[list[Path], typer.Argument(help="study file(s)")],
     shared: Annotated[
-        str, typer.Option(help="effects of one and the same size in several studies, comma-separated")
+        str, typer.Option(help="effects with the same size in all studies, comma-separated")
     ] = "",
-    without: Annotated[
-        str, typer.Option(help="effects to leave out, as if the library did not know them, comma-separated")
-    ] = "",
+    without: Annotated[str, typer.Option(help="effects to remove from the library, comma-separated")] = "",
     json: Annotated[Path | None, typer.Option("--json", help="file for the diagnosis as JSON")] = None,
     report: Report = None,
     figures: Figures = None,

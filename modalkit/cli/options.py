@@ -42,7 +42,7 @@ Decay = Annotated[
 ]
 WindowOn = Annotated[
     str | None,
-    typer.Option(help="'both' or 'responses': what that window was applied to; left out: as heard"),
+    typer.Option(help="'both' or 'responses': what that window was applied to; default: detected"),
 ]
 Window = Annotated[
     float,
@@ -53,17 +53,21 @@ Band = Annotated[
     typer.Option(help="frequency band [Hz], as 5 500 or 5Hz 1.2kHz", parser=quantity("Hz")),
 ]
 Add = Annotated[list[float] | None, typer.Option(help="keep a mode here [Hz]; repeat", parser=quantity("Hz"))]
-Drop = Annotated[list[float] | None, typer.Option(help="this is no mode [Hz]; repeat", parser=quantity("Hz"))]
+Drop = Annotated[
+    list[float] | None, typer.Option(help="leave out the mode here [Hz]; repeat", parser=quantity("Hz"))
+]
 Estimate = Annotated[str, typer.Option("--estimator", help="H1, H2 or Hv")]
-Use = Annotated[list[str] | None, typer.Option(help="hit to use against the proposal, as 12+Z:3; repeat")]
+Use = Annotated[list[str] | None, typer.Option(help="rejected hit to use anyway, as 12+Z:3; repeat")]
 Leave = Annotated[list[str] | None, typer.Option(help="hit to leave out, as 12+Z:3; repeat")]
 SensorMass = Annotated[
     list[str] | None,
     typer.Option(
-        "--sensor-mass", help="take an accelerometer's mass out, in kg, as 25+Z=0.0086 or 25+Z=8.6g; repeat"
+        "--sensor-mass", help="remove an accelerometer's mass, in kg, as 25+Z=0.0086 or 25+Z=8.6g; repeat"
     ),
 ]
-Report = Annotated[Path | None, typer.Option("--report", help="file for a report as HTML, figures in it")]
+Report = Annotated[
+    Path | None, typer.Option("--report", help="file for a report: one HTML page with figures")
+]
 
 
 def processing(

@@ -19,7 +19,7 @@ def add_commands(app: typer.Typer) -> None:
 def open_app(
     file: Annotated[Path, typer.Argument(help="study file, or a file of hits, FRFs or modes")],
     no_browser: Annotated[bool, typer.Option("--no-browser", help="only print the address")] = False,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="port of this machine; 0 is any")] = 0,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="port on this machine; 0: any free one")] = 0,
     layout: Layout = None,
 ) -> None:
     """Open the app on this machine: pick poles, watch shapes, compare with the model, diagnose."""

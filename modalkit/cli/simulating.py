@@ -43,13 +43,11 @@ def simulate(
         typer.Option(min=0.0, max=100.0, help="noise of the responses, r.m.s. of their largest magnitude"),
     ] = None,
     points: Annotated[
-        int | None, typer.Option(min=2, max=10_000, help="how many points, where the study has none")
+        int | None, typer.Option(min=2, max=10_000, help="number of points, if the study has none")
     ] = None,
     remount: Annotated[
         bool,
-        typer.Option(
-            "--remount", help="let frequencies and level scatter as the study says of a new mounting"
-        ),
+        typer.Option("--remount", help="let frequencies and level scatter as after re-mounting"),
     ] = False,
     figures: Figures = None,
 ) -> None:

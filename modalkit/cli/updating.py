@@ -44,9 +44,12 @@ def update(
     studies: Annotated[list[Path], typer.Argument(help="study file(s)")],
     shared: Annotated[str, typer.Option(help="parameters that several studies share, comma-separated")] = "",
     bootstrap: Annotated[
-        int, typer.Option(min=0, max=100_000, help="draw the hits anew so often, for intervals; 0 for none")
+        int,
+        typer.Option(
+            min=0, max=100_000, help="number of bootstrap draws of the hits, for intervals; 0: none"
+        ),
     ] = 0,
-    seed: Annotated[int, typer.Option(min=0, help="of the draws")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="seed of the bootstrap draws")] = 0,
     json: Annotated[Path | None, typer.Option("--json", help="file for the result as JSON")] = None,
     report: Report = None,
     figures: Figures = None,

@@ -32,22 +32,22 @@ class HypothesisTable(Strict):
     name: str = Field(min_length=1, max_length=80)
     """The user's own cause; no ``.``, ``#``, ``+``, ``(``, and no name of an effect."""
     stiffness: str | None = None
-    """The whole stiffness matrix if it were so; the model is K0 + amount (K1 - K0), the answer
-    ``NAME.amount``.
+    """The whole stiffness matrix K1 if the hypothesis were true; the model is K0 + amount (K1 - K0), and the
+    answer is ``NAME.amount``.
     """
     mass: str | None = None
-    """The whole mass matrix if it were so."""
+    """The whole mass matrix if the hypothesis were true."""
     deck: str | None = None
-    """In their place, for ``calculix``: the deck if it were so, on the same mesh and supports."""
+    """``calculix``: the deck if the hypothesis were true, with the same mesh and supports."""
     parameter: str | None = None
-    """In their place: ``E``, ``density``, ``REGION.E``, ``REGION.density``, or a number of a deck, ``SET.thickness``;
+    """Instead of these: ``E``, ``density``, ``REGION.E``, ``REGION.density``, or a number of a deck, ``SET.thickness``;
     the answer is ``NAME.value``.
     """
     range: Annotated[list[float | str], Field(min_length=2, max_length=2)] | None = None
-    """How far towards it, 0 being the model as it stands; of a parameter from, to in its unit (factors without
-    ``[model.material]``), and needed."""
+    """Range of the amount, 0 being the model as it stands. With ``parameter`` required, in its unit (factors without
+    ``[model.material]``)."""
     why: str = ""
-    """For people."""
+    """Reason, printed with the answer."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

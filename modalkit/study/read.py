@@ -56,9 +56,9 @@ class Study(Strict):
     """
 
     title: str = ""
-    """For people."""
+    """Name of the study in outputs."""
     note: str = ""
-    """For people."""
+    """Free text, not used."""
     test: MeasurementTable
     baseline: MeasurementTable | None = None
     model: ModelTable | None = None

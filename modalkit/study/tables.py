@@ -91,97 +91,97 @@ class AxesTable(Strict):
     """Model axes in test coordinates."""
 
     origin: Place = (0.0, 0.0, 0.0)
-    """Where the model's origin lies, in the coordinates of the test [m]."""
+    """Origin of the model, in test coordinates [m]."""
     x: Vector = (1.0, 0.0, 0.0)
-    """Direction of the model's x axis there [-]."""
+    """Direction of the model's x axis, in test coordinates [-]."""
     y: Vector = (0.0, 1.0, 0.0)
-    """Direction of its y axis [-]; z completes them right-handed."""
+    """Direction of its y axis [-]; z completes a right-handed system."""
 
 
 class MeasurementTable(Strict):
     """``[test]`` and ``[baseline]``: where the data are and how they were taken."""
 
     files: list[str] = []
-    """UFF files of raw hits or FRFs, or column text; several are one test."""
+    """UFF files of raw hits or FRFs, or column text; several files are one test."""
     modes: str | None = None
-    """In their place, modes: a CSV table, UFF 55 or 2414, the JSON of ``identify --json``, or a ``.mat`` file
-    with its ``layout``.
+    """Modes instead of ``files``: a CSV table, UFF 55 or 2414, the JSON of ``identify --json``, or a ``.mat``
+    file with its ``layout``.
     """
     band: tuple[Annotated[float, in_unit("Hz"), Field(ge=0)], Hertz] | None = None
-    """Band looked at [Hz]. Left out: all; of hits, to where the force is 20 dB down. Cut, with a warning, to
-    where force and coherence leave information.
+    """Frequency band [Hz]. Default: all; for hits, up to where the force is 20 dB down. Reduced, with a warning,
+    to where force and coherence carry information.
     """
     exponential_window: Rate = 0.0
     """Decay rate of a window applied before the file was written [1/s]; another one stated in the file is an
     error.
     """
     window_on: Literal["both", "responses"] | None = None
-    """What that window was applied to. Left out: what the noise of the force shows."""
+    """What that window was applied to. Default: detected from the noise of the force."""
     window: Rate = 0.0
     """Decay rate of a further window, applied here [1/s]."""
     estimator: Literal["H1", "H2", "Hv"] = "H1"
     """How FRFs are averaged from hits."""
     use: list[tuple[str, int]] = []
-    """Hits to use against the proposal, as ``[["12+Z", 3]]``; a point's hits are numbered through all runs
-    and files.
+    """Rejected hits to use anyway, as ``[["12+Z", 3]]``; a point's hits are numbered through all runs and
+    files.
     """
     leave: list[tuple[str, int]] = []
     """Hits to leave out, in the same form."""
     add: list[Hertz] = []
-    """Modes to keep whatever the statistics say [Hz]."""
+    """Modes to keep whatever the statistics say, by frequency [Hz]."""
     drop: list[Hertz] = []
-    """Modes that are none [Hz]."""
+    """Modes to leave out of the result, by frequency [Hz]."""
     order: Annotated[int, Field(ge=2, le=400)] | None = None
-    """Highest model order [-]. Left out: 60."""
+    """Highest model order [-]. Default: 60."""
     references: list[str] = []
-    """Degrees of freedom hit whose FRFs are used, as ``["1+Z"]``. Left out: all."""
+    """Reference degrees of freedom whose FRFs are used, as ``["1+Z"]``. Default: all."""
     pairs: list[tuple[Hertz, Annotated[int, Field(ge=0)]]] = []
-    """Partners stated by hand, as ``[[153.9, 3]]``: the mode measured at 153.9 Hz is the model's third; 0: it
-    has none.
+    """Pairs of modes set by hand, as ``[[153.9, 3]]``: the mode measured at 153.9 Hz is the model's third; 0:
+    it has no counterpart.
     """
     layout: str | None = None
     """Layout of column text, or of a ``.mat`` file."""
     sensor_masses: dict[str, Mass] = {}
-    """Accelerometers whose mass is taken out of the FRFs [kg], as ``{ "25+Z" = 0.0086 }``; each must have
-    been hit at its own place.
+    """Accelerometers whose mass is removed from the FRFs [kg], as ``{ "25+Z" = 0.0086 }``; each place must have
+    been hit too.
     """
     calibration: Annotated[float, in_unit(""), Field(gt=0.0)] = 0.02
-    """Relative 1-sigma of the level of the FRFs [-]."""
+    """Relative 1-sigma of the absolute level of the FRFs [-]."""
     repeatability: Share = 0.0005
-    """Relative 1-sigma of the frequencies from one mounting to the next [-]. From re-mounting, never from
-    what a fit leaves.
+    """Relative 1-sigma of the frequencies from one mounting to the next [-]. Measure it by re-mounting; do not
+    take it from the residual of a fit.
     """
     position_sigma: Annotated[float, in_unit("m"), Field(ge=0.0, lt=LARGEST_ASTRAY)] = 0.001
-    """1-sigma of the points hit, and of where a sensor sits [m]."""
+    """1-sigma of the places of hits and sensors [m]."""
     shape_sigma: Annotated[float, in_unit(""), Field(gt=0.0, lt=LARGEST_SHAPE_ERROR)] | None = None
-    """Of modes: error of every component of a shape over the shape's r.m.s. [-], in place of what the table says. Left
-    out where the table says nothing either: an update estimates it, a diagnosis takes 2 % times an unknown scale.
+    """With ``modes``: error of every component of a shape over the shape's r.m.s. [-], instead of the table's.
+    If neither is given, an update estimates it and a diagnosis takes 2 % times an unknown factor.
     """
     places: dict[Annotated[str, Field(pattern=r"^\d{1,9}$")], Place] = {}
-    """Where points are whose file does not say so, or says it wrongly, in the coordinates of the test [m], as
-    ``{ 12 = [0.1, 0.0, 0.3] }``. Left out of a model with nodes: those of the same numbers.
+    """Coordinates of test points that the file lacks or has wrong, in test coordinates [m], as
+    ``{ 12 = [0.1, 0.0, 0.3] }``. Default with matrices and decks: the nodes of the same numbers.
     """
     directions: dict[str, Vector] = {}
-    """Which way sensors or hits point that point along no axis, in the coordinates of the test, as
-    ``{ "12+X" = [0.7, 0.7, 0.0] }``: what is written 12+X is measured along that.
+    """Directions of sensors or hits that are along no axis, in test coordinates, as
+    ``{ "12+X" = [0.7, 0.7, 0.0] }``: 12+X was measured along that vector.
     """
     match_tolerance: Size | None = None
-    """How far from the nodes (or elements) of matrices or a deck a point may lie [m]; farther off than nodes are apart
-    it is put on the nearest. Left out: as far as nodes are apart.
+    """Largest distance of a test point from the nodes (or elements) of matrices or a deck [m]; beyond the node
+    spacing a point is put on the nearest node. Default: the node spacing.
     """
     points: list[PlannedPoint] = []
-    """Of a test that is only planned: where it will be hit. Along a beam [m]; on a plate ``[x, y]`` [m]; on matrices
-    and decks a node and its direction as ``"12+Z"``, or ``[x, y, z, "+z"]`` in model axes [m]. Left out: of beams
-    eight, of plates 5 x 4, evenly.
+    """Planned tests only: the points to hit. Beams: x [m]; plates: ``[x, y]`` [m]; matrices and decks: a node and
+    its direction as ``"12+Z"``, or ``[x, y, z, "+z"]`` in model axes [m]. Default: eight even points on beams,
+    5 x 4 on plates.
     """
     sensor: PlannedPoint | None = None
-    """Of a test that is only planned: where the sensor will sit, written likewise. Left out: of a beam the free end,
-    else the point hit at which the faintest mode is strongest.
+    """Planned tests only: the place of the sensor, written like ``points``. Default: a beam's free end, else the
+    hit point at which the weakest mode is strongest.
     """
     hits: int | None = Field(None, ge=1)
-    """Of a test that is only planned: how often each point is hit. Left out: 5."""
+    """Planned tests only: hits per point. Default: 5."""
     axes: AxesTable = AxesTable()
-    """The model's axes in the coordinates of the test."""
+    """The model's axes in test coordinates."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -249,16 +249,16 @@ class DampingTable(Strict):
     loss_factor: LossFactor | None = None
     """K (1 + i eta) [-]."""
     ratios: Annotated[list[Share], Field(min_length=1)] | None = None
-    """Damping ratio of each mode [-]. All left out: unknown."""
+    """Damping ratio of each mode [-]. Without any of the four, the damping is unknown."""
 
 
 class MassTable(Strict):
     """``[[model.mass]]``."""
 
     at: Annotated[list[Length], Field(min_length=1, max_length=3)]
-    """Where it sits; of beams and plates in doubt by `position_sigma` [m]."""
+    """Its place [m]; on beams and plates uncertain by `position_sigma`."""
     mass: Mass
-    """A mass that the modeller knows of; of beams and plates in doubt by 2 % [kg]."""
+    """A known mass on the structure [kg]; on beams and plates uncertain by 2 %."""
     inertia: Inertia = 0.0
     """Its rotary inertia [kg m2]."""
 
@@ -267,25 +267,25 @@ class RegionTable(Strict):
     """``[[model.region]]``."""
 
     name: str = Field(min_length=1)
-    """Its name; regions of one name are updated as one."""
+    """Its name; regions of the same name are updated together."""
     set: str | None = None
-    """``calculix``: the element set or material, where that has another name."""
+    """``calculix``: the element set or material, if its name differs."""
     x: Span | None = None
-    """From, to along x [m]."""
+    """Start and end along x [m]."""
     y: Span | None = None
-    """From, to across, of plates [m]."""
+    """Plates: start and end along y [m]."""
     E: Modulus | None = None
-    """Its own, in place of the model's [Pa]."""
+    """Young's modulus instead of the model's [Pa]."""
     density: Density | None = None
-    """Likewise [kg/m3]."""
+    """Density instead of the model's [kg/m3]."""
     thickness: Size | None = None
-    """Likewise [m]."""
+    """Thickness instead of the model's [m]."""
     area: Area | None = None
-    """Of beams [m2]."""
+    """Beams: cross-section [m2]."""
     inertia: SecondMoment | None = None
-    """Second moment of area, of beams [m4]."""
+    """Beams: second moment of area [m4]."""
     shear_coefficient: ShearCoefficient | None = None
-    """Shear coefficient of the section, of beams; left out, that of a rectangle: 0.5 a thin tube, 0.9 a rod [-]."""
+    """Beams: shear coefficient of the section [-]; default that of a rectangle; 0.5 a thin tube, 0.9 a rod."""
     alpha: Alpha | None = None
     """As under damping [1/s]."""
     beta: Beta | None = None
@@ -307,7 +307,7 @@ class ModelTable(Strict):
     type: Literal["beam", "plate", "matrices", "calculix"]
     """``beam``, ``plate``, ``matrices``, or ``calculix``."""
     units: Literal["m-kg-s", "mm-t-s", "in-lbf-s"] | None = None
-    """What matrices or deck are written in. Left out: ``m-kg-s``."""
+    """Units of matrices or deck. Default: ``m-kg-s``."""
     length: Length | None = None
     """Along x [m]."""
     width: Length | None = None
@@ -315,11 +315,11 @@ class ModelTable(Strict):
     thickness: Length | None = None
     """Along z, the direction of hitting [m]."""
     elements: int | list[int] | None = None
-    """Of beams a number (40), of plates two (38, 20); refined until the model stands."""
+    """Beams: a number (40); plates: two (38, 20). Refined until the model has converged."""
     clamped: list[str] = []
-    """Of ``x0``, ``x1``, and for plates ``y0``, ``y1``."""
+    """Clamped ends or edges: ``x0``, ``x1``, for plates also ``y0``, ``y1``. Default: a free structure."""
     theory: str | None = None
-    """Beams: ``euler-bernoulli`` (taken if left out), ``rayleigh``, ``timoshenko``; plates: ``kirchhoff``,
+    """Beams: ``euler-bernoulli`` (default), ``rayleigh``, ``timoshenko``; plates: ``kirchhoff`` (default),
     ``mindlin``.
     """
     deck: str | None = None
@@ -327,43 +327,43 @@ class ModelTable(Strict):
     stiffness: str | None = None
     """``matrices``: file of the stiffness matrix."""
     mass_matrix: str | None = None
-    """``matrices``: file of the mass matrix; may be written ``mass`` where there is no ``[[model.mass]]``."""
+    """``matrices``: file of the mass matrix; may be written ``mass`` if there is no ``[[model.mass]]``."""
     stiffness_parts: list[str] = []
-    """``matrices``: one file for each region, in their order."""
+    """``matrices``: the stiffness of each region, one file each, in their order."""
     mass_parts: list[str] = []
-    """``matrices``: likewise."""
+    """``matrices``: the mass of each region."""
     nodes: str | None = None
-    """``matrices``: node table (CSV), or the deck they come from."""
+    """``matrices``: node table (CSV), or the deck that made them."""
     material: MaterialTable | None = None
     damping: DampingTable = DampingTable()
     mass: list[MassTable] = []
     region: list[RegionTable] = []
     effect: list[dict[str, Any]] = []
-    """Accepted effects, each with ``name`` and its parameters: put into the model, the rest is diagnosed."""
+    """Accepted effects, each with ``name`` and its parameters: they become part of the model."""
 
 
 class TolerancesTable(Strict):
     """``[tolerances]``: the modeller's own doubts, relative standard deviations."""
 
     E: Share = 0.01
-    """The modeller's own doubt [-]."""
+    """Of Young's modulus [-]."""
     density: Share = 0.003
-    """Likewise [-]."""
+    """Of the density [-]."""
     thickness: Share = 0.005
-    """Likewise [-]."""
+    """Of the thickness [-]."""
     length: Share = 0.002
-    """Likewise [-]."""
+    """Of the length [-]."""
     width: Share = 0.002
-    """Likewise [-]."""
+    """Of the width [-]."""
     damping: Doubt = Field(0.3, ge=1e-6)
-    """Doubt in the expected damping of each mode; half of its variance again is common to all modes [-]."""
+    """Of the expected damping of each mode; half of its variance again is common to all modes [-]."""
     parts: dict[str, Doubt] = {}
-    """Of single parameters, written ``web.E = 0.2`` or ``"web.E" = 0.2``: of a region, beside what all have in
-    common (in an update in its place); and of numbers of a deck that an update turns [-].
+    """Of single parameters, written ``web.E = 0.2`` or ``"web.E" = 0.2``: of a region, in addition to the common
+    one (in an update instead of it), and of numbers of a deck [-].
     """
     bounds: dict[str, tuple[float, float]] = {}
-    """Between which parameters lie, as ``{ "web.E" = [0.8, 1.1] }``: as factors, others in their unit. Without a
-    tolerance of its own such a one lies anywhere between them.
+    """Limits of parameters, as ``{ "web.E" = [0.8, 1.1] }``: factors, others in their unit. A parameter without
+    its own tolerance may lie anywhere between them.
     """
 
     @model_validator(mode="before")
@@ -391,13 +391,13 @@ class EnvironmentTable(Strict):
     """``[environment]``."""
 
     fluid_density: Fluid | None = None
-    """Of a fluid around the structure [kg/m3]. Left out: a broad prior."""
+    """Density of a fluid around the structure [kg/m3]. Default: a broad prior."""
     free_surface: Size | None = None
-    """Above the structure (+z) [m]."""
+    """Height of a free surface above the structure (+z) [m]."""
     bottom: Size | None = None
-    """Below it [m]."""
+    """Distance of the bottom below it [m]."""
     walls: tuple[Length, Length, Length, Length] | None = None
-    """``[x0, x1, y0, y1]`` in model axes [m]. Left out: unbounded, beside the wall of a clamp."""
+    """Walls ``[x0, x1, y0, y1]`` in model axes [m]. Default: unbounded, except for the wall of a clamp."""
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
@@ -414,17 +414,17 @@ class UpdateTable(Strict):
     method: Literal["eigenvalue", "frf"] = "eigenvalue"
     """By frequencies and shapes, or by FRFs."""
     parameters: list[str] | None = None
-    """What is turned. Left out: ``["E"]``."""
+    """Parameters to update. Default: ``["E"]``."""
     weights: Literal["covariance", "relative", "eigenvalue"] | list[Weight] = "covariance"
-    """Of ``eigenvalue``: a rule, or a weight for each mode."""
+    """With ``eigenvalue``: a rule, or a weight for each mode."""
     lines: Annotated[int, Field(ge=1)] | list[Hertz] | None = None
-    """Of ``frf``: how many frequency lines a stage compares, or which [Hz]. Left out: 100."""
+    """With ``frf``: number of frequency lines that a stage compares, or the lines [Hz]. Default: 100."""
     stages: list[list[str]] | None = None
-    """Of ``frf``: lists of parameters settled one after the other, in place of ``parameters``. Left out: mass
-    and stiffness, then damping.
+    """With ``frf``: lists of parameters updated one after the other, instead of ``parameters``. Default: mass and
+    stiffness, then damping.
     """
     data: list[Literal["frequencies", "shapes", "constants"]] = ["frequencies"]
-    """Of ``eigenvalue``: add ``"shapes"``, or ``"constants"`` for shapes with their level."""
+    """With ``eigenvalue``: add ``"shapes"``, or ``"constants"`` for shapes with their level."""
 
     @field_validator("parameters", "stages")
     @classmethod

@@ -131,7 +131,7 @@ PRIVATE = {
     ),
     *("leftover", "overrule", "remark", "remarks", "handling", "grams"),
 }
-"""Words of which docs/reference/nomenclature.md says what the field calls them."""
+"""Words of which docs/develop/words.md says what the field calls them."""
 
 
 @pytest.mark.parametrize("room", ROOMS)

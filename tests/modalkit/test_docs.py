@@ -64,6 +64,12 @@ def test_a_page_says_on_top_for_whom_it_is(page: Path) -> None:
     assert drawn or (heading is not None and text[heading.end()] == "*")
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_no_line_of_prose_begins_as_a_comment(page: Path) -> None:
+    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    assert not re.findall(r"^\s*%.*", text, flags=re.MULTILINE), "MyST leaves out what begins with %"
+
+
 @pytest.mark.parametrize("page", sorted((ROOT / "docs" / "howto").glob("*.md")), ids=lambda page: page.stem)
 def test_a_how_to_is_a_screen(page: Path) -> None:
     words = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL).split()
