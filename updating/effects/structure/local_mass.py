@@ -1,0 +1,181 @@
+"""A place heavier or lighter than modelled: a coating, ice, a plate glued on, a cover; a hollow, a lighter insert."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
+from updating.effects.box import (
+    Place,
+    covered,
+    extent_parameters,
+    extents,
+    mirror_images,
+    place,
+    shares,
+    starting_places,
+)
+from updating.effects.obstacles import Lack, Obstacle
+from updating.effects.regions import heavy_regions, region_centre, regions_meant
+from updating.models.state import State
+from updating.prediction.predict import Predictor
+
+FACTORS = (0.25, 4.0)
+"""Range of the factor on the mass of a region or a place [-]: from a hollow part to one that carries three times its own,
+as steel of its thickness on aluminium does. Doubled at its upper end, what is far heavier is a layer still and no
+body."""
+
+LEAST = 1e-3
+"""Smallest mass added or missing over the structure's own [-]: what repeated tests can see, as of a body. Doubled, a
+coating of a thousandth is found by no search."""
+
+EXTENTS = (0.05, 0.4)
+"""Extents relative to the side: what is shorter moves as a body does; a third with some room [-]."""
+
+HEAVIER, LIGHTER = (0.5, 1.0), (0.0, 0.5)
+"""The two forms, each half of the quantiles of the factor, nothing in the middle."""
+
+SIZES = (0.3, 0.65)
+"""Quantiles, within a form, of the sizes from which a search starts [-]."""
+
+MIDDLING = 0.5
+"""Quantile of the extents from which it starts, a seventh of the side [-]."""
+
+SHARE_HEAVIER = 0.8
+"""Prior of the heavier form [-]: what is stuck on and not modelled is far commoner than what is missing and took no
+stiffness with it. Judged; the lighter one's share doubled, it gains ln 2."""
+
+
+class LocalMass(Effect):
+    """Another mass per area, no other stiffness, over a stretch of a beam, a rectangle of a plate, or a region of matrices.
+
+    ``factor`` is that of the mass per area, of the rotary inertia of its own sections too. What data determine is the
+    mass added, in which the prior is uniform in the logarithm on either side.
+    """
+
+    name = "local_mass"
+    channel = "mass"
+    summary = "One place is heavier (coating, ice, filling, cladding) or lighter than modelled, as stiff as before."
+    footprint = "Frequencies fall, or rise, in the modes that move there; those with a node there hardly do."
+    phrase = "a place of another mass"
+    models = ("beam", "plate", "matrices")
+    equivalent_to = ("lumped_mass", "density", "damping_patch")
+    named = ("region",)
+    repeats = True
+    separated_by = "look for what sticks there and weigh it, or the part; or more points on it"
+    fidelity = 0.03
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return place, extents and factor; of imported matrices the factor of a region."""
+        spec = predictor.spec
+        why = "from a part that is hollow to one that carries three times its own mass"
+        if spec.kind == "matrices":
+            return (Parameter("factor", "-", *FACTORS, why, log=True),)
+        why += "; uniform in the logarithm of the mass on either side"
+        factor = Parameter("factor", "-", *FACTORS, why, log=True)
+        middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
+        if spec.kind == "plate":
+            middle.append(
+                Parameter("y", "m", 0.0, spec.width, "anywhere across the structure", natural=EDGES)
+            )
+        why = "what is longer goes to the whole structure, what is shorter moves as a body does"
+        return (*middle, *extent_parameters(spec, *EXTENTS, why, natural=("low",)), factor)
+
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
+        """Need regions with masses of their own where there are matrices."""
+        if predictor.spec.kind != "matrices" or len(heavy_regions(predictor)) > 1:
+            return None
+        what = "the matrices have no mass_parts: nothing can be heavier at a place; give one per region"
+        return Obstacle(Lack.MODEL, what)
+
+    def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
+        """Return heavier and lighter; of imported matrices each region."""
+        if predictor.spec.kind == "matrices":
+            names = heavy_regions(predictor)
+            return tuple(Variant({"region": name}, 1 / len(names)) for name in names)
+        halves = ((SHARE_HEAVIER, HEAVIER), (1 - SHARE_HEAVIER, LIGHTER))
+        return tuple(Variant(weight=share, within={"factor": half}) for share, half in halves)
+
+    def values(self, predictor: Predictor, coordinates: Sequence[float]) -> dict[str, float]:
+        """Take prior quantiles to values: the last one is that of the mass added, which the data determine."""
+        values = super().values(predictor, coordinates)
+        if predictor.spec.kind != "matrices":
+            u = coordinates[-1]
+            low, high = _changes(predictor, values, heavier=u >= 0.5)
+            size = float(low * (high / low) ** abs(2 * u - 1))
+            values["factor"] = 1 + size if u >= 0.5 else 1 - size
+        return values
+
+    def quantiles(self, predictor: Predictor, values: Values) -> list[float]:
+        """Take values to prior quantiles; of the factor that of its mass."""
+        found = super().quantiles(predictor, values)
+        if "factor" in values and "extent" in values:
+            heavier, size = values["factor"] >= 1, abs(values["factor"] - 1)
+            low, high = _changes(predictor, values, heavier=heavier)
+            half = float(np.clip(np.log(max(size, low) / low) / np.log(high / low), 0.0, 1.0)) / 2
+            found[-1] = 0.5 + half if heavier else 0.5 - half
+        return found
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from a row of places, with two sizes either way at each; of imported matrices from regions little and
+        much lighter and heavier: from little, modes keep their order.
+        """
+        if predictor.spec.kind == "matrices":
+            return ((0.3,), (0.45,), (0.55,), (0.7,))
+        sizes = [0.5 + side * size / 2 for side in (1, -1) for size in SIZES]
+        where, middling = starting_places(predictor.spec), (MIDDLING,) * predictor.spec.dim
+        return tuple((*at, *middling, size) for size in sizes for at in where)
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the structure with its mass changed there."""
+        factor = float(values["factor"])
+        if predictor.spec.kind == "matrices":
+            return State(regional={(i, "density"): factor for i in regions_meant(predictor.spec, values)})
+        return State(mass=((factor - 1) * covered(predictor, "mass", shares(predictor, values)),))
+
+    def sentence(self, values: Values) -> str:
+        """Return where it is, and whether it is heavier or lighter."""
+        more = (
+            "lighter than modelled"
+            if values.get("factor", 1.0) < 1
+            else "heavier than modelled (coating, ice, filling, cladding)"
+        )
+        return f"{values.get('region', 'One place')} is {more}, as stiff as before."
+
+    def weight(self, predictor: Predictor, values: Values) -> float:
+        """Return what it weighs more than modelled [kg]."""
+        imported = predictor.spec.imported
+        if imported is None:
+            return (float(values["factor"]) - 1) * _modelled(predictor, values)
+        parts = [imported.mass_parts[i] for i in regions_meant(predictor.spec, values)]
+        along = np.asarray(imported.places.moves[imported.main_axis].sum(axis=0)).ravel() > 0
+        return float((values["factor"] - 1) * sum(along @ (part @ along) for part in parts))
+
+    def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
+        """Return the middle; where no shapes tell it from its mirror images, these too."""
+        if predictor.spec.kind == "matrices":
+            return (region_centre(predictor, values),)
+        at = place(values)
+        return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+    def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
+        """Return the mass added, which data determine better than the factor; negative of a lighter place."""
+        if predictor.spec.kind == "matrices":
+            return {}
+        return {"mass": (self.weight(predictor, values), "kg")}
+
+
+def _changes(predictor: Predictor, values: Values, *, heavier: bool) -> tuple[float, float]:
+    """Return the range of the size of the change of mass, relative to the place's own [-]."""
+    spec, (along, across) = predictor.spec, extents(values)
+    share = along / spec.length * (across / spec.width if spec.kind == "plate" else 1.0)
+    return LEAST / share, FACTORS[1] - 1 if heavier else 1 - FACTORS[0]
+
+
+def _modelled(predictor: Predictor, values: Values) -> float:
+    """Return what the structure weighs there as modelled [kg]: its density and section may differ by region."""
+    inside, factors = shares(predictor, values), predictor.base.factors
+    moved = [t for t in predictor.reduced.fielded.terms if (t.kind, t.left, t.right) == ("mass", "w", "w")]
+    return sum(float(term.coefficient @ inside) * term.scale(factors) for term in moved)
