@@ -136,7 +136,9 @@ def _draw_patch(rng: np.random.Generator, setup: Setup, strength: float) -> Valu
 def _draw_load(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
     """Draw a sheet with sharp edges, ice that runs out to them, or a place that lacks mass; what counts is the mass."""
     extents = draw_extents(rng, setup, *_SHEETS[setup.kind])
-    share = float(np.prod([extent / size for extent, size in zip(extents.values(), setup.size, strict=False)]))
+    share = float(
+        np.prod([extent / size for extent, size in zip(extents.values(), setup.size, strict=False)])
+    )
     change = strength * log_uniform(rng, 0.015, 0.12) / share
     lighter = rng.random() < _LIGHTER
     factor = max(1.0 - change, _HOLLOW) if lighter else min(1.0 + change, _HEAVY)

@@ -193,8 +193,17 @@ def _soft(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _heavy(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
-    heavy = structure.matrix("mass", (values["factor"] - 1) * _box(structure, values, 0.0))
-    return {"mass": heavy - structure.point_masses()}
+    """Bodies side by side, two thousand along a stretch, on plates 120 x 120 over a rectangle."""
+    spec, dim = structure.spec, structure.fields.dim
+    count, lines, section = (2000, 120)[dim - 1], [], spec.thickness * (spec.width if dim == 1 else 1.0)
+    extents = values["extent"], values.get("extent_y", values["extent"])
+    for name, extent, size in zip("xy"[:dim], extents, (spec.length, spec.width), strict=False):
+        low, high = (min(max(values[name] + side * extent / 2, 0.0), size) for side in (-1, 1))
+        lines.append(low + (high - low) * (np.arange(count) + 0.5) / count)
+        section *= (high - low) / count
+    points = np.stack(np.meshgrid(*lines), axis=-1).reshape(-1, dim)
+    rows = structure.fields.at(points)["w"]
+    return {"mass": (values["factor"] - 1) * spec.material.density * section * (rows.T @ rows)}
 
 
 def _layer(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:

@@ -6,26 +6,27 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
 from updating.effects.box import (
     Place,
-    covered,
     extent_parameters,
     extents,
     mirror_images,
     place,
-    shares,
+    spread,
     starting_places,
 )
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import heavy_regions, region_centre, regions_meant
 from updating.models.state import State
+from updating.models.structure import regions_at
+from updating.models.terms import modelled_mass
 from updating.prediction.predict import Predictor
 
 FACTORS = (0.25, 4.0)
-"""Range of the factor on the mass of a region or a place [-]: from a hollow part to one that carries three times its own,
-as steel of its thickness on aluminium does. Doubled at its upper end, what is far heavier is a layer still and no
-body."""
+"""Range of the factor on the mass of a region or a place [-]: from a hollow part to one that carries three times its
+own, as steel on aluminium does. Doubled at its upper end, a small heavy body passes for a place, too."""
 
 LEAST = 1e-3
 """Smallest mass added or missing over the structure's own [-]: what repeated tests can see, as of a body. Doubled, a
@@ -49,15 +50,17 @@ stiffness with it. Judged; the lighter one's share doubled, it gains ln 2."""
 
 
 class LocalMass(Effect):
-    """Another mass per area, no other stiffness, over a stretch of a beam, a rectangle of a plate, or a region of matrices.
+    """Another mass per area, as stiff as before, on a stretch of a beam, a rectangle of a plate, a region of matrices.
 
-    ``factor`` is that of the mass per area, of the rotary inertia of its own sections too. What data determine is the
-    mass added, in which the prior is uniform in the logarithm on either side.
+    ``factor`` is that of the mass per area, which moves across the structure and has no rotary inertia of its sections.
+    What data determine is the mass added, in which the prior is uniform in the logarithm on either side.
     """
 
     name = "local_mass"
     channel = "mass"
-    summary = "One place is heavier (coating, ice, filling, cladding) or lighter than modelled, as stiff as before."
+    summary = (
+        "One place is heavier (coating, ice, filling, cladding) or lighter than modelled, as stiff as before."
+    )
     footprint = "Frequencies fall, or rise, in the modes that move there; those with a node there hardly do."
     phrase = "a place of another mass"
     models = ("beam", "plate", "matrices")
@@ -133,7 +136,9 @@ class LocalMass(Effect):
         factor = float(values["factor"])
         if predictor.spec.kind == "matrices":
             return State(regional={(i, "density"): factor for i in regions_meant(predictor.spec, values)})
-        return State(mass=((factor - 1) * covered(predictor, "mass", shares(predictor, values)),))
+        points, masses = _modelled(predictor, values)
+        rows = predictor.reduced.rows(points)["w"] * np.sqrt(masses)[:, None]
+        return State(mass=((factor - 1) * (rows.T @ rows),))
 
     def sentence(self, values: Values) -> str:
         """Return where it is, and whether it is heavier or lighter."""
@@ -148,7 +153,7 @@ class LocalMass(Effect):
         """Return what it weighs more than modelled [kg]."""
         imported = predictor.spec.imported
         if imported is None:
-            return (float(values["factor"]) - 1) * _modelled(predictor, values)
+            return float((values["factor"] - 1) * _modelled(predictor, values)[1].sum())
         parts = [imported.mass_parts[i] for i in regions_meant(predictor.spec, values)]
         along = np.asarray(imported.places.moves[imported.main_axis].sum(axis=0)).ravel() > 0
         return float((values["factor"] - 1) * sum(along @ (part @ along) for part in parts))
@@ -174,8 +179,11 @@ def _changes(predictor: Predictor, values: Values, *, heavier: bool) -> tuple[fl
     return LEAST / share, FACTORS[1] - 1 if heavier else 1 - FACTORS[0]
 
 
-def _modelled(predictor: Predictor, values: Values) -> float:
-    """Return what the structure weighs there as modelled [kg]: its density and section may differ by region."""
-    inside, factors = shares(predictor, values), predictor.base.factors
-    moved = [t for t in predictor.reduced.fielded.terms if (t.kind, t.left, t.right) == ("mass", "w", "w")]
-    return sum(float(term.coefficient @ inside) * term.scale(factors) for term in moved)
+def _modelled(predictor: Predictor, values: Values) -> tuple[FloatArray, FloatArray]:
+    """Return points all over the place (n, dim) [m], and what the structure weighs about each as modelled (n,) [kg]."""
+    rough = predictor.spec.kind == "plate" and not predictor.reduced.whole  # on a basis of smooth shapes
+    points, sizes = spread(predictor.spec, values, by_elements=not rough)
+    terms = predictor.reduced.fielded.terms
+    moving = next(term for term in terms if (term.kind, term.left, term.right) == ("mass", "w", "w"))
+    own = modelled_mass(predictor.spec, regions_at(predictor.spec, points))
+    return points, own * sizes * moving.scale(predictor.base.factors)
