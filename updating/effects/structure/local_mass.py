@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 
@@ -14,11 +15,13 @@ from updating.effects.box import (
     extents,
     mirror_images,
     place,
+    shares,
     spread,
     starting_places,
 )
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import heavy_regions, region_centre, regions_meant
+from updating.effects.structure.mass_screening import frequency_gap
 from updating.models.state import State
 from updating.models.structure import regions_at
 from updating.models.terms import modelled_mass
@@ -38,11 +41,18 @@ EXTENTS = (0.05, 0.4)
 HEAVIER, LIGHTER = (0.5, 1.0), (0.0, 0.5)
 """The two forms, each half of the quantiles of the factor, nothing in the middle."""
 
-SIZES = (0.3, 0.65)
-"""Quantiles, within a form, of the sizes from which a search starts [-]."""
+LARGE = 0.65
+"""Quantile, within a form, of the size from which a search starts where frequencies do not say which [-]."""
 
-MIDDLING = 0.5
-"""Quantile of the extents from which it starts, a seventh of the side [-]."""
+SCREENED = (0.05, 0.4, 0.75)
+"""Quantiles of the extents at which places are screened [-]. What is long is found from what is short, what is short
+hardly from what is long: the first stands at all of them."""
+
+ALONG = {"beam": (16,), "plate": (8, 5)}
+"""Places that are screened along each side."""
+
+PROMISING = 6
+"""From how many of them, those that suit the frequencies best, a form is searched."""
 
 SHARE_HEAVIER = 0.8
 """Prior of the heavier form [-]: what is stuck on and not modelled is far commoner than what is missing and took no
@@ -122,14 +132,19 @@ class LocalMass(Effect):
         return found
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
-        """Start from a row of places, with two sizes either way at each; of imported matrices from regions little and
-        much lighter and heavier: from little, modes keep their order.
+        """Start from places and sizes that suit the frequencies and from a row of short places either way.
+
+        Of imported matrices from regions little and much lighter and heavier: from little, modes keep their order.
         """
         if predictor.spec.kind == "matrices":
             return ((0.3,), (0.45,), (0.55,), (0.7,))
-        sizes = [0.5 + side * size / 2 for side in (1, -1) for size in SIZES]
-        where, middling = starting_places(predictor.spec), (MIDDLING,) * predictor.spec.dim
-        return tuple((*at, *middling, size) for size in sizes for at in where)
+        short = (SCREENED[0],) * predictor.spec.dim
+        row = [(*at, *short) for at in starting_places(predictor.spec)]
+        either = tuple((*at, 0.5 + side * LARGE / 2) for side in (1, -1) for at in row)
+        return (
+            *map(tuple, predictor.once("places of another mass", lambda: _promising(self, predictor))),
+            *either,
+        )
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with its mass changed there."""
@@ -170,6 +185,33 @@ class LocalMass(Effect):
         if predictor.spec.kind == "matrices":
             return {}
         return {"mass": (self.weight(predictor, values), "kg")}
+
+
+def _promising(effect: LocalMass, predictor: Predictor) -> FloatArray:
+    """Return prior quantiles of the heavier and lighter places that suit the frequencies best, one extent at each.
+
+    Shape (n, n_parameters) [-].
+    """
+    spec, names = predictor.spec, [p.name for p in effect.parameters(predictor)]
+    gap = frequency_gap(predictor)
+    waves = (predictor.reduced.sampled["w"][:, : len(gap.vectors)] @ gap.vectors) ** 2
+    moving, found = predictor.reduced.fielded.fields, []
+    own = modelled_mass(spec, predictor.reduced.fielded.region_of) * moving.weights
+    for at in product(*((np.arange(n) + 0.5) / n for n in ALONG[spec.kind])):
+        boxes = [np.array([*at, *(size,) * spec.dim, 0.5]) for size in SCREENED]
+        values = [effect.values(predictor, box.tolist()) for box in boxes]
+        inside = np.array([shares(predictor, one) for one in values]) * own
+        sizes, gained = gap.sizes(-0.5 * inside @ waves)
+        best = int(np.argmax(gained))
+        quantiles = effect.quantiles(predictor, {**values[best], "factor": 1 + float(sizes[best])})
+        found.append((float(gained[best]), sizes[best] > 0, dict(zip(names, quantiles, strict=True))))
+    found.sort(key=lambda one: -one[0])
+    kept = [
+        [*quantiles.values()]
+        for side in (True, False)
+        for quantiles in [own for _, heavier, own in found if heavier == side][:PROMISING]
+    ]
+    return np.array(kept)
 
 
 def _changes(predictor: Predictor, values: Values, *, heavier: bool) -> tuple[float, float]:
