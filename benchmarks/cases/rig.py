@@ -39,6 +39,7 @@ SIZES = {
     "lumped_mass": ("mass",),
     "sensor_mass": ("mass",),
     "local_stiffness": ("compliance",),
+    "local_mass": ("mass",),
     "ground_spring": ("stiffness",),
     "joint_nonlinearity": ("slope",),
     "fluid_added_mass": ("fluid_density",),

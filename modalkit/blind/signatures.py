@@ -23,11 +23,12 @@ _PLACES = {"beam": (7,), "plate": (3, 2), "solid": (5,)}
 as long [-]."""
 
 _EXTENT = 0.15
-_LOCAL = ("lumped_mass", "local_stiffness", "damping_patch")
+_LOCAL = ("lumped_mass", "local_stiffness", "local_mass", "damping_patch")
 _PARTS: dict[str, tuple[Values, ...]] = {
     "orthotropy": ({"ratio": 1.1, "shear_ratio": 1.0}, {"ratio": 1.0, "shear_ratio": 1.1}),
     "damping_patch": ({"loss_factor": 0.05, "alpha": 0.0, "beta": 0.0, "mass": 0.0, "stiffness": 0.0},),
     "local_stiffness": ({"loss": 0.1, "form": "rectangle"},),
+    "local_mass": ({"factor": 1.1, "form": "sheet"},),
 }
 """Parameters that are varied one by one; of the other effects one draw is scaled."""
 

@@ -11,6 +11,7 @@ from modalkit.simulator.setup import Setup
 
 _PLACES = 17
 _EXTENT, _LAYER = 0.03, 0.2
+_SHEET, _HEAVIER, _MOST_HEAVIER = 0.2, 0.25, 3.0
 _HEAVIEST, _CLEAR_MASS = 0.3, 0.05
 _CLEAR_ERROR, _MOST_ERROR = 0.05, 0.12
 
@@ -64,6 +65,20 @@ def _soft_spot(setup: Setup) -> Family:
     )
 
 
+def _sheet(setup: Setup) -> Family:
+    extent = _SHEET * setup.length
+    return Family(
+        "local_mass",
+        lambda q, x: {"x": x, "extent": extent, "factor": 1.0 + q},
+        0.0,
+        _MOST_HEAVIER,
+        _HEAVIER,
+        "a place heavier by",
+        lambda q: f"{severity(100 * q)} % over {severity(1e3 * extent)} mm",
+        _along(setup, low=_SHEET / 2, high=_SHEET / 2, clamped=_SHEET / 2),
+    )
+
+
 def _layer(setup: Setup) -> Family:
     extent = _LAYER * setup.length
     return Family(
@@ -93,7 +108,7 @@ def _strayed(setup: Setup) -> Family:
     )
 
 
-LOCAL: tuple[Maker, ...] = (_sensor, _lump, _soft_spot)
+LOCAL: tuple[Maker, ...] = (_sensor, _lump, _soft_spot, _sheet)
 """What frequencies show too."""
 
 LAYERS: tuple[Maker, ...] = (_layer,)

@@ -15,6 +15,9 @@ from modalkit.simulator.scene import Scene
 _SPRINGS = 9
 """Springs that stand for a foundation along a stretch; twice as many move no frequency by more than 1e-4 [-]."""
 
+_STEPS = 3
+"""Steps in which what runs out to its edges does; twice as many move no frequency by more than 1e-3 [-]."""
+
 
 def appended(scene: Scene, name: str, part: Any) -> Scene:
     """Return the scene with one more part in a tuple of its body's.
@@ -110,6 +113,34 @@ def softened(scene: Scene, values: Mapping[str, Any]) -> Scene:
     if smooth:
         return appended(scene, "notches", Notch(values["x"], values["extent"], values["loss"]))
     return appended(scene, "stretches", Stretch(values["x"], values["extent"], bending=1 - values["loss"]))
+
+
+def loaded(scene: Scene, values: Mapping[str, Any]) -> Scene:
+    """Return the scene with another mass per area, and no other stiffness, over a stretch or a rectangle.
+
+    Parameters
+    ----------
+    scene : Scene
+        The rig.
+    values : mapping
+        x, on plates y, extent and extent_y [m]; ``factor``, of the mass per area in its mean; and ``form``: ``sheet``
+        with sharp edges where it is left out, or ``ice``, thickest in the middle, that runs out in steps.
+    """
+    sizes = (np.arange(_STEPS) + 1.0) / _STEPS if values.get("form") == "ice" else np.ones(1)
+    across = values.get("extent_y", values["extent"])
+    power = 2 if "y" in values else 1
+    added = (values["factor"] - 1.0) * len(sizes) / np.sum(sizes**power)  # of all steps, one on the other
+    before = 1.0
+    for step, size in enumerate(sizes[::-1]):
+        now = 1.0 + added * (step + 1) / len(sizes)
+        thicker, before = now / before, now
+        if "y" in values:
+            at = values["x"], values["y"], size * values["extent"], size * across
+            scene = appended(scene, "patches", Patch(*at, mass=thicker - 1.0))
+        else:
+            part = Stretch(values["x"], size * values["extent"], line=thicker)
+            scene = appended(scene, "stretches", part)
+    return scene
 
 
 def covered(scene: Scene, values: Mapping[str, Any]) -> Scene:

@@ -38,6 +38,7 @@ class ExactBeam:
     masses: tuple[tuple[float, float], ...] = ()
     soft: tuple[float, float, float] | None = None
     beds: tuple[tuple[float, float, float], ...] = ()
+    heavy: tuple[float, float, float] | None = None
 
     @property
     def area(self) -> float:
@@ -49,8 +50,13 @@ class ExactBeam:
 
     def _stations(self, count: int) -> np.ndarray:
         extra = [x for x, _ in self.masses] + list(self.soft[:2] if self.soft else ())
+        extra += list(self.heavy[:2] if self.heavy else ())
         extra += [x for bed in self.beds for x in bed[:2]]
         return np.unique(np.concatenate([np.linspace(0, self.length, count + 1), extra]))
+
+    def _density(self, x: np.ndarray) -> np.ndarray:
+        low, high, factor = self.heavy or (0.0, 0.0, 1.0)
+        return self.density * np.where((x > low) & (x < high), factor, 1.0)
 
     def _steps(self, omega: np.ndarray, x: np.ndarray) -> np.ndarray:
         """Transfer matrix of each interval at each frequency, the mass at its end included."""
@@ -59,14 +65,15 @@ class ExactBeam:
         if self.soft is not None:
             low, high, loss = self.soft
             stiff = np.where((middle > low) & (middle < high), (1 - loss) * stiff, stiff)
+        dense = self._density(middle)
         kappa = 10 * (1 + self.poisson) / (12 + 11 * self.poisson) / self.softness
         rate = np.zeros((len(omega), len(size), 4, 4))
         rate[..., 0, 1] = 1.0
         rate[..., 0, 3] = 2 * (1 + self.poisson) / (kappa * stiff * self.area) if self.shear else 0.0
         rate[..., 1, 2] = 1 / (stiff * self.inertia)
-        rate[..., 2, 1] = -(omega[:, None] ** 2) * self.density * self.inertia * self.rotary
+        rate[..., 2, 1] = -(omega[:, None] ** 2) * dense * self.inertia * self.rotary
         rate[..., 2, 3] = -1.0
-        rate[..., 3, 0] = -(omega[:, None] ** 2) * self.density * self.area
+        rate[..., 3, 0] = -(omega[:, None] ** 2) * dense * self.area
         for low, high, stiffness in self.beds:
             rate[..., 3, 0] += np.where((middle > low) & (middle < high), stiffness / (high - low), 0.0)
         steps = expm(rate * size[:, None, None])
@@ -113,7 +120,7 @@ class ExactBeam:
         for i in range(len(x) - 1):
             states.append(np.einsum("nij,nj->ni", steps[:, i], states[-1]))
         w, psi = np.stack(states)[:, :, 0], np.stack(states)[:, :, 1]
-        spread = self.density * (self.area * w**2 + self.rotary * self.inertia * psi**2)
+        spread = self._density(x)[:, None] * (self.area * w**2 + self.rotary * self.inertia * psi**2)
         total = np.trapezoid(spread, x, axis=0)
         for place, mass in self.masses:
             total = total + mass * w[int(np.argmin(np.abs(x - place)))] ** 2

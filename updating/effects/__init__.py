@@ -28,11 +28,11 @@ from updating.effects.structure.fluid import FluidAddedMass, FluidDamping
 from updating.effects.structure.joint import Joint
 from updating.effects.structure.joint_nonlinearity import JointNonlinearity
 from updating.effects.structure.length import Length
+from updating.effects.structure.local_mass import LocalMass
 from updating.effects.structure.local_stiffness import LocalStiffness
 from updating.effects.structure.mass import LumpedMass, SensorMass
 from updating.effects.structure.orthotropy import Orthotropy
 from updating.effects.structure.patch import DampingPatch
-from updating.effects.structure.region_mass import LocalMass
 from updating.effects.structure.shear import Shear
 from updating.effects.structure.spring import GroundSpring
 from updating.effects.structure.suspension import Suspension

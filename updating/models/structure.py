@@ -150,6 +150,14 @@ class FieldStructure(Structure):
         return region_mask(region, self.fields.points)
 
 
+def regions_at(spec: Spec, points: FloatArray) -> IntArray:
+    """Return the region in which each of some points (n_points, dim) [m] lies, of several the last; -1 is none."""
+    found = np.full(len(points), -1)
+    for index, region in enumerate(spec.regions):
+        found[region_mask(region, points)] = index
+    return found
+
+
 def region_mask(region: Region, points: FloatArray) -> BoolArray:
     """Tell which points (n_points, dim) [m] lie in a region, shape (n_points,)."""
     inside = (points[:, 0] >= region.x[0]) & (points[:, 0] <= region.x[1])
@@ -174,14 +182,12 @@ def build_field_structure(spec: Spec) -> FieldStructure:
         fields = timoshenko_fields(spec.length, spec.elements[0])
     else:
         fields = beam_fields(spec.length, spec.elements[0])
-    region_of = np.full(len(fields.weights), -1)
-    for index, region in enumerate(spec.regions):
-        inside = region_mask(region, fields.points)
-        if not inside.any():
+    for region in spec.regions:
+        if not region_mask(region, fields.points).any():
             raise StudyError(
                 f"region {region.name!r} holds no part of the model; check its x and y, or use more elements"
             )
-        region_of[inside] = index
+    region_of = regions_at(spec, fields.points)
     terms = (
         plate_terms(spec, fields, region_of) if spec.kind == "plate" else beam_terms(spec, fields, region_of)
     )

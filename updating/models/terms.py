@@ -62,10 +62,20 @@ def _local(spec: Spec, region_of: IntArray, name: str, default: float) -> FloatA
     return np.asarray(table[region_of])
 
 
+def modelled_mass(spec: Spec, region_of: IntArray) -> FloatArray:
+    """Return the mass per length of a beam [kg/m], per area of a plate [kg/m2], at places in given regions (n,)."""
+    thickness = _local(spec, region_of, "thickness", spec.thickness)
+    density = _local(spec, region_of, "density", spec.material.density)
+    if spec.kind == "plate":
+        return density * thickness
+    own = _local(spec, region_of, "area", np.nan)
+    return density * np.where(np.isnan(own), spec.width * thickness, own)
+
+
 def beam_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[FieldTerm, ...]:
     """Return the stiffness and mass of a beam: Euler-Bernoulli, Rayleigh or Timoshenko."""
     thickness = _local(spec, region_of, "thickness", spec.thickness)
-    area = np.array([np.nan if r.area is None else r.area for r in spec.regions] + [np.nan])[region_of]
+    area = _local(spec, region_of, "area", np.nan)
     area = np.where(np.isnan(area), spec.width * thickness, area)
     inertia = np.array([np.nan if r.inertia is None else r.inertia for r in spec.regions] + [np.nan])[
         region_of
@@ -79,7 +89,7 @@ def beam_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[FieldTe
     shearing = {"E": 1.0, "thickness": 1.0, "width": 1.0, "length": -1.0, "area": 1.0}
     inertial = {"density": 1.0, "thickness": 1.0, "width": 1.0, "length": 1.0, "area": 1.0}
     rotary = {"density": 1.0, "thickness": 3.0, "width": 1.0, "inertia": 1.0}
-    mass = FieldTerm("mass", "w", "w", w * density * area, inertial)
+    mass = FieldTerm("mass", "w", "w", w * modelled_mass(spec, region_of), inertial)
     if spec.theory != "timoshenko":
         terms = [
             FieldTerm("stiffness", "wxx", "wxx", w * modulus * inertia, bending | {"length": -3.0}),
@@ -125,7 +135,7 @@ def plate_terms(spec: Spec, fields: Fields, region_of: IntArray) -> tuple[FieldT
     along, across = bending | {"length": -3.0, "width": 1.0}, bending | {"length": 1.0, "width": -3.0}
     mixed = bending | {"length": -1.0, "width": -1.0}
     inertial = {"density": 1.0, "thickness": 1.0, "width": 1.0, "length": 1.0}
-    mass = FieldTerm("mass", "w", "w", w * density * thickness, inertial)
+    mass = FieldTerm("mass", "w", "w", w * modelled_mass(spec, region_of), inertial)
     if spec.theory == "kirchhoff":
         return (
             FieldTerm("stiffness", "wxx", "wxx", rigidity, along),

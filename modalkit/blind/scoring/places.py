@@ -31,7 +31,7 @@ _CHANNELS: Mapping[str, tuple[str, ...]] = {
         ),
         *("shear", "orthotropy", "axial_load", "joint_nonlinearity", "ground_spring", "suspension"),
     ),
-    "mass": ("density", "sensor_mass", "lumped_mass", "fluid_added_mass"),
+    "mass": ("density", "sensor_mass", "lumped_mass", "local_mass", "fluid_added_mass"),
     "damping": ("fluid_damping", "damping_patch", "uniform_damping"),
     "measurement": (
         *(

@@ -13,9 +13,12 @@ from modalkit.blind.outcome import Outcome
 from modalkit.blind.scoring.intervals import bootstrap, share
 from modalkit.blind.scoring.judge import accepted, holds, label
 
-NOT_SCORED = ("local_stiffness.extent", "local_stiffness.extent_y", "local_stiffness.loss")
-"""What data do not determine one by one, and what a box, a cosine and a slot mean differently; the compliance stands
-for all of them."""
+NOT_SCORED = (
+    *("local_stiffness.extent", "local_stiffness.extent_y", "local_stiffness.loss"),
+    *("local_mass.extent", "local_mass.extent_y", "local_mass.factor"),
+)
+"""What data do not determine one by one, and what a box, a cosine and a slot, a sheet and ice mean differently; the
+compliance, and the mass, stand for all of them."""
 
 PLACES = ("x", "y")
 """Coordinates are errors of place."""

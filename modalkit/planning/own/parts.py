@@ -37,7 +37,10 @@ LOSSY, LAYER = 0.5, 0.1
 def _soft(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     """Each region softer or stiffer; of a plate, all its zones as places of one effect."""
     if predictor.spec.imported is None:
-        yield _zones(effect, predictor)
+        yield _zones(
+            effect, predictor, lambda q: {"loss": 1 - float(np.exp(-q))},
+            (-float(np.log(4.0)), float(np.log(10.0)), SOFTER), "stiffness", _lost,
+        )  # fmt: skip
         return
     for name in stiff_regions(predictor):
         yield Family(
@@ -54,25 +57,36 @@ def _lost(q: float) -> str:
     return f"{severity(100 * (1 - np.exp(-abs(q))))} %"
 
 
-def _zones(effect: Effect, predictor: Predictor) -> Family:
-    """A soft spot as large as a zone, at the middle of each."""
+def _zones(
+    effect: Effect,
+    predictor: Predictor,
+    value: Callable[[float], Mapping[str, float]],
+    sizes: tuple[float, float, float],
+    what: str,
+    words: Callable[[float], str],
+) -> Family:
+    """A place as large as a zone, at the middle of each; ``sizes`` are the least, the most and the one asked about."""
     spec = predictor.spec
     zones = spec.regions
-    sizes = [(r.x[1] - r.x[0], (r.y or (0.0, spec.width))[1] - (r.y or (0.0, spec.width))[0]) for r in zones]
+    spans = [(r.x[1] - r.x[0], (r.y or (0.0, spec.width))[1] - (r.y or (0.0, spec.width))[0]) for r in zones]
     middles = [(sum(r.x) / 2, sum(r.y or (0.0, spec.width)) / 2) for r in zones]
 
     def values(q: float, zone: float) -> Values:
-        (x, y), (along, across) = middles[int(zone)], sizes[int(zone)]
-        return {"x": x, "y": y, "extent": along, "extent_y": across, "loss": 1 - float(np.exp(-q))}
+        (x, y), (along, across) = middles[int(zone)], spans[int(zone)]
+        return {"x": x, "y": y, "extent": along, "extent_y": across, **value(q)}
 
+    places = np.arange(float(len(zones)))
     return Family(
-        effect.name, values, -float(np.log(4.0)), float(np.log(10.0)), SOFTER, "a zone's stiffness off by more than",
-        _lost, np.arange(float(len(zones))), separately=True,
-    )  # fmt: skip
+        effect.name, values, *sizes, f"a zone's {what} off by more than", words, places, separately=True
+    )
 
 
 def _heavy(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     end = float(np.log(4.0))
+    if predictor.spec.imported is None:
+        sizes = (-end, end, HEAVIER)
+        yield _zones(effect, predictor, lambda q: {"factor": float(np.exp(q))}, sizes, "mass", per_cent)
+        return
     for name in heavy_regions(predictor):
         yield Family(
             f"{effect.name} of {name}", _regional(name, "factor", lambda q: float(np.exp(q))), -end, end, HEAVIER,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from modalkit.simulator.bodies.parts import Notch, Stretch
-from modalkit.simulator.fixing import attached, covered, softened
+from modalkit.simulator.fixing import attached, covered, loaded, softened
 from modalkit.simulator.hidden.base import (
     HiddenEffect,
     Place,
@@ -31,6 +31,12 @@ _FORMS = {"beam": ("cosine", "rectangle", "crack"), "plate": ("cosine", "rectang
 _EXTENTS = {"cosine": (0.03, 0.33), "rectangle": (0.02, 0.33)}
 _NARROW = {"crack": (0.004, 0.01), "slot": (0.01, 0.03)}
 _LAYERS = {"beam": (0.1, 0.45), "plate": (0.2, 0.6)}
+_SHEETS = {"beam": (0.08, 0.33), "plate": (0.15, 0.33)}
+_LOADS = ("sheet", "ice")
+_LIGHTER = 0.15
+_HOLLOW, _HEAVY = 0.3, 3.8
+"""Least and most that a place weighs over what it was drawn as [-]."""
+
 _LAWS = (0.6, 0.2, 0.2)
 """Shares of layers that lose by a loss factor, in proportion to mass, and to stiffness [-]."""
 
@@ -127,6 +133,24 @@ def _draw_patch(rng: np.random.Generator, setup: Setup, strength: float) -> Valu
     }
 
 
+def _draw_load(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
+    """Draw a sheet with sharp edges, ice that runs out to them, or a place that lacks mass; what counts is the mass."""
+    extents = draw_extents(rng, setup, *_SHEETS[setup.kind])
+    share = float(
+        np.prod([extent / size for extent, size in zip(extents.values(), setup.size, strict=False)])
+    )
+    change = strength * log_uniform(rng, 0.015, 0.12) / share
+    lighter = rng.random() < _LIGHTER
+    factor = max(1.0 - change, _HOLLOW) if lighter else min(1.0 + change, _HEAVY)
+    return {
+        **draw_within(rng, setup, tuple(extents.values())),
+        **extents,
+        "factor": float(factor),
+        "mass": float((factor - 1.0) * share * setup.mass),
+        "form": "sheet" if lighter else _LOADS[int(rng.integers(len(_LOADS)))],
+    }
+
+
 LOCAL = (
     HiddenEffect(
         "sensor_mass",
@@ -138,5 +162,12 @@ LOCAL = (
     ),
     HiddenEffect("lumped_mass", _draw_mass, _act_mass, equals=_mass_equals, places=at_its_place, solid=True),
     HiddenEffect("local_stiffness", _draw_soft, softened, places=at_its_place, solid=True),
+    HiddenEffect(
+        "local_mass",
+        _draw_load,
+        loaded,
+        applies=lambda setup: setup.kind in _SHEETS,
+        places=at_its_place,
+    ),
     HiddenEffect("damping_patch", _draw_patch, covered, places=at_its_place, metric="damping"),
 )

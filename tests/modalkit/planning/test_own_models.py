@@ -286,7 +286,8 @@ def test_a_plate_is_forecast_by_its_own_model(tmp_path: Path) -> None:
     assert isinstance(own, OwnBench)
     assert len(own.design.stations) == 4
     names = {family.name for family in own.families}
-    assert {"E", "thickness", "local_stiffness", "orthotropy", "clamp_rotation", "lumped_mass"} <= names
+    assert {"E", "thickness", "local_stiffness", "local_mass", "orthotropy", "clamp_rotation"} <= names
+    assert "lumped_mass" in names
     modulus = next(family for family in own.families if family.name == "E")
     assert own.change(modulus, 0.1, 0.0)[: own.design.modes] == pytest.approx(0.05, abs=1e-9)
     path.write_text(PLATE.format(test=""))

@@ -267,6 +267,34 @@ def test_areas_are_softer_and_stiffer_and_lie_on_the_structure(setups: dict[str,
         assert np.all(sign * (after.elastic().frequency[:4] - before.elastic().frequency[:4]) > 0)
 
 
+@pytest.mark.parametrize("form", ["sheet", "ice"])
+def test_a_load_weighs_what_it_says_and_stays_on_the_structure(setups: dict[str, Setup], form: str) -> None:
+    rng = np.random.default_rng(2)
+    for kind in ("beam", "plate"):
+        setup = setups[kind]
+        values = HIDDEN_EFFECTS["local_mass"].draw(rng, setup, 1.0) | {"form": form}
+        sides = [
+            np.linspace(-0.5, 0.5, 600, endpoint=False) * values[name] + values[axis]
+            for axis, name in zip("xy", ("extent", "extent_y"), strict=False)
+            if name in values
+        ]
+        places = np.meshgrid(*[side + (side[1] - side[0]) / 2 for side in sides])
+        body = put("local_mass", setup, **values)[1].body
+        heavier = np.ones_like(places[0])
+        if kind == "beam":
+            for part in body.stretches:
+                heavier *= 1 + (part.line - 1) * part.inside(places[0])
+        else:
+            for part in body.patches:
+                heavier *= 1 + part.mass * part.covers(*places)
+        assert heavier.mean() == pytest.approx(values["factor"], rel=5e-3)
+        assert (heavier.max() > values["factor"] + 0.01) == (form == "ice")
+        area = np.prod([side[-1] - side[0] for side in sides]) / np.prod(setup.size)
+        assert values["mass"] == pytest.approx((values["factor"] - 1) * area * setup.mass, rel=5e-3)
+        for side, size in zip(sides, setup.size, strict=True):
+            assert side.min() > -1e-9 and side.max() < size + 1e-9
+
+
 def test_masses_sit_at_ends_and_edges_too(setups: dict[str, Setup]) -> None:
     rng = np.random.default_rng(1)
     for kind, edges in (("free", ("x0", "x1")), ("plate", ("y0", "y1"))):

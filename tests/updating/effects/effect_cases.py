@@ -192,6 +192,20 @@ def _soft(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
     return {"stiffness": structure.matrix("stiffness", -values["loss"] * _box(structure, values, 1 / 16))}
 
 
+def _heavy(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
+    """Bodies side by side, two thousand along a stretch, on plates 120 x 120 over a rectangle."""
+    spec, dim = structure.spec, structure.fields.dim
+    count, lines, section = (2000, 120)[dim - 1], [], spec.thickness * (spec.width if dim == 1 else 1.0)
+    extents = values["extent"], values.get("extent_y", values["extent"])
+    for name, extent, size in zip("xy"[:dim], extents, (spec.length, spec.width), strict=False):
+        low, high = (min(max(values[name] + side * extent / 2, 0.0), size) for side in (-1, 1))
+        lines.append(low + (high - low) * (np.arange(count) + 0.5) / count)
+        section *= (high - low) / count
+    points = np.stack(np.meshgrid(*lines), axis=-1).reshape(-1, dim)
+    rows = structure.fields.at(points)["w"]
+    return {"mass": (values["factor"] - 1) * spec.material.density * section * (rows.T @ rows)}
+
+
 def _layer(structure: FieldStructure, values: dict[str, Any]) -> dict[str, Any]:
     inside = _box(structure, values, 0.0)
     heavy = structure.matrix("mass", values["mass"] * inside) - structure.point_masses()
@@ -250,6 +264,7 @@ CHANGES: dict[str, Callable[[FieldStructure, dict[str, Any]], dict[str, Any]]] =
     "sensor_mass": _sensor,
     "lumped_mass": _body,
     "local_stiffness": _soft,
+    "local_mass": _heavy,
     "ground_spring": _sprung,
     "suspension": _hung,
     "damping_patch": _layer,
@@ -287,6 +302,7 @@ CONTRACT = {
     "sensor_mass": {"mass", "bulk", "dx", "dy"},
     "lumped_mass": {"mass", "x", "y", "bulk"},
     "local_stiffness": {"x", "y", "extent", "extent_y", "loss"},
+    "local_mass": {"x", "y", "extent", "extent_y", "factor"},
     "ground_spring": {"x", "y", "extent", "stiffness", "damping"},
     "suspension": {"stiffness", "damping", "inset", "cords"},
     "shear": set(),
@@ -319,6 +335,7 @@ VANISHING = {
     "sensor_mass": {"mass": 0.0},
     "lumped_mass": {"mass": 0.0},
     "local_stiffness": {"loss": 0.0},
+    "local_mass": {"factor": 1.0},
     "ground_spring": {"stiffness": 0.0, "damping": 0.0},
     "orthotropy": {"ratio": 1.0, "shear_ratio": 1.0, "coupling": 1.0},
     "axial_load": {"force": 0.0},

@@ -33,11 +33,12 @@ RISES = {"E": 1, "density": -1, "thickness": 1, "length": -1, "clamp_rotation": 
 RISES |= {"clamp_translation": 1, "lumped_mass": -1, "local_stiffness": -1, "axial_load": 1}
 RISES |= {"fluid_added_mass": -1, "exponential_window": 0, "calibration_gain": 0, "section_scale": 0}
 """Sign of the change of the first frequency with each effect's first size; 0 is none at all."""
-RISES |= {"ground_spring": 1}
+RISES |= {"ground_spring": 1, "local_mass": -1}
 SIZE = {"local_stiffness": "loss", "lumped_mass": "mass", "ground_spring": "stiffness"}
+SIZE |= {"local_mass": "factor"}
 HARMLESS = {"clamp_rotation": 1, "clamp_translation": 1, "sensor_mass": 0, "lumped_mass": 0}
 """Prior quantile at which nothing can be seen; a clamp is rigid at its high end."""
-HARMLESS |= {"local_stiffness": 0.5, "exponential_window": 0}
+HARMLESS |= {"local_stiffness": 0.5, "local_mass": 0.5, "exponential_window": 0}
 
 every = pytest.mark.parametrize("name", list(LIBRARY))
 places = pytest.mark.parametrize("place", list(LOOK))
@@ -98,7 +99,7 @@ def test_forms_have_shares_and_fix_what_is_known(name: str, place: str) -> None:
     assert all(0 <= low < high <= 1 for f in forms for low, high in f.within.values())
 
 
-@admitted(["local_stiffness", "uniform_damping"], ["beam", "plate", "matrices"])
+@admitted(["local_stiffness", "local_mass", "uniform_damping"], ["beam", "plate", "matrices"])
 @settings(max_examples=15, deadline=None)
 @given(u=st.floats(0.01, 0.99))
 def test_values_go_back_to_the_quantiles_they_came_from(name: str, place: str, u: float) -> None:
@@ -215,7 +216,7 @@ def test_the_order_of_the_points_does_not_matter(name: str, place: str) -> None:
 
 SCALING = sorted({"E", "thickness", "length", "clamp_rotation", "clamp_translation", "local_stiffness", "orthotropy"}
                  | {"axial_load", "fluid_added_mass", "lumped_mass", "damping_patch", "shear"}
-                 | {"ground_spring"})  # fmt: skip
+                 | {"ground_spring", "local_mass"})  # fmt: skip
 
 
 @admitted(SCALING, ["beam", "plate"])

@@ -56,7 +56,7 @@ class Density(FactorEffect):
     summary = "The density (or a mass spread evenly) differs from the model's by more than its tolerance."
     footprint = "All frequencies by one factor, modal constants by the square of it; shapes unchanged."
     models = ("beam", "plate", "matrices")
-    equivalent_to = ("E", "thickness", "length", "fluid_added_mass")
+    equivalent_to = ("E", "thickness", "length", "fluid_added_mass", "local_mass")
     separated_by = "weigh the specimen; absolute level; a known added mass"
     factors = ("density",)
     phrase = "the density"

@@ -15,13 +15,13 @@ from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, tot
 from updating.effects.box import LIKE, Place, mirror_images, starting_places
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import centre_of, on_basis, one_of
+from updating.effects.structure.mass_screening import frequency_gap
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.imported.matrices import Imported
 from updating.models.imported.structure import ImportedStructure
 from updating.models.spec import Spec
 from updating.models.state import State
-from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 
 STEEL = 7850.0
@@ -39,9 +39,6 @@ FARTHEST = 3.0
 SHARES = {"anywhere": 0.5, "ends": 0.25, "points": 0.25}
 """Shares of the prior of a body's place: what is fixed to a structure mostly is so at its ends, on plates at corners,
 or where a test has its points, whose places are marked and were thought of; each half of the rest [-]."""
-
-COMMON = 2.0
-"""How much more readily a change that all modes have in common is taken for tolerances than one of their own [-]."""
 
 PROMISING = 3
 """At how many of the test's points a body is weighed: those at which one comes nearest to the frequencies."""
@@ -304,26 +301,16 @@ def free_ends(spec: Spec) -> FloatArray:
 
 
 def promising_points(predictor: Predictor) -> FloatArray:
-    """Return the few test points at which a body comes nearest to the frequencies, (n, dim) [m].
-
-    To first order a mass m lowers ln f of a mode by m phi^2 / 2 at its place; what all modes have in common beyond that
-    is taken for tolerances, twice as readily as what each has of its own.
-    """
+    """Return the few test points at which a body comes nearest to the frequencies, to first order, (n, dim) [m]."""
 
     def build() -> FloatArray:
         test = predictor.measured
         points, first = np.unique(test.points, axis=0, return_index=True)
         if len(points) <= PROMISING:
             return points
-        count = len(test.frequency)
-        nominal = predictor.predict(at_least=count + test.below + PROMISING)
-        chosen = match(test, nominal, np.arange(count) + test.below)
-        off = np.log(test.frequency / nominal.frequency[chosen])
-        shapes = predictor.point_rows()[first] @ nominal.vectors[:, chosen]
-        falls = -0.5 * shapes**2
-        metric = np.eye(count) - 1 / (count + 1 / COMMON**2)
-        along = np.maximum(falls @ metric @ off, 0.0)
-        gained = along**2 / np.maximum(np.einsum("ij,jk,ik->i", falls, metric, falls), 1e-300)
+        gap = frequency_gap(predictor)
+        masses, gained = gap.sizes(-0.5 * (predictor.point_rows()[first] @ gap.vectors) ** 2)
+        gained = np.where(masses > 0, gained, 0.0)
         return np.asarray(points[np.argsort(-gained, kind="stable")[:PROMISING]])
 
     return predictor.once("points for a body", build)

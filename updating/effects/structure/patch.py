@@ -49,7 +49,7 @@ class DampingPatch(Effect):
         "Damping rises in the modes that bend there; frequencies follow the layer's mass and stiffness."
     )
     models = ("beam", "plate", "matrices")
-    equivalent_to = ("uniform_damping",)
+    equivalent_to = ("uniform_damping", "local_mass")
     named = ("region",)
     repeats = True
     separated_by = "take the layer off, or more modes whose curvature differs along the structure"

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cache
-from itertools import product
 from typing import Any
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness, total_mass
-from updating.effects.box import Place, mirror_images, place, starting_places
+from updating.effects.box import Place, mirror_images, place, spread, starting_places
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
 from updating.effects.structure.mass import AXES, outline
@@ -32,9 +30,6 @@ SLIPS = 0.1
 
 SHORTEST = 0.03
 """Shortest stretch that differs from a point, of the length [-]."""
-
-DENSE = {"beam": 24, "plate": 12}
-"""Gauss points along each side of a stretch: enough for the square of a shape of a dozen half waves [-]."""
 
 SAME = 1e-6
 """So near to a test point, of the length, a place is that point [-]."""
@@ -221,19 +216,10 @@ def _unit(predictor: Predictor, values: Values) -> FloatArray:
         return springs(
             predictor, np.repeat(at, len(directions), axis=0), np.ones(len(directions)), directions
         )
-    extent = values.get("extent", 0.0)
-    lines, shares = [], []
-    for name, size in _sides(spec):
-        nodes, weights = _quadrature(DENSE[spec.kind] if extent else 1)
-        low, high = (min(max(values[name] + side * extent / 2, 0.0), size) for side in (-1, 1))
-        lines.append((low + high) / 2 + nodes * (high - low) / 2)
-        shares.append(weights / 2)
-    points = np.array(list(product(*lines)))
-    return springs(predictor, points, np.prod(list(product(*shares)), axis=1))
-
-
-_quadrature = cache(np.polynomial.legendre.leggauss)
-"""Gauss's nodes and weights, kept: every stretch asks for the same."""
+    if not values.get("extent"):
+        return springs(predictor, np.array([[values[name] for name, _ in _sides(spec)]]), np.ones(1))
+    points, weights = spread(spec, values)
+    return springs(predictor, points, weights / weights.sum())
 
 
 def _sides(spec: Spec) -> list[tuple[str, float]]:
