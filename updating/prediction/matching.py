@@ -151,9 +151,7 @@ def _without_strangers(measured: Measured, prediction: Prediction, trusted: Bool
     return best
 
 
-def _tried(
-    measured: Measured, prediction: Prediction, trusted: BoolArray | None, first: BoolArray
-) -> _Tried:
+def _tried(measured: Measured, prediction: Prediction, trusted: BoolArray | None, first: BoolArray) -> _Tried:
     """Find partners of some modes (n_modes,), and what is most like each of the others."""
     count = len(measured.frequency)
     macs = mac_of_constants(measured, prediction, trusted)
