@@ -75,7 +75,7 @@ class UnpairedModes(Quantity):
         """Return each mode beside that of the state which it is; beside no mode in particular where it is none."""
         claims = view.claims.tolist() if len(view.claims) else [-1] * len(self._test.frequency)
         parts = [
-            self._any(i) if k < 0 or view.whole is None else self._known(view.whole, k, i, view.doubt.damping)
+            self._any(i) if k < 0 or view.whole is None else self._known(view, view.whole, k, i)
             for i, k in enumerate(claims)
         ]
         count = sum(len(part.residual) for part in parts)
@@ -90,16 +90,18 @@ class UnpairedModes(Quantity):
             idle=np.concatenate([np.full(len(part.residual), part.idle) for part in parts]),
         )
 
-    def _known(self, whole: Prediction, k: int, i: int, doubt: float) -> _Rows:
-        """Return a mode beside the k-th of a state, whose damping is in ``doubt`` [-]."""
+    def _known(self, view: View, whole: Prediction, k: int, i: int) -> _Rows:
+        """Return a mode beside the k-th of a state."""
         test, scale = self._test, self._scale[i]
         first, names = [np.log(test.frequency[i] / whole.frequency[k])], len(self.setting.names)
         relative = test.frequency_sigma[i] / test.frequency[i]
-        variance = [relative**2 + max(test.repeatability, LEAST_FREQUENCY_NOISE) ** 2]
+        variance = [
+            relative**2 + max(test.repeatability, LEAST_FREQUENCY_NOISE) ** 2 + self._idealised(view, i)
+        ]
         factors = [whole.log_frequency_by[k]]
         if self._damped[i]:
             first.append(np.log(test.damping[i] / max(whole.damping[k], LEAST_DAMPING)))
-            variance.append(self._damping_noise(i) + doubt**2)
+            variance.append(self._damping_noise(i) + view.doubt.damping**2)
             factors.append(np.zeros(names))
         measured, constants = test.constants[:, i] / scale, whole.constants[:, k] / scale
         level = -1.0 if test.bare and measured @ constants < 0 else 1.0
@@ -133,6 +135,15 @@ class UnpairedModes(Quantity):
             own,
             idle=True,
         )
+
+    def _idealised(self, view: View, i: int) -> float:
+        """Return how far the idealisation of what makes a mode leaves its ln f off, relative to the shift it suffers.
+
+        A mass on a spring is moved by the structure as far as it moves the structure: from where it swings alone.
+        """
+        alone = [np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in view.state.absorbers]
+        shifts = [abs(float(np.log(self._test.frequency[i] / own))) for own in alone]
+        return (view.doubt.fidelity * min(shifts, default=0.0)) ** 2
 
     @cached_property
     def _scale(self) -> FloatArray:

@@ -116,24 +116,23 @@ class Damped:
     turn: ComplexArray
 
 
-def damped(
-    values: FloatArray, against: FloatArray, dashpots: FloatArray, rates: FloatArray, count: int
-) -> Damped:
+def modes_taking_part(values: FloatArray, count: int) -> int:
+    """Return how many of the undamped modes with eigenvalues (n,) take part where ``count`` are asked for."""
+    return min(count + CLEAR, len(values))
+
+
+def damped(values: FloatArray, viscous: FloatArray, count: int) -> Damped:
     """Solve for the damped modes where dashpots of absorbers couple undamped ones.
 
     A mode that is split in two by an absorber whose dashpot takes as much as the spring gives is near to no undamped
-    one: the pencil of s^2 + s (R^T c R + rates) + lambda is solved between the modes asked for and some above.
+    one: the pencil of s^2 + s C + lambda is solved between the modes asked for and some above.
 
     Parameters
     ----------
-    values : (n,) array
+    values : (all,) array
         Eigenvalues of the undamped elastic modes, rising [rad^2/s^2].
-    against : (k, n) array
-        How the masses move against their places in each [kg^-1/2].
-    dashpots : (k,) array
-        Of the absorbers [N s/m].
-    rates : (n,) array
-        Decay rates 2 zeta omega that all else gives the modes [1/s].
+    viscous : (n, n) array
+        C between the lowest n of them, of all that damps [1/s].
     count : int
         Number of modes asked for.
 
@@ -141,9 +140,8 @@ def damped(
     -------
     Damped
     """
-    n = min(count + CLEAR, len(values))
+    n = len(viscous)
     omega = np.sqrt(np.maximum(values[:n], 1e-12))
-    viscous = (against[:, :n].T * dashpots) @ against[:, :n] + np.diag(rates[:n])
     system = np.block([[np.zeros((n, n)), np.diag(omega)], [-np.diag(omega), -viscous]])
     poles, states = np.linalg.eig(system)
     up = np.flatnonzero(poles.imag > 0)

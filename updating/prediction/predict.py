@@ -13,7 +13,7 @@ from scipy import linalg
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from updating.environment import Environment
-from updating.models.absorbers import Damped, damped, motions, padded, structural
+from updating.models.absorbers import Damped, damped, modes_taking_part, padded, structural
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
 from updating.models.damping import (
@@ -183,7 +183,11 @@ class Predictor(Displayed):
         rows = self._rows(total, read.points)
         moving = structural(vectors, total.absorbers)
         dashed = self._damped(total, values, vectors, chosen)
-        modes = moving[:, chosen] if dashed is None else _turned(moving[:, first:] @ dashed.turn, rows["w"])
+        modes = (
+            moving[:, chosen]
+            if dashed is None
+            else _turned(moving[:, first:] @ dashed.turn, moving[:, chosen], rows["w"])
+        )
         whole = {n: m[:, : len(modes)] @ modes for n, m in rows.items()}
         shapes = {n: np.real(m) for n, m in whole.items()}
         by, changes = np.zeros((0, len(chosen))), np.zeros((0, len(read.points), len(chosen)))
@@ -220,12 +224,14 @@ class Predictor(Displayed):
         if not dashpots.any() or np.isnan(values).any():
             return None
         first = self.reduced.structure.rigid_modes
-        elastic, modes = values[first:], vectors[:, first:]
-        bare = replace(state, absorbers=tuple(replace(one, damping=0.0) for one in state.absorbers))
-        ratio = self._damping(bare, elastic, modes)
-        rates = 2 * np.nan_to_num(ratio) * np.sqrt(np.maximum(elastic, 0.0))
-        found = damped(elastic, motions(modes, state.absorbers)[1], dashpots, rates, len(chosen))
-        return replace(found, ratio=found.ratio if self.expects(state) else np.full(len(chosen), np.nan))
+        elastic = values[first:]
+        size = modes_taking_part(elastic, len(chosen))
+        modes, omega = vectors[:, first : first + size], np.sqrt(np.maximum(elastic[:size], 1e-12))
+        viscous, hysteretic = (modes.T @ matrix @ modes for matrix in self._damping_matrices(state))
+        rates = 2 * self._ratios(state, size) * omega + modal_losses(state, elastic[:size], modes)
+        viscous = viscous + hysteretic / np.sqrt(np.outer(omega, omega)) + np.diag(rates + 2 * state.decay)
+        found = damped(elastic, viscous, len(chosen))
+        return found if self.expects(state) else replace(found, ratio=np.full(len(chosen), np.nan))
 
     @cached_property
     def nominal_rows(self) -> dict[str, FloatArray]:
@@ -383,10 +389,15 @@ class Predictor(Displayed):
         return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
 
 
-def _turned(modes: ComplexArray, rows: FloatArray) -> ComplexArray:
-    """Return complex modes (r, n_modes), each turned to be as real as it can be at points with rows (n_points, r)."""
-    seen = rows[:, : len(modes)] @ modes
-    return np.asarray(modes * np.exp(-0.5j * np.angle(np.sum(seen**2, axis=0))))
+def _turned(modes: ComplexArray, undamped: FloatArray, rows: FloatArray) -> ComplexArray:
+    """Return complex modes (r, n_modes), each turned to be as real as it can be at points with rows (n_points, r).
+
+    Their signs are those of the undamped ones, whose derivatives are theirs.
+    """
+    seen, before = rows[:, : len(modes)] @ modes, rows[:, : len(modes)] @ undamped
+    turned = modes * np.exp(-0.5j * np.angle(np.sum(seen**2, axis=0)))
+    same = np.sum(np.real(rows[:, : len(modes)] @ turned) * before, axis=0)
+    return np.asarray(turned * np.where(same < 0, -1.0, 1.0))
 
 
 def _gained(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:
