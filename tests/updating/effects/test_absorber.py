@@ -101,7 +101,7 @@ def test_poles_and_constants_are_those_of_the_damped_structure(k: int, ratio: fl
     order = np.argsort(np.where(poles.imag > 0, np.abs(poles), np.inf))[:4]
     poles, shapes = poles[order], states[: n + 1, order]
     size = np.abs(poles) / (2 * np.pi)
-    assert found.frequency == pytest.approx(size, rel=1e-4)
+    assert found.frequency == pytest.approx(size, rel=2e-4)  # less than any test repeats by
     assert found.damping == pytest.approx(-poles.real / np.abs(poles), rel=1e-2)
     shapes = shapes / np.sqrt(
         np.einsum("ir,ijr,jr->r", shapes, 2 * poles * m[:, :, None] + c[:, :, None], shapes)
