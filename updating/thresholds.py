@@ -58,6 +58,19 @@ Doubled: nothing."""
 
 # -------------------------------------------------------------------------------- the noise of modal constants
 
+UNPAIRED_SPREAD = 1.0
+"""How far a measured mode that the model lacks may lie from its others, in ln f and ln zeta, and how much of each shape
+beside it may be in its own, relative to its r.m.s.: 1 sigma [-]. Judged: a band is some e-folds wide. Doubled: what
+makes such a mode is more probable by a factor of 16."""
+
+UNPAIRED_NEIGHBOURS = 3
+"""So many of the model's modes, those next to it in frequency, mix in the shape of a measured mode that the model lacks
+[-]: the one that it is a twin of, and one to either side. Doubled: fewer shapes speak for what makes such a mode."""
+
+UNPAIRED_SHAPE_NOISE = 0.05
+"""Error of the shape of a measured mode that the model lacks beyond its noise, relative to its r.m.s. [-]: points are
+hit beside their places, and whatever makes it is more complicated. Doubled: its shape speaks a quarter as loudly."""
+
 LEAST_CONSTANT_NOISE = 0.005
 """Error of a modal constant that no coherence shows (cross-talk, direction), relative to the mode's r.m.s. [-].
 Judged from transducers' data sheets: a cross sensitivity of some per cent, of motion across that is a tenth. Doubled:

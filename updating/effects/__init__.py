@@ -20,6 +20,7 @@ from updating.effects.measurement.position_error import PositionError
 from updating.effects.measurement.swapped_points import SwappedPoints
 from updating.effects.measurement.window import ExponentialWindow
 from updating.effects.obstacles import Lack, Obstacle
+from updating.effects.structure.absorber import Absorber
 from updating.effects.structure.axial_load import AxialLoad
 from updating.effects.structure.clamp import ClampRotation, ClampTranslation
 from updating.effects.structure.damping import UniformDamping
@@ -56,6 +57,7 @@ LIBRARY: dict[str, Effect] = {
         LumpedMass(),
         LocalStiffness(),
         LocalMass(),
+        Absorber(),
         Joint(),
         GroundSpring(),
         Suspension(),

@@ -279,6 +279,10 @@ class Effect(ABC):
             return self.obstacle(predictor)
         return Obstacle(Lack.MODEL, self.elsewhere.get(spec.kind, f"not for {spec.called}"))
 
+    def unseen(self, predictor: Predictor) -> Obstacle | None:
+        """Return which sign of the effect a test lacks, so that it is not looked for in it, or None."""
+        return None
+
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Return prior quantiles from which the search for the best values starts."""
         count = len(self.parameters(predictor))

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+import numpy as np
+
+from acquisition.arrays import IntArray
 from updating.likelihood.baseline_prior import Before
 from updating.likelihood.comparison import Block
 from updating.models.state import State
@@ -77,11 +80,17 @@ class View:
         Its whole departure from the bare nominal model, what was put in beforehand included.
     doubt : Doubt
         What it leaves in doubt.
+    whole : Prediction, optional
+        All its modes, where some of them may be the unpaired measured ones.
+    claims : (n_unpaired,) int array
+        Which of these each unpaired measured mode is, -1 where none of them; empty where the state adds no modes.
     """
 
     now: Prediction
     state: State
     doubt: Doubt
+    whole: Prediction | None = None
+    claims: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
 
 @dataclass(frozen=True, eq=False)

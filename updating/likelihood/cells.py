@@ -39,7 +39,7 @@ class Cells:
 
 def cells(comparison: Comparison) -> Cells:
     """Return the cells of a comparison."""
-    key = comparison.channel * (int(comparison.mode.max(initial=0)) + 1) + comparison.mode
+    key = comparison.channel * (int(comparison.mode.max(initial=0)) + 2) + comparison.mode + 1
     names, of_mode = np.unique(key, return_inverse=True)
     known, rank = np.unique(comparison.source, return_inverse=True)
     has = comparison.source >= 0

@@ -11,8 +11,9 @@ from scipy.linalg import block_diag
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.prediction import Prediction
 
-CHANNELS = ("frequency", "damping", "frf", "phase", "level")
-"""What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force."""
+CHANNELS = ("frequency", "damping", "frf", "phase", "level", "unpaired")
+"""What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force; and all that
+is known of modes without a partner in the nominal model."""
 
 SCALED = "frf"
 """The channel whose noise has an unknown scale."""
@@ -35,11 +36,13 @@ class Block:
         Change per standard deviation of the nuisances of this channel alone: those that bear a name, whose
         stretching is a finding, and the rest [-].
     mode : (n,) int array
-        Measured mode each datum belongs to.
+        Measured mode each datum belongs to, -1 if to one without a partner.
     source : (n,) int array, optional
         Measuring channel it comes from; left out, none: the test as a whole.
     idealised : (n,) array, optional
         What of the variance a candidate's idealisation adds, mode by mode, at the most [-]; left out, nothing.
+    idle : (n,) bool array, optional
+        Which data the state says nothing of; left out, none.
     """
 
     channel: str
@@ -51,6 +54,7 @@ class Block:
     mode: IntArray
     source: IntArray | None = None
     idealised: FloatArray | None = None
+    idle: BoolArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +73,7 @@ class Comparison:
     channel : (n,) int array
         Which of ``CHANNELS``.
     mode : (n,) int array
-        Measured mode each datum belongs to; those of further specimens count on.
+        Measured mode each datum belongs to, -1 if to one without a partner; those of further specimens count on.
     source : (n,) int array
         Measuring channel it comes from, -1 if from the whole test; those of further specimens count on.
     predictions : tuple of Prediction
@@ -82,6 +86,8 @@ class Comparison:
         Which of them all data doubt alike: tolerances of the model, masses and places of its bodies.
     idealised : (n,) array, optional
         What of the variance the candidate's idealisation adds, at the most [-]; left out, its size is settled.
+    idle : (n,) bool array, optional
+        Which data the state says nothing of, so that none of them fits or does not; left out, none.
     """
 
     residual: FloatArray
@@ -95,6 +101,7 @@ class Comparison:
     doubts: IntArray
     tolerances: IntArray
     idealised: FloatArray | None = None
+    idle: BoolArray | None = None
 
     @property
     def prediction(self) -> Prediction:
@@ -110,6 +117,16 @@ class Comparison:
     def scaled(self) -> BoolArray:
         """Which data have noise of an unknown scale, (n,): the shapes."""
         return self.of(SCALED)
+
+    @property
+    def of_pairs(self) -> BoolArray:
+        """Which data are of modes that have a partner in the nominal model, (n,)."""
+        return np.asarray(self.mode >= 0)
+
+    @property
+    def stated(self) -> BoolArray:
+        """Which data the state says something of, (n,)."""
+        return np.ones(len(self.residual), dtype=bool) if self.idle is None else ~self.idle
 
     def noise(self, scale: float) -> FloatArray:
         """Return the variance with the shapes so many times worse than thought, shape (n,) [-]."""
@@ -168,7 +185,15 @@ def assemble(
         np.arange(named[-1]),
         np.arange(count),
         _idealised([(block.idealised, len(block.residual)) for block in blocks]),
+        _idle([(block.idle, len(block.residual)) for block in blocks]),
     )
+
+
+def _idle(parts: Sequence[tuple[BoolArray | None, int]]) -> BoolArray | None:
+    """Return which data are idle, each part with the number of its data; None where none is."""
+    if all(part is None for part, _ in parts):
+        return None
+    return np.concatenate([np.zeros(count, dtype=bool) if part is None else part for part, count in parts])
 
 
 def _idealised(parts: Sequence[tuple[FloatArray | None, int]]) -> FloatArray | None:
@@ -197,7 +222,12 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         block_diag(*(part.nuisance for part in parts)),
         np.concatenate([part.variance for part in parts]),
         np.concatenate([part.channel for part in parts]),
-        np.concatenate([part.mode + first for part, first in zip(parts, modes, strict=False)]),
+        np.concatenate(
+            [
+                np.where(part.mode < 0, -1, part.mode + first)
+                for part, first in zip(parts, modes, strict=False)
+            ]
+        ),
         np.concatenate(
             [
                 np.where(part.source < 0, -1, part.source + first)
@@ -209,4 +239,5 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),
         np.concatenate([part.tolerances + first for part, first in zip(parts, starts, strict=False)]),
         _idealised([(part.idealised, len(part.residual)) for part in parts]),
+        _idle([(part.idle, len(part.residual)) for part in parts]),
     )

@@ -121,7 +121,7 @@ def suspects(comparison: Comparison, scale: float, most: int) -> list[Outlier]:
 
 def _groups(comparison: Comparison) -> list[Outlier]:
     """Return every group of data that may be worse than thought."""
-    pairs = {(int(m), int(c)) for m, c in zip(comparison.mode, comparison.channel, strict=True)}
+    pairs = {(int(m), int(c)) for m, c in zip(comparison.mode, comparison.channel, strict=True) if m >= 0}
     modes = sorted({m for m, _ in pairs})
     groups = [Outlier(mode=m, channel=c) for m, c in sorted(pairs)]
     groups += [Outlier(mode=m) for m in modes if sum(m == other for other, _ in pairs) > 1]

@@ -14,6 +14,7 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.models.absorbers import bordered, energies, padded, structural
 from updating.models.reduced import Reduced
 from updating.models.spec import Damping
 from updating.models.state import State
@@ -116,26 +117,29 @@ def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[
     Returns
     -------
     viscous, structural : (r, r) arrays
-        C and D of Z(s) = s^2 M + s C + K + i D [SI].
+        C and D of Z(s) = s^2 M + s C + K + i D, absorbers behind the structure [SI].
     """
     own = coefficients(reduced, damping, state)
     n = reduced.ranks[state.released]
-    viscous, structural = np.zeros((n, n)), np.zeros((n, n))
+    viscous, hysteretic = np.zeros((n, n)), np.zeros((n, n))
     if _known(own):
         if _uniform(own):
-            stiffness, mass = reduced.matrices(replace(state, stiffness=(), mass=()))
+            stiffness, mass = reduced.matrices(replace(state, stiffness=(), mass=(), absorbers=()))
             viscous += own["alpha"][0] * mass + own["beta"][0] * stiffness
-            structural += own["loss_factor"][0] * stiffness
+            hysteretic += own["loss_factor"][0] * stiffness
         else:
             stiff, heavy = region_matrices(reduced, state)
             viscous += np.tensordot(own["alpha"], heavy, axes=1) + np.tensordot(own["beta"], stiff, axes=1)
             viscous += own["alpha"][-1] * reduced.point_masses[:n, :n]
-            structural += np.tensordot(own["loss_factor"], stiff, axes=1)
+            hysteretic += np.tensordot(own["loss_factor"], stiff, axes=1)
     for added in _viscous(state):
         viscous += added[:n, :n]
     for added in _structural(state):
-        structural += added[:n, :n]
-    return viscous, structural
+        hysteretic += added[:n, :n]
+    if state.absorbers:
+        viscous = bordered(viscous, state.absorbers, "damping")
+        hysteretic = padded(padded(hysteretic, state.absorbers).T, state.absorbers).T
+    return viscous, hysteretic
 
 
 def modal_damping(
@@ -153,7 +157,7 @@ def modal_damping(
     values : (n_modes,) array
         Eigenvalues of the state [rad^2/s^2].
     vectors : (r, n_modes) array
-        Its mass-normalised modes.
+        Its mass-normalised modes, absorbers behind the structure.
 
     Returns
     -------
@@ -162,14 +166,16 @@ def modal_damping(
     own = coefficients(reduced, damping, state)
     if not _uniform(own):
         matrices = damping_matrices(reduced, damping, state)
-        viscous, structural = (np.sum(vectors * (matrix @ vectors), axis=0) for matrix in matrices)
-        return viscous, structural
-    viscous = own["alpha"][0] * (1.0 - _share(state.mass, vectors)) + _share(_viscous(state), vectors)
-    structural = _share(_structural(state), vectors)
+        viscous, hysteretic = (np.sum(vectors * (matrix @ vectors), axis=0) for matrix in matrices)
+        return viscous, hysteretic
+    hung, moving = energies(vectors, state.absorbers), structural(vectors, state.absorbers)
+    heavy = 1.0 - _share(state.mass, moving) - hung["mass"]
+    viscous = own["alpha"][0] * heavy + _share(_viscous(state), moving) + hung["damping"]
+    hysteretic = _share(_structural(state), moving)
     if own["beta"][0] or own["loss_factor"][0]:
-        elastic = values - _share(state.stiffness, vectors)
-        viscous, structural = viscous + own["beta"][0] * elastic, structural + own["loss_factor"][0] * elastic
-    return viscous, structural
+        elastic = values - _share(state.stiffness, moving) - hung["stiffness"]
+        viscous, hysteretic = viscous + own["beta"][0] * elastic, hysteretic + own["loss_factor"][0] * elastic
+    return viscous, hysteretic
 
 
 def _known(own: Mapping[str, FloatArray]) -> bool:
@@ -210,12 +216,13 @@ def modal_losses(state: State, values: FloatArray, vectors: FloatArray) -> Float
     values : (n_modes,) array
         Eigenvalues [rad^2/s^2].
     vectors : (r, n_modes) array
-        Mass-normalised modes.
+        Mass-normalised modes, absorbers behind the structure.
 
     Returns
     -------
     (n_modes,) array [1/s]
     """
+    vectors = structural(vectors, state.absorbers)
     n = len(vectors)
     omega = np.sqrt(np.maximum(values, 0.0))
     total = np.zeros(len(values))
@@ -267,6 +274,7 @@ def coupled(state: State, values: FloatArray, vectors: FloatArray, chosen: IntAr
     dampers = [loss.matrix for loss in state.losses if loss.power == VISCOUS]
     if not dampers:
         return np.ones(len(chosen))
+    vectors = structural(vectors, state.absorbers)
     n = len(vectors)
     squares = (vectors.T @ (sum(damper[:n, :n] for damper in dampers) @ vectors[:, chosen])) ** 2
     gap = values[:, None] - values[chosen]

@@ -18,6 +18,7 @@ from scipy import sparse
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
+from updating.models.absorbers import bordered
 from updating.models.base import FACTORS, Structure, Term, scale_of
 from updating.models.fields import Fields, Sparse
 from updating.models.state import State
@@ -173,7 +174,7 @@ class Reduced:
         return self.project(self.structure.point_masses())
 
     def matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
-        """Return stiffness and mass of a state on the columns its releases admit [SI]."""
+        """Return stiffness and mass of a state on the columns its releases admit, absorbers behind them [SI]."""
         n = self.ranks[state.released]
         total = {"stiffness": np.zeros((n, n)), "mass": self.point_masses[:n, :n].copy()}
         for term, parts in self.terms(state):
@@ -182,9 +183,13 @@ class Reduced:
         for kind, added in (("stiffness", state.stiffness), ("mass", state.mass)):
             for matrix in added:
                 total[kind] += matrix[:n, :n]
+        stiffness, mass = total["stiffness"], total["mass"]
         if state.released == TRANSLATION:
-            return self._without_slopes(total["stiffness"], total["mass"])
-        return total["stiffness"], total["mass"]
+            stiffness, mass = self._without_slopes(stiffness, mass)
+        if state.absorbers:
+            stiffness = bordered(stiffness, state.absorbers, "stiffness")
+            mass = bordered(mass, state.absorbers, "mass")
+        return stiffness, mass
 
     def _without_slopes(self, stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the matrices with the slopes at the clamps held.

@@ -10,6 +10,7 @@ from typing import TypeVar
 
 from acquisition.arrays import FloatArray
 from acquisition.display import Displayed
+from updating.models.absorbers import Absorber
 from updating.models.spec import Theory
 
 
@@ -84,6 +85,8 @@ class State(Displayed):
     fluid : mapping of str to float
         The fluid whose inertia is among ``mass``: ``fluid_density`` [kg/m^3], ``free_surface`` and ``bottom`` [m],
         infinite where there is none.
+    absorbers : tuple of Absorber
+        Masses on springs that hang on the structure: each adds a degree of freedom behind those of the basis.
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -105,6 +108,7 @@ class State(Displayed):
     slope: float = 0.0
     per_newton: tuple[FloatArray, ...] = ()
     fluid: Mapping[str, float] = field(default_factory=_nothing)
+    absorbers: tuple[Absorber, ...] = ()
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
@@ -128,6 +132,7 @@ class State(Displayed):
             self.slope + other.slope,
             self.per_newton + other.per_newton,
             MappingProxyType({**self.fluid, **other.fluid}),
+            self.absorbers + other.absorbers,
         )
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.prediction import Prediction
-from updating.test_data.measured import Measured
+from updating.test_data.measured import UNSTATED, Measured
 
 FREQUENCY_WEIGHT = 0.5
 """How much a frequency ratio of e counts against a MAC of zero."""
@@ -91,6 +93,68 @@ def match(
         rows = np.flatnonzero((columns >= 0) & (columns < cost.shape[1]))
         cost[rows, columns[rows]] = -AS_STATED
     return np.asarray(linear_sum_assignment(cost)[1])
+
+
+NEAR = 0.3
+"""Farthest that a measured mode without a partner in the nominal model may lie, in ln f, from the mode that it is said
+to be of a model that has one more [-]: beyond, it is said to be none. Doubled: a search finds its way from further off,
+and takes for its own what is not."""
+
+
+def match_with_unpaired(
+    measured: Measured, unpaired: Measured, prediction: Prediction, order: IntArray, added: int
+) -> tuple[IntArray, IntArray]:
+    """Assign a predicted mode to every measured mode, and to as many unpaired ones as the model has modes more.
+
+    Parameters
+    ----------
+    measured, unpaired : Measured
+        The modes with a partner in the nominal model, and those without.
+    prediction : Prediction
+        Modes of a model that has some more.
+    order : (n_measured,) int array
+        As of :func:`match`.
+    added : int
+        How many more.
+
+    Returns
+    -------
+    order : (n_measured,) int array
+        Predicted mode of each measured mode.
+    claims : (n_unpaired,) int array
+        Of each unpaired one, -1 where it is none of them.
+    """
+    claims = np.full(len(unpaired.frequency), -1, dtype=np.int64)
+    found = match(measured, prediction, order)
+    for _ in range(min(added, len(claims))):
+        left = np.flatnonzero(claims < 0)
+        trials = [np.append(np.flatnonzero(claims >= 0), i) for i in left]
+        tried = [match(_beside(measured, unpaired, rows), prediction, order) for rows in trials]
+        last = np.array([unpaired.frequency[i] for i in left]) / prediction.frequency[[t[-1] for t in tried]]
+        best = int(np.argmin(np.nan_to_num(np.abs(np.log(last)), nan=np.inf)))
+        if not abs(np.log(last[best])) < NEAR:
+            break
+        count = len(measured.frequency)
+        found, claims[trials[best]] = tried[best][:count], tried[best][count:]
+    return found, claims
+
+
+def _beside(measured: Measured, unpaired: Measured, rows: IntArray) -> Measured:
+    """Return a test with some of its unpaired modes behind the others, as far as a match asks for them."""
+    extra = unpaired.modes(rows)
+    partners = measured.partners
+    if partners is not None:
+        partners = np.append(partners, np.full(len(rows), UNSTATED))
+    own = measured.partner_constants
+    if own is not None:
+        own = np.hstack([own, np.zeros((len(own), len(rows)))])
+    return replace(
+        measured,
+        frequency=np.append(measured.frequency, extra.frequency),
+        constants=np.hstack([measured.constants, extra.constants]),
+        partners=partners,
+        partner_constants=own,
+    )
 
 
 def _stated(measured: Measured, prediction: Prediction) -> IntArray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.errors import EstimationError
 from acquisition.quantities import hertz, percent
 from identification import pair
@@ -87,13 +87,8 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
             "narrow the band of the test"
         )
     trusted = trusted_rows(measured, prediction)
-    order = match(measured, prediction, np.arange(len(measured.frequency)), trusted)
-    mac = mac_of_constants(measured, prediction, trusted)[np.arange(len(order)), order]
-    ratio = np.log(measured.frequency / prediction.frequency[order])
-    beside = np.abs(ratio - np.median(ratio))
-    keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * np.minimum(beside / ASTRAY, 1.0)
-    keep &= beside < np.log(NOTHING_IN_COMMON)
-    keep = _as_stated(measured, prediction, keep)
+    found = _without_strangers(measured, prediction, trusted)
+    order, mac, ratio, keep = found.order, found.mac, found.ratio, found.keep
     if not keep.any():
         raise EstimationError(
             f"{measured.title or 'test'}: no measured mode looks like one of the model's (best MAC {mac.max():.2f}); "
@@ -109,9 +104,65 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
         lost.append(MOSTLY_ALONE)
     if trusted is not None:
         lost.append(f"modes are paired without {left_out(measured, trusted)}, which spoils their shapes")
+    unpaired = None if keep.all() else replace(measured.modes(~keep), trusted=trusted)
     if measured.partners is not None:
         measured = replace(measured, partner_constants=prediction.constants[:, order])
-    return Paired(replace(measured.modes(keep), trusted=trusted), order[keep], tuple(lost), alone)
+    paired = replace(measured.modes(keep), trusted=trusted, unpaired=unpaired)
+    return Paired(paired, order[keep], tuple(lost), alone)
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """Partners of measured modes, those of some looked for after the others have theirs.
+
+    Parameters
+    ----------
+    order : (n_modes,) int array
+        Rank of each one's partner.
+    mac, ratio : (n_modes,) arrays
+        MAC with it, and the logarithm of the frequency ratio, test over model [-].
+    keep : (n_modes,) bool array
+        Whether it is one.
+    """
+
+    order: IntArray
+    mac: FloatArray
+    ratio: FloatArray
+    keep: BoolArray
+
+
+def _without_strangers(measured: Measured, prediction: Prediction, trusted: BoolArray | None) -> _Tried:
+    """Find partners such that no mode without one takes another's.
+
+    Every measured mode is assigned one of the model's. One that the model lacks, as that of a mass on a spring, may so
+    take what belongs to a mode that is left with a stranger: where one of those without a partner set aside leaves more
+    of the others with one, it is set aside.
+    """
+    every = np.ones(len(measured.frequency), dtype=bool)
+    best = _tried(measured, prediction, trusted, every)
+    aside = every
+    while not best.keep.all():
+        trials = [aside & (np.arange(len(aside)) != i) for i in np.flatnonzero(aside & ~best.keep)]
+        found = [(_tried(measured, prediction, trusted, trial), trial) for trial in trials if trial.any()]
+        better = max(found, key=lambda pair: pair[0].keep.sum(), default=None)
+        if better is None or better[0].keep.sum() <= best.keep.sum():
+            return best
+        best, aside = better
+    return best
+
+
+def _tried(measured: Measured, prediction: Prediction, trusted: BoolArray | None, first: BoolArray) -> _Tried:
+    """Find partners of some modes (n_modes,), and what is most like each of the others."""
+    count = len(measured.frequency)
+    macs = mac_of_constants(measured, prediction, trusted)
+    order = np.argmax(macs, axis=1)
+    order[first] = match(measured.modes(first), prediction, np.arange(int(first.sum())), trusted)
+    mac = macs[np.arange(count), order]
+    ratio = np.log(measured.frequency / prediction.frequency[order])
+    beside = np.abs(ratio - np.median(ratio[first]))
+    keep = mac >= LOWEST_MAC + (SAME - LOWEST_MAC) * np.minimum(beside / ASTRAY, 1.0)
+    keep &= beside < np.log(NOTHING_IN_COMMON)
+    return _Tried(order, mac, ratio, _as_stated(measured, prediction, keep & first))
 
 
 def _as_stated(measured: Measured, prediction: Prediction, keep: BoolArray) -> BoolArray:

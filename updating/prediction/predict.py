@@ -13,6 +13,7 @@ from scipy import linalg
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from updating.environment import Environment
+from updating.models.absorbers import Damped, damped, modes_taking_part, padded, structural
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
 from updating.models.damping import (
@@ -180,30 +181,57 @@ class Predictor(Displayed):
         read = measurement_chain(self.measured, total)
         axes = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         rows = self._rows(total, read.points)
-        shapes = {n: m[:, : vectors.shape[0]] @ vectors[:, chosen] for n, m in rows.items()}
+        moving = structural(vectors, total.absorbers)
+        dashed = self._damped(total, values, vectors, chosen)
+        modes = (
+            moving[:, chosen]
+            if dashed is None
+            else _turned(moving[:, first:] @ dashed.turn, moving[:, chosen], rows["w"])
+        )
+        whole = {n: m[:, : len(modes)] @ modes for n, m in rows.items()}
+        shapes = {n: np.real(m) for n, m in whole.items()}
         by, changes = np.zeros((0, len(chosen))), np.zeros((0, len(read.points), len(chosen)))
         if factors:
-            by, changes = self._by_factors(total, (values, vectors), chosen, factors, rows, read.points)
+            by, changes = self._by_factors(total, (values, moving), chosen, factors, rows, read.points)
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
         moved = shift * slowing * coupled(total, values, vectors, chosen)
+        if dashed is not None:
+            moved = moved * dashed.slowing
         frequency = moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         # what a layer carries along is modal mass
         level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
         return Prediction(
             frequency,
-            self._damping(total, values[chosen], vectors[:, chosen]),
-            level * read.product(shapes["w"], shapes["w"]),
+            self._damping(total, values[chosen], vectors[:, chosen]) if dashed is None else dashed.ratio,
+            level * np.real(read.product(whole["w"], whole["w"])),
             shapes["w"][read.seen],
             read.at_hit(shapes["w"], 1.0),
             np.stack([shapes[n][read.seen] for n in axes]),
             np.stack([read.at_hit(shapes[n], 0.0) for n in axes]),
             by.T,
             level[:, :, None] * _change(shapes["w"], changes, read),
-            vectors[:, chosen],
-            total.slope + _gained(total, values[chosen], vectors[:, chosen]),
+            np.real(modes),
+            total.slope + _gained(total, values[chosen], moving[:, chosen]),
             np.asarray(level),
         )
+
+    def _damped(
+        self, state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray
+    ) -> Damped | None:
+        """Return the modes that dashpots of absorbers couple; None where there are none."""
+        dashpots = np.array([one.damping for one in state.absorbers])
+        if not dashpots.any() or np.isnan(values).any():
+            return None
+        first = self.reduced.structure.rigid_modes
+        elastic = values[first:]
+        size = modes_taking_part(elastic, len(chosen))
+        modes, omega = vectors[:, first : first + size], np.sqrt(np.maximum(elastic[:size], 1e-12))
+        viscous, hysteretic = (modes.T @ matrix @ modes for matrix in self._damping_matrices(state))
+        rates = 2 * self._ratios(state, size) * omega + modal_losses(state, elastic[:size], modes)
+        viscous = viscous + hysteretic / np.sqrt(np.outer(omega, omega)) + np.diag(rates + 2 * state.decay)
+        found = damped(elastic, viscous, len(chosen))
+        return found if self.expects(state) else replace(found, ratio=np.full(len(chosen), np.nan))
 
     @cached_property
     def nominal_rows(self) -> dict[str, FloatArray]:
@@ -325,16 +353,18 @@ class Predictor(Displayed):
         return complex_modes(self.matrices(state), rigid=self.reduced.structure.rigid_modes)
 
     def point_rows(self, state: State = NOMINAL) -> FloatArray:
-        """Return the rows of the basis at the points of the test, shape (n_points, r)."""
+        """Return the rows of the basis at the points of the test, absorbers behind it, shape (n_points, r)."""
         total = self.base.plus(state)
-        return self._rows(total)["w"][:, : self.reduced.ranks[total.released]]
+        rows = self._rows(total)["w"][:, : self.reduced.ranks[total.released]]
+        return padded(rows, total.absorbers) if total.absorbers else rows
 
     def point_slopes(self, state: State = NOMINAL) -> FloatArray:
         """Return the slopes of those rows along the in-plane axes, shape (dim, n_points, r)."""
         total = self.base.plus(state)
         rows, size = self._rows(total), self.reduced.ranks[total.released]
         names = [n for n in ("wx", "wy")[: self.measured.points.shape[1]] if n in rows]
-        return np.array([rows[n][:, :size] for n in names]).reshape(len(names), -1, size)
+        slopes = np.array([rows[n][:, :size] for n in names]).reshape(len(names), -1, size)
+        return padded(slopes, total.absorbers) if total.absorbers else slopes
 
     def frf_rows(self, state: State = NOMINAL) -> tuple[FloatArray, FloatArray]:
         """Return the rows of the basis at the response and at the force of every FRF, each (n_frf, r)."""
@@ -357,6 +387,17 @@ class Predictor(Displayed):
             return self.under(total.theory).receptance(laplace, replace(state, theory=None))
         seen, hit = self.frf_rows(state)
         return np.asarray(total.gain * receptance(self.matrices(state), seen, hit, laplace + total.decay))
+
+
+def _turned(modes: ComplexArray, undamped: FloatArray, rows: FloatArray) -> ComplexArray:
+    """Return complex modes (r, n_modes), each turned to be as real as it can be at points with rows (n_points, r).
+
+    Their signs are those of the undamped ones, whose derivatives are theirs.
+    """
+    seen, before = rows[:, : len(modes)] @ modes, rows[:, : len(modes)] @ undamped
+    turned = modes * np.exp(-0.5j * np.angle(np.sum(seen**2, axis=0)))
+    same = np.sum(np.real(rows[:, : len(modes)] @ turned) * before, axis=0)
+    return np.asarray(turned * np.where(same < 0, -1.0, 1.0))
 
 
 def _gained(state: State, values: FloatArray, vectors: FloatArray) -> FloatArray:

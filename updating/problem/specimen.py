@@ -27,9 +27,11 @@ from updating.likelihood.gaussian import gaussian
 from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
+from updating.likelihood.unpaired import UnpairedModes
 from updating.models.base import FACTORS
 from updating.models.named_factors import departure, regions_of, unassigned
 from updating.models.state import NOMINAL, State
+from updating.prediction.assignment import match_with_unpaired
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
@@ -90,7 +92,7 @@ class SpecimenProblem:
 
     def applies(self, effect: Effect) -> Obstacle | None:
         """Return why an effect cannot be examined, or None."""
-        return effect.why_not(self.predictor)
+        return effect.why_not(self.predictor) or effect.unseen(self.predictor)
 
     def forms(self, effect: Effect) -> tuple[Variant, ...]:
         """Return the forms in which an effect may come."""
@@ -218,6 +220,12 @@ class SpecimenProblem:
     def _match(self, prediction: Prediction) -> IntArray:
         return match(self.measured, prediction, self.order)
 
+    def _partners(self, prediction: Prediction, added: int) -> tuple[IntArray, IntArray]:
+        """Return the predicted mode of each measured one, and of each unpaired one where a state adds modes."""
+        if not added or self.measured.unpaired is None:
+            return self._match(prediction), np.zeros(0, dtype=np.int64)
+        return match_with_unpaired(self.measured, self.measured.unpaired, prediction, self.order, added)
+
     @property
     def wide(self) -> bool:
         """Whether tolerances are too wide for one linearisation, or bend what is measured beyond its noise.
@@ -280,10 +288,10 @@ class SpecimenProblem:
         stage = self.predictor if theory is None else self.predictor.under(theory)
         whole = state.plus(self.departure(shift, stage))
         prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
-        prediction = prediction.select(self._match(prediction))
-        view = View(prediction, self.predictor.base.plus(whole), doubt)
+        order, claims = self._partners(prediction, len(state.absorbers))
+        view = View(prediction.select(order), self.predictor.base.plus(whole), doubt, prediction, claims)
         blocks = [quantity.block(view) for quantity in self.quantities]
-        return assemble(blocks, self.sigmas, shift, prediction, scatter_prior(self.measured))
+        return assemble(blocks, self.sigmas, shift, view.now, scatter_prior(self.measured))
 
     @cached_property
     def quantities(self) -> tuple[Quantity, ...]:
@@ -298,6 +306,7 @@ class SpecimenProblem:
             Constants(setting, phases, further),
             phases,
             Levels(setting),
+            UnpairedModes(setting),
         )
         return tuple(quantity for quantity in every if quantity.present)
 

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import AnyArray, FloatArray, IntArray
 from updating.models.state import State
 from updating.test_data.measured import Measured
 
@@ -31,7 +31,7 @@ class MeasurementChain:
     hit: IntArray
     gain: FloatArray
 
-    def product(self, at_seen: FloatArray, at_hit: FloatArray) -> FloatArray:
+    def product(self, at_seen: AnyArray, at_hit: AnyArray) -> AnyArray:
         """Multiply what is read at the responses with what is read at the forces; 1 where there is none.
 
         Parameters
@@ -45,7 +45,7 @@ class MeasurementChain:
         """
         return np.asarray(at_seen[self.seen] * self.at_hit(at_hit, 1.0))
 
-    def at_hit(self, values: FloatArray, otherwise: float) -> FloatArray:
+    def at_hit(self, values: AnyArray, otherwise: float) -> AnyArray:
         """Return a quantity (n_points, ...) at the force of every FRF, or what stands there where none is known."""
         bare = (self.hit < 0).reshape(-1, *[1] * (values.ndim - 1))
         return np.where(bare, otherwise, values[self.hit])

@@ -97,6 +97,8 @@ class Measured(Displayed):
         Constants of those modes, by which they are known again in a model that has changed [as ``constants``].
     guessed : bool
         Whether ``constants_sigma`` is a guess: nobody stated how well the shapes are known.
+    unpaired : Measured, optional
+        The modes of the same test that have no partner in the nominal model; None where all have one.
     """
 
     frequency: FloatArray
@@ -133,6 +135,7 @@ class Measured(Displayed):
     partners: IntArray | None = None
     partner_constants: FloatArray | None = None
     guessed: bool = False
+    unpaired: Measured | None = None
 
     @property
     def own_sigma(self) -> FloatArray:

@@ -13,6 +13,7 @@ KNOWN_SINCE: Mapping[str, str] = MappingProxyType(
         "suspension": "suspension",
         "channel_gain": "channel_gain",
         "taper": "taper",
+        "absorber": "absorber",
     }
 )
 """Effects that were drawn as what no library knows, and that the library has learnt since: its name for each.

@@ -97,8 +97,8 @@ def _halves(comparison: Comparison) -> list[tuple[str, BoolArray, BoolArray]]:
     """Return how the data may be split in two, and which data are in either part."""
     counts = [len(prediction.frequency) for prediction in comparison.predictions]
     rank = np.concatenate([np.arange(count) < (count + 1) // 2 for count in counts])
-    lower = rank[comparison.mode]
-    halves = [("the lower and the upper modes", lower, ~lower)]
+    lower, unpaired = rank[comparison.mode], ~comparison.of_pairs
+    halves = [("the lower and the upper modes", lower | unpaired, ~lower | unpaired)]
     sources = np.unique(comparison.source[comparison.scaled])
     if len(sources) > 1:
         odd = np.isin(comparison.source, sources[1::2])

@@ -12,7 +12,7 @@ from scipy.stats import chi2 as chi_square
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.quantities import bare_hertz, hertz, number
 from updating.diagnosis.problem.face import DiagnosisProblem
-from updating.likelihood.comparison import CHANNELS, Comparison
+from updating.likelihood.comparison import Comparison
 from updating.models.state import NOMINAL
 from updating.thresholds import NOTABLE_MODE
 
@@ -58,7 +58,7 @@ def contributions(problem: DiagnosisProblem, comparison: Comparison | None = Non
     covariance = np.diag(plain.variance) + plain.nuisance @ plain.nuisance.T
     frequency = np.concatenate([one.measured.frequency for one in problem.specimens])
     count = len(frequency)
-    kinds = [name for name in CHANNELS if plain.of(name).any()]
+    kinds = [name for name in NAMES if plain.of(name).any()]
     misfit = {NAMES[name]: np.full(count, np.nan) for name in kinds}
     excess, squared = np.zeros((count, len(kinds))), np.zeros(count)
     for k, kind in enumerate(kinds):

@@ -10,7 +10,7 @@ from scipy.stats import chi2
 from acquisition.arrays import BoolArray, FloatArray
 from updating.diagnosis.answer.result import Metric
 from updating.diagnosis.search.fit import Point
-from updating.likelihood.comparison import CHANNELS, Comparison
+from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import DAMPING_REPEATABILITY, SECOND_METRIC, UNSTATED_DAMPING_NOISE
@@ -34,7 +34,7 @@ def metric_of(point: Point) -> Metric:
         The nominal model with its tolerances.
     """
     surprise = {}
-    for name in CHANNELS:
+    for name in TOLD_AS:
         keep = point.comparison.of(name)
         if keep.any():
             part = marginal(point.comparison, keep)
@@ -92,7 +92,7 @@ def squares(
     count = int(nominal.mode.max()) + 1
     kept = np.ones(len(residual), dtype=bool) if odd is None else ~odd
     if metric == "combined":
-        error, counted = residual / np.sqrt(nominal.variance), np.ones(len(residual), dtype=bool)
+        error, counted = residual / np.sqrt(nominal.variance), nominal.of_pairs
     elif metric == "frf":
         # a mode turned by a small angle is off by that angle in all its constants
         counted, turned = nominal.of("frf"), nominal.of("phase")
@@ -101,9 +101,11 @@ def squares(
     else:
         counted = nominal.of(metric)
         error = np.where(counted, np.expm1(-np.where(counted, residual, 0.0)), 0.0)
+    paired = nominal.of_pairs
+    mode, square, told = (part[paired] for part in (nominal.mode, kept * error**2, kept & counted))
     return Squares(
-        np.asarray(np.bincount(nominal.mode, kept * error**2, minlength=count), dtype=float),
-        np.asarray(np.bincount(nominal.mode, (kept & counted).astype(float), minlength=count), dtype=float),
+        np.asarray(np.bincount(mode, square, minlength=count), dtype=float),
+        np.asarray(np.bincount(mode, told.astype(float), minlength=count), dtype=float),
     )
 
 

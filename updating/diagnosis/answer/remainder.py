@@ -39,7 +39,7 @@ def remainder_of(
     comparison = point.comparison
     as_stated = problem.at(replace(best.candidate, outliers=()), point.coordinates, point.about)
     stated = as_stated.settled(point.marginal.share).noise(point.marginal.scale)
-    off = np.abs(point.left_over) / np.sqrt(stated)
+    off = np.where(comparison.of_pairs, np.abs(point.left_over) / np.sqrt(stated), 0.0)
     group = cells(comparison)
     strength = np.sqrt(group.sums(off**2) / np.maximum(group.size, 1))
     order = [int(i) for i in np.argsort(strength)[::-1] if group.size[i]]

@@ -52,6 +52,7 @@ def _one_more(test: Measured, place: FloatArray) -> Measured:
         seen=np.append(test.seen, seen),
         hit=np.append(test.hit, hit),
         constants=np.vstack([test.constants, size]),
+        unpaired=None,
         constants_sigma=np.vstack([test.constants_sigma, sigma]),
         channel_group=None
         if test.channel_group is None
@@ -92,6 +93,7 @@ class Shapes(Repeat):
             seen=np.full(count, count),
             hit=np.arange(count),
             constants=np.ones((count, modes)),
+            unpaired=None,
             constants_sigma=np.full((count, modes), UNKNOWN_SHAPE_NOISE),
             absolute=True,
             repeated=True,

@@ -6,6 +6,7 @@ from abc import abstractmethod
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.next_test.base import Outcome, Rival, Site, Trial
@@ -13,6 +14,7 @@ from updating.effects.base import Effect
 from updating.likelihood.comparison import Comparison
 from updating.models.state import State
 from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.measured import Measured
 from updating.thresholds import DIFFERENCE_STEP, UNKNOWN_SHAPE_NOISE
@@ -102,8 +104,10 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
     order : (n_modes,) int array
         Ranks of the modes.
     """
-    prediction = predictor.predict(state, at_least=int(order.max()) + 3)
+    prediction = predictor.predict(state, at_least=int(order.max()) + 3 + len(state.absorbers))
     ranks = np.argsort(prediction.frequency)[np.sort(order)]
+    if state.absorbers:
+        ranks = _of_structure(predictor, prediction, np.sort(order))
     modes = prediction.select(ranks)
     known = np.median(measured.frequency_sigma / measured.frequency)
     size = np.sqrt(np.mean(modes.constants**2, axis=0)) if len(measured.seen) else np.ones(len(ranks))
@@ -122,7 +126,16 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
         slope_sigma=None,
         noise=None,
         shared=None,
+        unpaired=None,
     )
+
+
+def _of_structure(predictor: Predictor, prediction: Prediction, order: IntArray) -> IntArray:
+    """Return which modes of a state that adds some are those of the structure without, by rank."""
+    before = predictor.predict(at_least=int(order.max()) + 1).vectors[:, order]
+    size = min(len(before), len(prediction.vectors))
+    alike = (before[:size].T @ prediction.vectors[:size]) ** 2
+    return np.asarray(linear_sum_assignment(-alike)[1])
 
 
 def _relative(sigma: FloatArray, value: FloatArray) -> float:

@@ -63,7 +63,7 @@ def _of_scales(comparison: Comparison, fitted: int) -> list[dict[str, float]]:
     tried: list[dict[str, float]] = [{} for _ in scales]
     for name in ("all", *CHANNELS):
         every = name == "all"
-        keep = np.full(len(comparison.channel), every) | comparison.of(name)
+        keep = (np.full(len(comparison.channel), every) | comparison.of(name)) & comparison.stated
         if not keep.any():
             continue
         freedom = max(int(keep.sum()) - (fitted if every else 0), 1)

@@ -35,8 +35,9 @@ def modes_held_out(diagnosis_problem: DiagnosisProblem, explanation: Explanation
     explanation : Explanation
         What is refitted without each mode in turn.
     """
-    mode = explanation.best.comparison.mode
-    return held_out(diagnosis_problem, explanation, [mode != m for m in np.unique(mode)])
+    comparison = explanation.best.comparison
+    mode = comparison.mode
+    return held_out(diagnosis_problem, explanation, [mode != m for m in np.unique(mode[comparison.of_pairs])])
 
 
 def points_held_out(

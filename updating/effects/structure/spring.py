@@ -212,7 +212,7 @@ def _unit(predictor: Predictor, values: Values) -> FloatArray:
         return on_basis(predictor, ("springs", values["at"], values["along"]), lambda: Sparse(row.T @ row))
     if not spec.outlined:
         at = np.array([[values[name] for name in AXES]])
-        directions = _measured_directions(predictor, at)
+        directions = measured_directions(predictor, at)
         return springs(
             predictor, np.repeat(at, len(directions), axis=0), np.ones(len(directions)), directions
         )
@@ -227,7 +227,7 @@ def _sides(spec: Spec) -> list[tuple[str, float]]:
     return list(zip(AXES, (spec.length, spec.width)[: spec.dim], strict=False))
 
 
-def _measured_directions(predictor: Predictor, at: FloatArray) -> FloatArray:
+def measured_directions(predictor: Predictor, at: FloatArray) -> FloatArray:
     """Return in which directions a place (1, 3) on imported matrices is measured, z where it is not, (n, 3) [-]."""
     test = predictor.measured
     here = np.linalg.norm(test.points - at, axis=1) <= SAME * predictor.spec.length

@@ -1,0 +1,165 @@
+"""Modes that a test has and the nominal model lacks: known to a state that has them, and any mode to all others.
+
+The same data stand beside every state, or their evidence could not be compared. Beside a state without the mode its
+frequency and damping may be any, and its shape is a mixture of those of the model's modes next to it: it is a twin of
+one of them, a mode of what the structure hangs on, or in a direction that the model leaves out. What the mode adds to
+the evidence of a state that has it is that it knew better.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from acquisition.arrays import BoolArray, FloatArray
+from updating.likelihood.base import Quantity, View
+from updating.likelihood.comparison import Block
+from updating.prediction.prediction import Prediction
+from updating.test_data.measured import Measured
+from updating.thresholds import (
+    DAMPING_REPEATABILITY,
+    LEAST_DAMPING,
+    LEAST_FREQUENCY_NOISE,
+    UNPAIRED_NEIGHBOURS,
+    UNPAIRED_SHAPE_NOISE,
+    UNPAIRED_SPREAD,
+    UNSTATED_DAMPING_NOISE,
+)
+
+NO_MODE = -1
+"""Number of the paired mode that these data belong to: none."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """The data of one mode: ln f, ln zeta where it counts, and the constants over their r.m.s.
+
+    Parameters
+    ----------
+    residual, variance : (n,) arrays
+        Measured minus expected, and the variance of the noise [-].
+    factors : (n, n_names) array
+        Change of what is expected per unit of what all data doubt alike [-].
+    own : (n, UNPAIRED_NEIGHBOURS) array
+        Change per standard deviation of nuisances of this mode alone [-].
+    idle : bool
+        Whether the state says nothing of it.
+    """
+
+    residual: FloatArray
+    variance: FloatArray
+    factors: FloatArray
+    own: FloatArray
+    idle: bool
+
+
+@dataclass(frozen=True, eq=False)
+class UnpairedModes(Quantity):
+    """Frequency, damping and modal constants of the modes that have no partner in the nominal model."""
+
+    @property
+    def present(self) -> bool:
+        """Whether the test has such modes."""
+        return self.setting.measured.unpaired is not None
+
+    @property
+    def _test(self) -> Measured:
+        test = self.setting.measured.unpaired
+        assert test is not None
+        return test
+
+    def block(self, view: View) -> Block:
+        """Return each mode beside that of the state which it is; beside no mode in particular where it is none."""
+        claims = view.claims.tolist() if len(view.claims) else [-1] * len(self._test.frequency)
+        parts = [
+            self._any(i) if k < 0 or view.whole is None else self._known(view, view.whole, k, i)
+            for i, k in enumerate(claims)
+        ]
+        count = sum(len(part.residual) for part in parts)
+        return Block(
+            "unpaired",
+            np.concatenate([part.residual for part in parts]),
+            np.concatenate([part.variance for part in parts]),
+            np.concatenate([part.factors for part in parts]),
+            np.zeros((count, 0)),
+            block_diag(*(part.own for part in parts)),
+            np.full(count, NO_MODE),
+            idle=np.concatenate([np.full(len(part.residual), part.idle) for part in parts]),
+        )
+
+    def _known(self, view: View, whole: Prediction, k: int, i: int) -> _Rows:
+        """Return a mode beside the k-th of a state."""
+        test, scale = self._test, self._scale[i]
+        first, names = [np.log(test.frequency[i] / whole.frequency[k])], len(self.setting.names)
+        relative = test.frequency_sigma[i] / test.frequency[i]
+        variance = [
+            relative**2 + max(test.repeatability, LEAST_FREQUENCY_NOISE) ** 2 + self._idealised(view, i)
+        ]
+        factors = [whole.log_frequency_by[k]]
+        if self._damped[i]:
+            first.append(np.log(test.damping[i] / max(whole.damping[k], LEAST_DAMPING)))
+            variance.append(self._damping_noise(i) + view.doubt.damping**2)
+            factors.append(np.zeros(names))
+        measured, constants = test.constants[:, i] / scale, whole.constants[:, k] / scale
+        level = -1.0 if test.bare and measured @ constants < 0 else 1.0
+        if not test.absolute:
+            level = float(measured @ constants) / max(float(constants @ constants), 1e-300)
+        own = np.zeros((len(first) + len(measured), UNPAIRED_NEIGHBOURS))
+        own[len(first) :, 0] = test.level_sigma * level * constants
+        return _Rows(
+            np.append(first, measured - level * constants),
+            np.append(variance, self._shape_noise(i)),
+            np.vstack([*factors, whole.constants_by[:, k] * (level / scale)]),
+            own,
+            idle=False,
+        )
+
+    def _any(self, i: int) -> _Rows:
+        """Return a mode beside no mode in particular."""
+        test, paired, nominal = self._test, self.setting.measured, self.setting.nominal
+        first = [np.log(test.frequency[i]) - np.mean(np.log(paired.frequency))]
+        if self._damped[i]:
+            first.append(np.log(test.damping[i]) - np.nanmean(np.log(paired.damping)))
+        near = np.argsort(np.abs(np.log(nominal.frequency / test.frequency[i])))[:UNPAIRED_NEIGHBOURS]
+        shapes = nominal.constants[:, near]
+        own = np.zeros((len(first) + len(shapes), UNPAIRED_NEIGHBOURS))
+        size = np.maximum(np.sqrt(np.mean(shapes**2, axis=0)), 1e-300)
+        own[len(first) :, : len(near)] = UNPAIRED_SPREAD * shapes / size
+        return _Rows(
+            np.append(first, test.constants[:, i] / self._scale[i]),
+            np.append(np.full(len(first), UNPAIRED_SPREAD**2), self._shape_noise(i)),
+            np.zeros((len(own), len(self.setting.names))),
+            own,
+            idle=True,
+        )
+
+    def _idealised(self, view: View, i: int) -> float:
+        """Return how far the idealisation of what makes a mode leaves its ln f off, relative to the shift it suffers.
+
+        A mass on a spring is moved by the structure as far as it moves the structure: from where it swings alone.
+        """
+        alone = [np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in view.state.absorbers]
+        shifts = [abs(float(np.log(self._test.frequency[i] / own))) for own in alone]
+        return (view.doubt.fidelity * min(shifts, default=0.0)) ** 2
+
+    @cached_property
+    def _scale(self) -> FloatArray:
+        """R.m.s. of the constants of each mode [1/kg]."""
+        return np.asarray(np.sqrt(np.mean(self._test.constants**2, axis=0)))
+
+    @cached_property
+    def _damped(self) -> BoolArray:
+        """Whether the damping of each mode is measured, and some damping expected of the model."""
+        known = self.setting.predictor.expects_damping and np.isfinite(self.setting.measured.damping).any()
+        return np.asarray((np.nan_to_num(self._test.damping) > 0) & bool(known))
+
+    def _damping_noise(self, i: int) -> float:
+        relative = float(self._test.damping_sigma[i] / self._test.damping[i])
+        return float(np.nan_to_num(relative, nan=UNSTATED_DAMPING_NOISE) ** 2 + DAMPING_REPEATABILITY**2)
+
+    def _shape_noise(self, i: int) -> FloatArray:
+        """Return the variance of the constants of one mode over their r.m.s., (n_frf,) [-]."""
+        return np.asarray((self._test.constants_sigma[:, i] / self._scale[i]) ** 2 + UNPAIRED_SHAPE_NOISE**2)
