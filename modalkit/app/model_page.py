@@ -15,6 +15,7 @@ from modalkit.app.toml import toml_text
 from modalkit.output.correlation import correlation_document
 from modalkit.study.read import Study
 from modalkit.views.curves import lines
+from modalkit.views.pairs import pairs_of
 from modalkit.views.shapes import Beside
 from updating import LIBRARY
 from updating.correlation.frfs import correlate_frfs
@@ -166,21 +167,19 @@ def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, inde
     if measured.has_shapes:
         page["mac"] = mac_of_constants(measured, prediction)
     try:
-        paired = pair_modes(measured, prediction)
+        pairs = pairs_of(measured, prediction)
     except ModalkitError as error:
         return page | {"why": str(error)}
-    kept = np.flatnonzero(np.isin(measured.frequency, paired.measured.frequency))
-    mac = page["mac"]
     page["pairs"] = [
         {
-            "test_mode": int(t) + 1,
-            "model_mode": int(m) + 1,
-            "test_hz": measured.frequency[t],
-            "model_hz": prediction.frequency[m],
-            "error_percent": 100 * (prediction.frequency[m] / measured.frequency[t] - 1),
-            "mac": None if mac is None else mac[t, m],
+            "test_mode": one.test + 1,
+            "model_mode": one.model + 1,
+            "test_hz": measured.frequency[one.test],
+            "model_hz": prediction.frequency[one.model],
+            "error_percent": 100 * (prediction.frequency[one.model] / measured.frequency[one.test] - 1),
+            "mac": one.mac,
         }
-        for t, m in zip(kept, paired.order, strict=True)
+        for one in pairs
     ]
     if identified is not None:
         row = min(max(index, 0), len(identified.frfs.responses) - 1)

@@ -21,8 +21,11 @@ from modalkit.report.provenance import Basis, provenance
 from modalkit.report.sections import the_warnings
 from modalkit.report.tested import sections_of_all
 from modalkit.views.chart import Chart
+from modalkit.views.shapes import Changed
 from modalkit.workflow.case import Session
 from modalkit.workflow.diagnosis import warnings_of
+from modalkit.workflow.updated_model import updated_predictor
+from updating import Case
 from updating.frf_update import FrfUpdate
 from updating.update import Update
 from updating.update.statistics.doubts import untested
@@ -42,22 +45,30 @@ def update_report(result: Update, sessions: Sequence[Session], *, when: datetime
     command : str
         What repeats it.
     """
+    return page(reported(result, sessions, when=when, command=command))
+
+
+def reported(result: Update, sessions: Sequence[Session], *, when: datetime, command: str = "") -> Document:
+    """Return the report of an update before it is written; see :func:`update_report`."""
     title = ", ".join(session.case.title for session in sessions)
     basis = Basis(when, command, [session.study for session in sessions])
-    tests = sections_of_all(sessions)
-    return page(
-        Document(
-            title,
-            "update",
-            joined(element("h1", title), update_answer(result)),
-            [
-                *update_sections(result),
-                *tests,
-                Section("Warnings", [the_warnings([*result.warnings, *warnings_of(sessions)])]),
-                Section("What this rests on", [provenance(basis)]),
-            ],
-        )
+    tests = sections_of_all(sessions, [updated_models(result, session.case) for session in sessions])
+    return Document(
+        title,
+        "update",
+        joined(element("h1", title), update_answer(result)),
+        [
+            *update_sections(result),
+            *tests,
+            Section("Warnings", [the_warnings([*result.warnings, *warnings_of(sessions)])]),
+            Section("What this rests on", [provenance(basis)]),
+        ],
     )
+
+
+def updated_models(result: Update, case: Case) -> list[Changed]:
+    """Return the updated model of a study, as it is drawn beside the shapes of its test."""
+    return [Changed("updated", updated_predictor(result, case))]
 
 
 def update_sections(result: Update) -> list[Section]:
