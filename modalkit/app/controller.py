@@ -186,13 +186,12 @@ class Controller:
         with self._lock:
             beside, why = self._beside_or_why()
             content = self._history.now.content
-            return model_page(content, self.study, beside, why) | {"frfs": self._frf_names()}
+            return model_page(content, self.study, beside, why) | self._frfs()
 
-    def _frf_names(self) -> list[str]:
-        if not self.study.test.files:
-            return []
-        names: list[str] = self.modes()["frfs"]
-        return names
+    def _frfs(self) -> dict[str, Any]:
+        """Return the names of the FRFs, and which is shown first."""
+        page = self.modes() if self.study.test.files else {"frfs": [], "first": 0}
+        return {key: page[key] for key in ("frfs", "first")}
 
     def moved(self, moved: Moved, index: int) -> dict[str, Any]:
         """Return the model with effects and factors moved; nothing is kept of it."""

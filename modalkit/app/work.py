@@ -110,9 +110,12 @@ def _draw(folder: Path, whole: Document) -> None:
 
     parts = list(whole.parts())
     found = {
-        "charts": {part.name: part.data() for part in parts if isinstance(part, Chart) and part.name in DRAWN},
+        "charts": {
+            part.name: part.data() for part in parts if isinstance(part, Chart) and part.name in DRAWN
+        },
         "place": next(
-            ({"title": p.title, "text": p.text, "page": p.page} for p in parts if isinstance(p, Standing)), None
+            ({"title": p.title, "text": p.text, "page": p.page} for p in parts if isinstance(p, Standing)),
+            None,
         ),
         "models": [model for p in parts if isinstance(p, Moving) for model in p.page["changed"]],
     }

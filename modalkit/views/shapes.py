@@ -23,8 +23,8 @@ from updating.prediction.prediction import Prediction
 FINE = (81, (41, 27))
 """Points at which the model is drawn, along a beam and over a plate."""
 
-STANDING = "as the study states it"
-"""Name of the model that nothing was changed in."""
+STANDING = "as stated"
+"""Name of the model that the study states, in the list of models."""
 
 NODES = 1500
 """Nodes of a user's own mesh that move, beyond which the model is drawn at the test's points alone: each takes 20 bytes
@@ -80,18 +80,22 @@ def shapes_page(modal: ModalData, beside: Beside | None, changed: Sequence[Chang
     """
     if modal.shapes is None or not len(modal.dofs):
         return {"modes": [], "why": "these modes have no shapes; identify them from FRFs at several points"}
-    nodes = list(dict.fromkeys(dof.node for dof in modal.dofs))
+    measured = list(dict.fromkeys(dof.node for dof in modal.dofs))
+    nodes = measured + _still(modal, measured)
     places, placed = _places(modal, nodes)
     vectors = _vectors(modal, nodes)
     row = {node: i for i, node in enumerate(nodes)}
     joined = [(row[int(a)], row[int(b)]) for a, b in modal.geometry.lines if int(a) in row and int(b) in row]
     page: dict[str, Any] = {
         "nodes": nodes,
+        "still": len(nodes) - len(measured),
         "places": places,
         "placed": placed,
         "why": "" if placed else "the file gives no coordinates: points stand in a row, by their numbers",
         "lines": joined if placed else [[i, i + 1] for i in range(len(nodes) - 1)],
-        "faces": closed_faces(places, joined) if placed else [],
+        "faces": closed_faces(places, [pair for pair in joined if max(pair) < len(measured)])
+        if placed
+        else [],
         "arrows": [{"node": row[dof.node], "to": _direction(modal, k)} for k, dof in enumerate(modal.dofs)],
         "modes": [_mode(modal, vectors[:, :, r], r) for r in range(len(modal))],
         "model": None,
@@ -111,6 +115,14 @@ def _on_surface_of(first: dict[str, Any], model: dict[str, Any]) -> dict[str, An
     own, known = model["surface"], first["surface"]
     same = own is not None and known is not None and np.array_equal(own["places"], known["places"])
     return model | {"surface": None} if same else model
+
+
+def _still(modal: ModalData, measured: Sequence[int]) -> list[int]:
+    """Return the points of the test's lines at which nothing was measured, drawn at rest; none without coordinates."""
+    if not all(node in modal.geometry for node in measured):
+        return []
+    ends = dict.fromkeys(int(node) for node in modal.geometry.lines.ravel())
+    return [node for node in ends if node not in set(measured) and node in modal.geometry]
 
 
 def _places(modal: ModalData, nodes: list[int]) -> tuple[FloatArray, bool]:

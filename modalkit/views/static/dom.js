@@ -78,6 +78,9 @@ export function select(options, value, onchange, attributes = {}) {
 
 /** Return numbers as the tables of the command line have them. */
 export const fixed = (value, digits) => (value === null || value === undefined ? "–" : value.toFixed(digits));
+/** Return a standard deviation with so many decimals, or where these would be nothing, with two digits. */
+export const sigma = (value, digits) =>
+  value > 0 && value < 10 ** -digits ? value.toExponential(1) : fixed(value, digits);
 export const short = (value) => (value === null || value === undefined ? "–" : String(Number(value.toPrecision(4))));
 
 export function warnings(list) {

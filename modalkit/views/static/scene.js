@@ -47,7 +47,8 @@ export class Scene extends Stage {
     this.beside = new THREE.Group();
     this.arrows = new THREE.Group();
     this.scene.add(this.group, this.beside, this.arrows);
-    this.test = new Body(this.group, page.places, { lines: page.lines, faces: page.faces, opacity: 0.75 });
+    const dots = page.nodes.length - page.still;
+    this.test = new Body(this.group, page.places, { lines: page.lines, faces: page.faces, dots, opacity: 0.75 });
     this.models = models(page).map((model) => this.drawn(model));
     this.measure([...page.places, ...this.models.flatMap((one) => one.places)]);
     for (const arrow of page.arrows) {

@@ -139,8 +139,8 @@ export function viewer(root, { kept = false } = {}) {
 
   function listed() {
     const columns = COLUMNS.slice(0, view.page.model ? 8 : 3).map((name) => ({ name, number: true }));
-    const which = view.models.length > 1 ? `; the model ${view.models[view.options.which].name}` : "";
-    const caption = `Shapes at ${view.page.nodes.length} points, ${view.page.arrows.length} directions${which}`;
+    const which = view.models.length > 1 ? `; model ${view.models[view.options.which].name}` : "";
+    const caption = `Shapes at ${view.page.nodes.length - view.page.still} points, ${view.page.arrows.length} directions${which}`;
     fill(
       list,
       table(
@@ -193,7 +193,7 @@ function caption(page, mode, view) {
   const shape = page.modes[mode];
   const whole = view.models[view.options.which];
   const model = whole?.modes[mode];
-  const whose = view.models.length > 1 ? ` of the model ${whole.name}` : "";
+  const whose = view.models.length > 1 ? ` (${whole.name})` : "";
   const complex = shape.mpc < 0.95 ? ", complex: its points pass through rest one after another" : "";
   const parts = [`Mode ${shape.mode} at ${fixed(shape.frequency_hz, 3)} Hz, MPC ${fixed(shape.mpc, 3)}${complex}.`];
   if (view.flat) parts.push("This browser draws nothing in three dimensions (no WebGL).");
@@ -201,11 +201,17 @@ function caption(page, mode, view) {
     const error = `${model.error_percent > 0 ? "+" : ""}${fixed(model.error_percent, 2)} %`;
     const grey = view.options.model === "over" ? ", grey" : "";
     parts.push(
-      `Model mode ${model.mode}${whose} at ${fixed(model.frequency_hz, 3)} Hz (${error}), MAC ${fixed(model.mac, 3)}${grey}.`,
+      `Model${whose}: mode ${model.mode} at ${fixed(model.frequency_hz, 3)} Hz (${error}), MAC ${fixed(model.mac, 3)}${grey}.`,
     );
-  } else if (whole) parts.push(`No mode${whose || " of the model"} is its partner.`);
+  } else if (whole) parts.push(`No mode of the model${whose} is its partner.`);
   if (model && view.options.difference)
     parts.push("Colours: difference from the model, green none to red 30 % of the largest motion.");
+  if (page.still)
+    parts.push(
+      page.still === 1
+        ? "One point of the lines was not measured and is drawn at rest."
+        : `${page.still} points of the lines were not measured and are drawn at rest.`,
+    );
   if (page.why) parts.push(`${page.why[0].toUpperCase()}${page.why.slice(1)}.`);
   if (page.no_model && page.no_model !== "the study has no [model]") parts.push(`No model: ${page.no_model}`);
   return parts.join(" ");
@@ -220,5 +226,6 @@ function named(page, mode, index) {
     .filter(([, value]) => value > 0.0005)
     .map(([axis, value]) => `${axis} ${(100 * value).toFixed(1)} %`);
   const place = page.placed ? ` at ${page.places[index].map((v) => v.toPrecision(4)).join(", ")} m` : "";
-  return `point ${page.nodes[index]}${place}: ${motion.join(", ") || "at rest"}`;
+  const unknown = index >= page.nodes.length - page.still;
+  return `point ${page.nodes[index]}${place}: ${unknown ? "not measured" : motion.join(", ") || "at rest"}`;
 }

@@ -132,7 +132,7 @@ export function open(root, app) {
       found.next.length
         ? table(
             "What to measure next",
-            [{ name: "measure" }, { name: "separates", wide: true }, { name: "σ", number: true }],
+            [{ name: "measure", wide: true }, { name: "separates", wide: true }, { name: "σ", number: true }],
             found.next.map((t) => [t.measure, t.separates, fixed(t.sigma, 1)]),
           )
         : h("p", {}, "No further test is proposed."),
