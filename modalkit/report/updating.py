@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.display import counted
-from acquisition.quantities import percent
+from acquisition.quantities import percent, raised
 from modalkit.figures.diagnosis.errors import ModeErrors
 from modalkit.report.charts.gap import gap_chart
 from modalkit.report.charts.matrix import matrix_chart
@@ -120,7 +120,6 @@ def _errors(result: Update) -> list[Part]:
 def pairs_table(result: Update) -> Raw:
     """Return one row per pair."""
     columns = [
-        Column("study"),
         Column("test mode", lambda v: f"{v:.0f}"),
         Column("model mode", lambda v: f"{v:.0f}"),
         Column("MAC", lambda v: f"{v:.3f}"),
@@ -131,14 +130,21 @@ def pairs_table(result: Update) -> Raw:
         Column("used"),
     ]
     rows: list[list[Cell | Raw]] = [_pair(row) for _, row in result.pairs.iterrows()]
+    if _several(result):
+        columns.insert(0, Column("study"))
+        rows = [[str(study), *row] for study, row in zip(result.pairs["study"], rows, strict=True)]
     return table("Paired modes before and after.", columns, rows)
+
+
+def _several(result: Update) -> bool:
+    """Tell whether several studies were updated together; of one alone no table names it."""
+    return result.pairs["study"].nunique() > 1
 
 
 def _pair(row: pd.Series) -> list[Cell | Raw]:
     left = 100 * (float(row["after_hz"]) / float(row["test_hz"]) - 1)
     numbers = [float(row[name]) for name in ("mac", "test_hz", "before_hz", "after_hz")]
     return [
-        str(row["study"]),
         int(row["test_mode"]),
         int(row["model_mode"]),
         *numbers,
@@ -152,7 +158,6 @@ def parameters_table(result: Update) -> Raw:
     short = "{:.5g}".format
     columns = [
         Column("parameter"),
-        Column("study"),
         Column("value", short),
         Column("± sigma", "{:.2g}".format),
         Column("unit"),
@@ -167,9 +172,10 @@ def parameters_table(result: Update) -> Raw:
         )
         sigma = p.sigma if np.isfinite(p.sigma) else None
         limits = f"{p.low:.4g} to {p.high:.4g}"
-        rows.append(
-            [p.name, p.study or "shared", p.value, sigma, p.unit, p.factor, limits, ", ".join(careful)]
-        )
+        whose = [p.study or "shared"] if _several(result) else []
+        rows.append([p.name, *whose, p.value, sigma, raised(p.unit), p.factor, limits, ", ".join(careful)])
+    if _several(result):
+        columns.insert(1, Column("study"))
     return table("What was updated, with one standard deviation.", columns, rows)
 
 

@@ -80,7 +80,7 @@ def course_charts(result: Update) -> Iterator[Chart]:
                 f"course-{number}",
                 f"{counted(len(names), 'parameter')} over {counted(result.iterations, 'iteration')}",
                 f"{', '.join(names)}.",
-                Axis("evaluation"),
+                Axis("iteration"),
                 Axis(what),
                 lines,
                 220.0,

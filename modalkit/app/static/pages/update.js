@@ -1,7 +1,7 @@
 // Update: which parameters, by which data; progress, and the answer.
 
 import { get } from "../api.js";
-import { field, fill, fixed, h, select, table, warnings, withoutModel } from "../dom.js";
+import { field, fill, fixed, h, raised, select, table, warnings, withoutModel } from "../dom.js";
 import { charted, drawer } from "../drawings.js";
 import { worker } from "./work.js";
 
@@ -85,7 +85,7 @@ export function open(root, app) {
         d.parameters.map((p) => [
           p.name,
           digits(p.value),
-          p.unit,
+          raised(p.unit),
           digits(p.sigma),
           p.factor === null ? "–" : fixed(p.factor, 5),
           p.at_bound ? "yes" : "",
