@@ -168,7 +168,7 @@ class Controller:
             modal = self._workbench.modal(self.study)
             beside, why = (None, "") if modal.shapes is None else self._beside_or_why()
             page = shapes_page(modal, beside) | {"no_model": why}
-            if page["model"] is not None:
+            if page.get("model") is not None:
                 page["changed"] = self._changed()
             return page
 

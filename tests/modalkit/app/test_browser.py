@@ -26,7 +26,7 @@ pytestmark = [
 ]
 sync = pytest.importorskip("playwright.sync_api", reason="no playwright here")
 
-PATIENCE = 90_000
+PATIENCE = 240_000
 """Milliseconds that a page may take on a machine shared with others."""
 
 
