@@ -160,9 +160,9 @@ def at_level(frfs: FrfSet, shift: float, best: Fitted, predictor: Predictor) -> 
         return _beside(frfs, best, predictor)
     there = replace(frfs, frequency=frfs.frequency / shift, decay=frfs.decay / shift)
     both = _beside(there, best, predictor)
-    here = {"frequency": both.measured.frequency * shift, "decay": frfs.decay}
     values = shift ** (FORMS.index(frfs.form) - 2) * both.model.values
-    measured, model = replace(both.measured, **here), replace(both.model, **here, values=values)
+    measured = replace(both.measured, frequency=both.measured.frequency * shift, decay=frfs.decay)
+    model = replace(both.model, frequency=measured.frequency, decay=frfs.decay, values=values)
     return replace(both, measured=measured, model=model, frac=frac(measured.values, values))
 
 
