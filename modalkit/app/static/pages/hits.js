@@ -183,6 +183,7 @@ export function open(root, app) {
     ax: 14 * side,
     ay: 16,
     xanchor: side > 0 ? "left" : "right",
+    bgcolor: colour("panel"),
     font: { size: 12 },
   });
 

@@ -54,6 +54,7 @@ export function open(root, app) {
       value: page.order ?? "",
       placeholder: "60",
       "aria-label": "highest model order",
+      title: "poles sought at the most; of several references, over all of them",
       id: "order",
     });
     const hertz = h("input", {
@@ -81,7 +82,7 @@ export function open(root, app) {
         field("Band", h("span", {}, low, " to ", high), "Hz"),
         button("Set", () => app.act("band", { low: number(low), high: number(high) }), { id: "band-set" }),
         page.band_stated ? button("As the force reaches", () => app.act("band", {})) : null,
-        field("Order (poles at most)", order),
+        field("Order", order),
         button("Set", () => app.act("order", { order: order.value ? Number(order.value) : null }), {
           id: "order-set",
         }),
