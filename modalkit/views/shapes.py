@@ -203,7 +203,7 @@ def _at_points(
     along = np.tile([0.0, 0.0, 1.0], (len(measured.nodes), 1))
     if measured.directions is not None:
         along = np.asarray(measured.directions, dtype=float)
-    values = predictor.nominal_rows["w"][:, : prediction.vectors.shape[0]] @ prediction.vectors
+    values = predictor.point_rows()[:, : prediction.vectors.shape[0]] @ prediction.vectors
     shapes = np.zeros((len(nodes), 3, values.shape[1]))
     for k, node in enumerate(measured.nodes):
         if node in nodes:
@@ -228,13 +228,21 @@ def _surface(session: Session, predictor: Predictor, count: int) -> dict[str, An
         grid = np.meshgrid(np.linspace(0.0, spec.length, nx), np.linspace(0.0, spec.width, ny))
         flat, shape = np.stack(grid, axis=-1).reshape(-1, 2), [ny, nx]
     space = np.zeros((len(flat), 3))
-    space[:, : flat.shape[1]] = flat
+    space[:, : flat.shape[1]] = _stretched(predictor, flat)
     return {
         "places": space @ axes.rotation + np.asarray(axes.origin),
         "along": axes.rotation[2],
         "shape": shape,
         "rows": predictor.reduced.rows(flat)["w"][:, :count],
     }
+
+
+def _stretched(predictor: Predictor, places: FloatArray) -> FloatArray:
+    """Return where places of the nominal model lie once length or width are changed, (n, dim) [m]."""
+    stretch, moved = predictor.stretch.by(predictor.base.factors), places.copy()
+    axes = len(stretch)
+    moved[:, :axes] = moved[:, :axes] * stretch - predictor.stretch.growths * (stretch - 1)
+    return moved
 
 
 def _moved(rows: FloatArray, vector: FloatArray) -> FloatArray:

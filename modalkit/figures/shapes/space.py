@@ -131,7 +131,7 @@ def spatial_measured(measured: Measured, predictor: Predictor | None) -> Spatial
     motion = (values[:, :, None] * measured.directions[at][:, None, :]).transpose(1, 0, 2)
     size = _largest(motion)
     if predictor is not None:
-        w = predictor.nominal_rows["w"][at][:, : prediction.vectors.shape[0]] @ prediction.vectors
+        w = predictor.point_rows()[at][:, : prediction.vectors.shape[0]] @ prediction.vectors
         level = np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300)
         model = (w * level)[:, :, None] * measured.directions[at][:, None, :]
         model = model.transpose(1, 0, 2) / size

@@ -148,6 +148,25 @@ def test_a_changed_model_stands_beside_the_test_on_the_same_surface(beam):
         assert np.array(two["surface"]) == pytest.approx(np.array(one["surface"]), abs=1e-9)
 
 
+def test_a_longer_model_is_drawn_longer_and_moves_the_points_where_they_are(beam):
+    """Points keep their distance from the free end, and MAC at them is that of the modal constants."""
+    controller = opened(beam)
+    study = controller.study
+    modal, beside = controller._workbench.modal(study), controller._beside(study)
+    long = beside.predictor.for_test(beside.predictor.measured, (lambda _: State(factors={"length": 1.1}),))
+    page = plain(shapes_page(modal, beside, [Changed("longer", long)]))
+    (other,) = page["changed"]
+    ends = np.array(other["surface"]["places"])[:, 0]
+    assert (ends.min(), ends.max()) == pytest.approx((-0.0376, 0.376))
+    for test, model in zip(page["modes"], other["modes"], strict=True):
+        u, v = np.array(test["re"]).ravel(), np.array(model["at_points"]).ravel()
+        assert (u @ v) ** 2 / ((u @ u) * (v @ v)) == pytest.approx(model["mac"], abs=2e-3)
+        points, at = np.array(page["places"])[:, 0], np.array(model["at_points"])[:, 2]
+        assert np.interp(points, ends, np.array(model["surface"])) == pytest.approx(
+            at, abs=2e-3 * abs(at).max()
+        )
+
+
 def test_the_pairs_of_the_pages_are_those_of_the_correlation(beam):
     controller = opened(beam)
     beside = controller._beside(controller.study)
