@@ -87,10 +87,10 @@ export function open(root, app) {
     );
     const ranking = d.cause.ranking.slice(0, 10);
     const accepted = d.cause.verdict === "named" || d.cause.verdict === "class";
-    const columns = ["causes", "probability", "share", "parameters", "fit p", "model"].map((name, i) => ({
+    const columns = ["causes", "probability", "parameters", "fit p", "model"].map((name, i) => ({
       name,
-      number: i === 1 || i === 4,
-      wide: i === 3,
+      number: i === 1 || i === 3,
+      wide: i === 2,
     }));
     fill(
       causes,
@@ -100,7 +100,6 @@ export function open(root, app) {
         ranking.map((row, i) => [
           row.effects.join(" + ") || "tolerances alone",
           found.rows[i].probability,
-          h("meter", { min: "0", max: "1", value: String(row.probability), "aria-label": "probability" }),
           found.rows[i].parameters,
           found.rows[i].p,
           found.rows[i].acceptable
