@@ -14,7 +14,7 @@ from modalkit.app.actions import ACTIONS
 from modalkit.app.digests import digest_of
 from modalkit.app.export import Handed, export, free_folder, study_text
 from modalkit.app.history import History, State
-from modalkit.app.jobs import Jobs, report_of, result_of
+from modalkit.app.jobs import Jobs, drawings_of, report_of, result_of
 from modalkit.app.model_page import Moved, model_page, moved_page
 from modalkit.app.opened import Opened
 from modalkit.app.store import Store
@@ -167,20 +167,31 @@ class Controller:
         with self._lock:
             modal = self._workbench.modal(self.study)
             beside, why = (None, "") if modal.shapes is None else self._beside_or_why()
-            return shapes_page(modal, beside) | {"no_model": why}
+            page = shapes_page(modal, beside) | {"no_model": why}
+            if page.get("model") is not None:
+                page["changed"] = self._changed()
+            return page
+
+    def _changed(self) -> list[dict[str, Any]]:
+        """Return the models that finished work on this state has made, drawn."""
+        return [
+            model
+            for kind in KINDS
+            if (found := drawings_of(self._folder(kind))) is not None
+            for model in found["models"]
+        ]
 
     def model(self) -> dict[str, Any]:
         """Return the page of the model."""
         with self._lock:
             beside, why = self._beside_or_why()
             content = self._history.now.content
-            return model_page(content, self.study, beside, why) | {"frfs": self._frf_names()}
+            return model_page(content, self.study, beside, why) | self._frfs()
 
-    def _frf_names(self) -> list[str]:
-        if not self.study.test.files:
-            return []
-        names: list[str] = self.modes()["frfs"]
-        return names
+    def _frfs(self) -> dict[str, Any]:
+        """Return the names of the FRFs, and which is shown first."""
+        page = self.modes() if self.study.test.files else {"frfs": [], "first": 0}
+        return {key: page[key] for key in ("frfs", "first")}
 
     def moved(self, moved: Moved, index: int) -> dict[str, Any]:
         """Return the model with effects and factors moved; nothing is kept of it."""
@@ -216,6 +227,10 @@ class Controller:
             "job": job.document() if job is not None and (mine or job.state == "running") else None,
             "result": self._result(kind),
         }
+
+    def drawings(self, kind: str) -> dict[str, Any] | None:
+        """Return what is drawn of a finished piece of work on this state; None where there is none."""
+        return drawings_of(self._folder(kind)) if kind in KINDS else None
 
     def report(self, kind: str) -> str | None:
         """Return the report of a finished piece of work on this state."""

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from acquisition.errors import InputError
-from modalkit.app.work import KINDS, REPORT, RESULT
+from modalkit.app.work import DRAWINGS, KINDS, REPORT, RESULT
 from modalkit.module_path import child_environment
 from modalkit.output.whole import write_text
 
@@ -160,8 +160,17 @@ def _note(job: Job, line: str) -> bool:
 
 def result_of(folder: Path) -> dict[str, Any] | None:
     """Return a result that was finished; None where there is none."""
+    return _read(folder / RESULT)
+
+
+def drawings_of(folder: Path) -> dict[str, Any] | None:
+    """Return what is drawn of a result that was finished; None where there is none."""
+    return None if result_of(folder) is None else _read(folder / DRAWINGS)
+
+
+def _read(path: Path) -> dict[str, Any] | None:
     try:
-        found: dict[str, Any] = json.loads((folder / RESULT).read_text(encoding="utf-8"))
+        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
     return found

@@ -15,6 +15,7 @@ from modalkit.app.toml import toml_text
 from modalkit.output.correlation import correlation_document
 from modalkit.study.read import Study
 from modalkit.views.curves import lines
+from modalkit.views.pairs import pairs_of
 from modalkit.views.shapes import Beside
 from updating import LIBRARY
 from updating.correlation.frfs import correlate_frfs
@@ -30,25 +31,53 @@ FACTORS = ("E", "density", "thickness", "length", "width")
 REACH = 0.25
 """How far a factor can be moved either way: ten times what a modeller doubts of any; beyond, pairs are lost [-]."""
 
-FIELDS: tuple[tuple[str, tuple[str, ...], str], ...] = (
-    ("Length", ("model", "length"), "m"),
-    ("Width", ("model", "width"), "m"),
-    ("Thickness", ("model", "thickness"), "m"),
-    ("Modulus E", ("model", "material", "E"), "Pa"),
-    ("Density", ("model", "material", "density"), "kg/m³"),
-    ("Poisson's ratio", ("model", "material", "poisson"), "–"),
-    ("Theory", ("model", "theory"), ""),
-    ("Tolerance of E", ("tolerances", "E"), "–"),
-    ("Tolerance of density", ("tolerances", "density"), "–"),
-    ("Tolerance of thickness", ("tolerances", "thickness"), "–"),
-    ("Tolerance of length", ("tolerances", "length"), "–"),
-    ("Tolerance of width", ("tolerances", "width"), "–"),
-    ("Tolerance of damping", ("tolerances", "damping"), "–"),
-    ("Calibration", ("test", "calibration"), "–"),
-    ("Repeatability", ("test", "repeatability"), "–"),
-    ("Fluid density", ("environment", "fluid_density"), "kg/m³"),
+
+@dataclass(frozen=True)
+class Field:
+    """A value that is edited by itself. All else is edited in the study's text.
+
+    Parameters
+    ----------
+    label : str
+        What it is called.
+    path : tuple of str
+        Where it stands in the study.
+    unit : str
+        Unit in which it is shown; another can be written behind the number.
+    times : float
+        What a number in this unit is in the study's [study's unit].
+    outlined : bool
+        Whether only models that are drawn by length and width have it, not matrices and decks.
+    """
+
+    label: str
+    path: tuple[str, ...]
+    unit: str = "–"
+    times: float = 1.0
+    outlined: bool = False
+
+
+FIELDS = (
+    Field("Length", ("model", "length"), "m", outlined=True),
+    Field("Width", ("model", "width"), "m", outlined=True),
+    Field("Thickness", ("model", "thickness"), "mm", 1e-3, outlined=True),
+    Field("Modulus E", ("model", "material", "E"), "GPa", 1e9, outlined=True),
+    Field("Density", ("model", "material", "density"), "kg/m³", outlined=True),
+    Field("Poisson's ratio", ("model", "material", "poisson"), outlined=True),
+    Field("Theory", ("model", "theory"), outlined=True),
+    Field("Tolerance of E", ("tolerances", "E")),
+    Field("Tolerance of density", ("tolerances", "density")),
+    Field("Tolerance of thickness", ("tolerances", "thickness"), outlined=True),
+    Field("Tolerance of length", ("tolerances", "length"), outlined=True),
+    Field("Tolerance of width", ("tolerances", "width"), outlined=True),
+    Field("Tolerance of damping", ("tolerances", "damping")),
+    Field("Calibration", ("test", "calibration")),
+    Field("Repeatability", ("test", "repeatability")),
+    Field("Fluid density", ("environment", "fluid_density"), "kg/m³", outlined=True),
 )
-"""What can be edited one by one: name, place in the study, unit. All else is edited in the study's text."""
+
+THEORIES = {"plate": ("kirchhoff", "mindlin"), "beam": ("euler-bernoulli", "rayleigh", "timoshenko")}
+"""What a model's theory can be, by its type."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +100,7 @@ def model_page(content: Mapping[str, Any], study: Study, beside: Beside | None, 
     """Return what the study says, and where it has a model, pairs, MAC and what can be moved."""
     page: dict[str, Any] = {
         "text": toml_text(content),
-        "fields": [_field(content, study, *field) for field in FIELDS] if study.model is not None else [],
+        "fields": _fields(content, study),
         "effects": list(content.get("model", {}).get("effect", [])),
         "update": study.update.model_dump(),
         "why": why,
@@ -90,16 +119,31 @@ def model_page(content: Mapping[str, Any], study: Study, beside: Beside | None, 
     return page
 
 
-def _field(
-    content: Mapping[str, Any], study: Study, label: str, path: tuple[str, ...], unit: str
-) -> dict[str, Any]:
+def _fields(content: Mapping[str, Any], study: Study) -> list[dict[str, Any]]:
+    """Return the values that the study's kind of model has."""
+    if study.model is None:
+        return []
+    kind = study.model.type
+    return [_field(content, study, one) for one in FIELDS if kind in THEORIES or not one.outlined]
+
+
+def _field(content: Mapping[str, Any], study: Study, field: Field) -> dict[str, Any]:
     """Return a value as it stands in the file, or what is taken in its place."""
     stated: Any = content
     taken: Any = study
-    for key in path:
+    for key in field.path:
         stated = stated.get(key) if isinstance(stated, Mapping) else None
         taken = getattr(taken, key, None)
-    return {"label": label, "path": path, "unit": unit, "value": stated, "default": taken}
+    theory = field.path[-1] == "theory" and study.model is not None
+    return {
+        "label": field.label,
+        "path": field.path,
+        "unit": "" if theory else field.unit,
+        "times": field.times,
+        "value": stated,
+        "default": taken,
+        "choices": THEORIES[study.model.type] if theory and study.model is not None else None,
+    }
 
 
 def _sliders(predictor: Predictor) -> list[dict[str, Any]]:
@@ -166,21 +210,19 @@ def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, inde
     if measured.has_shapes:
         page["mac"] = mac_of_constants(measured, prediction)
     try:
-        paired = pair_modes(measured, prediction)
+        pairs = pairs_of(measured, prediction)
     except ModalkitError as error:
         return page | {"why": str(error)}
-    kept = np.flatnonzero(np.isin(measured.frequency, paired.measured.frequency))
-    mac = page["mac"]
     page["pairs"] = [
         {
-            "test_mode": int(t) + 1,
-            "model_mode": int(m) + 1,
-            "test_hz": measured.frequency[t],
-            "model_hz": prediction.frequency[m],
-            "error_percent": 100 * (prediction.frequency[m] / measured.frequency[t] - 1),
-            "mac": None if mac is None else mac[t, m],
+            "test_mode": one.test + 1,
+            "model_mode": one.model + 1,
+            "test_hz": measured.frequency[one.test],
+            "model_hz": prediction.frequency[one.model],
+            "error_percent": 100 * (prediction.frequency[one.model] / measured.frequency[one.test] - 1),
+            "mac": one.mac,
         }
-        for t, m in zip(kept, paired.order, strict=True)
+        for one in pairs
     ]
     if identified is not None:
         row = min(max(index, 0), len(identified.frfs.responses) - 1)
@@ -202,6 +244,8 @@ def _frf(identified: ModalModel, row: int, beside: Beside, predictor: Predictor)
         both.measured.frequency,
         measured=np.abs(both.measured.values[0]),
         model=np.abs(both.model.values[0]),
+        measured_phase=np.degrees(np.angle(both.measured.values[0])),
+        model_phase=np.degrees(np.angle(both.model.values[0])),
     ) | {"unit": both.measured.unit, "frac": both.frac[0]}
 
 

@@ -43,6 +43,7 @@ PAGES: dict[str, Answer] = {
     "shapes": lambda controller, a: controller.shapes(),
     "model": lambda controller, a: controller.model(),
     "work": lambda controller, a: controller.work(str(a["kind"])),
+    "drawings": lambda controller, a: controller.drawings(str(a["kind"])),
 }
 """What is asked for, by name; nothing is changed by it."""
 

@@ -12,13 +12,19 @@ import sys
 from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from acquisition.errors import InputError, ModalkitError
 from modalkit.app.digests import digest_of
 from modalkit.output.whole import plain, write_text
 
-RESULT, REPORT = "result.json", "report.html"
+if TYPE_CHECKING:
+    from modalkit.report.document import Document
+
+RESULT, REPORT, DRAWINGS = "result.json", "report.html", "drawings.json"
+
+DRAWN = ("gap", "causes", "place", "closing", "frfs", "factors", "frac", "correlations")
+"""Charts of the report that the page draws too; those of the test stand on pages of their own."""
 
 Progress = Callable[[str], None]
 
@@ -30,7 +36,8 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     from modalkit.figures.words import answer, parameters
     from modalkit.output.documents import diagnosis_document
     from modalkit.output.summary import answers, separates
-    from modalkit.report import diagnosis_report
+    from modalkit.report.diagnosis import reported
+    from modalkit.report.page import page
     from modalkit.study.read import read_study
     from modalkit.workflow.case import open_study
     from modalkit.workflow.diagnosis import diagnose_studies, warnings_of
@@ -40,8 +47,9 @@ def diagnose(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     found = diagnose_studies([session], progress=progress)
     progress("writing the report")
     repeated = shlex.join(["modalkit", "diagnose", path.name])
-    page = diagnosis_report(found, [session], when=datetime.now().astimezone(), command=repeated)
-    write_text(folder / REPORT, page)
+    whole = reported(found, [session], when=datetime.now().astimezone(), command=repeated)
+    write_text(folder / REPORT, page(whole))
+    _draw(folder, whole)
     return {
         "answer": answer(found),
         "summary": answers(found),
@@ -71,7 +79,8 @@ def update(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     """Update the model of a study and write the report."""
     from acquisition.quantities import percent
     from modalkit.output.update import to_json
-    from modalkit.report import update_report
+    from modalkit.report.page import page
+    from modalkit.report.updating import reported
     from modalkit.study.read import read_study
     from modalkit.workflow.case import open_study
     from modalkit.workflow.update import update_studies
@@ -82,8 +91,9 @@ def update(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
     found = update_studies([session])
     progress("writing the report")
     repeated = shlex.join(["modalkit", "update", path.name])
-    page = update_report(found, [session], when=datetime.now().astimezone(), command=repeated)
-    write_text(folder / REPORT, page)
+    whole = reported(found, [session], when=datetime.now().astimezone(), command=repeated)
+    write_text(folder / REPORT, page(whole))
+    _draw(folder, whole)
     before, after = (percent(found.rms_percent(when)) for when in ("before", "after"))
     state = "converged" if found.converged else "NOT converged"
     return {
@@ -91,6 +101,25 @@ def update(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
         "text": found.report(),
         "document": to_json(found),
     }
+
+
+def _draw(folder: Path, whole: Document) -> None:
+    """Write what the page draws of a result: the charts of the report, where the cause sits, the model as it became."""
+    from modalkit.report.document import Moving, Standing
+    from modalkit.views.chart import Chart
+
+    parts = list(whole.parts())
+    found = {
+        "charts": {
+            part.name: part.data() for part in parts if isinstance(part, Chart) and part.name in DRAWN
+        },
+        "place": next(
+            ({"title": p.title, "text": p.text, "page": p.page} for p in parts if isinstance(p, Standing)),
+            None,
+        ),
+        "models": [model for p in parts if isinstance(p, Moving) for model in p.page["changed"]],
+    }
+    write_text(folder / DRAWINGS, json.dumps(plain(found), allow_nan=False))
 
 
 def plan(path: Path, folder: Path, progress: Progress) -> dict[str, Any]:
@@ -132,7 +161,8 @@ def run(kind: str, path: Path, folder: Path) -> int:
         (folder / REPORT).unlink(missing_ok=True)
         _line(error=str(error))
         return 2
-    write_text(folder / RESULT, json.dumps(plain(result), allow_nan=False))
+    written = {"written": datetime.now().astimezone().isoformat()}
+    write_text(folder / RESULT, json.dumps(plain(result | written), allow_nan=False))
     _line(done=True)
     return 0
 

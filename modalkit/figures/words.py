@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from acquisition.quantities import p_value, percent, place, raised
+from modalkit.output.forms import numbers_a_form
 from updating import LIBRARY, Diagnosis
 from updating.diagnosis.answer.result import Ranked
 
@@ -35,6 +36,8 @@ def parameters(row: Ranked) -> str:
     """Write the parameters of a row of the ranking on one line."""
     parts = []
     for name, estimate in row.parameters.items():
+        if numbers_a_form(name, estimate):
+            continue
         bound = " at its bound" if estimate.at_bound else ""
         statement = name.rpartition(".")[2].replace("_", " ")
         parts.append(f"{statement} {raised(str(estimate))}{bound}")

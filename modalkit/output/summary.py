@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from acquisition.quantities import number, p_value, percent, place, probability
+from modalkit.output.forms import numbers_a_form
 from updating import Diagnosis
 from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
 from updating.diagnosis.answer.verdict import NAME
@@ -121,12 +122,11 @@ def _values(diagnosis: Diagnosis) -> str:
     stated = []
     for name, estimate in row.parameters.items():
         effect, _, parameter = name.partition(".")
-        shape = estimate.low95 is None and not isinstance(estimate.value, str | tuple)
         if (
             estimate.aside
             or parameter in IN_THE_PLACE
             or estimate.unit == NAME
-            or (shape and "point" not in parameter)
+            or numbers_a_form(name, estimate)
         ):
             continue
         bare = parameter.replace("_", " ")

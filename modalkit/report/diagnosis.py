@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import datetime
 
-from modalkit.figures.diagnosis import fitted, mode_errors, overlaid
+from modalkit.figures.diagnosis import Fitted, fitted, mode_errors, overlaid
 from modalkit.figures.diagnosis.localisation import localisation_title
 from modalkit.figures.words import answer
 from modalkit.report.charts.causes import causes_chart, closing_chart
@@ -28,6 +28,7 @@ from modalkit.report.sections import (
     the_warnings,
 )
 from modalkit.report.tested import sections_of_all
+from modalkit.views.shapes import Changed
 from modalkit.views.structure import structure_page
 from modalkit.workflow.case import Session
 from modalkit.workflow.diagnosis import warnings_of
@@ -50,29 +51,51 @@ def diagnosis_report(
     command : str
         What repeats it.
     """
+    return page(reported(diagnosis, sessions, when=when, command=command))
+
+
+def reported(
+    diagnosis: Diagnosis, sessions: Sequence[Session], *, when: datetime, command: str = ""
+) -> Document:
+    """Return the report of a diagnosis before it is written; see :func:`diagnosis_report`."""
     basis = Basis(when, command, [session.study for session in sessions])
-    tests = sections_of_all(sessions)
-    return page(
-        Document(
-            diagnosis.title or "Diagnosis",
-            "diagnosis",
-            joined(
-                element("h1", diagnosis.title or "Diagnosis"),
-                element("p", answer(diagnosis), class_="answer"),
-                the_summary(diagnosis),
-            ),
-            [
-                *answer_sections(diagnosis, sessions),
-                *tests,
-                Section("What was not examined", [not_examined(diagnosis)]),
-                Section("Warnings", [the_warnings([*diagnosis.warnings, *warnings_of(sessions)])]),
-                Section("What this rests on", [provenance(basis)]),
-            ],
-        )
+    bests = best_of(diagnosis, sessions)
+    tests = sections_of_all(sessions, [explained_models(diagnosis, best) for best in bests])
+    return Document(
+        diagnosis.title or "Diagnosis",
+        "diagnosis",
+        joined(
+            element("h1", diagnosis.title or "Diagnosis"),
+            element("p", answer(diagnosis), class_="answer"),
+            the_summary(diagnosis),
+        ),
+        [
+            *answer_sections(diagnosis, sessions, bests),
+            *tests,
+            Section("What was not examined", [not_examined(diagnosis)]),
+            Section("Warnings", [the_warnings([*diagnosis.warnings, *warnings_of(sessions)])]),
+            Section("What this rests on", [provenance(basis)]),
+        ],
     )
 
 
-def answer_sections(diagnosis: Diagnosis, sessions: Sequence[Session]) -> list[Section]:
+def best_of(diagnosis: Diagnosis, sessions: Sequence[Session]) -> list[Fitted]:
+    """Return the most probable explanation in the model of each study."""
+    alone = len(sessions) == 1
+    return [fitted(diagnosis, session.case, alone=alone) for session in sessions]
+
+
+def explained_models(diagnosis: Diagnosis, best: Fitted) -> list[Changed]:
+    """Return the model with the most probable explanation in it, as it is drawn beside the shapes; none without."""
+    found = best.model()
+    if found is None:
+        return []
+    return [Changed(f"with {' + '.join(diagnosis.ranking[0].effects)}", found[0])]
+
+
+def answer_sections(
+    diagnosis: Diagnosis, sessions: Sequence[Session], bests: Sequence[Fitted] | None = None
+) -> list[Section]:
     """Return how large, where, what, what is left, how far, what next, FRFs before and after.
 
     Parameters
@@ -81,8 +104,10 @@ def answer_sections(diagnosis: Diagnosis, sessions: Sequence[Session]) -> list[S
         The answer.
     sessions : sequence of Session
         What was diagnosed; without, only what the diagnosis itself holds is drawn.
+    bests : sequence of Fitted, optional
+        As of :func:`best_of`, where they are there already.
     """
-    gaps, frfs = _by_session(diagnosis, sessions)
+    gaps, frfs = _by_session(diagnosis, sessions, best_of(diagnosis, sessions) if bests is None else bests)
     if not sessions:
         gaps = [gap_chart(mode_errors(diagnosis))]
     where = [_where(diagnosis, sessions[0].case)] if sessions else []
@@ -97,14 +122,16 @@ def answer_sections(diagnosis: Diagnosis, sessions: Sequence[Session]) -> list[S
     ]
 
 
-def _by_session(diagnosis: Diagnosis, sessions: Sequence[Session]) -> tuple[list[Part], list[Part]]:
+def _by_session(
+    diagnosis: Diagnosis, sessions: Sequence[Session], bests: Sequence[Fitted]
+) -> tuple[list[Part], list[Part]]:
     """Return the gaps and the FRFs of each specimen."""
     alone = len(sessions) == 1
     gaps: list[Part] = []
     frfs: list[Part] = []
     after = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
-    for i, session in enumerate(sessions, start=1):
-        best, mark = fitted(diagnosis, session.case, alone=alone), "" if i == 1 else f"-{i}"
+    for i, (session, best) in enumerate(zip(sessions, bests, strict=True), start=1):
+        mark = "" if i == 1 else f"-{i}"
         if not alone:
             gaps.append(element("h3", session.case.title))
         errors = mode_errors(diagnosis, session.case, best=best)

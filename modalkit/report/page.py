@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from typing import Any
 
 from modalkit.report.document import Document, Moving, Part, Section, Standing
@@ -11,6 +12,7 @@ from modalkit.report.html import Raw, element, joined
 from modalkit.report.place import BEGIN
 from modalkit.report.scripts import scripts
 from modalkit.views.chart import Chart
+from modalkit.views.static import shared
 
 
 def page(document: Document) -> str:
@@ -28,7 +30,7 @@ def page(document: Document) -> str:
         "space": {part.name: {"kind": _kind(part), "page": part.page} for part in in_space},
     }
     own, policy = scripts(data, space=bool(in_space))
-    style = files("modalkit.report").joinpath("static", "style.css").read_text(encoding="utf-8")
+    style = "".join(sheet.read_text(encoding="utf-8") for sheet in (_style(), shared()["chart.css"]))
     body = joined(element("header", document.head), _contents(document), *map(_section, document.shown))
     return "\n".join(
         (
@@ -42,6 +44,10 @@ def page(document: Document) -> str:
             f"<body><main>\n{body.markup}\n</main>\n{own}</body></html>\n",
         )
     )
+
+
+def _style() -> Traversable:
+    return files("modalkit.report").joinpath("static", "style.css")
 
 
 def _kind(part: Moving | Standing) -> str:

@@ -9,6 +9,7 @@ import pandas as pd
 from acquisition.display import counted
 from acquisition.quantities import bare_p, p_value, percent, probability
 from modalkit.figures.words import METRICS
+from modalkit.output.forms import numbers_a_form
 from modalkit.output.summary import answers, searched_text, separates
 from modalkit.report.html import Cell, Column, Raw, bullets, definitions, element, folded, joined, table
 from updating import Diagnosis, Effect
@@ -240,8 +241,8 @@ def _why_not_alone(diagnosis: Diagnosis) -> str:
 def _explanation(row: Ranked, why: str, *, shown: bool) -> list[Cell | Raw]:
     stated = []
     for name, estimate in row.parameters.items():
-        if estimate.low95 is None and isinstance(estimate.value, int | float) and ".point" not in name:
-            continue  # which form of the effect it is
+        if numbers_a_form(name, estimate):
+            continue
         bound = ", at the end of its range" if estimate.at_bound else ""
         statement = name if len(row.effects) > 1 else name.partition(".")[2]
         stated.append(f"{statement} = {estimate}{bound}")

@@ -14,24 +14,35 @@ from modalkit.report.charts.test import auto_mac_chart, cmif_chart, frfs_chart, 
 from modalkit.report.document import Moving, Section
 from modalkit.report.html import Cell, Column, Raw, folded, table
 from modalkit.views.chart import Chart
-from modalkit.views.shapes import Beside, shapes_page
+from modalkit.views.shapes import Beside, Changed, shapes_page
 from modalkit.workflow.case import Session, modes_in_band
 from modalkit.workflow.identification import Processed
 from updating.correlation.correlate import correlate
 from updating.nominal import predictor_of
 
 
-def sections_of_all(sessions: Sequence[Session]) -> list[Section]:
-    """Return the sections of the tests of several studies, one after the other."""
+def sections_of_all(sessions: Sequence[Session], changed: Sequence[Sequence[Changed]] = ()) -> list[Section]:
+    """Return the sections of the tests of several studies, one after the other.
+
+    Parameters
+    ----------
+    sessions : sequence of Session
+        The studies.
+    changed : sequence of sequence of Changed
+        Of each study, its model as it became; left out, none is drawn beside the shapes but that of the study.
+    """
+    became = changed or [()] * len(sessions)
     return [
         section
-        for i, session in enumerate(sessions, start=1)
-        for section in session_sections(session, number=i, tests=len(sessions))
+        for i, (session, own) in enumerate(zip(sessions, became, strict=True), start=1)
+        for section in session_sections(session, number=i, tests=len(sessions), changed=own)
     ]
 
 
-def session_sections(session: Session, *, number: int = 1, tests: int = 1) -> list[Section]:
-    """Return the sections of a study's test, with the model as it stands beside the shapes.
+def session_sections(
+    session: Session, *, number: int = 1, tests: int = 1, changed: Sequence[Changed] = ()
+) -> list[Section]:
+    """Return the sections of a study's test, with the model beside the shapes, as it stands and as it became.
 
     Parameters
     ----------
@@ -41,6 +52,8 @@ def session_sections(session: Session, *, number: int = 1, tests: int = 1) -> li
         Which of several it is, from 1; its charts bear it.
     tests : int
         How many there are; of several, headings name the study.
+    changed : sequence of Changed
+        The study's model as it became.
     """
     whose = f" of {session.case.title}" if tests > 1 else ""
     modal = modal_of(session)
@@ -49,7 +62,7 @@ def session_sections(session: Session, *, number: int = 1, tests: int = 1) -> li
         *sections_of_test(
             session.processed, session.identified, modal, (test.add, test.drop), number, whose, tests
         ),
-        shapes_section(modal, session, number, whose),
+        shapes_section(modal, session, number, whose, changed),
     ]
 
 
@@ -127,14 +140,18 @@ def modal_of(session: Session) -> ModalData | None:
 
 
 def shapes_section(
-    modal: ModalData | None, session: Session | None, number: int = 1, whose: str = ""
+    modal: ModalData | None,
+    session: Session | None,
+    number: int = 1,
+    whose: str = "",
+    changed: Sequence[Changed] = (),
 ) -> Section:
-    """Return the shapes in motion, test beside model, and the MAC between them."""
+    """Return the shapes in motion, test beside model as it stands and as it became, and the MAC between them."""
     mark, title = "" if number == 1 else f"-{number}", f"Shapes in motion{whose}"
     if modal is None or modal.shapes is None:
         return Section(title)
     beside, why = _beside(session)
-    page = shapes_page(modal, beside)
+    page = shapes_page(modal, beside, changed)
     if not page["modes"]:
         return Section(title)
     moving = Moving(

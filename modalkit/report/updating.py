@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from acquisition.display import counted
-from acquisition.quantities import percent
+from acquisition.quantities import percent, raised
 from modalkit.figures.diagnosis.errors import ModeErrors
 from modalkit.report.charts.gap import gap_chart
 from modalkit.report.charts.matrix import matrix_chart
@@ -21,8 +21,11 @@ from modalkit.report.provenance import Basis, provenance
 from modalkit.report.sections import the_warnings
 from modalkit.report.tested import sections_of_all
 from modalkit.views.chart import Chart
+from modalkit.views.shapes import Changed
 from modalkit.workflow.case import Session
 from modalkit.workflow.diagnosis import warnings_of
+from modalkit.workflow.updated_model import updated_predictor
+from updating import Case
 from updating.frf_update import FrfUpdate
 from updating.update import Update
 from updating.update.statistics.doubts import untested
@@ -42,22 +45,30 @@ def update_report(result: Update, sessions: Sequence[Session], *, when: datetime
     command : str
         What repeats it.
     """
+    return page(reported(result, sessions, when=when, command=command))
+
+
+def reported(result: Update, sessions: Sequence[Session], *, when: datetime, command: str = "") -> Document:
+    """Return the report of an update before it is written; see :func:`update_report`."""
     title = ", ".join(session.case.title for session in sessions)
     basis = Basis(when, command, [session.study for session in sessions])
-    tests = sections_of_all(sessions)
-    return page(
-        Document(
-            title,
-            "update",
-            joined(element("h1", title), update_answer(result)),
-            [
-                *update_sections(result),
-                *tests,
-                Section("Warnings", [the_warnings([*result.warnings, *warnings_of(sessions)])]),
-                Section("What this rests on", [provenance(basis)]),
-            ],
-        )
+    tests = sections_of_all(sessions, [updated_models(result, session.case) for session in sessions])
+    return Document(
+        title,
+        "update",
+        joined(element("h1", title), update_answer(result)),
+        [
+            *update_sections(result),
+            *tests,
+            Section("Warnings", [the_warnings([*result.warnings, *warnings_of(sessions)])]),
+            Section("What this rests on", [provenance(basis)]),
+        ],
     )
+
+
+def updated_models(result: Update, case: Case) -> list[Changed]:
+    """Return the updated model of a study, as it is drawn beside the shapes of its test."""
+    return [Changed("updated", updated_predictor(result, case))]
 
 
 def update_sections(result: Update) -> list[Section]:
@@ -109,7 +120,6 @@ def _errors(result: Update) -> list[Part]:
 def pairs_table(result: Update) -> Raw:
     """Return one row per pair."""
     columns = [
-        Column("study"),
         Column("test mode", lambda v: f"{v:.0f}"),
         Column("model mode", lambda v: f"{v:.0f}"),
         Column("MAC", lambda v: f"{v:.3f}"),
@@ -120,14 +130,21 @@ def pairs_table(result: Update) -> Raw:
         Column("used"),
     ]
     rows: list[list[Cell | Raw]] = [_pair(row) for _, row in result.pairs.iterrows()]
+    if _several(result):
+        columns.insert(0, Column("study"))
+        rows = [[str(study), *row] for study, row in zip(result.pairs["study"], rows, strict=True)]
     return table("Paired modes before and after.", columns, rows)
+
+
+def _several(result: Update) -> bool:
+    """Tell whether several studies were updated together; of one alone no table names it."""
+    return result.pairs["study"].nunique() > 1
 
 
 def _pair(row: pd.Series) -> list[Cell | Raw]:
     left = 100 * (float(row["after_hz"]) / float(row["test_hz"]) - 1)
     numbers = [float(row[name]) for name in ("mac", "test_hz", "before_hz", "after_hz")]
     return [
-        str(row["study"]),
         int(row["test_mode"]),
         int(row["model_mode"]),
         *numbers,
@@ -141,7 +158,6 @@ def parameters_table(result: Update) -> Raw:
     short = "{:.5g}".format
     columns = [
         Column("parameter"),
-        Column("study"),
         Column("value", short),
         Column("± sigma", "{:.2g}".format),
         Column("unit"),
@@ -156,9 +172,10 @@ def parameters_table(result: Update) -> Raw:
         )
         sigma = p.sigma if np.isfinite(p.sigma) else None
         limits = f"{p.low:.4g} to {p.high:.4g}"
-        rows.append(
-            [p.name, p.study or "shared", p.value, sigma, p.unit, p.factor, limits, ", ".join(careful)]
-        )
+        whose = [p.study or "shared"] if _several(result) else []
+        rows.append([p.name, *whose, p.value, sigma, raised(p.unit), p.factor, limits, ", ".join(careful)])
+    if _several(result):
+        columns.insert(1, Column("study"))
     return table("What was updated, with one standard deviation.", columns, rows)
 
 

@@ -18,13 +18,14 @@ from modalkit.workflow.identification import Judged, Processed
 def hits_page(processed: Processed | None, study: Study) -> dict[str, Any]:
     """Return the verdicts and the list of FRFs; None stands for a test that has modes alone."""
     if processed is None:
-        return {"hits": [], "force": None, "frfs": [], "unit": "", "warnings": []}
+        return {"hits": [], "force": None, "frfs": [], "first": 0, "unit": "", "warnings": []}
     named = {(p.upper(), n) for p, n in (*study.test.use, *study.test.leave)}
     force = force_range(processed.hits)
     return {
         "hits": [_verdict(v, decided=(str(v.point), v.hit) in named) for v in processed.hits],
         "force": None if force is None else str(force),
         "frfs": frf_names(processed.frfs),
+        "first": first_frf(processed.frfs),
         "unit": processed.frfs.unit,
         "estimator": study.test.estimator,
         "warnings": [str(w) for w in processed.warnings],
@@ -36,6 +37,13 @@ def frf_names(frfs: FrfSet) -> list[str]:
     return [f"{a} / {b}" for a, b in zip(frfs.responses, frfs.references, strict=True)]
 
 
+def first_frf(frfs: FrfSet) -> int:
+    """Return the FRF that is shown first: the largest at a drive point; of a test without any, the largest of all."""
+    size = np.sqrt(np.mean(np.abs(frfs.values) ** 2, axis=1))
+    driven = np.array([a.node == b.node for a, b in zip(frfs.responses, frfs.references, strict=True)])
+    return int(np.argmax(np.where(driven, size, -1.0) if driven.any() else size))
+
+
 def _verdict(verdict: HitVerdict, *, decided: bool) -> dict[str, Any]:
     """Return the verdict on a hit, with what was proposed: a hit with a fault is not to be used."""
     return {
@@ -44,6 +52,7 @@ def _verdict(verdict: HitVerdict, *, decided: bool) -> dict[str, Any]:
         "decided": decided,
         "peak": f"{number(verdict.peak)} N",
         "width": f"{number(1e3 * verdict.width)} ms",
+        "band10": hertz(verdict.band10),
         "band20": hertz(verdict.band20),
     }
 

@@ -13,7 +13,7 @@ from identification.identify import Provisional
 from identification.pole_reasons import Origins
 from modalkit.study.read import Study
 from modalkit.views.curves import check_frf, lines
-from modalkit.views.hits import frf_names
+from modalkit.views.hits import first_frf, frf_names
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.identification import Processed
 
@@ -78,6 +78,7 @@ def modes_page(
         "references": [{"name": n, "used": not wanted or n.upper() in wanted} for n in references],
         "rejected": list(modes.points_rejected),
         "frfs": frf_names(modes.frfs),
+        "first": first_frf(modes.frfs),
         "unit": modes.frfs.unit,
         "chart": _chart(modes, origins),
         "sum": _sum(modes),
@@ -97,6 +98,7 @@ def _chart(model: ModalModel, origins: Origins) -> dict[str, Any]:
         "reason": origins.chain[near],
         "reasons": [{"kind": r.kind, "text": r.text, "mode": r.mode} for r in origins.reasons],
         "orders": chart.orders,
+        "references": chart.participation.shape[1],
     }
 
 
@@ -144,5 +146,9 @@ def provisional_page(found: Provisional, index: int) -> dict[str, Any]:
     return {
         "frequency_hz": frequency,
         "damping_ratio": -found.poles.real / np.abs(found.poles),
-        "fit": lines(frfs.frequency, fitted=np.abs(frfs.values[row])),
+        "fit": lines(
+            frfs.frequency,
+            fitted=np.abs(frfs.values[row]),
+            fitted_phase=np.degrees(np.angle(frfs.values[row])),
+        ),
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,12 +14,17 @@ from acquisition.errors import ModalkitError
 from identification import mpc
 from modalkit.views.faces import closed_faces
 from modalkit.views.mesh import edges_of, mesh_of
+from modalkit.views.pairs import pairs_of
 from modalkit.workflow.case import Session
 from updating.correlation.correlate import Correlation
 from updating.prediction.predict import Predictor
+from updating.prediction.prediction import Prediction
 
 FINE = (81, (41, 27))
 """Points at which the model is drawn, along a beam and over a plate."""
+
+STANDING = "as stated"
+"""Name of the model that the study states, in the list of models."""
 
 NODES = 1500
 """Nodes of a user's own mesh that move, beyond which the model is drawn at the test's points alone: each takes 20 bytes
@@ -44,29 +50,79 @@ class Beside:
     correlation: Correlation
 
 
-def shapes_page(modal: ModalData, beside: Beside | None) -> dict[str, Any]:
-    """Return geometry and shapes; of a model, its shape at the test's points and on its own surface."""
+@dataclass(frozen=True, eq=False)
+class Changed:
+    """A model after something was changed in it: by an update, or by the cause that a diagnosis found.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in the list of models: ``updated``, ``with sensor_mass``.
+    predictor : Predictor
+        The model, on the geometry of the study's own.
+    """
+
+    name: str
+    predictor: Predictor
+
+
+def shapes_page(modal: ModalData, beside: Beside | None, changed: Sequence[Changed] = ()) -> dict[str, Any]:
+    """Return geometry and shapes; of each model, its shape at the test's points and on its own surface.
+
+    Parameters
+    ----------
+    modal : ModalData
+        The test's modes.
+    beside : Beside, optional
+        The model as the study states it.
+    changed : sequence of Changed
+        The same model after an update or with a cause in it; drawn only where ``beside`` is.
+    """
     if modal.shapes is None or not len(modal.dofs):
         return {"modes": [], "why": "these modes have no shapes; identify them from FRFs at several points"}
-    nodes = list(dict.fromkeys(dof.node for dof in modal.dofs))
+    measured = list(dict.fromkeys(dof.node for dof in modal.dofs))
+    nodes = measured + _still(modal, measured)
     places, placed = _places(modal, nodes)
     vectors = _vectors(modal, nodes)
     row = {node: i for i, node in enumerate(nodes)}
     joined = [(row[int(a)], row[int(b)]) for a, b in modal.geometry.lines if int(a) in row and int(b) in row]
     page: dict[str, Any] = {
         "nodes": nodes,
+        "still": len(nodes) - len(measured),
         "places": places,
         "placed": placed,
         "why": "" if placed else "the file gives no coordinates: points stand in a row, by their numbers",
         "lines": joined if placed else [[i, i + 1] for i in range(len(nodes) - 1)],
-        "faces": closed_faces(places, joined) if placed else [],
+        "faces": closed_faces(places, [pair for pair in joined if max(pair) < len(measured)])
+        if placed
+        else [],
         "arrows": [{"node": row[dof.node], "to": _direction(modal, k)} for k, dof in enumerate(modal.dofs)],
         "modes": [_mode(modal, vectors[:, :, r], r) for r in range(len(modal))],
         "model": None,
+        "changed": [],
     }
     if beside is not None and placed:
-        page["model"] = _model(page["modes"], vectors, nodes, beside)
+        drawn = [
+            _model(page["modes"], vectors, nodes, beside.session, one)
+            for one in (Changed(STANDING, beside.predictor), *changed)
+        ]
+        page["model"], page["changed"] = drawn[0], [_on_surface_of(drawn[0], one) for one in drawn[1:]]
     return page
+
+
+def _on_surface_of(first: dict[str, Any], model: dict[str, Any]) -> dict[str, Any]:
+    """Leave out a surface that is the first model's, whose places and lines are written once."""
+    own, known = model["surface"], first["surface"]
+    same = own is not None and known is not None and np.array_equal(own["places"], known["places"])
+    return model | {"surface": None} if same else model
+
+
+def _still(modal: ModalData, measured: Sequence[int]) -> list[int]:
+    """Return the points of the test's lines at which nothing was measured, drawn at rest; none without coordinates."""
+    if not all(node in modal.geometry for node in measured):
+        return []
+    ends = dict.fromkeys(int(node) for node in modal.geometry.lines.ravel())
+    return [node for node in ends if node not in set(measured) and node in modal.geometry]
 
 
 def _places(modal: ModalData, nodes: list[int]) -> tuple[FloatArray, bool]:
@@ -110,61 +166,60 @@ def _mode(modal: ModalData, vectors: ComplexArray, r: int) -> dict[str, Any]:
 
 
 def _model(
-    modes: list[dict[str, Any]], vectors: ComplexArray, nodes: list[int], beside: Beside
+    modes: list[dict[str, Any]], vectors: ComplexArray, nodes: list[int], session: Session, model: Changed
 ) -> dict[str, Any]:
-    """Return the model's shapes of the paired modes, scaled to the test's by least squares."""
-    measured, predictor = beside.session.case.measured, beside.predictor
+    """Return a model's shapes of the paired modes, scaled to the test's by least squares."""
+    measured, predictor = session.case.measured, model.predictor
     prediction = predictor.predict()
-    rotation = beside.session.study.axes(beside.session.study.test).rotation
-    known = [(k, nodes.index(node)) for k, node in enumerate(measured.nodes) if node in nodes]
+    at_points = _at_points(session, predictor, prediction, nodes)
+    surface = _surface(session, predictor, prediction.vectors.shape[0])
+    found: list[dict[str, Any] | None] = [None] * len(modes)
+    for pair in pairs_of(measured, prediction):
+        frequency = prediction.frequency[pair.model]
+        u, shape = vectors[:, :, pair.test], at_points[:, :, pair.model]
+        factor = float(np.sum(shape * u.real) / max(float(np.sum(shape**2)), 1e-300))
+        difference = np.linalg.norm(u - factor * shape, axis=1)
+        found[pair.test] = {
+            "mode": pair.model + 1,
+            "frequency_hz": frequency,
+            "error_percent": 100 * (frequency / modes[pair.test]["frequency_hz"] - 1),
+            "mac": pair.mac,
+            "at_points": factor * shape,
+            "difference": difference / max(float(np.abs(u).max()), 1e-300),
+            "surface": None
+            if surface is None
+            else factor * _moved(surface["rows"], prediction.vectors[:, pair.model]),
+        }
+    drawn = None if surface is None else {k: v for k, v in surface.items() if k != "rows"}
+    return {"name": model.name, "modes": found, "surface": drawn}
+
+
+def _at_points(
+    session: Session, predictor: Predictor, prediction: Prediction, nodes: list[int]
+) -> FloatArray:
+    """Return how a model moves the test's points in the test's axes, (n_points, 3, n_modes)."""
+    measured = session.case.measured
+    rotation = session.study.axes(session.study.test).rotation
     along = np.tile([0.0, 0.0, 1.0], (len(measured.nodes), 1))
     if measured.directions is not None:
         along = np.asarray(measured.directions, dtype=float)
-    values = predictor.nominal_rows["w"][:, : prediction.vectors.shape[0]] @ prediction.vectors
-    table = beside.correlation.table
-    pairs = {
-        int(t) - 1: (int(m) - 1, float(c)) for t, m, c in table[["test mode", "model mode", "MAC"]].to_numpy()
-    }
-    surface = _surface(beside, prediction.vectors.shape[0])
-    found: list[dict[str, Any] | None] = []
-    for r, mode in enumerate(modes):
-        if r not in pairs:
-            found.append(None)
-            continue
-        partner, mac = pairs[r]
-        shape = np.zeros((len(nodes), 3))
-        for k, i in known:
-            shape[i] += values[k, partner] * (along[k] @ rotation)
-        u = vectors[:, :, r].real
-        factor = float(np.sum(shape * u) / max(float(np.sum(shape**2)), 1e-300))
-        difference = np.linalg.norm(vectors[:, :, r] - factor * shape, axis=1)
-        found.append(
-            {
-                "mode": partner + 1,
-                "frequency_hz": prediction.frequency[partner],
-                "error_percent": 100 * (prediction.frequency[partner] / mode["frequency_hz"] - 1),
-                "mac": mac,
-                "at_points": factor * shape,
-                "difference": difference / max(float(np.abs(vectors[:, :, r]).max()), 1e-300),
-                "surface": None
-                if surface is None
-                else factor * _moved(surface["rows"], prediction.vectors[:, partner]),
-            }
-        )
-    drawn = None if surface is None else {k: v for k, v in surface.items() if k != "rows"}
-    return {"modes": found, "surface": drawn}
+    values = predictor.point_rows()[:, : prediction.vectors.shape[0]] @ prediction.vectors
+    shapes = np.zeros((len(nodes), 3, values.shape[1]))
+    for k, node in enumerate(measured.nodes):
+        if node in nodes:
+            shapes[nodes.index(node)] += np.outer(along[k] @ rotation, values[k])
+    return shapes
 
 
-def _surface(beside: Beside, count: int) -> dict[str, Any] | None:
+def _surface(session: Session, predictor: Predictor, count: int) -> dict[str, Any] | None:
     """Return the model's own line or surface in the test's coordinates, with the rows of its basis; None without.
 
     ``count`` is the number of coordinates of the basis that the shapes have.
     """
-    study, predictor = beside.session.study, beside.predictor
     spec = predictor.spec
-    axes = study.axes(study.test)
+    axes = session.study.axes(session.study.test)
     if spec.imported is not None:
-        return _own_mesh(beside, count)
+        return _own_mesh(session, predictor, count)
     if spec.kind == "beam":
         x = np.linspace(0.0, spec.length, FINE[0])
         flat, shape = x[:, None], [FINE[0]]
@@ -173,7 +228,7 @@ def _surface(beside: Beside, count: int) -> dict[str, Any] | None:
         grid = np.meshgrid(np.linspace(0.0, spec.length, nx), np.linspace(0.0, spec.width, ny))
         flat, shape = np.stack(grid, axis=-1).reshape(-1, 2), [ny, nx]
     space = np.zeros((len(flat), 3))
-    space[:, : flat.shape[1]] = flat
+    space[:, : flat.shape[1]] = _stretched(predictor, flat)
     return {
         "places": space @ axes.rotation + np.asarray(axes.origin),
         "along": axes.rotation[2],
@@ -182,14 +237,21 @@ def _surface(beside: Beside, count: int) -> dict[str, Any] | None:
     }
 
 
+def _stretched(predictor: Predictor, places: FloatArray) -> FloatArray:
+    """Return where places of the nominal model lie once length or width are changed, (n, dim) [m]."""
+    stretch, moved = predictor.stretch.by(predictor.base.factors), places.copy()
+    axes = len(stretch)
+    moved[:, :axes] = moved[:, :axes] * stretch - predictor.stretch.growths * (stretch - 1)
+    return moved
+
+
 def _moved(rows: FloatArray, vector: FloatArray) -> FloatArray:
     """Return how places move: (n,) across a beam or plate, (n, 3) where rows are (n, 3, n_basis)."""
     return np.asarray(rows @ vector)
 
 
-def _own_mesh(beside: Beside, count: int) -> dict[str, Any] | None:
+def _own_mesh(session: Session, predictor: Predictor, count: int) -> dict[str, Any] | None:
     """Return the mesh of matrices or of a deck with the rows of its nodes; None of one that cannot be drawn."""
-    predictor = beside.predictor
     mesh = mesh_of(predictor.spec)
     if mesh is None or not (mesh.lines or mesh.faces):
         return None
@@ -197,7 +259,7 @@ def _own_mesh(beside: Beside, count: int) -> dict[str, Any] | None:
     if len(used) > NODES:
         return None
     place = {old: new for new, old in enumerate(used)}
-    axes = beside.session.study.axes(beside.session.study.test)
+    axes = session.study.axes(session.study.test)
     along = np.tile(axes.rotation.T, (len(used), 1))  # the test's axes, as the model has them
     try:
         rows = predictor.reduced.rows(np.repeat(mesh.places[used], 3, axis=0), along)["w"][:, :count]

@@ -31,7 +31,72 @@ export function axis(title, more = {}) {
   };
 }
 
-export const log = { type: "log", exponentformat: "power", dtick: 1 };
+/** Return a logarithmic axis for curves: no more than DECADES below the largest, so that a curve of noise shows too. */
+export function logAxis(title, ...curves) {
+  const sizes = curves.flat().filter((v) => v > 0);
+  if (!sizes.length) return axis(title, { type: "log" });
+  const top = Math.log10(sizes.reduce((a, b) => Math.max(a, b)));
+  const low = Math.max(Math.log10(sizes.reduce((a, b) => Math.min(a, b))), top - DECADES);
+  const edge = 0.04 * (top - low) + 0.02;
+  return axis(title, {
+    type: "log",
+    exponentformat: "power",
+    dtick: top - low > 6 ? 2 : 1,
+    range: [low - edge, top + edge],
+    tickfont: { size: 10 }, // plotly writes powers a quarter larger than it is told
+  });
+}
+
+const DECADES = 8;
+
+/** Return phases within the turn in which they jump least: most lie about 0 and 180 degrees, some about 90 and -90. */
+function branch(traces) {
+  const [first] = [-90, -180]
+    .map((low) => {
+      const moved = traces.map((t) => ({ ...t, y: t.y.map((v) => (v < low ? v + 360 : v >= low + 360 ? v - 360 : v)) }));
+      const jumps = moved.flatMap((t) => t.y.slice(1).map((v, i) => Math.abs(v - t.y[i]) > 180));
+      return { low, traces: moved, jumps: jumps.filter(Boolean).length };
+    })
+    .sort((a, b) => a.jumps - b.jumps);
+  return { ...first, ticks: [-180, -90, 0, 90, 180, 270].filter((v) => v >= first.low && v <= first.low + 360) };
+}
+
+/** Draw FRFs: magnitude, and beneath it on the same frequencies phase and coherence where they are given. */
+export function drawFrf(element, { magnitude, phase = [], coherence = [], unit, height = 300, shapes = [], ...more }) {
+  const narrow = window.innerWidth < 600;
+  const turned = branch(phase);
+  const below = [
+    [turned.traces, "phase [°]", { range: [turned.low - 10, turned.low + 370], tickvals: turned.ticks }],
+    [coherence, "coherence", { range: [0, 1.05], tickvals: [0, 0.5, 1] }],
+  ].filter(([traces]) => traces.length);
+  const small = 90;
+  const whole = height + below.length * (small + 14);
+  const rows = below.map(([traces, title, given], i) => ({
+    key: `yaxis${i + 2}`,
+    traces: traces.map((t) => ({ ...t, yaxis: `y${i + 2}`, showlegend: false })),
+    axis: axis(title, {
+      ...given,
+      domain: [(below.length - 1 - i) * ((small + 14) / whole), (below.length - 1 - i) * ((small + 14) / whole) + small / whole],
+      automargin: false,
+      title: { text: title, standoff: 6, font: { size: 11 } },
+    }),
+  }));
+  const x = magnitude[0].x;
+  return draw(element, [...magnitude, ...rows.flatMap((r) => r.traces)], {
+    height: whole + 60,
+    margin: { l: narrow ? 54 : 66, r: 14, t: 10, b: 40 },
+    xaxis: axis("frequency [Hz]", { range: [x[0], x[x.length - 1]], anchor: below.length ? `y${below.length + 1}` : "y" }),
+    yaxis: {
+      ...logAxis(`|H| [${unit}]`, ...magnitude.map((t) => t.y)),
+      domain: [below.length * ((small + 14) / whole), 1],
+      automargin: false,
+    },
+    ...Object.fromEntries(rows.map((r) => [r.key, r.axis])),
+    shapes: shapes.map((one) => ({ ...one, yref: "paper", y0: 0, y1: 1 })),
+    uirevision: `${x[0]} ${x[x.length - 1]}`, // the part looked at stays, as long as the lines do
+    ...more,
+  });
+}
 
 function layout(given) {
   const narrow = window.innerWidth < 600;
@@ -90,6 +155,9 @@ function without(object, key) {
   const { [key]: _, ...rest } = object;
   return rest;
 }
+
+/** Return an axis of numbered modes, written upright however many there are. */
+export const modesAxis = (title, more = {}) => axis(title, { type: "category", tickangle: 0, ...more });
 
 /** Return the trace of a matrix of MACs. */
 export function macMatrix(matrix, rows, columns) {

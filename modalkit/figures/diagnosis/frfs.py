@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from acquisition import FrfSet
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.form import FORMS
 from identification import frac
 from modalkit.figures.diagnosis.fitted import Fitted
 from modalkit.figures.overlay import chosen_frfs
@@ -126,8 +127,8 @@ def _beside(frfs: FrfSet, best: Fitted, predictor: Predictor) -> CorrelatedFrfs:
 
 
 def _after(frfs: FrfSet, best: Fitted, predictor: Predictor, state: State) -> CorrelatedFrfs:
-    """Return the model's FRFs as the measurement has them: with reversed or exchanged points, and a delay."""
-    both = _beside(frfs, best, predictor)
+    """Return the model's FRFs as the measurement has them: at its level, with reversed or exchanged points, delayed."""
+    both = at_level(frfs, 1.0 + state.slope * (best.problem.measured.level or 0.0), best, predictor)
     nodes = best.problem.measured.nodes
     values = both.model.values[_exchanged(both.measured, nodes, state)]
     for (role, point), gain in state.point_gains.items():
@@ -136,6 +137,33 @@ def _after(frfs: FrfSet, best: Fitted, predictor: Predictor, state: State) -> Co
         values = np.where(concerned[:, None], gain * values, values)
     values = values * np.exp(-2j * np.pi * both.measured.frequency * state.delay)
     return replace(both, model=replace(both.model, values=values), frac=frac(both.measured.values, values))
+
+
+def at_level(frfs: FrfSet, shift: float, best: Fitted, predictor: Predictor) -> CorrelatedFrfs:
+    """Return a model's FRFs where all its frequencies are shifted, as by joints that soften with the level of the hits.
+
+    A model whose stiffness is s^2 times another's, with the same damping ratios, answers at s p as that one at p:
+    H(s p) = s^(n-2) H(p) for receptances (n = 0), mobilities (1) and accelerances (2).
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The measured ones.
+    shift : float
+        s, the factor of all frequencies [-].
+    best : Fitted
+        Test and model.
+    predictor : Predictor
+        The model, of whose matrices the shift is no part.
+    """
+    if shift == 1.0:
+        return _beside(frfs, best, predictor)
+    there = replace(frfs, frequency=frfs.frequency / shift, decay=frfs.decay / shift)
+    both = _beside(there, best, predictor)
+    values = shift ** (FORMS.index(frfs.form) - 2) * both.model.values
+    measured = replace(both.measured, frequency=both.measured.frequency * shift, decay=frfs.decay)
+    model = replace(both.model, frequency=measured.frequency, decay=frfs.decay, values=values)
+    return replace(both, measured=measured, model=model, frac=frac(measured.values, values))
 
 
 def _exchanged(frfs: FrfSet, nodes: tuple[int, ...], state: State) -> IntArray:

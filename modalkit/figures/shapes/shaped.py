@@ -125,7 +125,7 @@ def from_measured(measured: Measured, predictor: Predictor | None) -> Shapes:
     values, sigma, points = values / size, sigma / np.abs(size), measured.points[place_of]
     w = None
     if predictor is not None:
-        w = predictor.nominal_rows["w"][place_of][:, : prediction.vectors.shape[0]] @ prediction.vectors
+        w = predictor.point_rows()[place_of][:, : prediction.vectors.shape[0]] @ prediction.vectors
         level = np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300)
         w, shape = w * level, None if shape is None else shape * level
     if points.shape[1] > 2:

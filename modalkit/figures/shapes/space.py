@@ -67,6 +67,8 @@ class Spatial:
         Its frequencies [Hz].
     mesh : (array, list), optional
         Places and lines of the model, at rest.
+    still : int
+        So many of the points, the last, belong to lines alone: nothing was measured there [-].
     """
 
     places: FloatArray
@@ -78,6 +80,12 @@ class Spatial:
     model: FloatArray | None = None
     model_frequency: FloatArray | None = None
     mesh: tuple[FloatArray, list[tuple[int, ...]]] | None = None
+    still: int = 0
+
+    @property
+    def measured(self) -> int:
+        """Points at which something was measured [-]."""
+        return len(self.places) - self.still
 
 
 def in_space(modal: ModalData) -> bool:
@@ -110,6 +118,7 @@ def spatial_modes(modal: ModalData) -> Spatial:
         len(modal.dofs),
         page["lines"],
         page["faces"],
+        still=page["still"],
     )
 
 
@@ -131,7 +140,7 @@ def spatial_measured(measured: Measured, predictor: Predictor | None) -> Spatial
     motion = (values[:, :, None] * measured.directions[at][:, None, :]).transpose(1, 0, 2)
     size = _largest(motion)
     if predictor is not None:
-        w = predictor.nominal_rows["w"][at][:, : prediction.vectors.shape[0]] @ prediction.vectors
+        w = predictor.point_rows()[at][:, : prediction.vectors.shape[0]] @ prediction.vectors
         level = np.sum(w * values, axis=0) / np.maximum(np.sum(w**2, axis=0), 1e-300)
         model = (w * level)[:, :, None] * measured.directions[at][:, None, :]
         model = model.transpose(1, 0, 2) / size
@@ -161,7 +170,7 @@ def spatial_figure(shapes: Spatial) -> Figure:
     """
     n = len(shapes.frequency)
     columns = min(3, n)
-    where = f"{counted(len(shapes.places), 'point')}, {counted(shapes.directions, 'direction')}"
+    where = f"{counted(shapes.measured, 'point')}, {counted(shapes.directions, 'direction')}"
     title = f"{counted(n, 'mode shape')} at {where}"
     note = _note(shapes)
     top = caption_height(title, note) + 0.25
@@ -221,8 +230,11 @@ def _panel(axes: Axes, view: View, shapes: Spatial, k: int, reach: float) -> Non
     if not shapes.lines:  # each point by itself: from where it rests to where it goes
         sticks = [(i, len(motion) + i) for i in range(len(motion))]
         draw_lines(axes, view, np.concatenate([shapes.places, moved]), sticks, colour=ORANGE, width=0.9)
-    flat = view.flat(moved)
-    axes.scatter(flat[:, 0], flat[:, 1], c=shade, s=14, edgecolor=INK, linewidth=0.5, zorder=3, clip_on=False)
+    seen = shapes.measured
+    flat = view.flat(moved)[:seen]
+    axes.scatter(
+        flat[:, 0], flat[:, 1], c=shade[:seen], s=14, edgecolor=INK, linewidth=0.5, zorder=3, clip_on=False
+    )
     if shapes.model is not None:
         own = view.flat(shapes.places + reach * shapes.model[k])
         axes.scatter(own[:, 0], own[:, 1], s=34, facecolor="none", edgecolor=BLUE, linewidth=1.0, zorder=2.8)

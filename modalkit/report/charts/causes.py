@@ -63,7 +63,8 @@ def _title(diagnosis: Diagnosis) -> str:
         return f"No explanation of {len(diagnosis.ranking)} that were compared is the answer"
     total = probability(sum(r.probability for r in chosen))
     if len(chosen) == 1:
-        return f"{short(chosen[0].effects)} holds {total} of the probability{behind}"
+        name = short(chosen[0].effects)
+        return f"{name[:1].upper()}{name[1:]} holds {total} of the probability{behind}"
     return f"{counted(len(chosen), 'explanation')} hold {total} together{behind}"
 
 

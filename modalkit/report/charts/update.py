@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from acquisition.arrays import FloatArray
 from acquisition.display import counted
 from modalkit.views.chart import Axis, Chart, Series
 from updating.frf_update import FrfUpdate
@@ -39,7 +40,7 @@ def factors_chart(result: Update) -> Chart | None:
         if len(known) == 1
         else f"{counted(len(known), 'factor')}; {known[far][0]} moved most, by {change}",
         "Over the nominal values, with two standard deviations. Dotted: 1, where they began.",
-        Axis("factor on the nominal value [-]"),
+        Axis("factor on the nominal value [-]", range=_with_one(factor - sigma, factor + sigma)),
         Axis(names=tuple(name for name, _, _ in known)),
         [
             Series("2σ", "links", [], rows, "faint", {"low": factor - sigma, "high": factor + sigma}),
@@ -47,6 +48,13 @@ def factors_chart(result: Update) -> Chart | None:
         ],
         more={"lines": [1.0]},
     )
+
+
+def _with_one(low: FloatArray, high: FloatArray) -> tuple[float, float]:
+    """Return the ends of an axis on which all factors stand, and 1, where they began [-]."""
+    ends = min(1.0, float(low.min())), max(1.0, float(high.max()))
+    edge = 0.05 * max(ends[1] - ends[0], 1e-3)
+    return ends[0] - edge, ends[1] + edge
 
 
 def course_charts(result: Update) -> Iterator[Chart]:
@@ -72,7 +80,7 @@ def course_charts(result: Update) -> Iterator[Chart]:
                 f"course-{number}",
                 f"{counted(len(names), 'parameter')} over {counted(result.iterations, 'iteration')}",
                 f"{', '.join(names)}.",
-                Axis("evaluation"),
+                Axis("iteration"),
                 Axis(what),
                 lines,
                 220.0,

@@ -1,4 +1,4 @@
-"""Drawings of the browser as plain modules: those that the app and the report share."""
+"""Drawings of the browser as plain modules and the style of charts: those that the app and the report share."""
 
 from __future__ import annotations
 
@@ -7,5 +7,5 @@ from importlib.resources.abc import Traversable
 
 
 def shared() -> dict[str, Traversable]:
-    """Return the modules by their names."""
-    return {entry.name: entry for entry in files(__name__).iterdir() if entry.name.endswith(".js")}
+    """Return the modules and the style by their names."""
+    return {entry.name: entry for entry in files(__name__).iterdir() if entry.name.endswith((".js", ".css"))}

@@ -64,10 +64,11 @@ export class Body {
     }
     if (lines.length)
       add(new THREE.LineSegments(geometry(lines.flat()), new THREE.LineBasicMaterial({ vertexColors: true })));
-    if (dots)
+    const seen = dots === true ? this.count : Number(dots); // the first so many of the points, or all
+    if (seen)
       add(
         new THREE.Points(
-          geometry(null),
+          geometry([...Array(seen).keys()]),
           new THREE.PointsMaterial({
             size: size * Math.min(2, window.devicePixelRatio),
             sizeAttenuation: false,

@@ -78,6 +78,12 @@ export function select(options, value, onchange, attributes = {}) {
 
 /** Return numbers as the tables of the command line have them. */
 export const fixed = (value, digits) => (value === null || value === undefined ? "–" : value.toFixed(digits));
+/** Return a standard deviation with so many decimals, or where these would be nothing, with two digits. */
+export const sigma = (value, digits) =>
+  value > 0 && value < 10 ** -digits ? value.toExponential(1) : fixed(value, digits);
+/** Return a unit with its exponents raised: m² for m^2. */
+export const raised = (unit) => unit.replace(/\^(-?\d+)/g, (_, digits) => [...digits].map((c) => RAISED[c]).join(""));
+const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 export const short = (value) => (value === null || value === undefined ? "–" : String(Number(value.toPrecision(4))));
 
 export function warnings(list) {

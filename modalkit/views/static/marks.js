@@ -113,7 +113,7 @@ function cells(group, series, { x, y }) {
     const size = Math.min(1, Math.abs(value ?? 0));
     group.append(s("rect", { ...rounded(box), class: `fill ${shade}`, opacity: (0.92 * size).toFixed(3) }));
     const text = series.written?.[i];
-    if (text && 7 * text.length < b - a && d - c > 13)
+    if (text && 7 * text.length + 8 < b - a && d - c > 13)
       group.append(
         s("text", { x: n((a + b) / 2), y: n((c + d) / 2 + 4), class: size > 0.55 ? "in strong" : "in" }, text),
       );

@@ -4,7 +4,7 @@
 export function written(value, digits = 4) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   const size = Math.abs(value);
-  if (size !== 0 && (size >= 1e6 || size < 1e-4)) return minus(value.toExponential(digits - 1));
+  if (size !== 0 && (size >= 1e6 || size < 1e-4)) return minus(value.toExponential(digits - 1).replace(/\.?0+e/, "e"));
   return minus(String(Number(value.toPrecision(digits))));
 }
 
@@ -37,7 +37,7 @@ function linear(axis, low, high, from, to) {
   const wanted = Math.max(2, Math.abs(to - from) / (axis.dense ? 45 : 80));
   const raw = (high - low) / wanted;
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= raw * 0.999) ?? 10 * power;
+  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= raw * 0.7) ?? 10 * power;
   const ticks = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1)
     ticks.push({ at: at(k * step), text: written(Number((k * step).toPrecision(12)), 6) });

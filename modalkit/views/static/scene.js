@@ -4,6 +4,12 @@ import * as THREE from "./three.module.min.js";
 import { Body, mesh } from "./body.js";
 import { Stage } from "./stage.js";
 
+/** Return the models of a page of shapes, that of the study first; those on its surface get it. */
+export function models(page) {
+  if (!page.model) return [];
+  return [page.model, ...page.changed.map((one) => ({ ...one, surface: one.surface ?? page.model.surface }))];
+}
+
 /** A structure that moves in its modes. */
 export class Scene extends Stage {
   constructor(canvas, colours, options) {
@@ -41,18 +47,10 @@ export class Scene extends Stage {
     this.beside = new THREE.Group();
     this.arrows = new THREE.Group();
     this.scene.add(this.group, this.beside, this.arrows);
-    this.test = new Body(this.group, page.places, { lines: page.lines, faces: page.faces, opacity: 0.75 });
-    const surface = page.model?.surface;
-    this.fem = surface
-      ? new Body(
-          this.beside,
-          surface.places,
-          surface.shape ? mesh(surface.shape) : { ...surface, dots: false, opacity: 0.4 },
-        )
-      : page.model
-        ? new Body(this.beside, page.places, { lines: page.lines, faces: page.faces, opacity: 0.4, size: 4 })
-        : null;
-    this.measure(surface ? [...page.places, ...surface.places] : page.places);
+    const dots = page.nodes.length - page.still;
+    this.test = new Body(this.group, page.places, { lines: page.lines, faces: page.faces, dots, opacity: 0.75 });
+    this.models = models(page).map((model) => this.drawn(model));
+    this.measure([...page.places, ...this.models.flatMap((one) => one.places)]);
     for (const arrow of page.arrows) {
       const to = new THREE.Vector3(...arrow.to);
       if (to.lengthSq() > 0)
@@ -70,22 +68,39 @@ export class Scene extends Stage {
     this.resize();
   }
 
+  /** Draw a model on its own surface, or where it has none at the test's points; hidden until it is chosen. */
+  drawn(model) {
+    const group = new THREE.Group();
+    group.visible = false;
+    this.beside.add(group);
+    const { page } = this;
+    const surface = model.surface;
+    const body = surface
+      ? new Body(group, surface.places, surface.shape ? mesh(surface.shape) : { ...surface, dots: false, opacity: 0.4 })
+      : new Body(group, page.places, { lines: page.lines, faces: page.faces, opacity: 0.4, size: 4 });
+    return { body, group, along: surface?.along, places: surface?.places ?? page.places };
+  }
+
   choose(mode, options) {
     this.mode = mode;
     this.options = options;
     this.arrows.visible = options.arrows;
     const shape = this.page.modes[mode];
     this.largest = Math.max(1e-300, ...shape.re.map((v, i) => Math.hypot(...v, ...shape.im[i])));
-    const model = this.page.model?.modes[mode] ?? null;
-    this.beside.visible = Boolean(model) && options.model !== "no";
+    this.partner = models(this.page)[options.which]?.modes[mode] ?? null;
+    this.fem = this.models[options.which] ?? null;
+    this.models.forEach((one) => {
+      one.group.visible = one === this.fem;
+    });
+    this.beside.visible = Boolean(this.partner) && options.model !== "no";
     this.apart = options.model === "beside" ? this.offset() : [0, 0, 0];
     this.beside.position.set(...this.apart);
     this.surfaceShape = null;
-    if (model && this.fem) {
-      const along = this.page.model.surface?.along;
+    if (this.partner) {
+      const along = this.fem.along;
       this.surfaceShape = along
-        ? model.surface.map((w) => along.map((a) => a * w))
-        : (model.surface ?? model.at_points);
+        ? this.partner.surface.map((w) => along.map((a) => a * w))
+        : (this.partner.surface ?? this.partner.at_points);
     }
     this.aim();
     this.dirty = true;
@@ -105,7 +120,7 @@ export class Scene extends Stage {
     const reach = 0.09 * this.size;
     const places = [
       ...this.page.places,
-      ...(this.page.model?.surface?.places ?? this.page.places).map((p) => p.map((v, k) => v + apart[k])),
+      ...(this.fem?.places ?? this.page.places).map((p) => p.map((v, k) => v + apart[k])),
     ];
     this.aimAt(centre, places, reach);
   }
@@ -128,10 +143,9 @@ export class Scene extends Stage {
 
   pose() {
     const shape = this.page.modes[this.mode];
-    const model = this.page.model?.modes[this.mode] ?? null;
     const [cos, sin] = [Math.cos(this.phase), Math.sin(this.phase)];
     const scale = (0.11 * this.size * this.amplitude) / this.largest;
-    const difference = this.options.difference && model ? model.difference : null;
+    const difference = this.options.difference && this.partner ? this.partner.difference : null;
     const at = (i) => {
       const [r, m] = [shape.re[i], shape.im[i]];
       const k = [0, 1, 2].reduce((a, b) => (Math.hypot(r[b], m[b]) > Math.hypot(r[a], m[a]) ? b : a), 0);
@@ -147,7 +161,7 @@ export class Scene extends Stage {
         const k = [0, 1, 2].reduce((a, b) => (Math.abs(v[b]) > Math.abs(v[a]) ? b : a), 0);
         return (v[k] * cos) / this.largest;
       };
-      this.fem.move(
+      this.fem.body.move(
         w,
         null,
         cos,

@@ -1,7 +1,7 @@
 // Modes as they move: which one, how large, test and model, their difference. Given the data of the shapes.
 
 import { button, field, fill, fixed, h, palette, select, table } from "./dom.js";
-import { Scene } from "./scene.js";
+import { models, Scene } from "./scene.js";
 
 /** Put a viewer of shapes into an element. Returns {show(page), recolour(), close(), list}. */
 export function viewer(root, { kept = false } = {}) {
@@ -17,12 +17,14 @@ export function viewer(root, { kept = false } = {}) {
   const legend = h("p", { class: "muted", "aria-live": "polite" }),
     list = h("div");
   root.append(picker, tools, frame, legend);
-  const view = { mode: 0, options: { model: "over", difference: false, arrows: false }, page: null, scene: null };
+  const view = { mode: 0, options: { model: "over", which: 0, difference: false, arrows: false }, page: null, scene: null };
 
   function show(page) {
     view.page = page;
     if (!page.modes.length) return;
     view.mode = Math.min(view.mode, page.modes.length - 1);
+    view.models = models(page);
+    if (view.options.which >= view.models.length) view.options.which = 0;
     if (!view.scene && !view.flat) {
       try {
         view.scene = new Scene(canvas, palette(), { kept });
@@ -87,13 +89,34 @@ export function viewer(root, { kept = false } = {}) {
       view.options.model = value;
       again();
     };
+    const named = (value) => {
+      view.options.which = Number(value);
+      again();
+      listed();
+    };
     fill(
       tools,
       button(scene.playing ? "Pause" : "Play", turn, { id: "play" }),
       slider("Amplitude", "amplitude", "3"),
       slider("Speed", "speed", "2"),
       tick("directions measured", "arrows"),
-      view.page.model ? field("Model", select(places, view.options.model, placed, { id: "model-shown" })) : null,
+      view.models.length > 1
+        ? field(
+            "Model",
+            select(
+              view.models.map((one, i) => [i, one.name]),
+              view.options.which,
+              named,
+              { id: "model-which" },
+            ),
+          )
+        : null,
+      view.page.model
+        ? field(
+            view.models.length > 1 ? "Where" : "Model",
+            select(places, view.options.model, placed, { id: "model-shown" }),
+          )
+        : null,
       view.page.model ? tick("colour the difference", "difference") : null,
     );
   }
@@ -116,13 +139,14 @@ export function viewer(root, { kept = false } = {}) {
 
   function listed() {
     const columns = COLUMNS.slice(0, view.page.model ? 8 : 3).map((name) => ({ name, number: true }));
-    const caption = `Shapes at ${view.page.nodes.length} points, ${view.page.arrows.length} directions`;
+    const which = view.models.length > 1 ? `; model ${view.models[view.options.which].name}` : "";
+    const caption = `Shapes at ${view.page.nodes.length - view.page.still} points, ${view.page.arrows.length} directions${which}`;
     fill(
       list,
       table(
         caption,
         columns,
-        view.page.modes.map((m, i) => row(m, view.page.model?.modes[i]).slice(0, columns.length)),
+        view.page.modes.map((m, i) => row(m, view.models[view.options.which]?.modes[i]).slice(0, columns.length)),
       ),
     );
   }
@@ -167,7 +191,9 @@ function row(mode, model) {
 /** Say what is seen. */
 function caption(page, mode, view) {
   const shape = page.modes[mode];
-  const model = page.model?.modes[mode];
+  const whole = view.models[view.options.which];
+  const model = whole?.modes[mode];
+  const whose = view.models.length > 1 ? ` (${whole.name})` : "";
   const complex = shape.mpc < 0.95 ? ", complex: its points pass through rest one after another" : "";
   const parts = [`Mode ${shape.mode} at ${fixed(shape.frequency_hz, 3)} Hz, MPC ${fixed(shape.mpc, 3)}${complex}.`];
   if (view.flat) parts.push("This browser draws nothing in three dimensions (no WebGL).");
@@ -175,11 +201,17 @@ function caption(page, mode, view) {
     const error = `${model.error_percent > 0 ? "+" : ""}${fixed(model.error_percent, 2)} %`;
     const grey = view.options.model === "over" ? ", grey" : "";
     parts.push(
-      `Model mode ${model.mode} at ${fixed(model.frequency_hz, 3)} Hz (${error}), MAC ${fixed(model.mac, 3)}${grey}.`,
+      `Model${whose}: mode ${model.mode} at ${fixed(model.frequency_hz, 3)} Hz (${error}), MAC ${fixed(model.mac, 3)}${grey}.`,
     );
-  } else if (page.model) parts.push("No mode of the model is its partner.");
+  } else if (whole) parts.push(`No mode of the model${whose} is its partner.`);
   if (model && view.options.difference)
     parts.push("Colours: difference from the model, green none to red 30 % of the largest motion.");
+  if (page.still)
+    parts.push(
+      page.still === 1
+        ? "One point of the lines was not measured and is drawn at rest."
+        : `${page.still} points of the lines were not measured and are drawn at rest.`,
+    );
   if (page.why) parts.push(`${page.why[0].toUpperCase()}${page.why.slice(1)}.`);
   if (page.no_model && page.no_model !== "the study has no [model]") parts.push(`No model: ${page.no_model}`);
   return parts.join(" ");
@@ -194,5 +226,6 @@ function named(page, mode, index) {
     .filter(([, value]) => value > 0.0005)
     .map(([axis, value]) => `${axis} ${(100 * value).toFixed(1)} %`);
   const place = page.placed ? ` at ${page.places[index].map((v) => v.toPrecision(4)).join(", ")} m` : "";
-  return `point ${page.nodes[index]}${place}: ${motion.join(", ") || "at rest"}`;
+  const unknown = index >= page.nodes.length - page.still;
+  return `point ${page.nodes[index]}${place}: ${unknown ? "not measured" : motion.join(", ") || "at rest"}`;
 }

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from opening import FAINT, opened
 
+from acquisition import Dof, Geometry, ModalData
 from acquisition.errors import InputError
 from acquisition.hits.checks import force_bands, pulse_spectrum
 from identification import pole_origins
@@ -20,6 +21,10 @@ from modalkit.app.model_page import Moved
 from modalkit.output.whole import plain
 from modalkit.views.curves import POINTS, envelope
 from modalkit.views.faces import closed_faces
+from modalkit.views.hits import first_frf
+from modalkit.views.pairs import pairs_of
+from modalkit.views.shapes import Changed, shapes_page
+from updating.models.state import State
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
 
@@ -125,6 +130,93 @@ def test_the_shapes_of_test_and_model_agree_where_their_mac_does(beam):
         assert mac == pytest.approx(model["mac"], abs=0.02)
         assert max(model["difference"]) < 0.5
     assert np.array(page["model"]["surface"]["places"])[:, 0].max() == pytest.approx(0.376)
+
+
+def test_a_changed_model_stands_beside_the_test_on_the_same_surface(beam):
+    """With a modulus a tenth larger every frequency is the root of 1.1 higher, and no shape is another."""
+    controller = opened(beam)
+    study = controller.study
+    modal, beside = controller._workbench.modal(study), controller._beside(study)
+    stiff = beside.predictor.for_test(beside.predictor.measured, (lambda _: State(factors={"E": 1.1}),))
+    page = plain(shapes_page(modal, beside, [Changed("stiffer", stiff)]))
+    first, (other,) = page["model"], page["changed"]
+    assert other["name"] == "stiffer"
+    assert other["surface"] is None and first["surface"] is not None
+    for one, two in zip(first["modes"], other["modes"], strict=True):
+        assert two["frequency_hz"] == pytest.approx(np.sqrt(1.1) * one["frequency_hz"], rel=1e-6)
+        assert two["mac"] == pytest.approx(one["mac"], rel=1e-9)
+        assert np.array(two["surface"]) == pytest.approx(np.array(one["surface"]), abs=1e-9)
+
+
+def test_a_longer_model_is_drawn_longer_and_moves_the_points_where_they_are(beam):
+    """Points keep their distance from the free end, and MAC at them is that of the modal constants."""
+    controller = opened(beam)
+    study = controller.study
+    modal, beside = controller._workbench.modal(study), controller._beside(study)
+    long = beside.predictor.for_test(beside.predictor.measured, (lambda _: State(factors={"length": 1.1}),))
+    page = plain(shapes_page(modal, beside, [Changed("longer", long)]))
+    (other,) = page["changed"]
+    ends = np.array(other["surface"]["places"])[:, 0]
+    assert (ends.min(), ends.max()) == pytest.approx((-0.0376, 0.376))
+    for test, model in zip(page["modes"], other["modes"], strict=True):
+        u, v = np.array(test["re"]).ravel(), np.array(model["at_points"]).ravel()
+        assert (u @ v) ** 2 / ((u @ u) * (v @ v)) == pytest.approx(model["mac"], abs=2e-3)
+        points, at = np.array(page["places"])[:, 0], np.array(model["at_points"])[:, 2]
+        assert np.interp(points, ends, np.array(model["surface"])) == pytest.approx(
+            at, abs=2e-3 * abs(at).max()
+        )
+
+
+def test_the_pairs_of_the_pages_are_those_of_the_correlation(beam):
+    controller = opened(beam)
+    beside = controller._beside(controller.study)
+    table = beside.correlation.table
+    pairs = pairs_of(beside.session.case.measured, beside.predictor.predict())
+    assert [(p.test + 1, p.model + 1) for p in pairs] == [
+        (int(t), int(m)) for t, m in zip(table["test mode"], table["model mode"], strict=True)
+    ]
+    assert [p.mac for p in pairs] == pytest.approx(table["MAC"].tolist(), rel=1e-9)
+
+
+def test_points_of_lines_that_were_not_measured_are_drawn_at_rest():
+    """A frame of four corners, one of them not measured: its lines are drawn, no surface is made up on it."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]], float)
+    geometry = Geometry((1, 2, 3, 4, 9), corners, np.array([[1, 2], [2, 3], [3, 4], [4, 1]]))
+    dofs = tuple(Dof(node, 3) for node in (1, 2, 3))
+    shapes = np.array([[1.0], [2.0], [3.0]], complex)
+    modal = ModalData(
+        np.array([10.0]),
+        np.array([0.01]),
+        damping=np.array([0.01]),
+        shapes=shapes,
+        dofs=dofs,
+        geometry=geometry,
+    )
+    page = shapes_page(modal, None)
+    assert page["nodes"] == [1, 2, 3, 4] and page["still"] == 1
+    assert len(page["lines"]) == 4 and page["faces"] == []
+    assert np.abs(page["modes"][0]["re"][3]).max() == 0.0
+
+
+def test_the_drive_point_is_shown_first(faint):
+    frfs = read(faint).frfs
+    first = first_frf(frfs)
+    assert frfs.responses[first].node == frfs.references[first].node
+    away = frfs.select([i for i in range(len(frfs.responses)) if i != first])
+    size = [np.linalg.norm(row) for row in away.values]
+    assert first_frf(away) == int(np.argmax(size))
+
+
+def test_only_what_a_kind_of_model_has_can_be_edited_and_in_handy_units(beam, frame):
+    page = plain(opened(beam).model())
+    fields = {field["label"]: field for field in page["fields"]}
+    assert (fields["Modulus E"]["unit"], fields["Modulus E"]["times"]) == ("GPa", 1e9)
+    assert fields["Theory"]["choices"] == ["euler-bernoulli", "rayleigh", "timoshenko"]
+    controller = opened(beam)
+    controller.act("set", {"path": ["model", "material", "E"], "value": "70 GPa"})
+    assert controller.study.spec().material.E == 70e9
+    own = {field["label"] for field in plain(opened(frame).model())["fields"]}
+    assert "Modulus E" not in own and "Theory" not in own and "Tolerance of E" in own
 
 
 def moves(sliders: list[dict[str, Any]], end: str) -> Iterator[dict[str, Any]]:

@@ -1,23 +1,37 @@
 // Diagnosis: progress by stages, the answer as in the report, a cause accepted, what to measure next, planning.
 
-import { axis, colour, draw } from "../charts.js";
 import { button, fill, fixed, h, table, warnings, withoutModel } from "../dom.js";
+import { charted, drawer, placed } from "../drawings.js";
 import { worker } from "./work.js";
 
 export function open(root, app) {
   const answer = h("div"),
     gap = h("div"),
+    place = h("div"),
+    probable = h("div"),
     causes = h("div"),
+    closing = h("div"),
+    frfs = h("div"),
+    closes = h("p"),
     rest = h("div"),
     planned = h("div");
+  const panel = (title, ...inside) => h("section", { class: "panel" }, h("h2", {}, title), ...inside);
+  const where = panel("Where it sits", place),
+    overlaid = panel("FRFs before and after", frfs);
   const result = h(
     "div",
     { hidden: true },
-    h("section", { class: "panel" }, h("h2", {}, "The answer"), answer),
-    h("section", { class: "panel" }, h("h2", {}, "What causes it"), causes),
-    h("section", { class: "panel" }, h("h2", {}, "The gap by mode"), gap),
-    h("section", { class: "panel" }, h("h2", {}, "What next"), rest),
+    panel("The answer", answer),
+    panel("How large the gap is", gap),
+    where,
+    panel("What causes it", probable, causes),
+    panel("How far it closes", closing, closes),
+    overlaid,
+    panel("What next", rest),
   );
+  const drawings = drawer("diagnose");
+  let standing = null;
+  let seen = null;
   const work = worker(app, "diagnose", { start: "Diagnose", again: "Diagnose again", done: shown });
   const plan = worker(app, "plan", { start: "Plan the next test", again: "Plan again", done: forecast });
   root.append(
@@ -73,10 +87,10 @@ export function open(root, app) {
     );
     const ranking = d.cause.ranking.slice(0, 10);
     const accepted = d.cause.verdict === "named" || d.cause.verdict === "class";
-    const columns = ["causes", "probability", "share", "parameters", "fit p", "model"].map((name, i) => ({
+    const columns = ["causes", "probability", "parameters", "fit p", "model"].map((name, i) => ({
       name,
-      number: i === 1 || i === 4,
-      wide: i === 3,
+      number: i === 1 || i === 3,
+      wide: i === 2,
     }));
     fill(
       causes,
@@ -86,7 +100,6 @@ export function open(root, app) {
         ranking.map((row, i) => [
           row.effects.join(" + ") || "tolerances alone",
           found.rows[i].probability,
-          h("meter", { min: "0", max: "1", value: String(row.probability), "aria-label": "probability" }),
           found.rows[i].parameters,
           found.rows[i].p,
           found.rows[i].acceptable
@@ -109,44 +122,16 @@ export function open(root, app) {
           : "No row is the answer; accept one only if you know better.",
       ),
     );
-    const modes = d.gap.modes;
-    await draw(
-      gap,
-      [
-        {
-          type: "bar",
-          x: modes.map((_, i) => `${i + 1}`),
-          y: modes.map((m) => m.error_percent),
-          marker: { color: colour("orange") },
-          name: "model as it stands",
-          error_y: {
-            type: "data",
-            array: modes.map((m) => 2 * m.sigma_percent),
-            color: colour("muted"),
-            thickness: 1,
-          },
-          customdata: modes.map((m) => [m.test_hz, m.model_hz]),
-          hovertemplate:
-            "mode %{x}: test %{customdata[0]:.3f} Hz, model %{customdata[1]:.3f} Hz, %{y:.3f} %<extra></extra>",
-        },
-      ],
-      {
-        height: 280,
-        xaxis: axis("mode", { type: "category" }),
-        yaxis: axis("error of the model [%]", { zeroline: true, zerolinecolor: colour("muted") }),
-      },
+    fill(
+      closes,
+      `On modes held out the gap goes from ${found.closes.before} to ${found.closes.after}; the noise floor is ${found.closes.floor}.`,
     );
     fill(
       rest,
-      h(
-        "p",
-        {},
-        `On modes held out the gap goes from ${found.closes.before} to ${found.closes.after}; the noise floor is ${found.closes.floor}.`,
-      ),
       found.next.length
         ? table(
             "What to measure next",
-            [{ name: "measure" }, { name: "separates", wide: true }, { name: "σ", number: true }],
+            [{ name: "measure", wide: true }, { name: "separates", wide: true }, { name: "σ", number: true }],
             found.next.map((t) => [t.measure, t.separates, fixed(t.sigma, 1)]),
           )
         : h("p", {}, "No further test is proposed."),
@@ -164,6 +149,25 @@ export function open(root, app) {
         : null,
       warnings(d.warnings),
     );
+    await drawn(found);
+  }
+
+  /** Draw the result as its report does, once for each result. */
+  async function drawn(found) {
+    const mark = JSON.stringify([app.state.key, found.written]);
+    if (mark === seen) {
+      standing?.recolour();
+      return;
+    }
+    const all = await drawings(mark);
+    seen = mark;
+    charted(gap, all, ["gap"]);
+    charted(probable, all, ["causes"]);
+    charted(closing, all, ["closing"]);
+    overlaid.hidden = !charted(frfs, all, ["frfs"]);
+    where.hidden = !all?.place && !charted(place, all, ["place"]);
+    standing?.close();
+    standing = all?.place ? await placed(place, all.place) : null;
   }
 
   async function forecast(found) {
@@ -184,6 +188,7 @@ export function open(root, app) {
     close: () => {
       work.close();
       plan.close();
+      standing?.close();
     },
   };
 }

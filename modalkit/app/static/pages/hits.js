@@ -1,13 +1,13 @@
 // Hits: every verdict with its reason, the records of one, and the FRF that follows from what is used.
 
 import { get } from "../api.js";
-import { axis, colour, draw, escaped, line, log } from "../charts.js";
+import { axis, colour, draw, drawFrf, escaped, line } from "../charts.js";
 import { button, fill, h, select, warnings } from "../dom.js";
 
 export function open(root, app) {
   const list = h("div", { class: "hits-list" });
   const verdict = h("p", { class: "verdict", "aria-live": "polite" });
-  const charts = { force: h("div"), spectrum: h("div"), response: h("div"), frf: h("div"), coherence: h("div") };
+  const charts = { force: h("div"), spectrum: h("div"), response: h("div"), frf: h("div") };
   const chooser = h("div", { class: "row" });
   const notes = h("div");
   const records = h(
@@ -24,12 +24,11 @@ export function open(root, app) {
     { class: "panel" },
     heading,
     chooser,
-    titled("Magnitude", charts.frf),
-    titled("Coherence", charts.coherence),
+    charts.frf,
   );
   const side = h("section", { class: "panel side" }, h("h2", {}, "Hits"), list);
   root.append(notes, h("div", { class: "columns" }, side, h("div", {}, records, picture)));
-  const view = { hit: null, frf: 0, page: null, before: null };
+  const view = { hit: null, frf: null, page: null, before: null };
 
   async function update() {
     view.page = await get("hits");
@@ -53,6 +52,7 @@ export function open(root, app) {
       listed();
     }
     picture.hidden = !frfs.length;
+    view.frf = Math.min(view.frf ?? view.page.first, frfs.length - 1);
     if (frfs.length) chosen();
     await Promise.all([hits.length ? record() : null, frfs.length ? frf() : null]);
   }
@@ -138,7 +138,10 @@ export function open(root, app) {
         xaxis: axis("frequency [Hz]"),
         yaxis: axis("level [dB]", { range: [-45, 5] }),
         shapes: [down(s.band10, -10), down(s.band20, -20)].flat(),
-        annotations: [at(s.band20, -20, `−20 dB: ${v.band20}`)],
+        annotations: [
+          at(s.band10, -10, `−10 dB: ${v.band10}`, -1),
+          at(s.band20, -20, `−20 dB: ${v.band20}`, s.band20 > 0.7 * s.frequency[s.frequency.length - 1] ? -1 : 1),
+        ],
       }),
       draw(
         charts.response,
@@ -169,7 +172,20 @@ export function open(root, app) {
     { type: "line", x0: x, x1: x, y0: -45, y1: y, line: { color: colour("muted"), width: 1, dash: "dot" } },
     { type: "line", xref: "paper", x0: 0, x1: 1, y0: y, y1: y, line: { color: colour("grid"), width: 1 } },
   ];
-  const at = (x, y, text) => ({ x, y, text, showarrow: true, arrowhead: 0, ax: 34, ay: -22, font: { size: 12 } });
+  /** Write a level beside its point, to the right of it (1) or to the left (-1). */
+  const at = (x, y, text, side) => ({
+    x,
+    y,
+    text,
+    showarrow: true,
+    arrowhead: 0,
+    arrowcolor: colour("muted"),
+    ax: 14 * side,
+    ay: 16,
+    xanchor: side > 0 ? "left" : "right",
+    bgcolor: colour("panel"),
+    font: { size: 12 },
+  });
 
   function chosen() {
     fill(
@@ -208,36 +224,25 @@ export function open(root, app) {
   }
 
   async function frf() {
-    view.frf = Math.min(view.frf, view.page.frfs.length - 1);
     const found = await get("frf", { index: view.frf });
     view.curve = { ...found, index: view.frf };
     const old =
       view.before && view.before.name === found.name && String(view.before.magnitude) !== String(found.magnitude)
         ? view.before
         : null;
-    const edge = found.band20
-      ? [
-          {
-            type: "line",
-            x0: found.band20,
-            x1: found.band20,
-            yref: "paper",
-            y0: 0,
-            y1: 1,
-            line: { color: colour("muted"), dash: "dot", width: 1 },
-          },
-        ]
-      : [];
-    const traces = [
-      old ? line("before", old.x, old.magnitude, "faint") : null,
-      line(found.hits ? `of ${found.hits} hits` : "FRF", found.x, found.magnitude, "blue"),
-    ].filter(Boolean);
-    await draw(charts.frf, traces, {
-      height: 280,
-      showlegend: traces.length > 1,
-      xaxis: axis("frequency [Hz]"),
-      yaxis: axis(`|H| [${found.unit}]`, log),
-      shapes: edge,
+    const dotted = { color: colour("muted"), dash: "dot", width: 1 };
+    const both = (name, key, shade) =>
+      [
+        old?.[key] ? line("before", old.x, old[key], "faint") : null,
+        found[key] ? line(name, found.x, found[key], shade) : null,
+      ].filter(Boolean);
+    await drawFrf(charts.frf, {
+      magnitude: both(found.hits ? `of ${found.hits} hits` : "FRF", "magnitude", "blue"),
+      phase: both("phase", "phase", "blue"),
+      coherence: both("coherence", "coherence", "orange"),
+      unit: found.unit,
+      showlegend: Boolean(old),
+      shapes: found.band20 ? [{ type: "line", x0: found.band20, x1: found.band20, line: dotted }] : [],
       annotations: found.band20
         ? [
             {
@@ -246,30 +251,13 @@ export function open(root, app) {
               y: 1,
               text: "force −20 dB",
               showarrow: false,
-              xanchor: "left",
+              xanchor: found.band20 > 0.8 * found.x[found.x.length - 1] ? "right" : "left",
               yanchor: "top",
               font: { size: 11, color: colour("muted") },
             },
           ]
         : [],
     });
-    charts.coherence.parentElement.hidden = !found.coherence;
-    if (found.coherence) {
-      await draw(
-        charts.coherence,
-        [
-          old?.coherence ? line("before", old.x, old.coherence, "faint") : null,
-          line("coherence", found.x, found.coherence, "orange"),
-        ].filter(Boolean),
-        {
-          height: 200,
-          showlegend: false,
-          xaxis: axis("frequency [Hz]"),
-          yaxis: axis("coherence [–]", { range: [0, 1.05] }),
-          shapes: edge,
-        },
-      );
-    }
   }
 
   return { update };

@@ -1,7 +1,7 @@
 // Model: what the study says, sliders for effects and factors, pairs found and pairs stated.
 
 import { get, post } from "../api.js";
-import { axis, draw, line, log, macMatrix } from "../charts.js";
+import { draw, drawFrf, line, macMatrix, modesAxis } from "../charts.js";
 import { button, field, fill, fixed, h, select, short, table, warnings } from "../dom.js";
 
 export function open(root, app) {
@@ -38,11 +38,10 @@ export function open(root, app) {
   );
   root.append(
     notes,
-    h("div", { class: "two wide-right" }, moving, comparing),
-    h("div", { class: "two wide-left" }, drawn, matrix),
+    h("div", { class: "two stacked" }, h("div", {}, moving, drawn), h("div", {}, comparing, matrix)),
     stated,
   );
-  const view = { page: null, frf: 0, effect: "", form: 0, values: {}, factors: {}, asked: 0, running: false };
+  const view = { page: null, frf: null, effect: "", form: 0, values: {}, factors: {}, asked: 0, running: false };
 
   async function update() {
     view.page = await get("model");
@@ -55,6 +54,7 @@ export function open(root, app) {
     text.value = page.text;
     fielded();
     if (!page.correlation) return;
+    view.frf = Math.min(view.frf ?? page.first, Math.max(0, page.frfs.length - 1));
     slid();
     fill(
       chooser,
@@ -81,12 +81,24 @@ export function open(root, app) {
     fill(
       fields,
       view.page.fields.map((f) => {
+        const id = `field-${f.path.join("-")}`;
+        const set = (value) => app.act("set", { path: f.path, value });
+        if (f.choices)
+          return field(
+            f.label,
+            select(
+              f.choices.map((name) => [name, name]),
+              f.value ?? f.default,
+              set,
+              { id },
+            ),
+          );
         const input = h("input", {
           type: "text",
-          value: f.value === null ? "" : String(f.value),
-          placeholder: f.default === null ? "" : String(f.default),
-          id: `field-${f.path.join("-")}`,
-          change: () => app.act("set", { path: f.path, value: read(input.value) }),
+          value: f.value === null ? "" : written(f.value, f.times),
+          placeholder: f.default === null ? "" : written(f.default, f.times),
+          id,
+          change: () => set(read(input.value, f)),
         });
         return field(f.label, input, f.unit);
       }),
@@ -118,8 +130,16 @@ export function open(root, app) {
     );
   }
 
-  /** A number is a number; anything else, "376 mm" for instance, is read by the study with its unit. */
-  const read = (value) => (value.trim() !== "" && Number.isFinite(Number(value)) ? Number(value) : value.trim());
+  /** A number in the unit of its field; what was written with a unit stays so. */
+  const written = (value, times) =>
+    typeof value === "number" ? String(Number((value / times).toPrecision(12))) : String(value);
+
+  /** A number has the unit of its field; anything else, "376 mm" for instance, is read by the study with its own. */
+  function read(value, { unit, times }) {
+    const text = value.trim();
+    if (text === "" || !Number.isFinite(Number(text))) return text;
+    return times === 1 ? Number(text) : `${text} ${unit}`;
+  }
 
   function slid() {
     const page = view.page;
@@ -322,14 +342,16 @@ export function open(root, app) {
       ),
     );
     if (found.frf) {
-      await draw(
-        frf,
-        [
-          line("measured", found.frf.x, found.frf.measured, "muted", { line: { width: 2.2 } }),
-          line("model", found.frf.x, found.frf.model, "blue"),
-        ],
-        { height: 340, xaxis: axis("frequency [Hz]"), yaxis: axis(`|H| [${found.frf.unit}]`, log) },
-      );
+      const { x, unit } = found.frf;
+      const both = (measured, model) => [
+        line("measured", x, measured, "muted", { line: { width: 2.2 } }),
+        line("model", x, model, "blue"),
+      ];
+      await drawFrf(frf, {
+        magnitude: both(found.frf.measured, found.frf.model),
+        phase: both(found.frf.measured_phase, found.frf.model_phase),
+        unit,
+      });
     }
     drawn.hidden = !found.frf;
     matrix.hidden = !found.mac;
@@ -345,8 +367,8 @@ export function open(root, app) {
         ],
         {
           height: 340,
-          xaxis: axis("model mode", { type: "category" }),
-          yaxis: axis("test mode", { type: "category", autorange: "reversed" }),
+          xaxis: modesAxis("model mode"),
+          yaxis: modesAxis("test mode", { autorange: "reversed" }),
         },
       );
     }

@@ -1,8 +1,8 @@
 // Modes: the stabilisation chart with a reason for every pole, the table, the fit over an FRF, the auto-MAC.
 
 import { get } from "../api.js";
-import { axis, draw, line, log, macMatrix, onclick } from "../charts.js";
-import { button, field, fill, fixed, h, select, table, warnings } from "../dom.js";
+import { draw, drawFrf, line, macMatrix, modesAxis, onclick } from "../charts.js";
+import { button, field, fill, fixed, h, select, sigma, table, warnings } from "../dom.js";
 import { stabilisation } from "./stabilisation.js";
 
 export function open(root, app) {
@@ -23,7 +23,7 @@ export function open(root, app) {
     h("section", { class: "panel" }, h("h2", {}, "Modes"), rows),
     h("div", { class: "two wide-left" }, fitted, matrix),
   );
-  const view = { page: null, frf: 0, over: "sum", curve: null };
+  const view = { page: null, frf: null, over: "sum", curve: null };
 
   async function update() {
     view.page = await get("modes");
@@ -54,6 +54,7 @@ export function open(root, app) {
       value: page.order ?? "",
       placeholder: "60",
       "aria-label": "highest model order",
+      title: "poles sought at the most; of several references, over all of them",
       id: "order",
     });
     const hertz = h("input", {
@@ -230,9 +231,9 @@ export function open(root, app) {
         modes.map((m) => [
           m.mode,
           fixed(m.frequency_hz, 4),
-          fixed(m.frequency_sigma_hz, 5),
+          sigma(m.frequency_sigma_hz, 5),
           fixed(percent(m.damping_ratio), 4),
-          fixed(percent(m.damping_sigma), 5),
+          sigma(percent(m.damping_sigma), 5),
           fixed(m.mpc, 3),
           m.whence,
           ...(view.page.identified
@@ -251,7 +252,7 @@ export function open(root, app) {
 
   async function overlaid(provisional = null) {
     const names = view.page.frfs;
-    view.frf = Math.min(view.frf, names.length - 1);
+    view.frf = Math.min(view.frf ?? view.page.first, names.length - 1);
     fill(
       chooser,
       h(
@@ -271,7 +272,7 @@ export function open(root, app) {
     );
     const found =
       provisional && view.curve
-        ? { ...view.curve, fitted: provisional.fitted, x2: provisional.x }
+        ? { ...view.curve, fitted: provisional.fitted, fitted_phase: provisional.fitted_phase, x2: provisional.x }
         : await get("fit", { index: view.frf });
     if (!provisional) view.curve = found;
     const traces = [
@@ -280,7 +281,14 @@ export function open(root, app) {
       provisional ? null : line("residual", found.x, found.residual, "orange", { line: { width: 1 } }),
       found.noise ? line("noise, 1σ", found.x, found.noise, "faint", { line: { width: 1 } }) : null,
     ].filter(Boolean);
-    await draw(fit, traces, { height: 360, xaxis: axis("frequency [Hz]"), yaxis: axis(`|H| [${found.unit}]`, log) });
+    await drawFrf(fit, {
+      magnitude: traces,
+      phase: [
+        line("measured", found.x, found.phase, "muted", { line: { width: 2.4 } }),
+        line("fit", found.x2 ?? found.x, found.fitted_phase, "blue"),
+      ],
+      unit: found.unit,
+    });
   }
 
   async function macs() {
@@ -290,8 +298,8 @@ export function open(root, app) {
     const names = view.page.table.map((m) => `${m.mode}`);
     await draw(mac, [macMatrix(values, names, names)], {
       height: 360,
-      xaxis: axis("mode", { type: "category" }),
-      yaxis: axis("mode", { type: "category", autorange: "reversed" }),
+      xaxis: modesAxis("mode"),
+      yaxis: modesAxis("mode", { autorange: "reversed" }),
     });
   }
 

@@ -79,7 +79,10 @@ export function stabilisation(page, over, modes) {
   const layout = {
     height: window.innerWidth < 600 ? 380 : 460,
     xaxis: axis("frequency [Hz]", { range: band }),
-    yaxis: axis("model order", { range: [0, top * 1.04] }),
+    yaxis: axis(found.references > 1 ? `model order (${found.references} poles each)` : "model order", {
+      range: [0, top * 1.04],
+    }),
+    uirevision: String(band),
     yaxis2: {
       overlaying: "y",
       side: "right",

@@ -1,16 +1,19 @@
 // Update: which parameters, by which data; progress, and the answer.
 
 import { get } from "../api.js";
-import { axis, colour, draw } from "../charts.js";
-import { field, fill, fixed, h, select, table, warnings, withoutModel } from "../dom.js";
+import { field, fill, fixed, h, raised, select, table, warnings, withoutModel } from "../dom.js";
+import { charted, drawer } from "../drawings.js";
 import { worker } from "./work.js";
 
 export function open(root, app) {
   const what = h("div", { class: "row" }),
     answer = h("div"),
-    chart = h("div"),
+    gap = h("div"),
+    turned = h("div"),
     tables = h("div");
-  const result = h("section", { class: "panel", hidden: true }, h("h2", {}, "The answer"), answer, chart, tables);
+  const result = h("section", { class: "panel", hidden: true }, h("h2", {}, "The answer"), answer, gap, turned, tables);
+  const drawings = drawer("update");
+  let seen = null;
   const work = worker(app, "update", { start: "Update", again: "Update again", done: shown });
   const setting = h("section", { class: "panel" }, h("h2", {}, "Update"), what, work.element);
   root.append(setting, result);
@@ -71,28 +74,6 @@ export function open(root, app) {
         " opens in a page of its own.",
       ),
     );
-    const mode = d.pairs.map((p) => `${p.test_mode}`);
-    const error = (key) => d.pairs.map((p) => 100 * (p[key] / p.test_hz - 1));
-    await draw(
-      chart,
-      [
-        ["before", "before_hz", "orange", "circle-open"],
-        ["after", "after_hz", "blue", "circle"],
-      ].map(([name, key, shade, symbol]) => ({
-        type: "scatter",
-        mode: "markers",
-        name,
-        x: mode,
-        y: error(key),
-        marker: { color: colour(shade), size: 9, symbol },
-        hovertemplate: `mode %{x}, ${name}: %{y:.3f} %<extra></extra>`,
-      })),
-      {
-        height: 280,
-        xaxis: axis("test mode", { type: "category" }),
-        yaxis: axis("frequency error [%]", { zeroline: true, zerolinecolor: colour("muted") }),
-      },
-    );
     fill(
       tables,
       table(
@@ -104,7 +85,7 @@ export function open(root, app) {
         d.parameters.map((p) => [
           p.name,
           digits(p.value),
-          p.unit,
+          raised(p.unit),
           digits(p.sigma),
           p.factor === null ? "–" : fixed(p.factor, 5),
           p.at_bound ? "yes" : "",
@@ -130,6 +111,12 @@ export function open(root, app) {
       h("details", {}, h("summary", {}, "The report of the fit"), h("pre", { tabindex: "0" }, found.text)),
       warnings(d.warnings),
     );
+    const mark = JSON.stringify([app.state.key, found.written]);
+    if (mark === seen) return;
+    const all = await drawings(mark);
+    seen = mark;
+    charted(gap, all, ["gap"]);
+    charted(turned, all, ["factors", "frac", "correlations"]);
   }
 
   /** Six digits, as the command prints them: to be computed with. */

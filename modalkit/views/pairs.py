@@ -1,0 +1,53 @@
+"""Which measured mode a model's mode is the partner of, as the pages list and draw them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from updating.prediction.matching import mac_of_constants, pair_modes
+from updating.prediction.prediction import Prediction
+from updating.simulation.identified import partners
+from updating.test_data.measured import Measured
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A measured mode and its partner.
+
+    Parameters
+    ----------
+    test, model : int
+        Which modes, from 0.
+    mac : float or None
+        MAC of the two; None without measured shapes [-].
+    """
+
+    test: int
+    model: int
+    mac: float | None
+
+
+def pairs_of(measured: Measured, prediction: Prediction) -> list[Pair]:
+    """Return the pairs of a test and a model, in the order of the test's modes.
+
+    Parameters
+    ----------
+    measured : Measured
+        The test.
+    prediction : Prediction
+        The model's modes.
+
+    Raises
+    ------
+    EstimationError
+        If no measured mode has a partner.
+    """
+    paired = pair_modes(measured, prediction)
+    mac = mac_of_constants(measured, prediction) if measured.has_shapes else None
+    test = np.flatnonzero(np.isin(measured.frequency, paired.measured.frequency))
+    return [
+        Pair(int(t), int(m), None if mac is None else float(mac[t, m]))
+        for t, m in zip(test, partners(paired, prediction), strict=True)
+    ]
