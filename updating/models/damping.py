@@ -167,7 +167,8 @@ def modal_damping(
     viscous = own["alpha"][0] * (1.0 - _share(state.mass, vectors)) + _share(_viscous(state), vectors)
     structural = _share(_structural(state), vectors)
     if own["beta"][0] or own["loss_factor"][0]:
-        elastic = values - _share(state.stiffness, vectors)
+        springs = [one.springs for one in state.yielding.values()]
+        elastic = values - _share([*state.stiffness, *springs], vectors)
         viscous, structural = viscous + own["beta"][0] * elastic, structural + own["loss_factor"][0] * elastic
     return viscous, structural
 

@@ -11,6 +11,7 @@ from typing import TypeVar
 from acquisition.arrays import FloatArray
 from acquisition.display import Displayed
 from updating.models.spec import Theory
+from updating.models.yielding import Yielding, together
 
 
 def _nothing() -> Mapping[str, float]:
@@ -84,6 +85,8 @@ class State(Displayed):
     fluid : mapping of str to float
         The fluid whose inertia is among ``mass``: ``fluid_density`` [kg/m^3], ``free_surface`` and ``bottom`` [m],
         infinite where there is none.
+    yielding : mapping of str to Yielding
+        Supports of imported matrices that give way, by name.
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -105,6 +108,17 @@ class State(Displayed):
     slope: float = 0.0
     per_newton: tuple[FloatArray, ...] = ()
     fluid: Mapping[str, float] = field(default_factory=_nothing)
+    yielding: Mapping[str, Yielding] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def stiffened(self) -> tuple[FloatArray, ...]:
+        """All matrices that are added to the stiffness: ``stiffness``, and what supports take off that give way."""
+        return (*self.stiffness, *(one.stiffness for one in self.yielding.values()))
+
+    @property
+    def loaded(self) -> tuple[FloatArray, ...]:
+        """All matrices that are added to the mass: ``mass``, and what moves with supports that give way."""
+        return (*self.mass, *(one.carried for one in self.yielding.values()))
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
@@ -128,6 +142,7 @@ class State(Displayed):
             self.slope + other.slope,
             self.per_newton + other.per_newton,
             MappingProxyType({**self.fluid, **other.fluid}),
+            MappingProxyType(together(self.yielding, other.yielding)),
         )
 
 

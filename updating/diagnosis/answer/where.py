@@ -13,7 +13,7 @@ from updating.diagnosis.answer.result import LikelyPlace, Place, Verdict, Where,
 from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
 from updating.effects.measurement.points import channel_point
-from updating.effects.regions import PLACED
+from updating.effects.regions import named_places
 from updating.localisation import areas, centres, compare_regions, regions_at
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import CONCERNED_REACH, NEGLIGIBLE_PROBABILITY, TOGETHER_SHARE
@@ -73,9 +73,8 @@ def _names(leader: Compared | None) -> tuple[str, ...]:
     """Return the regions, node sets, joints and supports that an explanation names."""
     if leader is None:
         return ()
-    candidate = leader.explanation.candidate
-    named = [form.values[label] for form in candidate.forms for label in PLACED if label in form.values]
-    return tuple(dict.fromkeys(str(name) for name in named))
+    forms = leader.explanation.candidate.forms
+    return tuple(dict.fromkeys(name for form in forms for name in named_places(form.values)))
 
 
 def acting_together(shares: Mapping[str, float]) -> tuple[str, ...]:
