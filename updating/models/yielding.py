@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 from scipy import sparse
@@ -77,9 +77,8 @@ class Yielding:
 
     def _times(self, left: FloatArray, middle: FloatArray) -> FloatArray:
         """Return left times middle times L^T, sparse where L is."""
-        loads: Any = self.loads
-        if sparse.issparse(loads):
-            return cast(FloatArray, Sparse(left @ Sparse(middle) @ loads.transpose()))
+        if sparse.issparse(self.loads):
+            return cast(FloatArray, Sparse(left @ Sparse(middle) @ cast(Sparse, self.loads).T))
         return np.asarray(left @ middle @ self.loads.T)
 
     def _across(self, middle: FloatArray) -> FloatArray:

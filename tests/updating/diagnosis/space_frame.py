@@ -7,7 +7,7 @@ that in the truth a foot has rows of its own, which the matrices handed over hav
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -217,27 +217,34 @@ def specimen(hidden: Hidden) -> tuple[np.ndarray, np.ndarray]:
     return np.sqrt(values) / (2 * np.pi), shapes
 
 
-def case(hidden: Hidden, points: Sequence[tuple[int, int]], *, modes: int = 10, seed: int = 0) -> Case:
+def case(
+    hidden: Hidden,
+    points: Sequence[tuple[int, int]],
+    *,
+    modes: int = 10,
+    seed: int = 0,
+    scatter: float = 2e-4,
+) -> Case:
     """Return the frame's model with the modes of a specimen at some nodes, each along an axis 0, 1, 2.
 
-    Frequencies scatter by 2e-4, shapes by half a per cent of their size; the test's level is off by nothing.
+    Frequencies scatter by a stated share, shapes by half a per cent of their size; without points there are none.
     """
     rng, spec = np.random.default_rng(seed), handed_over()
     frequency, shapes = specimen(hidden)
-    seen = shapes[[6 * node + axis for node, axis in points]][:, :modes]
-    sigma = 5e-3 * np.sqrt(np.mean(seen**2, axis=0)) * np.ones_like(seen)
-    places = np.array(frame().made.places)
-    nodes = sorted({node for node, _ in points})
-    modal = ModalData(
-        frequency[:modes] * (1 + 2e-4 * rng.standard_normal(modes)),
-        2e-4 * frequency[:modes],
-        shapes=seen + sigma * rng.standard_normal(seen.shape),
-        shape_sigma=sigma,
-        dofs=tuple(Dof(node + 1, axis + 1) for node, axis in points),
-        geometry=Geometry(tuple(n + 1 for n in nodes), places[nodes]),
-        scaled=True,
-    )
-    test: Measured = measured_from_modes(
-        modal, Axes(), spec, repeatability=2e-4, position_sigma=0.0, calibration=0.02
-    )
+    measured = frequency[:modes] * (1 + scatter * rng.standard_normal(modes))
+    modal = ModalData(measured, scatter * frequency[:modes])
+    if points:
+        seen = shapes[[6 * node + axis for node, axis in points]][:, :modes]
+        sigma = 5e-3 * np.sqrt(np.mean(seen**2, axis=0)) * np.ones_like(seen)
+        nodes = sorted({node for node, _ in points})
+        modal = replace(
+            modal,
+            shapes=seen + sigma * rng.standard_normal(seen.shape),
+            shape_sigma=sigma,
+            dofs=tuple(Dof(node + 1, axis + 1) for node, axis in points),
+            geometry=Geometry(tuple(n + 1 for n in nodes), np.array(frame().made.places)[nodes]),
+            scaled=True,
+        )
+    doubts = {"repeatability": scatter, "position_sigma": 0.0, "calibration": 0.02}
+    test: Measured = measured_from_modes(modal, Axes(), spec, **doubts)
     return Case("frame", spec, test, None, Tolerances({"E": 0.01, "density": 0.003}))

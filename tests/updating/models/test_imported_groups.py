@@ -16,7 +16,7 @@ from scipy.linalg import eigh
 from acquisition.errors import StudyError
 from updating import LIBRARY, Material, Predictor, Region, Spec
 from updating.models.imported import Imported
-from updating.models.imported.groups import joints_of
+from updating.models.imported.groups import common_name, joints_of
 from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends
 from updating.models.imported.nodes import read_table
 from updating.models.imported.sets import sets_of_table
@@ -235,3 +235,17 @@ def test_joints_of_sets_that_are_alike_by_name_have_names_of_their_own(predictor
     alike = {f"J_{i}": nodes for i, nodes in enumerate(sides)}
     found = joints_of(imported.places, alike, imported.stiffness)
     assert [joint.name for joint in found] == ["J_0/J_1", "J_2/J_3"]
+
+
+NAMES = [
+    ("bolt_3_beam", "bolt_3_column", "bolt_3"),
+    ("bolt_3_rail", "bolt_3_rung", "bolt_3"),
+    ("seat.upper", "seat.under", "seat"),
+    ("left1", "left2", "left1/left2"),
+    ("foot", "floor", "foot/floor"),
+]
+
+
+@pytest.mark.parametrize(("first", "second", "expected"), NAMES)
+def test_a_joint_bears_the_whole_words_that_its_sides_share(first: str, second: str, expected: str) -> None:
+    assert common_name(first, second) == expected

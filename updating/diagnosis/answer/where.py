@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -92,11 +93,18 @@ def acting_together(shares: Mapping[str, float]) -> tuple[str, ...]:
 def _likely_places(
     problem: SpecimenProblem, leader: Compared, channels: tuple[str, ...]
 ) -> tuple[Cluster, ...]:
-    """Return the places of an explanation in all channels that act together."""
-    found = [cluster for name in channels for cluster in clusters(problem, leader.explanation, name)]
+    """Return the places of an explanation in all channels that act together.
+
+    On imported matrices places are forms of their own: what these data cannot tell from the best are places, too.
+    """
+    forms = [(leader.explanation, 1.0)]
+    if not problem.predictor.spec.outlined:
+        forms = [form for form in leader.forms if form[0].names == leader.names] or forms
     first: dict[Place, Cluster] = {}
-    for cluster in found:
-        first.setdefault(_place(cluster.place), cluster)
+    for explanation, share in forms:
+        for name in channels:
+            for cluster in clusters(problem, explanation, name):
+                first.setdefault(_place(cluster.place), replace(cluster, weight=share * cluster.weight))
     return tuple(first.values())
 
 

@@ -26,6 +26,9 @@ TOGETHER = 1e-6
 FELT = 1e-6
 """A support is held in a direction by more than this share of what holds it most [-]: the rest is rounding."""
 
+SEPARATORS = "_-. "
+"""Marks between the words of a name."""
+
 ANY_STIFFNESS = 1e-12
 """What is left of a spring below this share of the largest stiffness is none [-]."""
 
@@ -130,7 +133,7 @@ def joints_of(places: Places, sets: NodeSets, stiffness: Sparse) -> tuple[Joint,
             sides = [_springs(places, pairs, axes, stiffness) for axes in (range(3), range(3, 6))]
             centre = places.at[[a for a, _ in pairs]].mean(axis=0)
             springs, sizes = zip(*sides, strict=True)
-            found.append(Joint(_common(first, second), (first, second), centre, springs, sizes))
+            found.append(Joint(common_name(first, second), (first, second), centre, springs, sizes))
     names = [joint.name for joint in found]
     return tuple(
         replace(joint, name="/".join(joint.sides)) if names.count(joint.name) > 1 else joint
@@ -171,11 +174,12 @@ def _springs(
     return total, sum(size for size in found if size > least) / max(directions, 1)
 
 
-def _common(first: str, second: str) -> str:
-    """Return what two names begin with, up to a separator; both where that is nothing."""
+def common_name(first: str, second: str) -> str:
+    """Return what two names begin with, up to the last separator that they share; both where that is nothing."""
     same = next((i for i, (a, b) in enumerate(zip(first, second, strict=False)) if a != b), 0)
-    begin = first[:same].rstrip("_-. ")
-    return begin if begin and not first[: len(begin) + 1][-1:].isalnum() else f"{first}/{second}"
+    whole = max((first.rfind(mark, 0, same) for mark in SEPARATORS), default=-1)
+    begin = first[: max(whole, 0)].rstrip(SEPARATORS)
+    return begin or f"{first}/{second}"
 
 
 @dataclass(frozen=True, eq=False)
