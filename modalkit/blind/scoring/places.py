@@ -28,10 +28,11 @@ _CHANNELS: Mapping[str, tuple[str, ...]] = {
             "clamp_rotation",
             "clamp_translation",
             "local_stiffness",
+            "joint",
         ),
         *("shear", "orthotropy", "axial_load", "joint_nonlinearity", "ground_spring", "suspension"),
     ),
-    "mass": ("density", "sensor_mass", "lumped_mass", "fluid_added_mass"),
+    "mass": ("density", "sensor_mass", "lumped_mass", "local_mass", "fluid_added_mass"),
     "damping": ("fluid_damping", "damping_patch", "uniform_damping"),
     "measurement": (
         *(
