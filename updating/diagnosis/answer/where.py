@@ -13,6 +13,7 @@ from updating.diagnosis.answer.contributions import contributions
 from updating.diagnosis.answer.result import LikelyPlace, Place, Verdict, Where, Zone
 from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
+from updating.effects.box import LIKE
 from updating.effects.measurement.points import channel_point
 from updating.effects.regions import named_places
 from updating.localisation import areas, centres, compare_regions, regions_at
@@ -100,12 +101,13 @@ def _likely_places(
     forms = [(leader.explanation, 1.0)]
     if not problem.predictor.spec.outlined:
         forms = [form for form in leader.forms if form[0].names == leader.names] or forms
-    first: dict[Place, Cluster] = {}
+    near, found = LIKE * problem.predictor.spec.length, list[Cluster]()
     for explanation, share in forms:
         for name in channels:
             for cluster in clusters(problem, explanation, name):
-                first.setdefault(_place(cluster.place), replace(cluster, weight=share * cluster.weight))
-    return tuple(first.values())
+                if all(np.linalg.norm(cluster.place - known.place) > near for known in found):
+                    found.append(replace(cluster, weight=share * cluster.weight))
+    return tuple(found)
 
 
 def _channels(found: Search) -> tuple[dict[str, float], float]:

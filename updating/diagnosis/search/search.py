@@ -248,10 +248,10 @@ def _without_effects(problem: DiagnosisProblem, fuller: bool, outliers: tuple[Ou
 
 
 def _by_form(own: list[Compared], total: float) -> tuple[tuple[Explanation, float], ...]:
-    """Return the forms of one set that hold enough of its probability to be told, with their shares of it [-]."""
+    """Return the forms of one set that hold enough of its probability to be named, with their shares of it [-]."""
     shares = [(row.explanation, row.probability / total) for row in own if total > 0]
-    told = [(one, share) for one, share in shares if share >= LEAST_PLACE]
-    return tuple(sorted(told, key=lambda form: -form[1]))
+    probable = [(one, share) for one, share in shares if share >= LEAST_PLACE]
+    return tuple(sorted(probable, key=lambda form: -form[1]))
 
 
 def _by_region(own: list[Compared], total: float) -> dict[str, float]:

@@ -153,7 +153,8 @@ class Frame:
         shift, turn = self.joint_stiffness
         left = dict(self.loose)
         mesh = self.mesh
-        return np.sum([mesh.springs(name, shift, turn * left.get(name, 1.0)) for name in mesh.joints], axis=0)
+        every = [mesh.springs(name, shift, turn * left.get(name, 1.0)) for name in mesh.joints]
+        return np.asarray(np.sum(every, axis=0))
 
     @cached_property
     def matrices(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
