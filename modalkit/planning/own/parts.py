@@ -11,7 +11,6 @@ from modalkit.planning.family import Family, Values, per_cent
 from modalkit.planning.own.sizes import FAINTEST, Maker, in_unit
 from updating.effects.base import Effect
 from updating.effects.regions import WAYS, heavy_regions, stiff_regions
-from updating.effects.structure.clamp import ALL
 from updating.effects.structure.spring import own_stiffness
 from updating.models.imported.groups import Joint, Support
 from updating.prediction.predict import Predictor
@@ -116,35 +115,35 @@ def _springs_of(joint: Joint, parameter: str, own: float) -> Callable[[float, fl
 
 
 def _clamps(effect: Effect, predictor: Predictor) -> Iterator[Family]:
-    """Each support in each direction in which it holds, and in all of them alike; the severity is its compliance."""
+    """Each support in each direction in which it holds; the severity is its compliance."""
     (stiffness,) = effect.parameters(predictor)
     imported = predictor.spec.imported
     turns = effect.name == "clamp_rotation"
-    ways: list[tuple[str, Support | None, str]] = [(effect.name, None, "")]
+    ways: list[tuple[str, Support | None, int]] = [(effect.name, None, 0)]
     if imported is not None:
-        ways = [way for support in imported.supports for way in _ways(effect, support, turns=turns)]
+        axes = range(3, 6) if turns else range(3)
+        ways = [
+            (
+                f"{effect.name} of {support.name} {'about' if turns else 'along'} {WAYS[axis].strip('r')}",
+                support,
+                axis,
+            )
+            for support in imported.supports
+            for axis in axes
+            if support.holds(axis)
+        ]
     soft = SOFT_SUPPORT * (1.0 if turns else 5.0)
-    for name, support, direction in ways:
+    for name, support, axis in ways:
         yield Family(
-            name, _given(support, direction), 0.0, 1 / stiffness.low, 1 / (soft * stiffness.low),
+            name, _given(support, axis), 0.0, 1 / stiffness.low, 1 / (soft * stiffness.low),
             "a clamp softer than" if support is None else f"a support {support.name} softer than",
             lambda q: f"{severity(1 / q)} {stiffness.unit}", effect=effect.name,
             at="" if support is None else support.name, finest=max(stiffness.low / stiffness.high, FAINTEST),
         )  # fmt: skip
 
 
-def _ways(effect: Effect, support: Support, *, turns: bool) -> list[tuple[str, Support | None, str]]:
-    """Return names, support and direction in which it may give way."""
-    held = [WAYS[axis] for axis in (range(3, 6) if turns else range(3)) if support.holds(axis)]
-    name = f"{effect.name} of {support.name}"
-    alone: list[tuple[str, Support | None, str]] = [
-        (f"{name} {'about' if turns else 'along'} {one.strip('r')}", support, one) for one in held
-    ]
-    return alone + ([(f"{name} in all directions", support, ALL)] if len(held) > 1 else [])
-
-
-def _given(support: Support | None, direction: str) -> Callable[[float, float], Values]:
-    there = {} if support is None else {"support": support.name, "direction": direction}
+def _given(support: Support | None, axis: int) -> Callable[[float, float], Values]:
+    there = {} if support is None else {"support": support.name, "direction": WAYS[axis]}
     return lambda q, _: {**there, "stiffness": 1 / q if q else np.inf}
 
 
