@@ -134,6 +134,7 @@ def test_two_causes_at_one_support_are_springs_behind_each_other(predictor: Pred
     assert hz(twice) == pytest.approx(hz(half), rel=1e-9)
     assert hz(combine(each)) == pytest.approx(hz(every), rel=1e-9)
     assert np.abs(hz(each[0]) / hz(every) - 1).max() > 1e-3
+    assert shifts.repeats_on(predictor)
 
 
 def test_the_mass_that_a_support_held_is_what_its_rows_had(frame: ModuleType, imported: Imported) -> None:
