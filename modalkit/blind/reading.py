@@ -19,7 +19,7 @@ FREQUENCY_SIGMA = 2e-4
 SHAPE_SIGMA = 0.02
 _DAMPING_SIGMA = 0.05
 _STEP = 1e-3
-_ELEMENTS: dict[str, Any] = {"beam": 6, "plate": (4, 2), "solid": 6}
+_ELEMENTS: dict[str, Any] = {"beam": 6, "plate": (4, 2), "solid": 6, "frame": 3}
 _HARDER = 1.5
 _TOLERANCES = ("E", "density", "thickness", "length", "width")
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
 from modalkit.blind.reading import Scales, read, shape_part
-from modalkit.simulator.hidden import HIDDEN_EFFECTS, HiddenEffect, Values
+from modalkit.simulator.hidden import HiddenEffect, Values, effects_of
 from modalkit.simulator.hidden.chain import hit_points
 from modalkit.simulator.setup import Setup
 
@@ -75,7 +75,7 @@ def signatures(of: Scales, without: Sequence[str] = ()) -> Iterator[Signature]:
     """
     setup = of.nominal.setup
     measured = _of_the_measurement(of)
-    for name, effect in HIDDEN_EFFECTS.items():
+    for name, effect in effects_of(setup.kind).items():
         if not effect.in_library or not effect.fits(setup) or effect.known_as in without:
             continue
         if name in measured:
@@ -84,7 +84,7 @@ def signatures(of: Scales, without: Sequence[str] = ()) -> Iterator[Signature]:
         elif name == "shear":
             plain = read(of.nominal.with_body(shear=False)).vector(of.scale)
             yield Signature(of.standardised((plain - of.base.vector(of.scale))[:, None]), graded=False)
-        elif name in _LOCAL:
+        elif name in _LOCAL and setup.kind in _PLACES:
             yield from _of_places(effect, of)
         else:
             yield Signature(_of_values(effect, of, _forms(effect, setup)))

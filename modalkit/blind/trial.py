@@ -11,8 +11,10 @@ import numpy as np
 
 from acquisition.errors import StudyError
 from modalkit.blind.visibility import shown
+from modalkit.simulator.bodies.frame.frame import Frame
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
+from modalkit.simulator.frame_model import write_frame_model
 from modalkit.simulator.hidden import HiddenEffect, Values
 from modalkit.simulator.hidden.choose import (
     checked,
@@ -37,7 +39,7 @@ class Truth:
 
     Parameters
     ----------
-    kind : {"beam", "plate", "solid"}
+    kind : {"beam", "plate", "solid", "frame"}
         Of the specimen.
     effects : tuple of str
         Hidden effects; empty for none.
@@ -253,7 +255,7 @@ def gap_percent(scene: Scene) -> float:
     """
     setup = scene.setup
     nominal = nominal_scene(setup)
-    if setup.theory != "timoshenko":
+    if setup.theory not in ("timoshenko", ""):
         nominal = nominal.with_body(shear=False)
     model = nominal.elastic().take(slice(0, setup.modes))
     return float(100 * np.sqrt(np.mean(np.expm1(-log_ratios(model, scene.elastic())) ** 2)))
@@ -280,5 +282,9 @@ def write_trial(trial: Trial, folder: Path) -> Path:
     if setup.baseline:
         record(trial.before, folder / "baseline.uff", rng=second)
     study = folder / "study.toml"
-    study.write_text(study_text(setup, test_file="test.uff", baseline_file="baseline.uff"), encoding="utf-8")
+    model = None
+    if isinstance(setup.nominal, Frame):
+        model = write_frame_model(setup.nominal, setup.elements[0], folder)
+    text = study_text(setup, test_file="test.uff", baseline_file="baseline.uff", model=model)
+    study.write_text(text, encoding="utf-8")
     return study

@@ -14,7 +14,7 @@ from updating.diagnosis.answer.result import NextTest, Ranked, Shrink
 from updating.diagnosis.answer.verdict import NAME
 from updating.diagnosis.answer.where import CHANNELS, acting_together
 from updating.effects import Lack, Twin, in_a_set, twin_of
-from updating.effects.regions import PLACED
+from updating.effects.regions import named_places
 from updating.thresholds import BELIEVED_DOUBT, BEYOND_NOTHING, REJECTED_FIT
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
@@ -159,7 +159,7 @@ def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
 def _at(row: Ranked, index: int) -> str:
     """Return where the form of one effect of a set is, in the user's own names."""
     values = row.forms[index] if index < len(row.forms) else {}
-    names = [str(values[label]) for label in PLACED if label in values]
+    names = named_places(values)
     return f" of {names[0]}" if names else ""
 
 

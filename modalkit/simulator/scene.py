@@ -13,6 +13,7 @@ from acquisition.arrays import FloatArray, frozen_array
 from modalkit.simulator.bodies.beam.beam import Beam
 from modalkit.simulator.bodies.body import Body
 from modalkit.simulator.bodies.complex_modes import ComplexModes, complex_modes
+from modalkit.simulator.bodies.frame.frame import Frame
 from modalkit.simulator.bodies.parts import Attached
 from modalkit.simulator.bodies.plate.parts import PlateAttached
 from modalkit.simulator.bodies.plate.plate import Plate
@@ -158,6 +159,8 @@ def sensor_place(setup: Setup, marks: FloatArray) -> FloatArray:
 
 def inside_body(body: Body, places: FloatArray) -> FloatArray:
     """Return places with those off the body moved to its edge, shape (n, dim) [m]."""
+    if isinstance(body, Frame):
+        return np.clip(places, [body.start, 0.0], [body.end, body.width])
     if isinstance(body, Plate):
         return np.clip(places, [body.start, body.side], [body.end, body.side + body.width])
     return np.clip(places, getattr(body, "start", -np.inf), getattr(body, "end", np.inf))
@@ -245,7 +248,7 @@ def build_scene(
 
 def lengthened(body: Body, extension: float) -> Body:
     """Return a body longer along x by an extension, which is added at its clamped ends [m]."""
-    assert isinstance(body, (Beam, Plate, Solid))
+    assert isinstance(body, (Beam, Plate, Solid, Frame))
     ends = [end for end in ("x0", "x1") if end in body.clamped] or ["x0"]
     start, end = (extension * (name in ends) / len(ends) for name in ("x0", "x1"))
     return replace(body, start=body.start - start, end=body.end + end)
@@ -253,7 +256,7 @@ def lengthened(body: Body, extension: float) -> Body:
 
 def attachments(setup: Setup, place: FloatArray) -> tuple[Attached | PlateAttached, ...]:
     """Return what the body always carries: the known sensor, and soft springs under a free one."""
-    part: Any = PlateAttached if setup.kind == "plate" else Attached
+    part: Any = PlateAttached if setup.kind in ("plate", "frame") else Attached
     sensor = part(*(float(x) for x in place), mass=setup.sensor_mass, inertia=setup.sensor_inertia)
     if setup.clamped:
         return (sensor,)

@@ -11,6 +11,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from modalkit.simulator.bodies.beam.beam import Beam
 from modalkit.simulator.bodies.body import Body
+from modalkit.simulator.bodies.frame.frame import Frame
 from modalkit.simulator.bodies.plate.plate import Plate
 from modalkit.simulator.bodies.solid.solid import Solid
 
@@ -36,8 +37,8 @@ class Setup:
 
     Parameters
     ----------
-    kind : {"beam", "plate", "solid"}
-        Of the specimen; a solid is modelled as a beam, and made of bricks.
+    kind : {"beam", "plate", "solid", "frame"}
+        Of the specimen; a solid is modelled as a beam, and made of bricks; a frame as matrices.
     title : str
         Neutral title.
     length, width, thickness : float
@@ -95,6 +96,10 @@ class Setup:
     free_surface, bottom : float or None
         Distances of the fluid's surface above and of its bottom below the specimen, stated with the density; None
         is a fluid without end on that side [m].
+    breadth : float
+        Of a frame's bars, in its plane [m].
+    rungs : tuple of float
+        Where they are in a frame, over its length [-].
     """
 
     kind: str
@@ -133,11 +138,13 @@ class Setup:
     environment: float | None
     free_surface: float | None = None
     bottom: float | None = None
+    breadth: float = 0.0
+    rungs: tuple[float, ...] = ()
 
     @property
     def size(self) -> tuple[float, ...]:
         """Extents of the model along its axes [m]."""
-        return (self.length, self.width) if self.kind == "plate" else (self.length,)
+        return (self.length, self.width) if self.kind in ("plate", "frame") else (self.length,)
 
     @property
     def places(self) -> FloatArray:
@@ -152,6 +159,8 @@ class Setup:
     @property
     def mass(self) -> float:
         """Mass of the specimen as drawn [kg]."""
+        if self.kind == "frame":
+            return self.nominal.mass
         return self.density * self.length * self.width * self.thickness
 
     @property
@@ -218,6 +227,8 @@ def bare_body(setup: Setup) -> Body:
     setup : Setup
         Dimensions, material, clamps and expected damping.
     """
+    if setup.kind == "frame":
+        return Frame(**_drawn(setup), breadth=setup.breadth, rungs=setup.rungs)
     kind: type[Plate] | type[Beam] = Plate if setup.kind == "plate" else Beam
     return kind(**_drawn(setup))
 

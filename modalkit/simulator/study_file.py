@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from modalkit.simulator.setup import Setup
 
 
-def study_text(setup: Setup, *, test_file: str, baseline_file: str, expects_damping: bool = True) -> str:
+def study_text(
+    setup: Setup,
+    *,
+    test_file: str,
+    baseline_file: str,
+    expects_damping: bool = True,
+    model: Mapping[str, Any] | None = None,
+) -> str:
     """Return the study as TOML.
 
     Parameters
@@ -19,6 +27,8 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str, expects_damp
         there is a baseline.
     expects_damping : bool
         Whether the study says what damping the modeller expects.
+    model : mapping, optional
+        The study's ``[model]`` of a frame, whose matrices are files.
 
     Returns
     -------
@@ -34,10 +44,16 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str, expects_damp
         "position_sigma": setup.position_sigma,
     }
     tolerances = {name: getattr(setup.tolerances, name) for name in setup.tolerances.__dataclass_fields__}
+    regions: list[tuple[str, dict[str, Any]]] = []
+    if model is not None:
+        tolerances = {name: tolerances[name] for name in ("E", "density", "damping")}
+        files = model["stiffness_parts"]
+        names = [file.removeprefix("stiffness_").removesuffix(".mtx") for file in files]
+        regions = [("[[model.region]]", {"name": name}) for name in names]
     tables: list[tuple[str, dict[str, Any]]] = [("[test]", test)]
     if setup.baseline:
         tables.append(("[baseline]", test | _data(baseline_file)))
-    model = {
+    built = {
         "type": "plate" if setup.kind == "plate" else "beam",
         "length": setup.length,
         "width": setup.width,
@@ -47,9 +63,10 @@ def study_text(setup: Setup, *, test_file: str, baseline_file: str, expects_damp
         "theory": setup.theory,
     }
     tables += [
-        ("[model]", model),
+        ("[model]", dict(built if model is None else model)),
         ("[model.material]", {"E": setup.E, "density": setup.density, "poisson": setup.poisson}),
         *([("[model.damping]", {"alpha": setup.alpha, "beta": setup.beta})] if expects_damping else []),
+        *regions,
         ("[tolerances]", tolerances),
     ]
     if setup.sensor_mass:

@@ -128,7 +128,8 @@ def _diagnose(
     own = {effect.name: effect for one in problem.specimens for effect in hypotheses_of(one.predictor.spec)}
     effects += [effect for name, effect in own.items() if name not in {effect.name for effect in effects}]
     _stage(progress, "comparing the effects")
-    found = search(problem, [e for e in effects if e.several or e.name not in accepted])
+    examined = [e for e in effects if e.name not in accepted or e.several or e.repeats_on(problem.predictor)]
+    found = search(problem, examined)
     chance = found.empty.p_value
     significant = is_significant(found, chance)
     comparable = not any(one.mostly_alone for one in problem.specimens)

@@ -206,6 +206,10 @@ class Effect(ABC):
         """Whether a model may hold several of it: at other places, or of other points."""
         return self.repeats or bool(self.labels)
 
+    def repeats_on(self, predictor: Predictor) -> bool:
+        """Tell whether it may occur twice in a set of causes of this specimen, ``repeats`` as a rule."""
+        return self.repeats
+
     def again(self) -> Self:
         """Return the same effect as the next of its kind in a set."""
         other = copy(self)

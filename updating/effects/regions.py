@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -28,15 +28,24 @@ Named = TypeVar("Named", Group, Joint, Support)
 def stiff_regions(predictor: Predictor) -> tuple[str, ...]:
     """Return the names of the regions of imported matrices that have a stiffness of their own, each once."""
     imported = predictor.spec.imported
-    count = 0 if imported is None else len(imported.stiffness_parts)
-    return tuple(dict.fromkeys(region.name for region in predictor.spec.regions[:count]))
+    return () if imported is None else _with_parts(predictor.spec, imported.stiffness_parts)
 
 
 def heavy_regions(predictor: Predictor) -> tuple[str, ...]:
     """Return the names of the regions of imported matrices that have a mass of their own, each once."""
     imported = predictor.spec.imported
-    count = 0 if imported is None else len(imported.mass_parts)
-    return tuple(dict.fromkeys(region.name for region in predictor.spec.regions[:count]))
+    return () if imported is None else _with_parts(predictor.spec, imported.mass_parts)
+
+
+def _with_parts(spec: Spec, parts: Sequence[Sparse]) -> tuple[str, ...]:
+    """Return the names of the regions whose part of a matrix has any entry, each once: springs have no mass."""
+    named = zip(spec.regions, parts, strict=False)
+    return tuple(dict.fromkeys(region.name for region, part in named if abs(part).max() > 0))
+
+
+def named_places(values: Values) -> tuple[str, ...]:
+    """Return the names of places of the user's own model among values; a number under such a label is no name."""
+    return tuple(values[label] for label in PLACED if isinstance(values.get(label), str))
 
 
 def regions_meant(spec: Spec, values: Values) -> tuple[int, ...]:

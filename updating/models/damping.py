@@ -173,7 +173,8 @@ def modal_damping(
     viscous = own["alpha"][0] * heavy + _share(_viscous(state), moving) + hung["damping"]
     hysteretic = _share(_structural(state), moving)
     if own["beta"][0] or own["loss_factor"][0]:
-        elastic = values - _share(state.stiffness, moving) - hung["stiffness"]
+        springs = [one.springs for one in state.yielding.values()]
+        elastic = values - _share([*state.stiffness, *springs], moving) - hung["stiffness"]
         viscous, hysteretic = viscous + own["beta"][0] * elastic, hysteretic + own["loss_factor"][0] * elastic
     return viscous, hysteretic
 

@@ -102,6 +102,10 @@ class Reduced:
         """Return a matrix over all degrees of freedom (n_dofs, n_dofs) on the basis, (r, r)."""
         return np.asarray(self.basis.T @ (full @ self.basis))
 
+    def generalised(self, loads: Sparse) -> FloatArray:
+        """Return loads on all degrees of freedom (n_dofs, n) on the basis, (r, n)."""
+        return np.asarray(self.basis.T @ loads.toarray())
+
     @cached_property
     def sampled(self) -> dict[str, FloatArray]:
         """Fields of the basis at the quadrature points, each (n_points, r)."""
@@ -180,7 +184,7 @@ class Reduced:
         for term, parts in self.terms(state):
             scale = term.scale(state.factors)
             total[term.kind] += parts[:n, :n] if scale == 1.0 else parts[:n, :n] * scale
-        for kind, added in (("stiffness", state.stiffness), ("mass", state.mass)):
+        for kind, added in (("stiffness", state.stiffened), ("mass", state.loaded)):
             for matrix in added:
                 total[kind] += matrix[:n, :n]
         stiffness, mass = total["stiffness"], total["mass"]

@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray
 from acquisition.display import Displayed
 from updating.models.absorbers import Absorber
 from updating.models.spec import Theory
+from updating.models.yielding import Yielding, together
 
 
 def _nothing() -> Mapping[str, float]:
@@ -87,6 +88,8 @@ class State(Displayed):
         infinite where there is none.
     absorbers : tuple of Absorber
         Masses on springs that hang on the structure: each adds a degree of freedom behind those of the basis.
+    yielding : mapping of str to Yielding
+        Supports of imported matrices that give way, by name.
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -109,6 +112,17 @@ class State(Displayed):
     per_newton: tuple[FloatArray, ...] = ()
     fluid: Mapping[str, float] = field(default_factory=_nothing)
     absorbers: tuple[Absorber, ...] = ()
+    yielding: Mapping[str, Yielding] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def stiffened(self) -> tuple[FloatArray, ...]:
+        """All matrices that are added to the stiffness: ``stiffness``, and what supports take off that give way."""
+        return (*self.stiffness, *(one.stiffness for one in self.yielding.values()))
+
+    @property
+    def loaded(self) -> tuple[FloatArray, ...]:
+        """All matrices that are added to the mass: ``mass``, and what moves with supports that give way."""
+        return (*self.mass, *(one.carried for one in self.yielding.values()))
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
@@ -133,6 +147,7 @@ class State(Displayed):
             self.per_newton + other.per_newton,
             MappingProxyType({**self.fluid, **other.fluid}),
             self.absorbers + other.absorbers,
+            MappingProxyType(together(self.yielding, other.yielding)),
         )
 
 

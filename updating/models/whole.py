@@ -76,6 +76,10 @@ class Whole(Reduced):
         """Return a matrix over all degrees of freedom as it is."""
         return cast(FloatArray, full)
 
+    def generalised(self, loads: Sparse) -> FloatArray:
+        """Return loads on all degrees of freedom (n_dofs, n) as they are."""
+        return cast(FloatArray, loads)
+
     def weighted(
         self,
         kind: str,
@@ -122,9 +126,9 @@ class Whole(Reduced):
     def matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
         """Return stiffness and mass of a state, what its releases hold included [SI]."""
         stiffness, mass = self.structure.matrices(state)
-        for added in state.stiffness:
+        for added in state.stiffened:
             stiffness = Sparse(stiffness + added)
-        for added in state.mass:
+        for added in state.loaded:
             mass = Sparse(mass + added)
         return cast(FloatArray, stiffness), cast(FloatArray, mass)
 

@@ -160,7 +160,7 @@ def _ways(directions: FloatArray | None, count: int) -> FloatArray:
 def _check(predictor: Predictor) -> None:
     size = predictor.reduced.basis.shape[1]
     state = predictor.base
-    wrong = [m.shape for m in (*state.stiffness, *state.mass, *state.damping) if m.shape != (size, size)]
+    wrong = [m.shape for m in (*state.stiffened, *state.loaded, *state.damping) if m.shape != (size, size)]
     if wrong:
         raise StudyError(
             f"a state adds a matrix of shape {wrong[0]} to a model whose basis has {size} columns: it was made for "

@@ -28,6 +28,7 @@ _CHANNELS: Mapping[str, tuple[str, ...]] = {
             "clamp_rotation",
             "clamp_translation",
             "local_stiffness",
+            "joint",
         ),
         *(
             "shear",

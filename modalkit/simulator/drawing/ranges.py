@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from acquisition.errors import StudyError
 
-KINDS = ("beam", "plate", "solid")
+KINDS = ("beam", "plate", "solid", "frame")
 
 
 @dataclass(frozen=True)
@@ -18,8 +18,8 @@ class DrawRanges:
     Parameters
     ----------
     kinds : tuple of str
-        Kinds of specimen, of ``beam``, ``plate`` and ``solid``, a cantilever of bricks that the study models as
-        a beam; solids need CalculiX.
+        Kinds of specimen, of ``beam``, ``plate``, ``solid``, a cantilever of bricks that the study models as a beam
+        (these need CalculiX), and ``frame``, bars between joints, which the study models by matrices.
     plates : float
         Share of plates where there are other kinds too; that of solids likewise [-].
     effects : tuple of str

@@ -19,6 +19,7 @@ from modalkit.simulator.drawing.common import (
     rayleigh,
     two_digits,
 )
+from modalkit.simulator.drawing.frame import draw_frame
 from modalkit.simulator.drawing.plate import draw_plate
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.setup import Setup, Tolerances
@@ -56,7 +57,8 @@ def draw_setup(rng: np.random.Generator, *, plan: DrawRanges = _EVERYTHING) -> S
             "plan: solids need CalculiX, and there is no ccx on the path; "
             "install calculix-ccx, or leave solids out of the kinds"
         )
-    maker = {"beam": _draw_beam, "plate": draw_plate, "solid": _draw_solid}[_draw_kind(rng, plan)]
+    makers = {"beam": _draw_beam, "plate": draw_plate, "solid": _draw_solid, "frame": draw_frame}
+    maker = makers[_draw_kind(rng, plan)]
     while True:
         setup = maker(rng, plan)
         if setup is not None:

@@ -1,7 +1,10 @@
 """What may be hidden: each secret draws its parameters, changes the rig, and knows what answers are right."""
 
+from dataclasses import replace
+
 from modalkit.simulator.hidden.base import HiddenEffect, Values
 from modalkit.simulator.hidden.chain import CHAIN
+from modalkit.simulator.hidden.frame import OF_FRAMES, SHARED
 from modalkit.simulator.hidden.local import LOCAL
 from modalkit.simulator.hidden.losses import LOSSES
 from modalkit.simulator.hidden.material import MATERIAL
@@ -12,6 +15,18 @@ HIDDEN_EFFECTS: dict[str, HiddenEffect] = {
     hidden_effect.name: hidden_effect
     for hidden_effect in (*MATERIAL, *SUPPORTS, *LOCAL, *LOSSES, *CHAIN, *OUTSIDE)
 }
-"""All of them by name; two at once act in this order."""
+"""All of beams, plates and bricks by name; two at once act in this order."""
 
-__all__ = ["HIDDEN_EFFECTS", "HiddenEffect", "Values"]
+FRAME_EFFECTS: dict[str, HiddenEffect] = {
+    **{name: replace(HIDDEN_EFFECTS[name], kinds=("frame",)) for name in SHARED},
+    **{hidden_effect.name: hidden_effect for hidden_effect in OF_FRAMES},
+}
+"""All of frames by name."""
+
+
+def effects_of(kind: str) -> dict[str, HiddenEffect]:
+    """Return what may be hidden in a kind of specimen, by name."""
+    return FRAME_EFFECTS if kind == "frame" else HIDDEN_EFFECTS
+
+
+__all__ = ["FRAME_EFFECTS", "HIDDEN_EFFECTS", "HiddenEffect", "Values", "effects_of"]

@@ -82,6 +82,8 @@ class HiddenEffect:
         In which of the two the gap that it makes shrinks; empty for neither.
     solid : bool
         Whether a body of bricks can have it.
+    kinds : tuple of str
+        Kinds of specimen that it is for; empty for beams, plates and, where ``solid`` says so, bricks.
     share : float
         About the share of setups that can have it, so that all effects come up about as often [-].
     """
@@ -98,6 +100,7 @@ class HiddenEffect:
     exclusive: str = ""
     metric: str = "frequency"
     solid: bool = False
+    kinds: tuple[str, ...] = ()
     share: float = 1.0
 
     def __post_init__(self) -> None:
@@ -111,6 +114,8 @@ class HiddenEffect:
 
     def fits(self, setup: Setup) -> bool:
         """Tell whether the specimen can have it, of what it is made of too."""
+        if self.kinds or setup.kind == "frame":
+            return setup.kind in self.kinds and self.applies(setup)
         return self.applies(setup) and (self.solid or setup.kind != "solid")
 
 

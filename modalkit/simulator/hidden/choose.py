@@ -10,7 +10,7 @@ import numpy as np
 from acquisition.errors import StudyError
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import lacks_shear
-from modalkit.simulator.hidden import HIDDEN_EFFECTS, HiddenEffect, Values
+from modalkit.simulator.hidden import HiddenEffect, Values, effects_of
 from modalkit.simulator.setup import Setup
 
 _MILD = (0.15, 0.5)
@@ -31,12 +31,16 @@ def checked(plan: DrawRanges) -> DrawRanges:
     StudyError
         If a name is not one of the rig's.
     """
-    missing = [name for name in plan.effects if name != "none" and name not in HIDDEN_EFFECTS]
+    known = _known(plan)
+    missing = [name for name in plan.effects if name != "none" and name not in known]
     if missing:
-        raise StudyError(
-            f"the rig cannot hide {', '.join(missing)}; it has: none, {', '.join(HIDDEN_EFFECTS)}"
-        )
+        raise StudyError(f"the rig cannot hide {', '.join(missing)}; it has: none, {', '.join(known)}")
     return plan
+
+
+def _known(plan: DrawRanges) -> dict[str, HiddenEffect]:
+    """Return what may be hidden in any kind of specimen of a plan, by name."""
+    return {name: effect for kind in reversed(plan.kinds) for name, effect in effects_of(kind).items()}
 
 
 def choose_sort(rng: np.random.Generator, plan: DrawRanges) -> str:
@@ -55,7 +59,7 @@ def choose_sort(rng: np.random.Generator, plan: DrawRanges) -> str:
         Among named effects, those inside and outside the library are singles alike.
     """
     named = [n for n in plan.effects if n != "none"]
-    inside = [n for n in named if not HIDDEN_EFFECTS[n].outside]
+    inside = [n for n in named if not _known(plan)[n].outside]
     weights = {"none": plan.none, "pair": plan.pairs, "triple": plan.triples, "outside": plan.outside}
     if plan.effects:
         weights["none"] = (plan.none if named else 1.0) if "none" in plan.effects else 0.0
@@ -92,7 +96,8 @@ def choose_hidden_effects(
     """
     if sort == "none":
         return ()
-    pool = [s for s in HIDDEN_EFFECTS.values() if not plan.effects or s.name in plan.effects]
+    every = list(effects_of(setup.kind).values())
+    pool = [s for s in every if not plan.effects or s.name in plan.effects]
     if not plan.effects or sort in ("pair", "triple"):
         pool = [s for s in pool if s.outside == (sort == "outside")]
     pool = [s for s in pool if s.fits(setup)]
@@ -105,8 +110,7 @@ def choose_hidden_effects(
         weights = np.array([1.0 / s.share for s in free])
         chosen.append(free[int(rng.choice(len(free), p=weights / weights.sum()))])
         forced = []
-    order = list(HIDDEN_EFFECTS.values())
-    return tuple(sorted(chosen, key=order.index))
+    return tuple(sorted(chosen, key=every.index))
 
 
 def _clash(hidden_effect: HiddenEffect, others: Sequence[HiddenEffect]) -> bool:

@@ -54,3 +54,8 @@ def test_all_clamps_alike_and_each_alone_are_forms_with_places_of_their_own() ->
 def test_an_edge_that_is_free_cannot_be_named() -> None:
     with pytest.raises(StudyError, match="no clamped edge; those are x0, x1"):
         frequencies("y0", 1.0)
+
+
+def test_clamps_of_a_beam_are_no_two_causes_of_one_kind() -> None:
+    """Each is a form that holds the other firmly: two of them at once would hold both."""
+    assert not LIBRARY["clamp_rotation"].repeats_on(PREDICTOR)

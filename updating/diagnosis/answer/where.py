@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,8 +13,9 @@ from updating.diagnosis.answer.contributions import contributions
 from updating.diagnosis.answer.result import LikelyPlace, Place, Verdict, Where, Zone
 from updating.diagnosis.search.search import Compared, Search
 from updating.effects.base import Values
+from updating.effects.box import LIKE
 from updating.effects.measurement.points import channel_point
-from updating.effects.regions import PLACED
+from updating.effects.regions import named_places
 from updating.localisation import areas, centres, compare_regions, regions_at
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import CONCERNED_REACH, NEGLIGIBLE_PROBABILITY, TOGETHER_SHARE
@@ -73,9 +75,8 @@ def _names(leader: Compared | None) -> tuple[str, ...]:
     """Return the regions, node sets, joints and supports that an explanation names."""
     if leader is None:
         return ()
-    candidate = leader.explanation.candidate
-    named = [form.values[label] for form in candidate.forms for label in PLACED if label in form.values]
-    return tuple(dict.fromkeys(str(name) for name in named))
+    forms = leader.explanation.candidate.forms
+    return tuple(dict.fromkeys(name for form in forms for name in named_places(form.values)))
 
 
 def acting_together(shares: Mapping[str, float]) -> tuple[str, ...]:
@@ -93,12 +94,20 @@ def acting_together(shares: Mapping[str, float]) -> tuple[str, ...]:
 def _likely_places(
     problem: SpecimenProblem, leader: Compared, channels: tuple[str, ...]
 ) -> tuple[Cluster, ...]:
-    """Return the places of an explanation in all channels that act together."""
-    found = [cluster for name in channels for cluster in clusters(problem, leader.explanation, name)]
-    first: dict[Place, Cluster] = {}
-    for cluster in found:
-        first.setdefault(_place(cluster.place), cluster)
-    return tuple(first.values())
+    """Return the places of an explanation in all channels that act together.
+
+    On imported matrices places are forms of their own: what these data cannot tell from the best are places, too.
+    """
+    forms = [(leader.explanation, 1.0)]
+    if not problem.predictor.spec.outlined:
+        forms = [form for form in leader.forms if form[0].names == leader.names] or forms
+    near, found = LIKE * problem.predictor.spec.length, list[Cluster]()
+    for explanation, share in forms:
+        for name in channels:
+            for cluster in clusters(problem, explanation, name):
+                if all(np.linalg.norm(cluster.place - known.place) > near for known in found):
+                    found.append(replace(cluster, weight=share * cluster.weight))
+    return tuple(found)
 
 
 def _channels(found: Search) -> tuple[dict[str, float], float]:

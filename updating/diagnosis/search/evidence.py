@@ -16,7 +16,7 @@ from scipy.special import logsumexp
 from scipy.stats import qmc
 from scipy.stats import t as student
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.fit import Peak, Point, evaluate, highest, maximise
 from updating.diagnosis.search.goodness import p_value
@@ -35,6 +35,9 @@ from updating.thresholds import (
     STARTS_TRIED,
     STEPS_TRIED,
 )
+
+ON_LINE = 0.05
+"""Least share of each parameter in the direction of a line of starts [-]: less, and the line says nothing of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,9 +212,10 @@ def _peaks(
 ) -> list[Peak]:
     if len(places) > maximisations:
         evaluations = [evaluate(problem, candidate, place) for place in places]
-        nearest = np.argsort([evaluation.marginal.log_likelihood for evaluation in evaluations])[::-1][
-            :STARTS_TRIED
-        ]
+        heights = np.array([evaluation.marginal.log_likelihood for evaluation in evaluations])
+        nearest = np.argsort(heights)[::-1][:STARTS_TRIED]
+        if _on_a_line(places):
+            nearest = nearest[_summits(heights)[nearest]]
         tried = [highest(problem, candidate, evaluations[i], rounds=STEPS_TRIED, bar=bar) for i in nearest]
         tried.sort(key=lambda p: -p.marginal.log_likelihood)
         peaks = [maximise(problem, candidate, tried[i], bar=bar) for i in _distinct(tried)[:maximisations]]
@@ -222,6 +226,20 @@ def _peaks(
     return [
         peak for peak in found if peak is found[0] or top - peak.point.marginal.log_likelihood < PEAK_BEHIND
     ]
+
+
+def _on_a_line(places: list[FloatArray]) -> bool:
+    """Tell whether places follow each other along a straight line on which every parameter changes."""
+    steps = np.diff(np.stack(places), axis=0)
+    first = steps[0] / max(float(np.linalg.norm(steps[0])), 1e-300)
+    straight = np.allclose(steps, np.outer(steps @ first, first), atol=1e-9)
+    return bool(straight and (steps @ first > 0).all() and (np.abs(first) > ON_LINE).all())
+
+
+def _summits(heights: FloatArray) -> BoolArray:
+    """Tell which of some heights along a line are no lower than their neighbours: climbs from others end there, too."""
+    around = np.concatenate([[-np.inf], np.nan_to_num(heights, nan=-np.inf), [-np.inf]])
+    return np.asarray((around[1:-1] >= around[:-2]) & (around[1:-1] >= around[2:]))
 
 
 def _distinct(points: Sequence[Point]) -> list[int]:

@@ -76,7 +76,7 @@ def _drafts(problem: DiagnosisProblem, base: Explanation, singles: list[Explanat
     others = [
         once_more(e) if e.names[0] in base.names else e
         for e in singles
-        if base.names.count(e.names[0]) < (2 if e.candidate.effects[0].repeats else 1)
+        if base.names.count(e.names[0]) < (2 if e.candidate.effects[0].repeats_on(problem.predictor) else 1)
         and len(base.best.coordinates) + len(e.best.coordinates) < data - 1
     ]
     if not others:

@@ -36,6 +36,7 @@ from updating.thresholds import (
     FORM_SHARE,
     HELD_NEAR_END,
     HELD_SHARE,
+    LEAST_PLACE,
     NEGLIGIBLE_PROBABILITY,
     PROBABLE_BEHIND,
     REJECTED_FIT,
@@ -67,6 +68,9 @@ class Compared:
         How its probability is shared among the regions that its forms name; a form that names two gives each half [-].
     without : float
         Log evidence of no effect at all with the same data set aside; of none where none are [-].
+    forms : tuple of (Explanation, float)
+        The same effects in the forms that hold a place's worth of its probability, with their shares of it, the best
+        first [-].
     """
 
     explanation: Explanation
@@ -76,6 +80,7 @@ class Compared:
     extreme: tuple[str, ...] = ()
     regions: Mapping[str, float] = field(default_factory=dict)
     without: float = -np.inf
+    forms: tuple[tuple[Explanation, float], ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -258,8 +263,10 @@ def _merged(problem: DiagnosisProblem, rows: Sequence[Compared]) -> tuple[Compar
             without[set_aside] = _without_effects(problem, *set_aside)
         stated = max(row.as_stated for row in own)
         whole = replace(top.explanation, log_evidence=total)
+        shared = _by_form(own, probability)
+        regions = _by_region(own, total)
         merged.append(
-            Compared(whole, probability, fits, stated, extreme, _by_region(own, total), without[set_aside])
+            Compared(whole, probability, fits, stated, extreme, regions, without[set_aside], shared)
         )
     return tuple(sorted(merged, key=lambda row: -row.probability))
 
@@ -269,6 +276,13 @@ def _without_effects(problem: DiagnosisProblem, fuller: bool, outliers: tuple[Ou
     if not outliers:
         return -np.inf
     return explain(problem, Candidate(fuller=fuller, outliers=outliers), laplace_only=True).log_evidence
+
+
+def _by_form(own: list[Compared], total: float) -> tuple[tuple[Explanation, float], ...]:
+    """Return the forms of one set that hold enough of its probability to be named, with their shares of it [-]."""
+    shares = [(row.explanation, row.probability / total) for row in own if total > 0]
+    probable = [(one, share) for one, share in shares if share >= LEAST_PLACE]
+    return tuple(sorted(probable, key=lambda form: -form[1]))
 
 
 def _by_region(own: list[Compared], total: float) -> dict[str, float]:

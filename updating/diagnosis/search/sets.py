@@ -198,7 +198,8 @@ def _allowed(problem: DiagnosisProblem, singles: list[Explanation]) -> list[tupl
         first, second = singles[i], singles[j]
         if first.names == second.names:
             placed = any(name.endswith(".x") for name, _ in problem.parameters(first.candidate))
-            if not first.candidate.effects[0].repeats or (i == j and not placed):
+            repeats = first.candidate.effects[0].repeats_on(problem.predictor)
+            if not repeats or (i == j and not placed):
                 continue
         if len(first.best.coordinates) + len(second.best.coordinates) < data:
             allowed.append((i, j))

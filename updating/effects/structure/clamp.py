@@ -12,7 +12,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.effects.base import Effect, Parameter, Values, Variant, bending_stiffness
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
+from updating.effects.regions import WAYS, centre_of, one_of, way
 from updating.effects.structure.length import clamped_places
 from updating.effects.structure.spring import own_stiffness
 from updating.models.base import Structure
@@ -20,6 +20,7 @@ from updating.models.fields import Sparse
 from updating.models.imported.groups import Support
 from updating.models.state import State
 from updating.models.structure import FieldStructure
+from updating.models.yielding import Yielding
 from updating.prediction.predict import Predictor
 
 NOT_HELD = (
@@ -29,11 +30,15 @@ NOT_HELD = (
 """Why supports of imported matrices cannot give way."""
 
 ALL = "all"
-"""Name of all clamps together, which give way alike."""
+"""Name of all clamps together, which give way alike, and of all directions in which a support holds."""
 
 ALIKE = 0.5
 """Prior share of all clamps alike among the clamps of a structure that has several: made and tightened alike, or one of
 them loose. Doubled, one alone is out of the question."""
+
+EVERY_WAY = 0.5
+"""Prior share of a support that gives way alike in all directions of its kind, where it holds in several [-]: rubber,
+or a loose bolt, as against a slide or a hinge. Judged; doubled, one direction alone is out of the question."""
 
 RIGID = 1e7
 """Stiffness of a clamp that holds beside one that gives way, in natural units [-]: it moves frequencies by a hundred
@@ -74,17 +79,32 @@ class Clamp(Effect):
             return None if predictor.spec.imported.supports else Obstacle(Lack.MODEL, NOT_HELD)
         return None if predictor.spec.clamped else Obstacle(Lack.MODEL, "the model has no clamped edge")
 
+    def repeats_on(self, predictor: Predictor) -> bool:
+        """Tell that two feet may give way, or one foot in two directions; the clamps of a beam are one form each."""
+        return predictor.spec.imported is not None
+
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return the forms: all clamps alike, and each alone; of imported matrices each support in each direction."""
         if predictor.spec.imported is None:
             return _clamps(predictor)
-        ways = [
-            {"support": support.name, "direction": WAYS[axis]}
-            for support in predictor.spec.imported.supports
-            for axis in (range(3, 6) if self.freed == "rotation" else range(3))
-            if support.holds(axis)
+        supports = predictor.spec.imported.supports
+        forms = [form for support in supports for form in self._ways(support)]
+        whole = sum(form.weight for form in forms)
+        return tuple(Variant(form.values, form.weight / whole) for form in forms)
+
+    def _ways(self, support: Support) -> list[Variant]:
+        """Return the directions in which a support may give way, each alone and all alike, the shares adding to 1."""
+        axes = self._axes(support)
+        several = len(axes) > 1
+        share = (1 - EVERY_WAY if several else 1.0) / max(len(axes), 1)
+        alone = [Variant({"support": support.name, "direction": WAYS[axis]}, share) for axis in axes]
+        return [Variant({"support": support.name, "direction": ALL}, EVERY_WAY)] * several + alone
+
+    def _axes(self, support: Support) -> list[int]:
+        """Return the directions, of this effect's kind, in which a support holds."""
+        return [
+            axis for axis in (range(3, 6) if self.freed == "rotation" else range(3)) if support.holds(axis)
         ]
-        return tuple(Variant(fixed, 1 / len(ways)) for fixed in ways)
 
     def sentence(self, values: Values) -> str:
         """Return the summary, and which support in which direction."""
@@ -92,29 +112,37 @@ class Clamp(Effect):
             return self.summary
         if "direction" not in values:
             return f"{self.summary} It is the one at {values['support']}."
-        return f"{self.summary} It is {values['support']}, {str(values['direction']).replace('r', 'about ')}."
+        way = str(values["direction"])
+        towards = "alike in all directions" if way == ALL else way.replace("r", "about ")
+        return f"{self.summary} It is {values['support']}, {towards}."
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure on the spring.
 
-        Imported matrices have lost the rows of their supports. That one moves in a direction, without mass on its
-        spring s, takes l l^T / (k + s) off the stiffness: l what it pulls at the structure, k at itself. Where one of
-        several clamps gives way, the others are springs that nothing moves.
+        Imported matrices have lost the rows of their supports, see :class:`updating.models.yielding.Yielding`. Where
+        one of several clamps gives way, the others are springs that nothing moves.
         """
         if predictor.spec.imported is not None:
-            support, axis = (
-                one_of(predictor.spec.imported.supports, values, "support"),
-                way(values, "direction"),
-            )
-            pulled = on_basis(predictor, ("support", support.name, axis), lambda: _pulled(support, axis))
-            soft = -1 / (support.own[axis, axis] + float(values["stiffness"]))
-            return State(stiffness=(soft * pulled,))
+            support = one_of(predictor.spec.imported.supports, values, "support")
+            return State(yielding={support.name: self._yielding(predictor, support, values)})
         own, others = _released_edges(predictor, values)
         held = values["stiffness"] * unit_edges(predictor, self.freed, own)
         if others:
             firm = RIGID * bending_stiffness(predictor.spec) / predictor.spec.length**self.power
             held = held + firm * unit_edges(predictor, self.freed, others)
         return State(stiffness=(held,), released=frozenset({self.freed}))
+
+    def _yielding(self, predictor: Predictor, support: Support, values: Values) -> Yielding:
+        """Return a support on springs of one stiffness, in a direction or in all of this kind in which it holds."""
+        axes = self._axes(support) if values.get("direction") == ALL else [way(values, "direction")]
+        compliance = np.zeros(6)
+        compliance[axes] = np.divide(1.0, float(values["stiffness"]))
+        kept, key = predictor.reduced.kept, ("support", support.name)
+        if key not in kept:
+            known = support.loads, support.inertia
+            kept[key] = [predictor.reduced.generalised(Sparse(each)) for each in known]
+        loads, inertia = kept[key]
+        return Yielding(loads, support.own, support.mass, inertia, compliance)
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return the clamped edges that give way, or the support."""
@@ -180,12 +208,6 @@ class ClampTranslation(Clamp):
     units = ("N/m", "N/m per m")
     span = (5.0, 1e7)
     why = "from nearly as soft as the structure, 5 E I / L^3, to ten million E I / L^3, where nothing can see it"
-
-
-def _pulled(support: Support, axis: int) -> Sparse:
-    """Return l l^T of what a support that moves in a direction pulls at the structure, (n, n) [SI]."""
-    load = Sparse(support.loads[:, [axis]])
-    return Sparse(load @ load.T)
 
 
 def unit_edges(

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from acquisition.arrays import FloatArray
 from updating.effects.base import Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
@@ -60,13 +61,17 @@ class Joint(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return stiffness against shifting and turning, and the dashpot across the joint."""
-        spans = [_span([_range(predictor, joint, i) for joint in _joints(predictor)]) for i in range(2)]
+        (low, high), (lowest_turn, highest_turn) = predictor.once(
+            "spans of joints", lambda: _spans(predictor)
+        ).tolist()
         held = "from a bolt that fell out to a joint that holds as if welded"
         lossy = "from hardly anything to be seen to a dashpot that all but holds the lowest mode"
         least, most = (share * total_mass(predictor.spec) * lowest(predictor) for share in LOSSY)
         return (
-            Parameter("stiffness", "N/m", *spans[0], held, log=True, like="nothing", or_none=True),
-            Parameter("turning", "N m/rad", *spans[1], held, log=True, like="nothing", or_none=True),
+            Parameter("stiffness", "N/m", low, high, held, log=True, like="nothing", or_none=True),
+            Parameter(
+                "turning", "N m/rad", lowest_turn, highest_turn, held, log=True, like="nothing", or_none=True
+            ),
             Parameter("damping", "N s/m", least, most, lossy, True, 0.0, ("low",), or_none=True),
         )
 
@@ -185,6 +190,12 @@ def _range(predictor: Predictor, joint: Sides, i: int) -> tuple[float, float]:
     if not modelled:
         return SOFT_FOR_STRUCTURE * own, STIFFEST * own
     return min(SOFTEST * modelled, SOFT_FOR_STRUCTURE * own), STIFFEST * modelled
+
+
+def _spans(predictor: Predictor) -> FloatArray:
+    """Return the widest range of any joint in shifting and in turning, (2, 2) [N/m, N m/rad]."""
+    joints = _joints(predictor)
+    return np.array([_span([_range(predictor, joint, i) for joint in joints]) for i in range(2)])
 
 
 def _span(ranges: list[tuple[float, float]]) -> tuple[float, float]:

@@ -16,6 +16,15 @@ from updating.effects.box import LIKE, Place, mirror_images, starting_places
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import centre_of, on_basis, one_of
 from updating.effects.structure.mass_screening import frequency_gap
+from updating.effects.structure.nodes import (
+    NAMED_SHARE,
+    TRIED,
+    apart,
+    distinct_groups,
+    free_nodes,
+    group_centres,
+    promising_nodes,
+)
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.imported.matrices import Imported
@@ -214,16 +223,14 @@ class LumpedMass(Effect):
         return Obstacle(Lack.DATA, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
-        """Return a body at an end, at a test point and anywhere; at imported matrices' test points alone.
+        """Return a body at an end, at a test point and anywhere; of imported matrices at nodes.
 
         Of the test points those are listed at which a body comes nearest to the frequencies. Where a sensor stayed it
         leaves no room for another body.
         """
         points = np.unique(predictor.measured.points, axis=0)
         if predictor.spec.imported is not None:
-            known: list[dict[str, Any]] = [_named(point) for point in points]
-            known += [_named(group.centre) | {"at": group.name} for group in predictor.spec.imported.groups]
-            return tuple(Variant(at, 1 / len(known)) for at in known)
+            return self._on_nodes(predictor, predictor.spec.imported)
         ends = free_ends(predictor.spec)
         there = SHARES["anywhere"] + SHARES["ends"] * bool(len(ends)) + SHARES["points"] * bool(len(points))
         at_end, at_point = (
@@ -234,6 +241,22 @@ class LumpedMass(Effect):
             *(Variant(_named(end), at_end) for end in ends if _vacant(predictor, end)),
             *(Variant(_named(at), at_point) for at in promising_points(predictor) if _vacant(predictor, at)),
             Variant(weight=SHARES["anywhere"] / there),
+        )
+
+    def _on_nodes(self, predictor: Predictor, imported: Imported) -> tuple[Variant, ...]:
+        """Return a body at test points and node sets of imported matrices, and at the most promising other nodes."""
+        groups = distinct_groups(imported)
+        points = np.unique(predictor.measured.points, axis=0)
+        centres = group_centres(imported)
+        known: list[dict[str, Any]] = [_named(points[i]) for i in apart(imported, points, centres)]
+        known += [_named(group.centre) | {"at": group.name} for group in groups]
+        sizes = [self.parameters(predictor)[0].value(u) for u in TRIED]
+        others = free_nodes(imported, np.vstack([points.reshape(-1, 3), centres]))
+        best = promising_nodes(predictor, imported, others, _with_mass, sizes, springs=False)
+        share = NAMED_SHARE if len(others) else 1.0
+        return (
+            *(Variant(at, share / len(known)) for at in known),
+            *(Variant(node, (1 - share) / len(others)) for node, _ in best),
         )
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
@@ -261,6 +284,11 @@ class LumpedMass(Effect):
             return (centre_of(one_of(predictor.spec.imported.groups, values, "at")),)
         at = (float(values["x"]), float(values.get("y", 0.0)), float(values.get("z", 0.0)))
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
+
+
+def _with_mass(rows: FloatArray, mass: float) -> State:
+    """Return the state with a body that moves as some rows of the basis do [kg]."""
+    return State(mass=(mass * (rows.T @ rows),))
 
 
 def _carried(predictor: Predictor, imported: Imported, values: Values) -> tuple[FloatArray, FloatArray]:

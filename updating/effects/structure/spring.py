@@ -12,6 +12,15 @@ from updating.effects.box import Place, mirror_images, place, spread, starting_p
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
 from updating.effects.structure.mass import AXES, outline
+from updating.effects.structure.nodes import (
+    NAMED_SHARE,
+    TRIED,
+    apart,
+    distinct_groups,
+    free_nodes,
+    group_centres,
+    promising_nodes,
+)
 from updating.models.fields import Sparse
 from updating.models.spec import Spec
 from updating.models.state import Loss, State
@@ -39,8 +48,8 @@ class GroundSpring(Effect):
     """Springs and dashpots to the ground, at a point or evenly over a stretch, or over a square of a plate.
 
     ``stiffness`` and ``damping`` are those of all together; a stretch stays on the structure. Of imported matrices a
-    spring acts at one of the test's points, in the directions in which that is measured, or at a node set ``at``,
-    ``along`` an axis.
+    spring acts at one of the test's points, in the directions in which that is measured, at a node set ``at`` ``along``
+    an axis, or at another node along an axis.
     """
 
     name = "ground_spring"
@@ -104,10 +113,28 @@ class GroundSpring(Effect):
             shares = [(point | still, 0.6), (still, 0.4)]
         if predictor.spec.kind != "matrices":
             return tuple(Variant(fixed, share) for fixed, share in shares)
-        named = [*_at_points(predictor), *_at_sets(predictor)]
         alone = [(fixed, share) for fixed, share in shares if fixed.get("extent") == 0.0]
-        whole = sum(share for _, share in alone) * len(named)
-        return tuple(Variant({**at, **fixed}, share / whole) for fixed, share in alone for at in named)
+        whole = sum(share for _, share in alone)
+        places = self._on_nodes(predictor)
+        return tuple(
+            Variant({**at, **fixed}, of * share / whole) for fixed, share in alone for at, of in places
+        )
+
+    def _on_nodes(self, predictor: Predictor) -> list[tuple[dict[str, Any], float]]:
+        """Return places on imported matrices: test points, node sets, the most promising nodes; and their shares."""
+        imported = predictor.spec.imported
+        assert imported is not None
+        known = [*_at_points(predictor), *_at_sets(predictor)]
+        stiffness = next(p for p in self.parameters(predictor) if p.name == "stiffness")
+        others = free_nodes(imported, group_centres(imported))
+        sizes = [stiffness.value(u) for u in TRIED]
+        best = promising_nodes(predictor, imported, others, _with_spring, sizes, springs=True)
+        share = NAMED_SHARE if len(others) else 1.0
+        each = (1 - share) / max(3 * len(others), 1)
+        return [
+            *((at, share / len(known)) for at in known),
+            *(({**node, "along": WAYS[axis]}, each) for node, axis in best),
+        ]
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from a row of places and the ends, with a middling spring that hardly damps."""
@@ -148,8 +175,11 @@ class GroundSpring(Effect):
 
 def _at_points(predictor: Predictor) -> list[dict[str, Any]]:
     """Return the test points at which a spring may act."""
+    imported = predictor.spec.imported
+    assert imported is not None
     points = np.unique(predictor.measured.points, axis=0)
-    return [dict(zip(AXES, map(float, at), strict=True)) for at in points]
+    unlike = points[apart(imported, points, group_centres(imported))]
+    return [dict(zip(AXES, map(float, at), strict=True)) for at in unlike]
 
 
 def _at_sets(predictor: Predictor) -> list[dict[str, Any]]:
@@ -158,7 +188,7 @@ def _at_sets(predictor: Predictor) -> list[dict[str, Any]]:
     assert imported is not None
     return [
         {**dict(zip(AXES, centre_of(group), strict=True)), "at": group.name, "along": WAYS[axis]}
-        for group in imported.groups
+        for group in distinct_groups(imported)
         for axis in range(3)
         if group.moves(axis)
     ]
@@ -211,15 +241,30 @@ def _unit(predictor: Predictor, values: Values) -> FloatArray:
         row = one_of(spec.imported.groups, values, "at").rows[way(values, "along")]
         return on_basis(predictor, ("springs", values["at"], values["along"]), lambda: Sparse(row.T @ row))
     if not spec.outlined:
-        at = np.array([[values[name] for name in AXES]])
-        directions = measured_directions(predictor, at)
-        return springs(
-            predictor, np.repeat(at, len(directions), axis=0), np.ones(len(directions)), directions
-        )
+        return _at_place(predictor, values)
     if not values.get("extent"):
         return springs(predictor, np.array([[values[name] for name, _ in _sides(spec)]]), np.ones(1))
     points, weights = spread(spec, values)
     return springs(predictor, points, weights / weights.sum())
+
+
+def _at_place(predictor: Predictor, values: Values) -> FloatArray:
+    """Return the stiffness of 1 N/m at a place on imported matrices, ``along`` an axis or as that is measured."""
+    at = np.array([[values[name] for name in AXES]])
+    directions = (
+        np.eye(3)[[way(values, "along")]] if "along" in values else measured_directions(predictor, at)
+    )
+    kept, key = predictor.reduced.kept, ("spring", *at[0].tolist(), *directions.ravel().tolist())
+    if key not in kept:
+        points = np.repeat(at, len(directions), axis=0)
+        kept[key] = springs(predictor, points, np.ones(len(directions)), directions)
+    found: FloatArray = kept[key]
+    return found
+
+
+def _with_spring(rows: FloatArray, stiffness: float) -> State:
+    """Return the state with a spring to the ground at what moves as some rows of the basis do [N/m]."""
+    return State(stiffness=(stiffness * (rows.T @ rows),))
 
 
 def _sides(spec: Spec) -> list[tuple[str, float]]:

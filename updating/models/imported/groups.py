@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import KDTree
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.placing import Places
@@ -25,6 +25,9 @@ TOGETHER = 1e-6
 
 FELT = 1e-6
 """A support is held in a direction by more than this share of what holds it most [-]: the rest is rounding."""
+
+SEPARATORS = "_-. "
+"""Marks between the words of a name."""
 
 ANY_STIFFNESS = 1e-12
 """What is left of a spring below this share of the largest stiffness is none [-]."""
@@ -130,7 +133,7 @@ def joints_of(places: Places, sets: NodeSets, stiffness: Sparse) -> tuple[Joint,
             sides = [_springs(places, pairs, axes, stiffness) for axes in (range(3), range(3, 6))]
             centre = places.at[[a for a, _ in pairs]].mean(axis=0)
             springs, sizes = zip(*sides, strict=True)
-            found.append(Joint(_common(first, second), (first, second), centre, springs, sizes))
+            found.append(Joint(common_name(first, second), (first, second), centre, springs, sizes))
     names = [joint.name for joint in found]
     return tuple(
         replace(joint, name="/".join(joint.sides)) if names.count(joint.name) > 1 else joint
@@ -171,11 +174,12 @@ def _springs(
     return total, sum(size for size in found if size > least) / max(directions, 1)
 
 
-def _common(first: str, second: str) -> str:
-    """Return what two names begin with, up to a separator; both where that is nothing."""
+def common_name(first: str, second: str) -> str:
+    """Return what two names begin with, up to the last separator that they share; both where that is nothing."""
     same = next((i for i, (a, b) in enumerate(zip(first, second, strict=False)) if a != b), 0)
-    begin = first[:same].rstrip("_-. ")
-    return begin if begin and not first[: len(begin) + 1][-1:].isalnum() else f"{first}/{second}"
+    whole = max((first.rfind(mark, 0, same) for mark in SEPARATORS), default=-1)
+    begin = first[: max(whole, 0)].rstrip(SEPARATORS)
+    return begin or f"{first}/{second}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,12 +196,18 @@ class Support:
         Forces on the structure, negative, when the support shifts along x, y, z or turns about them by one.
     own : (6, 6) array
         Forces on the support at the same.
+    mass : (6, 6) array
+        Mass of the rows that are held, when they move so [kg, kg m, kg m^2].
+    inertia : (n_dofs, 6) array
+        Their mass in common with the rows beside them.
     """
 
     name: str
     centre: FloatArray
     loads: FloatArray
     own: FloatArray
+    mass: FloatArray
+    inertia: FloatArray
 
     def holds(self, axis: int) -> bool:
         """Tell whether the structure resists its shift along an axis 0, 1, 2, or its turn about it, 3, 4, 5."""
@@ -205,7 +215,7 @@ class Support:
         return bool(self.own[axis, axis] > FELT * alike.max())
 
 
-def supports_of(places: Places, sets: NodeSets, stiffness: Sparse) -> tuple[Support, ...]:
+def supports_of(places: Places, sets: NodeSets, stiffness: Sparse, mass: Sparse) -> tuple[Support, ...]:
     """Return the supports whose rows the matrices have lost, each as it would move if it were one body.
 
     A structure that moves as a rigid body together with its supports feels no force: with the rows f that are left and
@@ -219,7 +229,7 @@ def supports_of(places: Places, sets: NodeSets, stiffness: Sparse) -> tuple[Supp
         return ()
     gathered = list(_gathered(places, held))
     middles = np.array([places.at[group].mean(axis=0) for group in gathered])
-    at = places_of_rows(places, stiffness.shape[0])
+    at, nodes = places_of_rows(places, stiffness.shape[0]), nodes_of_rows(places, stiffness.shape[0])
     away = np.stack([KDTree(places.at[group]).query(at)[0] for group in gathered])
     owner = away.argmin(axis=0)
     found = []
@@ -229,14 +239,39 @@ def supports_of(places: Places, sets: NodeSets, stiffness: Sparse) -> tuple[Supp
         loads = np.where((owner == number)[:, None], stiffness @ about, 0.0)
         if np.abs(loads).max() > 0:
             own = loads.T @ about
-            found.append(Support(_named(places, sets, group, number), centre, loads, (own + own.T) / 2))
+            pulled = (np.abs(loads[:, :3]) > FELT * np.abs(loads[:, :3]).max()).any(axis=1)
+            beside = np.isin(nodes, nodes[pulled])
+            heavy, inertia = _mirrored(places, mass, at, (group, centre), beside)
+            name = _named(places, sets, group, number)
+            found.append(Support(name, centre, loads, (own + own.T) / 2, heavy, inertia))
     return tuple(found)
 
 
-def rigid_motions(places: Places, order: int, centre: FloatArray | None = None) -> FloatArray | None:
+def _mirrored(
+    places: Places, mass: Sparse, at: FloatArray, support: tuple[IntArray, FloatArray], beside: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return what the held rows of a support weigh, and what they weigh together with the rows beside them.
+
+    A rigid body has no more force in its mass than it has mass, so that, unlike their stiffness, the mass of the rows
+    that are lost is not known. It is taken from the rows ``beside`` them as if the mesh went on evenly: they carry
+    twice what the held ones do, and have as much in common with those inside as with those held.
+    """
+    group, centre = support
+    nearest = places.at[group][KDTree(places.at[group]).query(at)[1]]
+    held = rigid_motions(places, mass.shape[0], centre, nearest)
+    assert held is not None
+    mirror = np.where(held[:, :3].any(axis=1), 1.0, -1.0)[:, None]  # a rotation is the other way round in it
+    own, inside = np.where(beside[:, None], held, 0.0), np.where(beside[:, None], 0.0, held)
+    inertia = np.where(beside[:, None], mirror * (mass @ (mirror * inside)), 0.0)
+    return own.T @ (mass @ own) / 2, inertia
+
+
+def rigid_motions(
+    places: Places, order: int, centre: FloatArray | None = None, at: FloatArray | None = None
+) -> FloatArray | None:
     """Return the motions of a rigid body, along x, y, z and about them through a point, (n_dofs, 6).
 
-    None where some row of the matrices is at no place.
+    With rows at other places ``at`` (n_dofs, 3) [m], where these are given. None where some row is at no place.
     """
     found, seen = np.zeros((order, 6)), np.zeros(order, dtype=bool)
     middle = np.zeros(3) if centre is None else centre
@@ -247,7 +282,7 @@ def rigid_motions(places: Places, order: int, centre: FloatArray | None = None) 
             if turn:
                 found[entries.col, 3 + axis] = 1.0
                 continue
-            arm = places.at[entries.row] - middle
+            arm = (places.at[entries.row] if at is None else at[entries.col]) - middle
             found[entries.col, axis] = 1.0
             for about in range(3):
                 found[entries.col, 3 + about] = np.cross(np.eye(3)[about], arm)[:, axis]
@@ -261,6 +296,15 @@ def places_of_rows(places: Places, order: int) -> FloatArray:
         entries = motion.tocoo()
         at[entries.col] = places.at[entries.row]
     return at
+
+
+def nodes_of_rows(places: Places, order: int) -> IntArray:
+    """Return to which of the places every row of the matrices belongs, -1 where that is not known, (n_dofs,)."""
+    node = np.full(order, -1)
+    for motion in (*places.moves, *places.turns):
+        entries = motion.tocoo()
+        node[entries.col] = entries.row
+    return node
 
 
 def _gathered(places: Places, held: IntArray) -> Iterator[IntArray]:

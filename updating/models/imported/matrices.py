@@ -145,7 +145,7 @@ class Imported:
     @cached_property
     def supports(self) -> tuple[Support, ...]:
         """The supports whose rows the matrices have lost."""
-        return supports_of(self.places, self.nodes.sets, self.stiffness)
+        return supports_of(self.places, self.nodes.sets, self.stiffness, self.mass)
 
     @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray]:

@@ -81,4 +81,4 @@ def _on_all(whole: Predictor, change: Callable[[Predictor], State]) -> State | N
     except (ReducedOnlyError, TypeError, ValueError, AttributeError):
         return None
     size = (whole.reduced.structure.n_dofs,) * 2
-    return state if all(size_of(m) == size for m in (*state.stiffness, *state.mass)) else None
+    return state if all(size_of(m) == size for m in (*state.stiffened, *state.loaded)) else None

@@ -1,0 +1,1 @@
+"""Frames: bars between joints, hit across their plane."""
