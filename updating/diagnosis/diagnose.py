@@ -158,7 +158,11 @@ def _diagnose(
         propose(problem, found, sets, verdict),
         tuple(
             dict.fromkeys(
-                (*warnings, *_notes(problem, found), *_on_fit(leader, inconsistent, significant=significant))
+                (
+                    *warnings,
+                    *_notes(problem, found, sets),
+                    *_on_fit(leader, inconsistent, significant=significant),
+                )
             )
         ),
         found.not_examined,
@@ -289,7 +293,7 @@ def _on_fit(leader: Explanation, inconsistent: Sequence[Split], *, significant: 
     return notes
 
 
-def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:
+def _notes(problem: DiagnosisProblem, found: Search, sets: tuple[tuple[str, ...], ...]) -> list[str]:
     """Return what the reader ought to know about how the answer was reached."""
     notes = []
     if found.both:
@@ -298,7 +302,7 @@ def _notes(problem: DiagnosisProblem, found: Search) -> list[str]:
             "every set of causes was weighed with and without them"
         )
     for one in problem.specimens:
-        notes += notes_on_doubtful(one)
+        notes += notes_on_doubtful(one, " or ".join(" + ".join(names) for names in sets))
         if one.theory_error is not None:
             notes += notes_on(one.theory_error, one.measured, one.predictor.spec)
         notes += on_reduction(one.predictor, len(one.measured.frequency))

@@ -9,13 +9,15 @@ from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import ANOTHER_STRUCTURE, FEWEST_FOR_A_LONE, LONE_DEVIATIONS, LONE_ERROR
 
 
-def notes_on_doubtful(problem: SpecimenProblem) -> list[str]:
+def notes_on_doubtful(problem: SpecimenProblem, explained: str = "") -> list[str]:
     """Return what ought to be checked before an answer is believed.
 
     Parameters
     ----------
     problem : Problem
         Test and model.
+    explained : str, optional
+        What the answer says causes the gap; left out, nothing that is sure.
     """
     test, model = problem.measured, problem.nominal
     error = np.log(model.frequency / test.frequency)
@@ -23,6 +25,8 @@ def notes_on_doubtful(problem: SpecimenProblem) -> list[str]:
         return []
     notes = []
     if np.sqrt(np.mean(np.expm1(error) ** 2)) > ANOTHER_STRUCTURE:
+        if explained:
+            return []
         size = 100 * np.sqrt(np.mean(np.expm1(error) ** 2))
         notes.append(
             f"frequencies are {percent(size)} off (r.m.s.): test and model are hardly the same structure, or the modes "
@@ -32,10 +36,12 @@ def notes_on_doubtful(problem: SpecimenProblem) -> list[str]:
     if len(error) >= FEWEST_FOR_A_LONE:
         away = np.abs(error - np.median(error))
         bar = max(LONE_ERROR, LONE_DEVIATIONS * float(np.median(away)))
+        settle = "a slip, or a mode mistaken for another? Nothing should be concluded before that is settled"
+        if explained:
+            settle = f"{explained} explains it, and rests on it: see that it is no slip and no other mode"
         notes += [
             f"the mode at {hertz(test.frequency[i])} stands alone: the model is {100 * np.expm1(error[i]):+.0f} % off "
-            f"there and {100 * np.expm1(np.median(error)):+.0f} % in most others; a slip, or a mode mistaken for "
-            "another? Nothing should be concluded before that is settled"
+            f"there and {100 * np.expm1(np.median(error)):+.0f} % in most others; {settle}"
             for i in np.flatnonzero(away > bar).tolist()
         ]
     return notes
