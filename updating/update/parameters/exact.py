@@ -74,11 +74,13 @@ def _coupling(predictor: Predictor, change: Callable[[Predictor], State], count:
 def _on_all(whole: Predictor, change: Callable[[Predictor], State]) -> State | None:
     """Return the state on all degrees of freedom; None if some part of it cannot be stated on them.
 
-    An effect of a user's own may be written for dense matrices alone.
+    An effect of a user's own may be written for dense matrices alone; an absorber has a degree of freedom of its own.
     """
     try:
         state = whole.base.plus(change(whole))
     except (ReducedOnlyError, TypeError, ValueError, AttributeError):
+        return None
+    if state.absorbers:
         return None
     size = (whole.reduced.structure.n_dofs,) * 2
     return state if all(size_of(m) == size for m in (*state.stiffened, *state.loaded)) else None
