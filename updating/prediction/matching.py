@@ -96,7 +96,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
         )
     lost += [
         f"mode at {hertz(f)} has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f}) "
-        "and is left out"
+        "and counts only for an effect that makes a mode of its own"
         for f, m, r in zip(measured.frequency[~keep], mac[~keep], ratio[~keep], strict=True)
     ]
     alone = bool(keep.sum() < len(keep) / 2)
