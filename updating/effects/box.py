@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from itertools import product
 
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.effects.base import Parameter, Values
+from updating.effects.base import EDGES, Parameter, Values
 from updating.models.reduced import Reduced
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
 
 Place = tuple[float, float, float]
+
+AXES = ("x", "y", "z")
+"""Names of the coordinates of a place."""
 
 CELLS = 200
 """So many cells a plate is divided into at most, by elements, where boxes are summed up from cells."""
@@ -63,6 +67,21 @@ def extents(values: Values) -> tuple[float, float]:
     """Return how far a box reaches along x and along y, as far where that is not told [m]."""
     along = float(values["extent"])
     return along, float(values.get("extent_y", along))
+
+
+def outline(predictor: Predictor) -> tuple[Parameter, ...]:
+    """Return the coordinates of a place with the structure's outline as their range."""
+    spec: Spec = predictor.spec
+    if spec.kind != "matrices":
+        sides: Sequence[tuple[float, float]] = ((0.0, spec.length), (0.0, spec.width))[: spec.dim]
+    else:
+        assert spec.imported is not None
+        low, high = spec.imported.extents
+        sides = [(a, max(b, a + 1e-9)) for a, b in zip(low.tolist(), high.tolist(), strict=True)]
+    why = ("anywhere along the structure", "anywhere across the structure", "at any height of the structure")
+    return tuple(
+        Parameter(n, "m", *side, w, natural=EDGES) for n, side, w in zip(AXES, sides, why, strict=False)
+    )
 
 
 def extent_parameters(

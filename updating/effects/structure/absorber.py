@@ -6,9 +6,8 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
-from updating.effects.box import Place, mirror_images, place, starting_places
+from updating.effects.box import AXES, Place, mirror_images, outline, place, starting_places
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.structure.mass import AXES, outline
 from updating.effects.structure.spring import SLIPS, lowest, measured_directions
 from updating.models.absorbers import Absorber as Hung
 from updating.models.state import State

@@ -8,12 +8,13 @@ from itertools import product
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import EDGES, Effect, Parameter, Values, Variant
+from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.box import (
     Place,
     extent_parameters,
     extents,
     mirror_images,
+    outline,
     place,
     shares,
     spread,
@@ -88,13 +89,8 @@ class LocalMass(Effect):
             return (Parameter("factor", "-", *FACTORS, why, log=True),)
         why += "; uniform in the logarithm of the mass on either side"
         factor = Parameter("factor", "-", *FACTORS, why, log=True)
-        middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
-        if spec.kind == "plate":
-            middle.append(
-                Parameter("y", "m", 0.0, spec.width, "anywhere across the structure", natural=EDGES)
-            )
         why = "what is longer goes to the whole structure, what is shorter moves as a body does"
-        return (*middle, *extent_parameters(spec, *EXTENTS, why, natural=("low",)), factor)
+        return (*outline(predictor), *extent_parameters(spec, *EXTENTS, why, natural=("low",)), factor)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need regions with masses of their own where there are matrices."""

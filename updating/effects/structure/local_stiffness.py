@@ -14,6 +14,7 @@ from updating.effects.box import (
     extent_parameters,
     extents,
     mirror_images,
+    outline,
     place,
     shares,
     starting_places,
@@ -78,13 +79,8 @@ class LocalStiffness(Effect):
         lost = Parameter("loss", "-", *LOSSES, why, natural=EDGES)
         if spec.kind == "matrices":
             return (lost,)
-        middle = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
-        if spec.kind == "plate":
-            middle.append(
-                Parameter("y", "m", 0.0, spec.width, "anywhere across the structure", natural=EDGES)
-            )
         why = "what is longer is a region, not a place; what is shorter makes no other change than this"
-        return (*middle, *extent_parameters(spec, *EXTENTS, why, natural=("low",)), lost)
+        return (*outline(predictor), *extent_parameters(spec, *EXTENTS, why, natural=("low",)), lost)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need regions where there are matrices."""

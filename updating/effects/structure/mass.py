@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -12,7 +11,7 @@ from scipy.special import ndtr, ndtri
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
-from updating.effects.box import LIKE, Place, mirror_images, starting_places
+from updating.effects.box import AXES, LIKE, Place, mirror_images, outline, starting_places
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import centre_of, on_basis, one_of
 from updating.effects.structure.mass_screening import frequency_gap
@@ -39,7 +38,6 @@ STEEL = 7850.0
 ROVING = 0.5
 """How far the mean over a roving sensor's places may be off: loud FRFs, and split peaks, have more weight [-]."""
 
-AXES = ("x", "y", "z")
 AXES_AWAY = ("dx", "dy", "dz")
 
 FARTHEST = 3.0
@@ -358,21 +356,6 @@ def _bulk(default: float) -> Parameter:
     """Return the rotary inertia about the body's own middle and its height above the surface."""
     why = "rotary inertia over a steel cube's of its mass: from a flat disc to a tall body of light metal"
     return Parameter("bulk", "-", 0.0, LARGEST, why, default=default, natural=EDGES)
-
-
-def outline(predictor: Predictor) -> tuple[Parameter, ...]:
-    """Return the coordinates of a place with the structure's outline as their range."""
-    spec: Spec = predictor.spec
-    if spec.kind != "matrices":
-        sides: Sequence[tuple[float, float]] = ((0.0, spec.length), (0.0, spec.width))[: spec.dim]
-    else:
-        assert spec.imported is not None
-        low, high = spec.imported.extents
-        sides = [(a, max(b, a + 1e-9)) for a, b in zip(low.tolist(), high.tolist(), strict=True)]
-    why = ("anywhere along the structure", "anywhere across the structure", "at any height of the structure")
-    return tuple(
-        Parameter(n, "m", *side, w, natural=EDGES) for n, side, w in zip(AXES, sides, why, strict=False)
-    )
 
 
 def _reduced_inertia(predictor: Predictor, points: FloatArray) -> FloatArray:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, total_mass
+from updating.effects.base import Effect, Parameter, Values, Variant, total_mass
 from updating.effects.box import (
     Place,
     covered,
     extent_parameters,
     mirror_images,
+    outline,
     place,
     shares,
     starting_places,
@@ -79,13 +80,8 @@ class DampingPatch(Effect):
         spec = predictor.spec
         if spec.kind == "matrices":
             return layer
-        place_of = [Parameter("x", "m", 0.0, spec.length, "anywhere along the structure", natural=EDGES)]
-        if spec.kind == "plate":
-            place_of.append(
-                Parameter("y", "m", 0.0, spec.width, "anywhere across the structure", natural=EDGES)
-            )
         why = "what is shorter hardly damps, what covers more is all over"
-        return (*place_of, *extent_parameters(spec, *EXTENTS, why), *layer)
+        return (*outline(predictor), *extent_parameters(spec, *EXTENTS, why), *layer)
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need an expectation of the damping, and regions where there are matrices."""

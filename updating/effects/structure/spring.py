@@ -8,10 +8,9 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness, total_mass
-from updating.effects.box import Place, mirror_images, place, spread, starting_places
+from updating.effects.box import AXES, Place, mirror_images, outline, place, spread, starting_places
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
-from updating.effects.structure.mass import AXES, outline
 from updating.effects.structure.nodes import (
     NAMED_SHARE,
     TRIED,
