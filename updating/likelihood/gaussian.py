@@ -11,15 +11,21 @@ of, and one that is not still has it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dposv
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import Comparison
-from updating.thresholds import IDEALISATION_SHARES, LARGEST_SENSITIVITY, SHAPE_NOISE_SCALES
+from updating.thresholds import (
+    IDEALISATION_SHARES,
+    LARGEST_SENSITIVITY,
+    NEGLIGIBLE_SCALE,
+    SHAPE_NOISE_SCALES,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,16 +77,29 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     shapes = comparison.scaled if keep is None else comparison.scaled & keep
     scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
     shares = (1.0,) if comparison.idealised is None else IDEALISATION_SHARES
-    prior = np.log(comparison.scale_prior if len(scales) > 1 else (1.0,)) - np.log(len(shares))
+    prior = dict(zip(scales, np.log(comparison.scale_prior if len(scales) > 1 else (1.0,)), strict=True))
     parts = [
         replace(part, share=share)
         for share in shares
-        for part in gaussian(comparison.settled(share), scales, keep)
+        for part in _worth_adding(gaussian(comparison.settled(share), scales, keep))
     ]
-    score = np.array([part.log_likelihood for part in parts]) + np.tile(prior, len(shares))
+    score = np.array([part.log_likelihood + prior[part.scale] for part in parts]) - np.log(len(shares))
     top = parts[int(np.argmax(score))]
     peak = float(score.max())
     return replace(top, log_likelihood=peak + float(np.log(np.sum(np.exp(score - peak)))))
+
+
+def _worth_adding(parts: Iterator[Marginal]) -> Iterator[Marginal]:
+    """Yield what is worth adding up of the same data with ever noisier shapes: all until it is far past the best.
+
+    What the noise adds to the determinant grows with its logarithm, what it takes from chi-squared falls.
+    """
+    best = -np.inf
+    for part in parts:
+        yield part
+        best = max(best, part.log_likelihood)
+        if part.log_likelihood < best - NEGLIGIBLE_SCALE:
+            return
 
 
 def _sound(comparison: Comparison) -> bool:
@@ -95,28 +114,26 @@ def _sound(comparison: Comparison) -> bool:
 
 def gaussian(
     comparison: Comparison, scales: Sequence[float], keep: BoolArray | None = None
-) -> list[Marginal]:
-    """Integrate the nuisances out at each of some scales of the noise of the shapes; see :func:`marginal`."""
+) -> Iterator[Marginal]:
+    """Integrate the nuisances out at one scale of the noise of the shapes after the other; see :func:`marginal`."""
     rows = slice(None) if keep is None else keep
     r, j, d = comparison.residual[rows], comparison.nuisance[rows], comparison.variance[rows]
     shapes = comparison.scaled[rows]
     data = np.column_stack([j, r])
     # every scale weighs the same two Gram matrices, those of the shapes and of the rest
     gram_matrices = [(data[part].T / d[part]) @ data[part] for part in (~shapes, shapes)]
-    share = 1.0 / np.square(np.asarray(scales))[:, None, None]
-    gram = gram_matrices[0] + share * gram_matrices[1]
-    p = j.shape[1]
-    inner = np.eye(p) + gram[:, :p, :p]
-    lower = np.linalg.cholesky(inner)
-    load = gram[:, :p, p:]
-    shift = np.linalg.solve(inner, load)[:, :, 0]
-    chi2 = gram[:, p, p] - np.einsum("sp,sp->s", load[:, :, 0], shift)
-    log_det = 2 * np.log(np.einsum("sii->si", lower)).sum(axis=1)
-    log_det += np.sum(np.log(d)) + 2 * shapes.sum() * np.log(np.asarray(scales))
-    score = -0.5 * (chi2 + log_det + len(r) * np.log(2 * np.pi))
-    return [
-        Marginal(float(score[i]), float(chi2[i]), shift[i], len(r), scale) for i, scale in enumerate(scales)
-    ]
+    p, noise = j.shape[1], float(np.sum(np.log(d))) + len(r) * np.log(2 * np.pi)
+    for scale in scales:
+        gram = gram_matrices[0] + gram_matrices[1] / scale**2
+        load = gram[:p, p]
+        lower, shift, failed = dposv(
+            np.eye(p) + gram[:p, :p], load, lower=1
+        )  # no wrapper: the matrices are small
+        if failed:
+            raise np.linalg.LinAlgError("the nuisances' precision is not positive definite")
+        chi2 = float(gram[p, p] - load @ shift)
+        log_det = 2 * float(np.log(np.diag(lower)).sum() + shapes.sum() * np.log(scale))
+        yield Marginal(-0.5 * (chi2 + log_det + noise), chi2, shift, len(r), scale)
 
 
 def normal_equations(
