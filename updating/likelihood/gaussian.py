@@ -126,14 +126,27 @@ def gaussian(
     for scale in scales:
         gram = gram_matrices[0] + gram_matrices[1] / scale**2
         load = gram[:p, p]
-        lower, shift, failed = dposv(
-            np.eye(p) + gram[:p, :p], load, lower=1
-        )  # no wrapper: the matrices are small
-        if failed:
-            raise np.linalg.LinAlgError("the nuisances' precision is not positive definite")
+        shift, pivots = _solved(np.eye(p) + gram[:p, :p], load)
         chi2 = float(gram[p, p] - load @ shift)
-        log_det = 2 * float(np.log(np.diag(lower)).sum() + shapes.sum() * np.log(scale))
+        log_det = 2 * float(np.log(pivots).sum() + shapes.sum() * np.log(scale))
         yield Marginal(-0.5 * (chi2 + log_det + noise), chi2, shift, len(r), scale)
+
+
+def _solved(matrix: FloatArray, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Solve with a positive definite matrix (p, p), by one call of LAPACK: most are small.
+
+    Returns
+    -------
+    solution : (p,) array
+    pivots : (p,) array
+        Diagonal of the Cholesky factor.
+    """
+    if not len(load):
+        return load, load
+    lower, solution, failed = dposv(matrix, load, lower=1)
+    if failed:
+        raise np.linalg.LinAlgError("the precision of the nuisances is not positive definite")
+    return solution, np.diagonal(lower)
 
 
 def normal_equations(
