@@ -401,6 +401,11 @@ STEPS_TRIED = 4
 CLIMBS = 3
 """...and how many of these climbs go on to the top. Doubled: maxima are missed less often, at twice the time."""
 
+LEAST_ON_LINE = 0.05
+"""Least share of each parameter in the direction of a line of starting places, for the search to begin at that line's
+maxima alone [-]: with less the line says nothing of the parameter. Doubled: fewer rows of starts count as a line, and
+are searched from all of them."""
+
 PRIOR_SHARE = 0.25
 """Share of the samples drawn from the prior itself [-]: no weight is more than four times the likelihood. Doubled: a
 narrow peak gets two thirds as many samples."""

@@ -16,6 +16,7 @@ NO_THRESHOLDS = {
     "MANY_ELEMENTS": "the cost of a mesh",
     "UNIFORM": "the variance of a uniform prior",
     "NOT_YET": "a number of no node",
+    "NO_MODE": "a number of no mode",
     "PER_LENGTH": "powers of a mass",
     "SETS": "rows of a printed table",
 }

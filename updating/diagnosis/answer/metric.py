@@ -1,4 +1,4 @@
-"""In which terms a gap is told: the error of frequencies, of damping, of the FRFs, or of all data together."""
+"""In which terms a gap is stated: the error of frequencies, of damping, of the FRFs, or of all data together."""
 
 from __future__ import annotations
 
@@ -102,10 +102,10 @@ def squares(
         counted = nominal.of(metric)
         error = np.where(counted, np.expm1(-np.where(counted, residual, 0.0)), 0.0)
     paired = nominal.of_pairs
-    mode, square, told = (part[paired] for part in (nominal.mode, kept * error**2, kept & counted))
+    mode, square, present = (part[paired] for part in (nominal.mode, kept * error**2, kept & counted))
     return Squares(
         np.asarray(np.bincount(mode, square, minlength=count), dtype=float),
-        np.asarray(np.bincount(mode, told.astype(float), minlength=count), dtype=float),
+        np.asarray(np.bincount(mode, present.astype(float), minlength=count), dtype=float),
     )
 
 

@@ -26,6 +26,7 @@ from updating.thresholds import (
     CLIMBS,
     DRAFT_SAMPLES,
     ENOUGH_SAMPLES,
+    LEAST_ON_LINE,
     MOST_SAMPLES,
     PEAK_BEHIND,
     PRIOR_SHARE,
@@ -35,9 +36,6 @@ from updating.thresholds import (
     STARTS_TRIED,
     STEPS_TRIED,
 )
-
-ON_LINE = 0.05
-"""Least share of each parameter in the direction of a line of starts [-]: less, and the line says nothing of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +213,7 @@ def _peaks(
         heights = np.array([evaluation.marginal.log_likelihood for evaluation in evaluations])
         nearest = np.argsort(heights)[::-1][:STARTS_TRIED]
         if _on_a_line(places):
-            nearest = nearest[_summits(heights)[nearest]]
+            nearest = nearest[_maxima(heights)[nearest]]
         tried = [highest(problem, candidate, evaluations[i], rounds=STEPS_TRIED, bar=bar) for i in nearest]
         tried.sort(key=lambda p: -p.marginal.log_likelihood)
         peaks = [maximise(problem, candidate, tried[i], bar=bar) for i in _distinct(tried)[:maximisations]]
@@ -233,11 +231,11 @@ def _on_a_line(places: list[FloatArray]) -> bool:
     steps = np.diff(np.stack(places), axis=0)
     first = steps[0] / max(float(np.linalg.norm(steps[0])), 1e-300)
     straight = np.allclose(steps, np.outer(steps @ first, first), atol=1e-9)
-    return bool(straight and (steps @ first > 0).all() and (np.abs(first) > ON_LINE).all())
+    return bool(straight and (steps @ first > 0).all() and (np.abs(first) > LEAST_ON_LINE).all())
 
 
-def _summits(heights: FloatArray) -> BoolArray:
-    """Tell which of some heights along a line are no lower than their neighbours: climbs from others end there, too."""
+def _maxima(heights: FloatArray) -> BoolArray:
+    """Tell which of some heights along a line are no lower than their neighbours: searches from others end there, too."""
     around = np.concatenate([[-np.inf], np.nan_to_num(heights, nan=-np.inf), [-np.inf]])
     return np.asarray((around[1:-1] >= around[:-2]) & (around[1:-1] >= around[2:]))
 

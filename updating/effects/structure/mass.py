@@ -18,7 +18,7 @@ from updating.effects.structure.mass_screening import frequency_gap
 from updating.effects.structure.nodes import (
     NAMED_SHARE,
     TRIED,
-    apart,
+    distinct,
     distinct_groups,
     free_nodes,
     group_centres,
@@ -246,7 +246,7 @@ class LumpedMass(Effect):
         groups = distinct_groups(imported)
         points = np.unique(predictor.measured.points, axis=0)
         centres = group_centres(imported)
-        known: list[dict[str, Any]] = [_named(points[i]) for i in apart(imported, points, centres)]
+        known: list[dict[str, Any]] = [_named(points[i]) for i in distinct(imported, points, centres)]
         known += [_named(group.centre) | {"at": group.name} for group in groups]
         sizes = [self.parameters(predictor)[0].value(u) for u in TRIED]
         others = free_nodes(imported, np.vstack([points.reshape(-1, 3), centres]))

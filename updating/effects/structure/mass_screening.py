@@ -1,4 +1,4 @@
-"""Where more or less mass may sit, to first order: a cheap look at many places before any of them is searched.
+"""Where more or less mass may sit, to first order: a screening of many places before any of them is searched.
 
 A mass m spread over a place lowers ln f of a mode by half of m times the mean of phi^2 there, phi mass-normalised. What
 all modes have in common beyond that is taken for tolerances, more readily than what each has of its own.

@@ -38,7 +38,7 @@ SAME = 1e-6
 """So near to each other, of the structure's size, two places are one [-]."""
 
 
-def apart(imported: Imported, places: FloatArray, others: FloatArray) -> IntArray:
+def distinct(imported: Imported, places: FloatArray, others: FloatArray) -> IntArray:
     """Return the indices of places (n, 3) that are none of the others (m, 3) [m]."""
     if not len(others):
         return np.arange(len(places))
@@ -63,7 +63,7 @@ def free_nodes(imported: Imported, known: FloatArray) -> IntArray:
     moving = np.flatnonzero(sum(np.asarray(m.sum(axis=1)).ravel() for m in places.moves) > 0)
     _, first = np.unique(np.round(places.at[moving] / (SAME * imported.reach)), axis=0, return_index=True)
     unlike = moving[np.sort(first)]
-    found: IntArray = unlike[apart(imported, places.at[unlike], known)]
+    found: IntArray = unlike[distinct(imported, places.at[unlike], known)]
     return found
 
 

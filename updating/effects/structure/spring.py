@@ -14,7 +14,7 @@ from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
 from updating.effects.structure.nodes import (
     NAMED_SHARE,
     TRIED,
-    apart,
+    distinct,
     distinct_groups,
     free_nodes,
     group_centres,
@@ -177,7 +177,7 @@ def _at_points(predictor: Predictor) -> list[dict[str, Any]]:
     imported = predictor.spec.imported
     assert imported is not None
     points = np.unique(predictor.measured.points, axis=0)
-    unlike = points[apart(imported, points, group_centres(imported))]
+    unlike = points[distinct(imported, points, group_centres(imported))]
     return [dict(zip(AXES, map(float, at), strict=True)) for at in unlike]
 
 
