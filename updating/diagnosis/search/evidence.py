@@ -235,7 +235,7 @@ def _on_a_line(places: list[FloatArray]) -> bool:
 
 
 def _maxima(heights: FloatArray) -> BoolArray:
-    """Tell which of some heights along a line are no lower than their neighbours: searches from others end there, too."""
+    """Tell which heights along a line are no lower than their neighbours: searches from the others end there, too."""
     around = np.concatenate([[-np.inf], np.nan_to_num(heights, nan=-np.inf), [-np.inf]])
     return np.asarray((around[1:-1] >= around[:-2]) & (around[1:-1] >= around[2:]))
 
