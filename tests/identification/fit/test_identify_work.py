@@ -83,4 +83,4 @@ def test_a_fit_is_made_once_more_only_if_the_noise_turns_out_another(bases):
     frfs = truth.frfs(lines(), column(), noise=0.01, rng=np.random.default_rng(2))
     model = identify(frfs, band=(0.0, 1000.0))
     assert len(model) == 12
-    assert len(bases) < 50
+    assert len(bases) < 60  # some 50 as rounding goes; from scratch again would be twice as many
