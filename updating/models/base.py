@@ -15,6 +15,7 @@ from updating.models.fields import Sparse
 from updating.models.solve import lowest
 from updating.models.spec import Spec
 from updating.models.state import State
+from updating.models.yielding import Yielding
 
 FACTORS = ("E", "density", "thickness", "width", "length", "section", "area", "inertia")
 """What a model can be scaled by; ``section`` scales stiffness and mass alike, ``area`` and ``inertia`` are a beam's."""
@@ -43,6 +44,32 @@ def scale_of(powers: Powers, factors: Mapping[str, float]) -> float:
     for name, value in factors.items():
         scale *= value ** powers.get(name, 0.0)
     return scale
+
+
+def region_scales(term: Term, state: State, regions: int) -> FloatArray:
+    """Return the factors of a state on a term in every region, and outside all of them, (regions + 1,) [-]."""
+    scale = np.full(regions + 1, term.scale(state.factors))
+    for (region, factor), value in state.regional.items():
+        scale[region] *= value ** term.powers.get(factor, 0.0)
+    return scale
+
+
+def supports_at(structure: Structure, state: State) -> tuple[Yielding, ...]:
+    """Return the supports of a state that give way, as stiff and heavy as its factors make what pulls at them."""
+    if not state.yielding:
+        return ()
+    regions = len(structure.spec.regions)
+    by = {term.kind: region_scales(term, state, regions) for term in structure.terms}  # one term of each kind
+    return tuple(one.at(by["stiffness"], by["mass"]) for one in state.yielding.values())
+
+
+def added(structure: Structure, state: State) -> dict[str, tuple[FloatArray, ...]]:
+    """Return what a state adds to the ``stiffness`` and to the ``mass``, its supports that give way included [SI]."""
+    supports = supports_at(structure, state)
+    return {
+        "stiffness": (*state.stiffness, *(one.stiffness for one in supports)),
+        "mass": (*state.mass, *(one.carried for one in supports)),
+    }
 
 
 class Structure(ABC):

@@ -15,6 +15,7 @@ from scipy import linalg
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.models.absorbers import bordered, energies, padded, structural
+from updating.models.base import region_scales, supports_at
 from updating.models.reduced import Reduced
 from updating.models.spec import Damping
 from updating.models.state import State
@@ -125,6 +126,8 @@ def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[
     if _known(own):
         if _uniform(own):
             stiffness, mass = reduced.matrices(replace(state, stiffness=(), mass=(), absorbers=()))
+            for support in supports_at(reduced.structure, state):
+                stiffness -= support.springs[:n, :n]
             viscous += own["alpha"][0] * mass + own["beta"][0] * stiffness
             hysteretic += own["loss_factor"][0] * stiffness
         else:
@@ -173,7 +176,7 @@ def modal_damping(
     viscous = own["alpha"][0] * heavy + _share(_viscous(state), moving) + hung["damping"]
     hysteretic = _share(_structural(state), moving)
     if own["beta"][0] or own["loss_factor"][0]:
-        springs = [one.springs for one in state.yielding.values()]
+        springs = [one.springs for one in supports_at(reduced.structure, state)]
         elastic = values - _share([*state.stiffness, *springs], moving) - hung["stiffness"]
         viscous, hysteretic = viscous + own["beta"][0] * elastic, hysteretic + own["loss_factor"][0] * elastic
     return viscous, hysteretic
@@ -287,14 +290,15 @@ def coupled(state: State, values: FloatArray, vectors: FloatArray, chosen: IntAr
 def region_matrices(reduced: Reduced, state: State) -> tuple[FloatArray, FloatArray]:
     """Return stiffness and mass of every region under a state's factors, each (n_regions + 1, r, r) [SI].
 
-    The K_i and M_i of paper A, Eqs. 11-14; the last is what lies in no region, and no point mass is in them.
+    The K_i and M_i of paper A, Eqs. 11-14; the last is what lies in no region, and no point mass is in them. Where a
+    support gives way, each region has its share of what that takes off, without the springs.
     """
     n = reduced.ranks[state.released]
     count = len(reduced.parts[0])
     total = {"stiffness": np.zeros((count, n, n)), "mass": np.zeros((count, n, n))}
     for term, parts in zip(reduced.structure.terms, reduced.parts, strict=True):
-        scale = np.full(count, term.scale(state.factors))
-        for (region, factor), value in state.regional.items():
-            scale[region] *= value ** term.powers.get(factor, 0.0)
-        total[term.kind] += scale[:, None, None] * parts[:, :n, :n]
+        total[term.kind] += region_scales(term, state, count - 1)[:, None, None] * parts[:, :n, :n]
+    for one in supports_at(reduced.structure, state):
+        total["stiffness"] += one.held_by[:, None, None] * one.strained
+        total["mass"] += one.carried_by[:, None, None] * one.carried
     return total["stiffness"], total["mass"]

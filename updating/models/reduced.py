@@ -7,7 +7,7 @@ are sums of small precomputed ones, so a prediction costs one dense eigenproblem
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -19,7 +19,7 @@ from scipy import sparse
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.absorbers import bordered
-from updating.models.base import FACTORS, Structure, Term, scale_of
+from updating.models.base import FACTORS, Structure, Term, added, region_scales, scale_of, supports_at
 from updating.models.fields import Fields, Sparse
 from updating.models.state import State
 from updating.models.structure import FieldStructure
@@ -184,8 +184,8 @@ class Reduced:
         for term, parts in self.terms(state):
             scale = term.scale(state.factors)
             total[term.kind] += parts[:n, :n] if scale == 1.0 else parts[:n, :n] * scale
-        for kind, added in (("stiffness", state.stiffened), ("mass", state.loaded)):
-            for matrix in added:
+        for kind, matrices in added(self.structure, state).items():
+            for matrix in matrices:
                 total[kind] += matrix[:n, :n]
         stiffness, mass = total["stiffness"], total["mass"]
         if state.released == TRANSLATION:
@@ -236,29 +236,44 @@ class Reduced:
             totals.append(whole if np.all(scale == 1.0) else np.tensordot(scale, parts, axes=1))
         return totals
 
-    def log_sensitivity(self, state: State, factor: str) -> tuple[FloatArray, FloatArray]:
-        """Return dK and dM per unit of the logarithm of a factor, at a state [SI]."""
+    def sensitivity(
+        self, state: State, factor: str, regions: Sequence[int] = ()
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return dK and dM per unit of the logarithm of a factor, at a state [SI].
+
+        Of some regions; where none is named, of the whole.
+        """
+        if not regions:
+            return self._of_the_whole(state, factor)
         n = self.ranks[state.released]
-        change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
+        change = self._of_supports(state, factor, regions)
+        for term, parts in zip(self.structure.terms, self.parts, strict=True):
+            power = term.powers.get(factor, 0.0)
+            scale = power * region_scales(term, state, len(parts) - 1)
+            for region in regions if power else ():
+                change[term.kind] += scale[region] * parts[region][:n, :n]
+        return change["stiffness"], change["mass"]
+
+    def _of_the_whole(self, state: State, factor: str) -> tuple[FloatArray, FloatArray]:
+        """Return dK and dM per unit of the logarithm of a factor of the whole, at a state [SI]."""
+        n = self.ranks[state.released]
+        change = self._of_supports(state, factor, range(len(self.structure.spec.regions) + 1))
         for term, parts in self.terms(state):
             power = term.powers.get(factor, 0.0)
             if power:
                 change[term.kind] += power * term.scale(state.factors) * parts[:n, :n]
         return change["stiffness"], change["mass"]
 
-    def regional_sensitivity(
-        self, state: State, factor: str, regions: tuple[int, ...]
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return dK and dM per unit of the logarithm of a factor of some regions, at a state [SI]."""
-        n = self.ranks[state.released]
+    def _of_supports(self, state: State, factor: str, regions: Sequence[int]) -> dict[str, FloatArray]:
+        """Return what the supports that give way add to dK and dM where some regions scale [SI]."""
+        n, chosen = self.ranks[state.released], list(regions)
+        power = {term.kind: term.powers.get(factor, 0.0) for term in self.structure.terms}
         change = {"stiffness": np.zeros((n, n)), "mass": np.zeros((n, n))}
-        for term, parts in zip(self.structure.terms, self.parts, strict=True):
-            power = term.powers.get(factor, 0.0)
-            for region in regions if power else ():
-                own = {name: value for (index, name), value in state.regional.items() if index == region}
-                scale = term.scale(state.factors) * term.scale(own)
-                change[term.kind] += power * scale * parts[region][:n, :n]
-        return change["stiffness"], change["mass"]
+        for one in supports_at(self.structure, state):
+            held = power["stiffness"] * one.held_by[chosen].sum()
+            change["stiffness"] += held * one.strained
+            change["mass"] += held * one.drawn + power["mass"] * one.carried_by[chosen].sum() * one.carried
+        return change
 
     def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return displacement and slopes of the basis at points (n_points, dim) [m], each (n_points, r).

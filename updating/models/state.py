@@ -89,7 +89,7 @@ class State(Displayed):
     absorbers : tuple of Absorber
         Masses on springs that hang on the structure: each adds a degree of freedom behind those of the basis.
     yielding : mapping of str to Yielding
-        Supports of imported matrices that give way, by name.
+        Supports of imported matrices that give way, by name, as the nominal model pulls at them.
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -113,16 +113,6 @@ class State(Displayed):
     fluid: Mapping[str, float] = field(default_factory=_nothing)
     absorbers: tuple[Absorber, ...] = ()
     yielding: Mapping[str, Yielding] = field(default_factory=lambda: MappingProxyType({}))
-
-    @property
-    def stiffened(self) -> tuple[FloatArray, ...]:
-        """All matrices that are added to the stiffness: ``stiffness``, and what supports take off that give way."""
-        return (*self.stiffness, *(one.stiffness for one in self.yielding.values()))
-
-    @property
-    def loaded(self) -> tuple[FloatArray, ...]:
-        """All matrices that are added to the mass: ``mass``, and what moves with supports that give way."""
-        return (*self.mass, *(one.carried for one in self.yielding.values()))
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""

@@ -16,7 +16,7 @@ from scipy import sparse
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import ModalkitError
-from updating.models.base import Structure, Term
+from updating.models.base import Structure, Term, added
 from updating.models.fields import Fields, Sparse
 from updating.models.imported.structure import ImportedStructure
 from updating.models.reduced import Reduced
@@ -126,10 +126,11 @@ class Whole(Reduced):
     def matrices(self, state: State) -> tuple[FloatArray, FloatArray]:
         """Return stiffness and mass of a state, what its releases hold included [SI]."""
         stiffness, mass = self.structure.matrices(state)
-        for added in state.stiffened:
-            stiffness = Sparse(stiffness + added)
-        for added in state.loaded:
-            mass = Sparse(mass + added)
+        more = added(self.structure, state)
+        for matrix in more["stiffness"]:
+            stiffness = Sparse(stiffness + matrix)
+        for matrix in more["mass"]:
+            mass = Sparse(mass + matrix)
         return cast(FloatArray, stiffness), cast(FloatArray, mass)
 
     def rows(self, points: FloatArray, directions: FloatArray | None = None) -> dict[str, FloatArray]:

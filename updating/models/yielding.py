@@ -35,6 +35,10 @@ class Yielding:
         G, their mass in common with the rows of the structure [SI].
     compliance : (6,) array
         C = S^-1: of the springs, zero where the support holds [m/N, rad/(N m)].
+    held_by : (n_regions + 1,) array
+        Each region's share in L and K_qq, the last that of none [-].
+    carried_by : (n_regions + 1,) array
+        Each region's share in M_qq and G, likewise [-].
     """
 
     loads: FloatArray
@@ -42,10 +46,28 @@ class Yielding:
     mass: FloatArray
     inertia: FloatArray
     compliance: FloatArray
+    held_by: FloatArray
+    carried_by: FloatArray
 
     def beside(self, other: Yielding) -> Yielding:
         """Return the same support on the springs of both, one behind the other: compliances add."""
         return replace(self, compliance=self.compliance + other.compliance)
+
+    def at(self, stiffness: FloatArray, mass: FloatArray) -> Yielding:
+        """Return the same support where each region is some times as stiff and heavy, each (n_regions + 1,) [-]."""
+        if np.all(stiffness == 1.0) and np.all(mass == 1.0):
+            return self
+        held, carried = self.held_by * stiffness, self.carried_by * mass
+        stiffer, heavier = held.sum(), carried.sum()
+        return replace(
+            self,
+            loads=self.loads * stiffer,
+            own=self.own * stiffer,
+            mass=self.mass * heavier,
+            inertia=self.inertia * heavier,
+            held_by=held / stiffer,
+            carried_by=carried / heavier,
+        )
 
     @cached_property
     def _condensed(self) -> tuple[FloatArray, FloatArray]:
@@ -63,6 +85,14 @@ class Yielding:
         return self._across(-self._condensed[1])
 
     @property
+    def strained(self) -> FloatArray:
+        """What is added to twice the energy in the structure, without the springs, (r, r) [SI].
+
+        It is the derivative of ``stiffness`` by the logarithm of L and K_qq, too: the springs do not scale.
+        """
+        return self.stiffness - self.springs
+
+    @property
     def springs(self) -> FloatArray:
         """Twice the energy in the springs, q^T S q, as a form of the structure's motion, (r, r) [SI]."""
         springs, inverse = self._condensed
@@ -74,6 +104,14 @@ class Yielding:
         inverse = self._condensed[1]
         own, common = self._across(inverse @ self.mass @ inverse), self._times(self.inertia, inverse)
         return own + common + common.T
+
+    @property
+    def drawn(self) -> FloatArray:
+        """The derivative of ``carried`` by the logarithm of L and K_qq, (r, r) [SI]: a stiffer structure draws it."""
+        springs, inverse = self._condensed
+        more = inverse @ springs @ inverse
+        half = self._across(more @ self.mass @ inverse) + self._times(self.inertia, more)
+        return half + half.T
 
     def _times(self, left: FloatArray, middle: FloatArray) -> FloatArray:
         """Return left times middle times L^T, sparse where L is."""

@@ -74,8 +74,8 @@ def sensitivities(
             mass = bodies[names[k]].mass[:n, :n]
             whole[k] = -vectors.T @ (mass @ modes * lam)
             heavier[k] = np.sum(modes * (mass @ modes), axis=0)
-        elif regions:
-            stiffness, mass = reduced.regional_sensitivity(state, factor, regions)
+        elif regions or state.yielding:
+            stiffness, mass = reduced.sensitivity(state, factor, regions)
             whole[k] = vectors.T @ (stiffness @ modes - mass @ modes * lam)
             heavier[k] = np.sum(modes * (mass @ modes), axis=0)
     gap = lam - values[:, None]

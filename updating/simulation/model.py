@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray
 from acquisition.display import Displayed
 from acquisition.errors import StudyError
 from updating.case import Case
+from updating.models.base import added
 from updating.models.damping import Matrices
 from updating.models.state import State
 from updating.nominal import predictor_of
@@ -160,7 +161,9 @@ def _ways(directions: FloatArray | None, count: int) -> FloatArray:
 def _check(predictor: Predictor) -> None:
     size = predictor.reduced.basis.shape[1]
     state = predictor.base
-    wrong = [m.shape for m in (*state.stiffened, *state.loaded, *state.damping) if m.shape != (size, size)]
+    more = added(predictor.reduced.structure, state)
+    matrices = (*more["stiffness"], *more["mass"], *state.damping)
+    wrong = [matrix.shape for matrix in matrices if matrix.shape != (size, size)]
     if wrong:
         raise StudyError(
             f"a state adds a matrix of shape {wrong[0]} to a model whose basis has {size} columns: it was made for "

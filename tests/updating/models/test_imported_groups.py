@@ -100,7 +100,8 @@ def test_a_support_that_gives_way_is_the_structure_on_springs(
     support = next(s for s in imported.supports if s.name == "foot_left")
     compliance = np.zeros(6)
     compliance[list(springs)] = 1 / np.array(list(springs.values()))
-    given = Yielding(support.loads, support.own, support.mass, support.inertia, compliance)
+    known = support.loads, support.own, support.mass, support.inertia, compliance
+    given = Yielding(*known, support.held_by, support.carried_by)
     soft, heavy = imported.stiffness.toarray() + given.stiffness, imported.mass.toarray() + given.carried
     built, sets = frame.frame()
     (foot,) = sets["foot_left"]

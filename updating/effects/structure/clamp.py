@@ -142,7 +142,12 @@ class Clamp(Effect):
             known = support.loads, support.inertia
             kept[key] = [predictor.reduced.generalised(Sparse(each)) for each in known]
         loads, inertia = kept[key]
-        return Yielding(loads, support.own, support.mass, inertia, compliance)
+        regions = 1 + len(predictor.spec.regions)  # matrices without parts are in none of them
+        shares = [
+            np.insert(each, 0, np.zeros(regions - len(each)))
+            for each in (support.held_by, support.carried_by)
+        ]
+        return Yielding(loads, support.own, support.mass, inertia, compliance, *shares)
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[tuple[float, float, float], ...]:
         """Return the clamped edges that give way, or the support."""

@@ -200,6 +200,8 @@ class Support:
         Mass of the rows that are held, when they move so [kg, kg m, kg m^2].
     inertia : (n_dofs, 6) array
         Their mass in common with the rows beside them.
+    held_by, carried_by : (n_parts + 1,) arrays
+        Share of each part in ``own`` and in ``mass``, the last that of none; the mean over the directions [-].
     """
 
     name: str
@@ -208,6 +210,8 @@ class Support:
     own: FloatArray
     mass: FloatArray
     inertia: FloatArray
+    held_by: FloatArray
+    carried_by: FloatArray
 
     def holds(self, axis: int) -> bool:
         """Tell whether the structure resists its shift along an axis 0, 1, 2, or its turn about it, 3, 4, 5."""
@@ -215,7 +219,13 @@ class Support:
         return bool(self.own[axis, axis] > FELT * alike.max())
 
 
-def supports_of(places: Places, sets: NodeSets, stiffness: Sparse, mass: Sparse) -> tuple[Support, ...]:
+def supports_of(
+    places: Places,
+    sets: NodeSets,
+    stiffness: Sparse,
+    mass: Sparse,
+    parts: tuple[Sequence[Sparse], Sequence[Sparse]],
+) -> tuple[Support, ...]:
     """Return the supports whose rows the matrices have lost, each as it would move if it were one body.
 
     A structure that moves as a rigid body together with its supports feels no force: with the rows f that are left and
@@ -239,18 +249,28 @@ def supports_of(places: Places, sets: NodeSets, stiffness: Sparse, mass: Sparse)
         loads = np.where((owner == number)[:, None], stiffness @ about, 0.0)
         if np.abs(loads).max() > 0:
             own = loads.T @ about
+            near = np.where((owner == number)[:, None], about, 0.0)
             pulled = (np.abs(loads[:, :3]) > FELT * np.abs(loads[:, :3]).max()).any(axis=1)
             beside = np.isin(nodes, nodes[pulled])
-            heavy, inertia = _mirrored(places, mass, at, (group, centre), beside)
+            moved, heavy, inertia = _mirrored(places, mass, at, (group, centre), beside)
             name = _named(places, sets, group, number)
-            found.append(Support(name, centre, loads, (own + own.T) / 2, heavy, inertia))
+            shares = _shares(near, parts[0], about), _shares(moved, parts[1], moved)
+            found.append(Support(name, centre, loads, (own + own.T) / 2, heavy, inertia, *shares))
     return tuple(found)
+
+
+def _shares(left: FloatArray, parts: Sequence[Sparse], right: FloatArray) -> FloatArray:
+    """Return each part's share in the diagonal of left^T A right, the mean over its directions, (n_parts,) [-]."""
+    each = np.array([np.sum(left * (part @ right), axis=0) for part in parts])
+    whole = each.sum(axis=0)
+    there = whole > FELT**2 * whole.max()
+    return np.asarray((each[:, there] / whole[there]).mean(axis=1))
 
 
 def _mirrored(
     places: Places, mass: Sparse, at: FloatArray, support: tuple[IntArray, FloatArray], beside: BoolArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return what the held rows of a support weigh, and what they weigh together with the rows beside them.
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return how the rows beside a support move with it, what its held rows weigh, and what they do with those beside.
 
     A rigid body has no more force in its mass than it has mass, so that, unlike their stiffness, the mass of the rows
     that are lost is not known. It is taken from the rows ``beside`` them as if the mesh went on evenly: they carry
@@ -263,7 +283,7 @@ def _mirrored(
     mirror = np.where(held[:, :3].any(axis=1), 1.0, -1.0)[:, None]  # a rotation is the other way round in it
     own, inside = np.where(beside[:, None], held, 0.0), np.where(beside[:, None], 0.0, held)
     inertia = np.where(beside[:, None], mirror * (mass @ (mirror * inside)), 0.0)
-    return own.T @ (mass @ own) / 2, inertia
+    return own, own.T @ (mass @ own) / 2, inertia
 
 
 def rigid_motions(

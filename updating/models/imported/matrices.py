@@ -117,6 +117,15 @@ class Imported:
         bare = self.rest["given mass"]
         return self.mass if bare is None else bare
 
+    def divided(self, kind: str) -> tuple[Sparse, ...]:
+        """Return the parts of the stiffness or the mass, and what lies in none of them [SI]."""
+        whole = self.stiffness if kind == "stiffness" else self.mass
+        parts = self.stiffness_parts if kind == "stiffness" else self.mass_parts
+        if not parts:
+            return (whole,)
+        rest = self.rest[kind]
+        return (*parts, Sparse(whole.shape) if rest is None else rest)
+
     @cached_property
     def row_places(self) -> FloatArray:
         """Where the rows are, (n, 3), not a number where that is not known [m]."""
@@ -145,7 +154,8 @@ class Imported:
     @cached_property
     def supports(self) -> tuple[Support, ...]:
         """The supports whose rows the matrices have lost."""
-        return supports_of(self.places, self.nodes.sets, self.stiffness, self.mass)
+        parts = self.divided("stiffness"), self.divided("mass")
+        return supports_of(self.places, self.nodes.sets, self.stiffness, self.mass, parts)
 
     @cached_property
     def extents(self) -> tuple[FloatArray, FloatArray]:

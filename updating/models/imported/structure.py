@@ -116,14 +116,8 @@ class ImportedStructure(Structure):
 
     def parts(self, kind: str) -> tuple[Sparse, ...]:
         """Return the matrices of the regions, and of what lies in none [SI]."""
-        source = self.imported
-        parts = source.stiffness_parts if kind == "stiffness" else source.mass_parts
-        whole = source.stiffness if kind == "stiffness" else source.mass
-        empty = Sparse(whole.shape)
-        if not parts:
-            return (*[empty] * len(self.spec.regions), whole)
-        rest = source.rest[kind]
-        return (*parts, empty if rest is None else rest)
+        *parts, rest = self.imported.divided(kind)
+        return (*(parts or [Sparse(rest.shape)] * len(self.spec.regions)), rest)
 
     def matrix(self, kind: str) -> Sparse:
         """Return the stiffness or mass matrix [SI]."""

@@ -62,7 +62,8 @@ class UpdatedModel:
     def affine(self) -> Affine | None:
         """The model as a function of its factors, where all parameters are factors."""
         base = self.predictor.base
-        if not eligible(self.parameter_set.model_parameters) or base.released or base.theory is not None:
+        beyond = base.released or base.yielding or base.absorbers or base.theory is not None
+        if beyond or not eligible(self.parameter_set.model_parameters):
             return None
         return affine(self.predictor.reduced, self.parameter_set.model_parameters, base)
 

@@ -180,7 +180,7 @@ def affine(reduced: Reduced, model_parameters: Sequence[ModelParameter], base: S
     model_parameters : sequence of ModelParameter
         Parameters; see :func:`eligible`.
     base : State
-        What is in the model beforehand; must release no clamp.
+        What is in the model beforehand; must release no clamp, let no support give way and hang no absorber on it.
     """
     n = reduced.ranks[NONE]
     shape = (n, n)

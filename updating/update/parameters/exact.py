@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from acquisition.arrays import FloatArray
+from updating.models.base import added
 from updating.models.damping import coupled
 from updating.models.fields import Sparse
 from updating.models.solve import DENSE
@@ -83,4 +84,5 @@ def _on_all(whole: Predictor, change: Callable[[Predictor], State]) -> State | N
     if state.absorbers:
         return None
     size = (whole.reduced.structure.n_dofs,) * 2
-    return state if all(size_of(m) == size for m in (*state.stiffened, *state.loaded)) else None
+    more = added(whole.reduced.structure, state)
+    return state if all(size_of(m) == size for m in (*more["stiffness"], *more["mass"])) else None

@@ -31,19 +31,10 @@ def log_frequency_by(
     regions : tuple of int
         Regions on which the factor acts; empty is the whole structure.
     """
-    stiffness, mass = change_by(reduced, state, factor, regions)
+    stiffness, mass = reduced.sensitivity(state, factor, regions)
     n = len(stiffness)
     vectors = prediction.vectors[:n]
     k = np.einsum("ir,ij,jr->r", vectors, stiffness, vectors)
     m = np.einsum("ir,ij,jr->r", vectors, mass, vectors)
     eigenvalue = (2 * np.pi * prediction.frequency) ** 2
     return np.asarray((k / eigenvalue - m) / 2)
-
-
-def change_by(
-    reduced: Reduced, state: State, factor: str, regions: tuple[int, ...]
-) -> tuple[FloatArray, FloatArray]:
-    """Return dK and dM per unit of the logarithm of a factor of some regions, of all where none is named [SI]."""
-    if not regions:
-        return reduced.log_sensitivity(state, factor)
-    return reduced.regional_sensitivity(state, factor, regions)
