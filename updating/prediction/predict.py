@@ -195,9 +195,9 @@ class Predictor(Displayed):
             by, changes = self._by_factors(total, (values, moving), chosen, factors, rows, read.points)
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
-        moved = shift * slowing * coupled(total, values, vectors, chosen)
-        if dashed is not None:
-            moved = moved * dashed.slowing
+        moved = shift * slowing
+        # what dashpots of absorbers couple holds every other damper as well
+        moved = moved * (coupled(total, values, vectors, chosen) if dashed is None else dashed.slowing)
         frequency = moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         # what a layer carries along is modal mass
         level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)

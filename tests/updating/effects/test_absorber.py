@@ -117,6 +117,23 @@ def test_poles_and_constants_are_those_of_the_damped_structure(k: int, ratio: fl
     )  # turned by the shape's own phase, not that of the constants
 
 
+@pytest.mark.parametrize("ratio", [0.0, 0.01])
+def test_beside_a_dashpot_to_the_ground_frequencies_are_those_of_its_poles(ratio: float) -> None:
+    """However the absorber is damped: the dashpot counts once."""
+    beam = LOOK["beam"]
+    ground = {"x": 0.2, "extent": 0.0, "stiffness": 0.0, "damping": 60.0}
+    tiny = {"x": 0.3, "mass": 1e-6 * total_mass(beam.spec), "frequency": 5000.0, "damping": ratio}
+    state = LIBRARY["ground_spring"].state(beam, ground).plus(EFFECT.state(beam, tiny))
+    whole = beam.matrices(state)
+    none, unit = np.zeros_like(whole.mass), np.eye(len(whole.mass))
+    rates = np.block([[none, unit], [-whole.stiffness, -whole.viscous]])
+    poles = linalg.eigvals(rates, linalg.block_diag(unit, whole.mass))
+    exact = np.sort(np.abs(poles[poles.imag > 0]))[:4] / (2 * np.pi)
+    plain = beam.predict(count=4).frequency
+    assert np.abs(np.log(exact / plain)).max() > 5e-3
+    assert beam.predict(state, count=4).frequency / plain == pytest.approx(exact / plain, abs=1e-3)
+
+
 @pytest.mark.parametrize("place", ["beam", "plate"])
 def test_far_above_the_band_it_is_a_mass_and_far_below_it_is_nothing(place: str) -> None:
     predictor = LOOK[place]
