@@ -122,7 +122,7 @@ class UnpairedModes(Quantity):
         test, paired, nominal = self._test, self.setting.measured, self.setting.nominal
         first = [np.log(test.frequency[i]) - np.mean(np.log(paired.frequency))]
         if self._damped[i]:
-            first.append(np.log(test.damping[i]) - np.nanmean(np.log(paired.damping)))
+            first.append(np.log(test.damping[i]) - np.mean(np.log(self._known_dampings)))
         near = np.argsort(np.abs(np.log(nominal.frequency / test.frequency[i])))[:UNPAIRED_NEIGHBOURS]
         shapes = nominal.constants[:, near]
         own = np.zeros((len(first) + len(shapes), UNPAIRED_NEIGHBOURS))
@@ -151,10 +151,16 @@ class UnpairedModes(Quantity):
         return np.asarray(np.sqrt(np.mean(self._test.constants**2, axis=0)))
 
     @cached_property
+    def _known_dampings(self) -> FloatArray:
+        """Damping ratios of the paired modes whose damping is measured [-]; one of 0 is none."""
+        measured = self.setting.measured.damping
+        return measured[np.isfinite(measured) & (measured > 0)]
+
+    @cached_property
     def _damped(self) -> BoolArray:
         """Whether the damping of each mode is measured, and some damping expected of the model."""
-        known = self.setting.predictor.expects_damping and np.isfinite(self.setting.measured.damping).any()
-        return np.asarray((np.nan_to_num(self._test.damping) > 0) & bool(known))
+        known = self.setting.predictor.expects_damping and len(self._known_dampings) > 0
+        return np.asarray((np.nan_to_num(self._test.damping) > 0) & known)
 
     def _damping_noise(self, i: int) -> float:
         relative = float(self._test.damping_sigma[i] / self._test.damping[i])
