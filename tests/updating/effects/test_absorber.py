@@ -9,11 +9,13 @@ import pytest
 from effect_cases import LOOK, imported
 from scipy import linalg, optimize, sparse
 from scipy.sparse.linalg import eigsh
-from updating_cases import BEAM, POINTS, ExactBeam, case_of, observed, specimen, struck
+from updating_cases import BEAM, POINTS, ExactBeam, case_of, exactly, observed, specimen, struck
 
-from updating import LIBRARY, Measured, diagnose
+from updating import LIBRARY, Measured, Predictor, diagnose
 from updating.effects.base import total_mass
+from updating.effects.structure.mass import promising_points
 from updating.models import FieldStructure
+from updating.models.state import State
 from updating.prediction.matching import pair_modes
 
 EFFECT = LIBRARY["absorber"]
@@ -144,6 +146,36 @@ def test_far_above_the_band_it_is_a_mass_and_far_below_it_is_nothing(place: str)
     assert rigid == pytest.approx(heavy, rel=2e-5)
     soft = predictor.predict(EFFECT.state(predictor, {**at, "frequency": 0.01 * plain[0]}), count=4).frequency
     assert soft[1:] == pytest.approx(plain, rel=2e-5)
+
+
+def carrying(predictor: Predictor, **more: float) -> Predictor:
+    """The predictor of a specimen on which an absorber hangs that was put into the model beforehand."""
+    values = {"x": 0.3, "y": 0.1, "mass": 0.05 * total_mass(predictor.spec), "damping": 0.0, **more}
+    return predictor.for_test(predictor.measured, (lambda bare: EFFECT.state(bare, values),))
+
+
+def test_beside_an_accepted_one_points_for_a_body_are_those_of_its_frequencies() -> None:
+    """A body at a test point, and no tolerance."""
+    bare = LOOK["beam"]
+    hung = carrying(bare, frequency=150.0)
+    at = {"x": float(POINTS[2]), "mass": 0.01 * total_mass(bare.spec), "bulk": 0.0}
+    state = LIBRARY["lumped_mass"].state(bare, at)
+    there = hung.for_test(exactly(hung, hung.predict(state, count=5)))
+    assert promising_points(there)[0, 0] == pytest.approx(POINTS[2])
+    assert len(promising_points(there)) < len(POINTS)
+
+
+@pytest.mark.parametrize("place", ["beam", "plate"])
+def test_the_added_mass_ratio_beside_an_accepted_one_is_the_fall_of_the_lowest_mode(place: str) -> None:
+    """-2 d ln f, of ever less fluid (Rayleigh)."""
+    hung = carrying(LOOK[place], frequency=1.02 * float(LOOK[place].predict(count=1).frequency[0]))
+    fluid, values = (
+        LIBRARY["fluid_added_mass"],
+        {"fluid_density": 0.01, "free_surface": 0.2, "bottom": np.inf},
+    )
+    wet, dry = (hung.predict(state, count=1).frequency[0] for state in (fluid.state(hung, values), State()))
+    ratio, _ = fluid.derived(hung, values)["added_mass_ratio"]
+    assert ratio == pytest.approx(-2 * np.log(wet / dry), rel=1e-3)
 
 
 def test_on_matrices_it_hangs_in_the_directions_that_are_measured() -> None:
