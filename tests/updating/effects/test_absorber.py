@@ -9,9 +9,10 @@ import pytest
 from effect_cases import LOOK, imported
 from scipy import linalg, optimize, sparse
 from scipy.sparse.linalg import eigsh
-from updating_cases import BEAM, POINTS, ExactBeam, case_of, exactly, observed, specimen, struck
+from updating_cases import BEAM, POINTS, ExactBeam, blank, case_of, exactly, observed, specimen, struck
 
-from updating import LIBRARY, Measured, Predictor, diagnose
+from updating import LIBRARY, Damping, Measured, Predictor, diagnose
+from updating.diagnosis.diagnose import pose
 from updating.effects.base import total_mass
 from updating.effects.structure.mass import promising_points
 from updating.models import FieldStructure
@@ -176,6 +177,45 @@ def test_the_added_mass_ratio_beside_an_accepted_one_is_the_fall_of_the_lowest_m
     wet, dry = (hung.predict(state, count=1).frequency[0] for state in (fluid.state(hung, values), State()))
     ratio, _ = fluid.derived(hung, values)["added_mass_ratio"]
     assert ratio == pytest.approx(-2 * np.log(wet / dry), rel=1e-3)
+
+
+def test_modal_damping_ratios_stay_with_the_modes_of_the_structure() -> None:
+    """One too light to move any mode: its own mode, which it damps not at all, shifts none of the others' ratios."""
+    stated = (0.001, 0.02, 0.001, 0.002)
+    beam = LOOK["beam"].of(replace(LOOK["beam"].spec, damping=Damping(ratios=stated)))
+    values = {"x": 0.3, "mass": 1e-6 * total_mass(beam.spec), "frequency": 60.0, "damping": 0.0}
+    state = EFFECT.state(beam, values)
+    found = beam.predict(state, count=5)
+    own = int(np.argmin(np.abs(found.frequency - 60.0)))
+    assert own == 1
+    assert np.delete(found.damping, own) == pytest.approx(stated, rel=1e-3)
+    assert found.damping[own] < 1e-5
+    poles = beam.complex_modes(state).poles[:5]
+    assert -poles.real / np.abs(poles) == pytest.approx(found.damping, abs=1e-6)
+
+
+def test_uniform_damping_over_an_accepted_one_is_that_of_the_structure_alone() -> None:
+    """What the model's own beta would be."""
+    bare, beta = LOOK["beam"], 2e-5
+    hung = carrying(bare, frequency=150.0)
+    more = {"alpha": 0.0, "beta": beta, "loss_factor": 0.0}
+    found = hung.predict(LIBRARY["uniform_damping"].state(hung, more), count=4).damping
+    spec = replace(bare.spec, damping=replace(bare.spec.damping, beta=1e-6 + beta))
+    assert found == pytest.approx(carrying(bare.of(spec), frequency=150.0).predict(count=4).damping, rel=1e-6)
+
+
+def test_an_accepted_one_leaves_modes_far_from_it_out_of_doubt() -> None:
+    """Its idealisation errs by a share of the shift that it makes: here against the modes of the bare beam."""
+    bare = Predictor(BEAM, blank(POINTS))
+    values = {"x": 0.25, "mass": 0.02 * total_mass(bare.spec), "frequency": 100.0, "damping": 0.0}
+    now = bare.predict(EFFECT.state(bare, values), count=6)
+    problem, _ = pose(case_of(exactly(bare, now), accepted=(("absorber", values),)))
+    plain = bare.predict(count=5).frequency
+    own = int(np.argmin(np.abs(np.log(now.frequency / 100.0))))
+    before = np.insert(plain, own, 100.0)
+    shift = np.abs(np.log(now.frequency / before))
+    assert shift.max() < 0.2
+    assert np.sqrt(problem._accepted_variance()) == pytest.approx(EFFECT.fidelity * shift, rel=1e-6)
 
 
 def test_on_matrices_it_hangs_in_the_directions_that_are_measured() -> None:
