@@ -18,9 +18,10 @@ from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
 from updating.prediction.prediction import Prediction
-from updating.test_data.measured import Measured
+from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.thresholds import (
     DAMPING_REPEATABILITY,
+    FREE_LEVEL_DOUBT,
     LEAST_DAMPING,
     LEAST_FREQUENCY_NOISE,
     UNPAIRED_NEIGHBOURS,
@@ -47,6 +48,8 @@ class _Rows:
         Change per standard deviation of nuisances of this mode alone [-].
     idle : bool
         Whether the state says nothing of it.
+    idealised : float
+        What of the variance of ln f a candidate's idealisation adds, at the most [-].
     """
 
     residual: FloatArray
@@ -54,6 +57,7 @@ class _Rows:
     factors: FloatArray
     own: FloatArray
     idle: bool
+    idealised: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +91,9 @@ class UnpairedModes(Quantity):
             np.zeros((count, 0)),
             block_diag(*(part.own for part in parts)),
             np.full(count, NO_MODE),
+            idealised=np.concatenate([np.eye(1, len(part.residual))[0] * part.idealised for part in parts])
+            if view.doubt.fidelity
+            else None,
             idle=np.concatenate([np.full(len(part.residual), part.idle) for part in parts]),
         )
 
@@ -95,26 +102,27 @@ class UnpairedModes(Quantity):
         test, scale = self._test, self._scale[i]
         first, names = [np.log(test.frequency[i] / whole.frequency[k])], len(self.setting.names)
         relative = test.frequency_sigma[i] / test.frequency[i]
-        variance = [
-            relative**2 + max(test.repeatability, LEAST_FREQUENCY_NOISE) ** 2 + self._idealised(view, i)
-        ]
+        idealised = self._idealised(view, i)
+        variance = [relative**2 + max(test.repeatability, LEAST_FREQUENCY_NOISE) ** 2 + idealised]
         factors = [whole.log_frequency_by[k]]
         if self._damped[i]:
             first.append(np.log(test.damping[i] / max(whole.damping[k], LEAST_DAMPING)))
             variance.append(self._damping_noise(i) + view.doubt.damping**2)
             factors.append(np.zeros(names))
         measured, constants = test.constants[:, i] / scale, whole.constants[:, k] / scale
-        level = -1.0 if test.bare and measured @ constants < 0 else 1.0
-        if not test.absolute:
+        level, doubt = -1.0 if test.bare and measured @ constants < 0 else 1.0, test.level_sigma
+        if not test.absolute or test.calibration > UNKNOWN_LEVEL:
             level = float(measured @ constants) / max(float(constants @ constants), 1e-300)
+            doubt = FREE_LEVEL_DOUBT
         own = np.zeros((len(first) + len(measured), UNPAIRED_NEIGHBOURS))
-        own[len(first) :, 0] = test.level_sigma * level * constants
+        own[len(first) :, 0] = doubt * level * constants
         return _Rows(
             np.append(first, measured - level * constants),
             np.append(variance, self._shape_noise(i)),
             np.vstack([*factors, whole.constants_by[:, k] * (level / scale)]),
             own,
             idle=False,
+            idealised=idealised,
         )
 
     def _any(self, i: int) -> _Rows:
@@ -122,7 +130,7 @@ class UnpairedModes(Quantity):
         test, paired, nominal = self._test, self.setting.measured, self.setting.nominal
         first = [np.log(test.frequency[i]) - np.mean(np.log(paired.frequency))]
         if self._damped[i]:
-            first.append(np.log(test.damping[i]) - np.nanmean(np.log(paired.damping)))
+            first.append(np.log(test.damping[i]) - np.mean(np.log(self._known_dampings)))
         near = np.argsort(np.abs(np.log(nominal.frequency / test.frequency[i])))[:UNPAIRED_NEIGHBOURS]
         shapes = nominal.constants[:, near]
         own = np.zeros((len(first) + len(shapes), UNPAIRED_NEIGHBOURS))
@@ -151,10 +159,16 @@ class UnpairedModes(Quantity):
         return np.asarray(np.sqrt(np.mean(self._test.constants**2, axis=0)))
 
     @cached_property
+    def _known_dampings(self) -> FloatArray:
+        """Damping ratios of the paired modes whose damping is measured [-]; one of 0 is none."""
+        measured = self.setting.measured.damping
+        return measured[np.isfinite(measured) & (measured > 0)]
+
+    @cached_property
     def _damped(self) -> BoolArray:
         """Whether the damping of each mode is measured, and some damping expected of the model."""
-        known = self.setting.predictor.expects_damping and np.isfinite(self.setting.measured.damping).any()
-        return np.asarray((np.nan_to_num(self._test.damping) > 0) & bool(known))
+        known = self.setting.predictor.expects_damping and len(self._known_dampings) > 0
+        return np.asarray((np.nan_to_num(self._test.damping) > 0) & known)
 
     def _damping_noise(self, i: int) -> float:
         relative = float(self._test.damping_sigma[i] / self._test.damping[i])

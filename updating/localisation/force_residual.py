@@ -11,6 +11,7 @@ from scipy import linalg
 from acquisition.arrays import FloatArray
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.shapes import dynamic, serep, shapes_of
+from updating.models.absorbers import structural
 from updating.problem.specimen import SpecimenProblem
 
 
@@ -35,11 +36,12 @@ class ForceResidual(Localiser):
     def scores(self, problem: SpecimenProblem, *, kind: Kind = "stiffness") -> FloatArray:
         """Return the mean square of the left-over acceleration in each region, relative to the shape's own [-]."""
         shapes = shapes_of(problem)
-        whole = serep(problem, shapes) if self.expansion == "serep" else dynamic(shapes)
+        whole = serep(shapes) if self.expansion == "serep" else dynamic(shapes)
         force = shapes.stiffness @ whole - shapes.mass @ whole * shapes.omega**2
         acceleration = linalg.solve(shapes.mass, force, assume_a="pos") / shapes.omega**2
         heavy = region_parts(problem, "mass")
-        left_over = np.einsum("ir,nij,jr->nr", acceleration, heavy, acceleration)
+        own = structural(acceleration, problem.predictor.base.absorbers)
+        left_over = np.einsum("ir,nij,jr->nr", own, heavy, own)
         modal = np.einsum("ir,ij,jr->r", whole, shapes.mass, whole)
         size = np.trace(heavy, axis1=1, axis2=2)
         share = np.sum(left_over / modal, axis=1) / np.maximum(size, 1e-300)

@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray
 from updating.localisation.base import Kind, Localiser
 from updating.localisation.force_residual import region_parts
 from updating.localisation.shapes import dynamic, shapes_of
+from updating.models.absorbers import structural
 from updating.problem.specimen import SpecimenProblem
 
 
@@ -45,6 +46,7 @@ class ConstitutiveError(Localiser):
         held = shapes.stiffness + 1e-6 * float(shapes.omega.min() ** 2) * shapes.mass
         broken = linalg.solve(held, force, assume_a="pos")
         parts = region_parts(problem, "stiffness")
+        broken, moved = (structural(one, problem.predictor.base.absorbers) for one in (broken, moved))
         energy = np.einsum("ir,nij,jr->nr", broken, parts, broken)
         stored = np.einsum("ir,ij,jr->r", moved, parts.sum(axis=0), moved)
         share = np.sum(energy / np.maximum(stored, 1e-300), axis=1)

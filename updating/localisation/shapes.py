@@ -11,8 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import linalg
+from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.models.absorbers import structural
 from updating.models.state import NOMINAL
 from updating.problem.specimen import SpecimenProblem
 
@@ -37,7 +39,9 @@ class Shapes:
     measured, predicted : (n, n_modes) arrays
         Components, the measured ones scaled to the predicted [kg^-1/2].
     rows : (n, r) array
-        Displacement of the basis at these points [kg^-1/2].
+        Displacement of the basis at these points, absorbers behind it [kg^-1/2].
+    modes : (r, n_modes) array
+        The model's modes, mass-normalised [kg^-1/2].
     omega : (n_modes,) array
         Measured angular frequencies [rad/s].
     stiffness, mass : (r, r) arrays
@@ -48,6 +52,7 @@ class Shapes:
     measured: FloatArray
     predicted: FloatArray
     rows: FloatArray
+    modes: FloatArray
     omega: FloatArray
     stiffness: FloatArray
     mass: FloatArray
@@ -58,17 +63,31 @@ def shapes_of(problem: SpecimenProblem) -> Shapes:
     predictor, test = problem.predictor, problem.measured
     stiffness, mass = predictor.reduced.matrices(predictor.base)
     rows = predictor.point_rows(NOMINAL)
-    model = rows @ problem.nominal.vectors
+    modes = _modes(problem)
+    model = rows @ modes
     known = np.unique(np.r_[test.seen, test.hit[test.hit >= 0]])
     return Shapes(
         known,
         _components(problem, model)[known],
         model[known],
         rows[known],
+        modes,
         2 * np.pi * test.frequency,
         stiffness,
         mass,
     )
+
+
+def _modes(problem: SpecimenProblem) -> FloatArray:
+    """Return the undamped modes that the measured ones are, with what hangs on the structure, (r, n_modes)."""
+    predictor, known = problem.predictor, problem.nominal.vectors
+    if not predictor.base.absorbers:
+        return known
+    _, vectors = predictor.reduced.eigen(predictor.base)
+    elastic = vectors[:, predictor.reduced.structure.rigid_modes :]
+    alike = known.T @ structural(elastic, predictor.base.absorbers)
+    rows, columns = linear_sum_assignment(-(alike**2))
+    return np.asarray(elastic[:, columns] * np.sign(alike[rows, columns]))
 
 
 def _components(problem: SpecimenProblem, model: FloatArray) -> FloatArray:
@@ -92,7 +111,7 @@ def _components(problem: SpecimenProblem, model: FloatArray) -> FloatArray:
     return np.asarray(found)
 
 
-def serep(problem: SpecimenProblem, shapes: Shapes) -> FloatArray:
+def serep(shapes: Shapes) -> FloatArray:
     """Expand the shapes by the model's own lowest modes, no more of them than there are points.
 
     Returns
@@ -101,7 +120,7 @@ def serep(problem: SpecimenProblem, shapes: Shapes) -> FloatArray:
         Shapes in the coordinates of the reduced basis [kg^-1/2].
     """
     count = max(1, min(len(shapes.points), len(shapes.omega)))
-    basis = problem.nominal.vectors[:, :count]
+    basis = shapes.modes[:, :count]
     return np.asarray(basis @ np.linalg.lstsq(shapes.rows @ basis, shapes.measured, rcond=1e-8)[0])
 
 

@@ -13,7 +13,7 @@ from scipy import linalg
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from updating.environment import Environment
-from updating.models.absorbers import Damped, damped, modes_taking_part, padded, structural
+from updating.models.absorbers import Damped, damped, energies, modes_taking_part, padded, structural
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
 from updating.models.damping import (
@@ -195,9 +195,9 @@ class Predictor(Displayed):
             by, changes = self._by_factors(total, (values, moving), chosen, factors, rows, read.points)
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
-        moved = shift * slowing * coupled(total, values, vectors, chosen)
-        if dashed is not None:
-            moved = moved * dashed.slowing
+        moved = shift * slowing
+        # what dashpots of absorbers couple holds every other damper as well
+        moved = moved * (coupled(total, values, vectors, chosen) if dashed is None else dashed.slowing)
         frequency = moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         # what a layer carries along is modal mass
         level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
@@ -228,7 +228,7 @@ class Predictor(Displayed):
         size = modes_taking_part(elastic, len(chosen))
         modes, omega = vectors[:, first : first + size], np.sqrt(np.maximum(elastic[:size], 1e-12))
         viscous, hysteretic = (modes.T @ matrix @ modes for matrix in self._damping_matrices(state))
-        rates = 2 * self._ratios(state, size) * omega + modal_losses(state, elastic[:size], modes)
+        rates = 2 * self._ratios(state, modes) * omega + modal_losses(state, elastic[:size], modes)
         viscous = viscous + hysteretic / np.sqrt(np.outer(omega, omega)) + np.diag(rates + 2 * state.decay)
         found = damped(elastic, viscous, len(chosen))
         return found if self.expects(state) else replace(found, ratio=np.full(len(chosen), np.nan))
@@ -296,7 +296,7 @@ class Predictor(Displayed):
         c, d = modal_damping(self.reduced, expected, state, values, vectors)
         slow = layer_slowing(state, values, vectors)
         rate = c + modal_losses(state, values, vectors)
-        added = d / (2 * omega**2) + self._ratios(state, len(values)) + state.decay / (slow * omega)
+        added = d / (2 * omega**2) + self._ratios(state, vectors) + state.decay / (slow * omega)
         return np.asarray(slow * rate / (2 * omega) + added)
 
     def expects(self, state: State) -> bool:
@@ -310,12 +310,18 @@ class Predictor(Displayed):
         expected = Damping() if state.damping else self.spec.damping
         return damping_matrices(self.reduced, expected, state)
 
-    def _ratios(self, state: State, count: int) -> FloatArray:
-        """Return the damping ratios that state or modeller give mode by mode, the last for all above [-]."""
+    def _ratios(self, state: State, vectors: FloatArray) -> FloatArray:
+        """Return the damping ratios that state or modeller give mode by mode, the last for all above, (n_modes,) [-].
+
+        They are those of the structure: of the lowest elastic modes (r, n_modes) each has its share in modal mass, and
+        its rank by the shares below it.
+        """
         given = self._given(state)
         if given is None:
-            return np.zeros(count)
-        return np.asarray(given, dtype=float)[np.minimum(np.arange(count), len(given) - 1)]
+            return np.zeros(vectors.shape[1])
+        share = 1 - energies(vectors, state.absorbers)["mass"]
+        rank = np.round(np.cumsum(share) - share).astype(int)
+        return np.asarray(np.asarray(given)[np.clip(rank, 0, len(given) - 1)] * share, dtype=float)
 
     def _given(self, state: State) -> tuple[float, ...] | None:
         if state.ratios is not None:
@@ -339,7 +345,7 @@ class Predictor(Displayed):
             first = self.reduced.structure.rigid_modes
             rates = np.zeros(len(values))
             omega = np.sqrt(np.maximum(values[first:], 0))
-            rates[first:] = 2 * self._ratios(total, len(values) - first) * omega
+            rates[first:] = 2 * self._ratios(total, vectors[:, first:]) * omega
             rates[first:] += modal_losses(total, values[first:], vectors[:, first:])
             momenta = mass @ vectors
             slowing = np.ones(len(values))

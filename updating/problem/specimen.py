@@ -9,10 +9,12 @@ own: see :mod:`updating.likelihood`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import FloatArray, IntArray
 from updating.effects.base import Effect, Parameter, Values, Variant
@@ -28,6 +30,7 @@ from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
 from updating.likelihood.unpaired import UnpairedModes
+from updating.models.absorbers import Absorber
 from updating.models.base import FACTORS
 from updating.models.named_factors import departure, regions_of, unassigned
 from updating.models.state import NOMINAL, State
@@ -340,11 +343,28 @@ class SpecimenProblem:
             return np.zeros(len(self.measured.frequency))
         without = self.predictor.for_test(self.measured, self.predictor.additions[len(self.accepted) :])
         plain = without.predict(at_least=self.reach)
-        plain = plain.select(self._match(plain))
-        shift = np.log(self.nominal.frequency / plain.frequency)
+        hung = self.predictor.base.absorbers
+        before = _undisturbed(self.nominal, plain, hung) if hung else plain.frequency[self._match(plain)]
+        shift = np.log(self.nominal.frequency / before)
         return np.asarray((self.doubt_of_accepted * shift) ** 2)
 
     @property
     def doubt_of_accepted(self) -> float:
         """Largest fidelity of the effects put into the model beforehand [-]."""
         return max((effect.fidelity_on(self.predictor) for effect in self.accepted), default=0.0)
+
+
+def _undisturbed(now: Prediction, plain: Prediction, absorbers: Sequence[Absorber]) -> FloatArray:
+    """Return from where absorbers moved each mode: the structure's most like it, or one of theirs, (n_modes,) [Hz].
+
+    Paired by modal overlap; what finds no mode of the structure is the mode of the absorber that swings nearest.
+    """
+    size = min(len(plain.vectors), len(now.vectors))
+    alike = (now.vectors[:size].T @ plain.vectors[:size]) ** 2
+    # what no mode of the structure has of it is the absorbers'
+    theirs = np.repeat(1 - alike.sum(axis=1, keepdims=True), len(absorbers), axis=1)
+    columns = linear_sum_assignment(-np.hstack([alike, theirs]))[1]
+    alone = np.array([np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in absorbers])
+    nearest = alone[np.argmin(np.abs(np.log(now.frequency[:, None] / alone)), axis=1)]
+    known = np.append(plain.frequency, np.full(len(absorbers), np.nan))[columns]
+    return np.asarray(np.where(np.isnan(known), nearest, known))

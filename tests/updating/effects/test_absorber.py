@@ -9,11 +9,14 @@ import pytest
 from effect_cases import LOOK, imported
 from scipy import linalg, optimize, sparse
 from scipy.sparse.linalg import eigsh
-from updating_cases import BEAM, POINTS, ExactBeam, case_of, observed, specimen, struck
+from updating_cases import BEAM, POINTS, ExactBeam, blank, case_of, exactly, observed, specimen, struck
 
-from updating import LIBRARY, Measured, diagnose
+from updating import LIBRARY, Damping, Measured, Predictor, diagnose
+from updating.diagnosis.diagnose import pose
 from updating.effects.base import total_mass
+from updating.effects.structure.mass import promising_points
 from updating.models import FieldStructure
+from updating.models.state import State
 from updating.prediction.matching import pair_modes
 
 EFFECT = LIBRARY["absorber"]
@@ -117,6 +120,23 @@ def test_poles_and_constants_are_those_of_the_damped_structure(k: int, ratio: fl
     )  # turned by the shape's own phase, not that of the constants
 
 
+@pytest.mark.parametrize("ratio", [0.0, 0.01])
+def test_beside_a_dashpot_to_the_ground_frequencies_are_those_of_its_poles(ratio: float) -> None:
+    """However the absorber is damped: the dashpot counts once."""
+    beam = LOOK["beam"]
+    ground = {"x": 0.2, "extent": 0.0, "stiffness": 0.0, "damping": 60.0}
+    tiny = {"x": 0.3, "mass": 1e-6 * total_mass(beam.spec), "frequency": 5000.0, "damping": ratio}
+    state = LIBRARY["ground_spring"].state(beam, ground).plus(EFFECT.state(beam, tiny))
+    whole = beam.matrices(state)
+    none, unit = np.zeros_like(whole.mass), np.eye(len(whole.mass))
+    rates = np.block([[none, unit], [-whole.stiffness, -whole.viscous]])
+    poles = linalg.eigvals(rates, linalg.block_diag(unit, whole.mass))
+    exact = np.sort(np.abs(poles[poles.imag > 0]))[:4] / (2 * np.pi)
+    plain = beam.predict(count=4).frequency
+    assert np.abs(np.log(exact / plain)).max() > 5e-3
+    assert beam.predict(state, count=4).frequency / plain == pytest.approx(exact / plain, abs=1e-3)
+
+
 @pytest.mark.parametrize("place", ["beam", "plate"])
 def test_far_above_the_band_it_is_a_mass_and_far_below_it_is_nothing(place: str) -> None:
     predictor = LOOK[place]
@@ -127,6 +147,75 @@ def test_far_above_the_band_it_is_a_mass_and_far_below_it_is_nothing(place: str)
     assert rigid == pytest.approx(heavy, rel=2e-5)
     soft = predictor.predict(EFFECT.state(predictor, {**at, "frequency": 0.01 * plain[0]}), count=4).frequency
     assert soft[1:] == pytest.approx(plain, rel=2e-5)
+
+
+def carrying(predictor: Predictor, **more: float) -> Predictor:
+    """The predictor of a specimen on which an absorber hangs that was put into the model beforehand."""
+    values = {"x": 0.3, "y": 0.1, "mass": 0.05 * total_mass(predictor.spec), "damping": 0.0, **more}
+    return predictor.for_test(predictor.measured, (lambda bare: EFFECT.state(bare, values),))
+
+
+def test_beside_an_accepted_one_points_for_a_body_are_those_of_its_frequencies() -> None:
+    """A body at a test point, and no tolerance."""
+    bare = LOOK["beam"]
+    hung = carrying(bare, frequency=150.0)
+    at = {"x": float(POINTS[2]), "mass": 0.01 * total_mass(bare.spec), "bulk": 0.0}
+    state = LIBRARY["lumped_mass"].state(bare, at)
+    there = hung.for_test(exactly(hung, hung.predict(state, count=5)))
+    assert promising_points(there)[0, 0] == pytest.approx(POINTS[2])
+    assert len(promising_points(there)) < len(POINTS)
+
+
+@pytest.mark.parametrize("place", ["beam", "plate"])
+def test_the_added_mass_ratio_beside_an_accepted_one_is_the_fall_of_the_lowest_mode(place: str) -> None:
+    """-2 d ln f, of ever less fluid (Rayleigh)."""
+    hung = carrying(LOOK[place], frequency=1.02 * float(LOOK[place].predict(count=1).frequency[0]))
+    fluid, values = (
+        LIBRARY["fluid_added_mass"],
+        {"fluid_density": 0.01, "free_surface": 0.2, "bottom": np.inf},
+    )
+    wet, dry = (hung.predict(state, count=1).frequency[0] for state in (fluid.state(hung, values), State()))
+    ratio, _ = fluid.derived(hung, values)["added_mass_ratio"]
+    assert ratio == pytest.approx(-2 * np.log(wet / dry), rel=1e-3)
+
+
+def test_modal_damping_ratios_stay_with_the_modes_of_the_structure() -> None:
+    """One too light to move any mode: its own mode, which it damps not at all, shifts none of the others' ratios."""
+    stated = (0.001, 0.02, 0.001, 0.002)
+    beam = LOOK["beam"].of(replace(LOOK["beam"].spec, damping=Damping(ratios=stated)))
+    values = {"x": 0.3, "mass": 1e-6 * total_mass(beam.spec), "frequency": 60.0, "damping": 0.0}
+    state = EFFECT.state(beam, values)
+    found = beam.predict(state, count=5)
+    own = int(np.argmin(np.abs(found.frequency - 60.0)))
+    assert own == 1
+    assert np.delete(found.damping, own) == pytest.approx(stated, rel=1e-3)
+    assert found.damping[own] < 1e-5
+    poles = beam.complex_modes(state).poles[:5]
+    assert -poles.real / np.abs(poles) == pytest.approx(found.damping, abs=1e-6)
+
+
+def test_uniform_damping_over_an_accepted_one_is_that_of_the_structure_alone() -> None:
+    """What the model's own beta would be."""
+    bare, beta = LOOK["beam"], 2e-5
+    hung = carrying(bare, frequency=150.0)
+    more = {"alpha": 0.0, "beta": beta, "loss_factor": 0.0}
+    found = hung.predict(LIBRARY["uniform_damping"].state(hung, more), count=4).damping
+    spec = replace(bare.spec, damping=replace(bare.spec.damping, beta=1e-6 + beta))
+    assert found == pytest.approx(carrying(bare.of(spec), frequency=150.0).predict(count=4).damping, rel=1e-6)
+
+
+def test_an_accepted_one_leaves_modes_far_from_it_out_of_doubt() -> None:
+    """Its idealisation errs by a share of the shift that it makes: here against the modes of the bare beam."""
+    bare = Predictor(BEAM, blank(POINTS))
+    values = {"x": 0.25, "mass": 0.02 * total_mass(bare.spec), "frequency": 100.0, "damping": 0.0}
+    now = bare.predict(EFFECT.state(bare, values), count=6)
+    problem, _ = pose(case_of(exactly(bare, now), accepted=(("absorber", values),)))
+    plain = bare.predict(count=5).frequency
+    own = int(np.argmin(np.abs(np.log(now.frequency / 100.0))))
+    before = np.insert(plain, own, 100.0)
+    shift = np.abs(np.log(now.frequency / before))
+    assert shift.max() < 0.2
+    assert np.sqrt(problem._accepted_variance()) == pytest.approx(EFFECT.fidelity * shift, rel=1e-6)
 
 
 def test_on_matrices_it_hangs_in_the_directions_that_are_measured() -> None:

@@ -203,7 +203,7 @@ def test_shapes_come_back_from_the_constants() -> None:
 def test_expansions_keep_what_was_measured_and_add_what_the_model_knows() -> None:
     problem = soft(2, 0.02)
     shapes = shapes_of(problem)
-    for whole in (serep(problem, shapes), dynamic(shapes)):
+    for whole in (serep(shapes), dynamic(shapes)):
         at = shapes.rows @ whole
         assert at == pytest.approx(shapes.measured, abs=0.03 * np.abs(shapes.measured).max())
 

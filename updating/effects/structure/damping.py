@@ -216,4 +216,7 @@ def _whole(predictor: Predictor) -> tuple[FloatArray, FloatArray]:
     Springs that effects put under clamps are not damped; masses that they add are, so that alpha remains a window.
     """
     most = max(predictor.reduced.ranks, key=len)
-    return predictor.reduced.matrices(replace(predictor.base, stiffness=(), released=most))
+    base = predictor.base
+    stiffness, mass = predictor.reduced.matrices(replace(base, stiffness=(), absorbers=(), released=most))
+    size = len(stiffness)
+    return stiffness - sum(one.springs[:size, :size] for one in base.yielding.values()), mass

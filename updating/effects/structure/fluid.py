@@ -12,6 +12,7 @@ from updating.effects.obstacles import Obstacle, damping_obstacle
 from updating.effects.structure.wetted import shorter_side, surroundings, unit_mass, unstated, wetted
 from updating.fluid import edge_reach, layer_depth, slip_matrix, unbounded
 from updating.fluid.tank import NEAREST
+from updating.models.absorbers import structural
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
 
@@ -139,9 +140,9 @@ def _distance(predictor: Predictor, name: str) -> Parameter:
 
 
 def _first_mode(predictor: Predictor) -> FloatArray:
-    """Return the lowest elastic mode in the reduced basis, (r,), of unit modal mass [kg^-1/2]."""
+    """Return the structure in the lowest elastic mode, of unit modal mass, on the reduced basis, (r,) [kg^-1/2]."""
     _, vectors = predictor.reduced.eigen(predictor.base)
-    return np.asarray(vectors[:, predictor.reduced.structure.rigid_modes])
+    return structural(vectors, predictor.base.absorbers)[:, predictor.reduced.structure.rigid_modes]
 
 
 def fluid_density(predictor: Predictor) -> float:

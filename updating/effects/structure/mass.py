@@ -24,6 +24,7 @@ from updating.effects.structure.nodes import (
     group_centres,
     promising_nodes,
 )
+from updating.models.absorbers import structural
 from updating.models.base import Structure
 from updating.models.fields import Sparse
 from updating.models.imported.matrices import Imported
@@ -335,7 +336,8 @@ def promising_points(predictor: Predictor) -> FloatArray:
         if len(points) <= PROMISING:
             return points
         gap = frequency_gap(predictor)
-        masses, gained = gap.sizes(-0.5 * (predictor.point_rows()[first] @ gap.vectors) ** 2)
+        rows = structural(predictor.point_rows()[first].T, predictor.base.absorbers).T
+        masses, gained = gap.sizes(-0.5 * (rows @ gap.vectors) ** 2)
         gained = np.where(masses > 0, gained, 0.0)
         return np.asarray(points[np.argsort(-gained, kind="stable")[:PROMISING]])
 

@@ -1,0 +1,74 @@
+"""Modes without a partner in the nominal model: what their data say of states that have them and that lack them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from updating_cases import BEAM, POINTS, blank, case_of, exactly
+
+from updating import LIBRARY, Measured, Predictor
+from updating.diagnosis.diagnose import pose
+from updating.effects.base import total_mass
+from updating.likelihood.base import NO_DOUBT, Doubt
+from updating.likelihood.comparison import Comparison
+from updating.likelihood.gaussian import marginal
+from updating.models.state import NOMINAL
+from updating.problem.specimen import SpecimenProblem
+from updating.thresholds import FREE_LEVEL_DOUBT
+
+EFFECT = LIBRARY["absorber"]
+LOOK = Predictor(BEAM, blank(POINTS))
+HUNG = {"x": 0.25, "mass": 0.05 * total_mass(BEAM), "frequency": 160.0, "damping": 0.02}
+TEST = exactly(LOOK, LOOK.predict(EFFECT.state(LOOK, HUNG), count=6))
+
+
+def posed(test: Measured = TEST) -> SpecimenProblem:
+    """The beam with an absorber beside the model without."""
+    problem, _ = pose(case_of(test))
+    assert problem.measured.unpaired is not None
+    assert len(problem.measured.unpaired.frequency) == 1
+    return problem
+
+
+@pytest.mark.parametrize("stated", [0.0, -1e-3, np.nan])
+def test_a_mode_without_damping_leaves_the_unpaired_one_beside_the_others(stated: float) -> None:
+    """It says as little as one whose damping is not stated."""
+    lowest = np.arange(len(TEST.frequency)) == 0
+    problem = posed(replace(TEST, damping=np.where(lowest, stated, TEST.damping)))
+    unstated = posed(replace(TEST, damping=np.where(lowest, np.nan, TEST.damping)))
+    found = marginal(problem.compare(NOMINAL)).log_likelihood
+    assert np.isfinite(found)
+    assert found == pytest.approx(marginal(unstated.compare(NOMINAL)).log_likelihood)
+
+
+def known(
+    problem: SpecimenProblem, doubt: Doubt = NO_DOUBT, **changes: float
+) -> tuple[Comparison, np.ndarray]:
+    """The test beside the absorber that it has, and the rows of its mode."""
+    found = problem.compare(EFFECT.state(problem.predictor, {**HUNG, **changes}), doubt=doubt)
+    assert found.stated.all()
+    return found, np.flatnonzero(found.of("unpaired"))
+
+
+def test_the_doubt_in_what_makes_the_mode_is_settled_with_that_of_the_others() -> None:
+    """Nothing of it is left where the idealisation is just so."""
+    plain, rows = known(posed())
+    doubtful, _ = known(posed(), Doubt(fidelity=0.1))
+    assert doubtful.variance[rows[0]] > plain.variance[rows[0]] + 1e-6
+    assert doubtful.settled(0.0).variance[rows] == pytest.approx(plain.variance[rows])
+
+
+@pytest.mark.parametrize("level", [1.0, 30.0])
+@pytest.mark.parametrize("stated", [{"absolute": False}, {"calibration": 1.0}], ids=str)
+def test_a_level_that_is_free_is_fitted_and_paid_for(level: float, stated: dict[str, Any]) -> None:
+    """As that of the paired modes: whatever the amplitude, which no level tells from any other."""
+    louder = {"constants": level * TEST.constants, "constants_sigma": level * TEST.constants_sigma}
+    test = replace(TEST, **louder, **stated)
+    found, rows = known(posed(test))
+    column = found.nuisance[rows][2:]
+    widest = column[:, np.argmax(np.abs(column).max(axis=0))]
+    assert found.residual[rows][2:] == pytest.approx(np.zeros(len(POINTS)), abs=0.05)
+    assert np.sqrt(np.mean(widest**2)) == pytest.approx(FREE_LEVEL_DOUBT, rel=0.05)
