@@ -55,14 +55,30 @@ def empty(tmp_path: Path) -> Path:
     return path
 
 
+def assert_alike(one: Any, other: Any) -> None:
+    """Hold two documents against each other; rounding differs from process to process on some processors."""
+    assert type(one) is type(other)
+    if isinstance(one, dict):
+        assert one.keys() == other.keys()
+        one, other = list(one.values()), list(other.values())
+    if isinstance(one, list):
+        assert len(one) == len(other)
+        for a, b in zip(one, other, strict=True):
+            assert_alike(a, b)
+    elif isinstance(one, float):
+        assert one == pytest.approx(other, rel=1e-3, abs=1e-9, nan_ok=True)
+    else:
+        assert one == other
+
+
 def test_warm_and_cold_give_the_same(warm: Diagnoser, study: Path, answer: dict[str, Any]) -> None:
     again = [answer, warm(study, MOST)]
     words = [sys.executable, "-m", "modalkit", "diagnose", study.name, "--json", "cold.json"]
     words += ["--without", ",".join(MOST)]
     subprocess.run(words, cwd=study.parent, check=True, capture_output=True)
     cold = json.loads((study.parent / "cold.json").read_text())
-    assert again[0] == cold
-    assert again[1] == cold
+    assert_alike(again[0], cold)
+    assert_alike(again[1], cold)
     assert cold["cause"]["ranking"]
 
 

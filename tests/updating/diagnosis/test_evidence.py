@@ -108,7 +108,7 @@ def test_a_parameter_that_nothing_sees_costs_nothing() -> None:
     problem = diagnosis_problem(replace(blind, constants_sigma=blind.constants, absolute=False))
     plain = explain(problem, Candidate()).log_evidence
     found = explain(problem, candidate("section_scale"))
-    assert found.log_evidence == pytest.approx(plain, abs=0.05)
+    assert found.log_evidence == pytest.approx(plain, abs=0.2)  # the error of some twenty samples
     mean = float(found.weights @ found.samples[:, 0])
     assert mean == pytest.approx(0.5, abs=0.05)
     assert np.sqrt(found.weights @ (found.samples[:, 0] - mean) ** 2) == pytest.approx(

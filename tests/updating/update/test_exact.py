@@ -21,7 +21,7 @@ CONDENSED = {"fluid_added_mass", "fluid_damping"}
 """Effects whose full matrices are dense, and known on a reduced basis alone."""
 
 COUNT = 5
-NO_FULL = CONDENSED | {"shear"}
+NO_FULL = CONDENSED | {"shear", "absorber"}
 PLACES = ["beam", "timoshenko", "plate", "free", "matrices"]
 
 

@@ -23,6 +23,7 @@ from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.ridges import along_ridge
 from updating.problem.candidate import Candidate
 from updating.thresholds import (
+    AT_REST,
     CLIMBS,
     DRAFT_SAMPLES,
     ENOUGH_SAMPLES,
@@ -237,7 +238,8 @@ def _on_a_line(places: list[FloatArray]) -> bool:
 def _maxima(heights: FloatArray) -> BoolArray:
     """Tell which heights along a line are no lower than their neighbours: searches from the others end there, too."""
     around = np.concatenate([[-np.inf], np.nan_to_num(heights, nan=-np.inf), [-np.inf]])
-    return np.asarray((around[1:-1] >= around[:-2]) & (around[1:-1] >= around[2:]))
+    level = around[1:-1] + AT_REST  # on level ground all are
+    return np.asarray((level >= around[:-2]) & (level >= around[2:]))
 
 
 def _distinct(points: Sequence[Point]) -> list[int]:

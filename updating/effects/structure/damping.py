@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.effects.base import Effect, Parameter, Values, Variant
 from updating.effects.obstacles import Obstacle, damping_obstacle
+from updating.models.base import supports_at
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
 
@@ -219,4 +220,6 @@ def _whole(predictor: Predictor) -> tuple[FloatArray, FloatArray]:
     base = predictor.base
     stiffness, mass = predictor.reduced.matrices(replace(base, stiffness=(), absorbers=(), released=most))
     size = len(stiffness)
-    return stiffness - sum(one.springs[:size, :size] for one in base.yielding.values()), mass
+    for support in supports_at(predictor.reduced.structure, base):
+        stiffness = stiffness - support.springs[:size, :size]
+    return stiffness, mass
