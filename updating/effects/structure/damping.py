@@ -219,7 +219,7 @@ def _whole(predictor: Predictor) -> tuple[FloatArray, FloatArray]:
     most = max(predictor.reduced.ranks, key=len)
     base = predictor.base
     stiffness, mass = predictor.reduced.matrices(replace(base, stiffness=(), absorbers=(), released=most))
-    size = len(stiffness)
     for support in supports_at(predictor.reduced.structure, base):
-        stiffness = stiffness - support.springs[:size, :size]
+        springs = support.springs[: stiffness.shape[0], : stiffness.shape[1]]
+        stiffness = stiffness - springs
     return stiffness, mass
