@@ -105,7 +105,7 @@ def show_diagnosis(diagnosis: Diagnosis, *sessions: Session) -> None:
             for t in diagnosis.next_test
         ]
         show_table(pd.DataFrame(rows), "What to measure next")
-    if diagnosis.searched:
+    if any(one.sets for one in diagnosis.searched):
         out.print(f"Searched: {searched_text(diagnosis)}", markup=False)
     if diagnosis.not_examined:
         out.print("Not examined: " + _not_examined(diagnosis.not_examined), markup=False)

@@ -95,8 +95,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
             "check axes, points, boundary conditions, and the model's units (m, Pa, kg/m3)"
         )
     lost += [
-        f"mode at {hertz(f)} has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f}) "
-        "and counts only for an effect that makes a mode of its own"
+        f"mode at {hertz(f)} has no partner in the model (best: MAC {m:.2f}, frequency ratio {np.exp(r):.2f})"
         for f, m, r in zip(measured.frequency[~keep], mac[~keep], ratio[~keep], strict=True)
     ]
     alone = bool(keep.sum() < len(keep) / 2)

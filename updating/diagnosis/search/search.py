@@ -126,23 +126,23 @@ class Search:
         Effects left out, and why.
     both : bool
         Whether every set was weighed on the model's theory and on the fuller one.
-    examined : tuple of Effect
-        Effects that the sets are made of.
+    examined, repeated : int
+        How many effects the sets are made of, and how many of them a set may have twice.
     """
 
     nothing: Explanation
     compared: tuple[Compared, ...]
     not_examined: dict[str, Obstacle]
     both: bool = False
-    examined: tuple[Effect, ...] = ()
+    examined: int = 0
+    repeated: int = 0
 
     @property
     def searched(self) -> tuple[Searched, ...]:
         """How many sets of one cause, of two and so on were searched, up to the largest that any was."""
         counts = Counter(len(row.names) for row in self.compared if row.names)
-        once, repeated = len(self.examined), sum(effect.repeats for effect in self.examined)
         return tuple(
-            Searched(causes, counts[causes], count_sets(causes, once, repeated))
+            Searched(causes, counts[causes], count_sets(causes, self.examined, self.repeated))
             for causes in range(1, 1 + max(counts, default=0))
         )
 
@@ -186,7 +186,8 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
         if not _explained(problem, found):
             found = _with_odd(problem, found, one_more(problem, _as_stated(found), causes))
     found = _finished(problem, with_parts(problem, found))
-    return Search(nothing, _merged(problem, _compare(found)), obstacles, both, tuple(effects))
+    repeated = sum(effect.repeats_on(problem.predictor) for effect in effects)
+    return Search(nothing, _merged(problem, _compare(found)), obstacles, both, len(effects), repeated)
 
 
 def _with_odd(
