@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from updating.diagnosis.search.evidence import _on_a_line, _summits
+from updating.diagnosis.search.evidence import _maxima, _on_a_line
 
 LINES = [
     ([[0.1], [0.3], [0.9]], True),
@@ -25,5 +25,5 @@ def test_a_line_is_straight_one_way_and_moves_every_parameter(
 
 def test_every_top_along_a_line_is_kept_its_ends_too() -> None:
     heights = np.array([5.0, 1.0, 2.0, 7.0, 3.0, np.nan, 4.0])
-    assert np.flatnonzero(_summits(heights)).tolist() == [0, 3, 6]
-    assert _summits(np.ones(3)).all()
+    assert np.flatnonzero(_maxima(heights)).tolist() == [0, 3, 6]
+    assert _maxima(np.ones(3)).all()
