@@ -46,7 +46,7 @@ def test_a_body_between_the_points_is_found() -> None:
     assert found.ranking[0].parameters["lumped_mass.mass"].value == pytest.approx(0.05, rel=0.03)
 
 
-def test_neighbours_that_the_data_cannot_tell_apart_are_all_places() -> None:
+def test_neighbours_that_the_data_do_not_separate_are_all_places() -> None:
     """Four frequencies do not say where a light body sits."""
     node = nearest((0.05, 0.35 / 3, 0.45))
     found = diagnosed(Hidden(masses=((node, 0.05),)), [], modes=4, scatter=1e-3)

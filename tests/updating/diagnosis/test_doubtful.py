@@ -26,7 +26,7 @@ def posed(ratio: np.ndarray) -> Posed:
 
 
 @pytest.mark.parametrize("explained", ["", "ground_spring"])
-def test_one_mode_that_stands_alone_is_said_with_what_rests_on_it(explained: str) -> None:
+def test_a_lone_mode_is_stated_with_what_rests_on_it(explained: str) -> None:
     (note,) = notes_on_doubtful(posed(np.array([1.2, 1.0, 1.001, 1.0, 0.999, 1.0])), explained)  # type: ignore[arg-type]
     assert "24.00 Hz stands alone" in note
     assert ("Nothing should be concluded" in note) is not bool(explained)

@@ -258,7 +258,7 @@ def test_its_mode_takes_no_partner_from_another() -> None:
     assert paired.order.tolist() == [0, 1, 2, 3, 4]
 
 
-def test_where_every_mode_is_the_models_it_is_not_looked_for() -> None:
+def test_where_every_mode_is_the_models_it_is_not_searched() -> None:
     rng = np.random.default_rng(5)
     test = struck(specimen(rng), rng)
     found = diagnose(case_of(test), library=[LIBRARY[n] for n in ("absorber", "E")])
