@@ -273,7 +273,7 @@ step, and the second is rarely taken."""
 QUANTILE_SPREAD = 0.3
 """Standard deviation of a parameter's prior quantile, even between nought and one [-]."""
 
-SET_MARGIN = 2.0
+SET_MARGIN = 6.0
 """A set is weighed where a score test says that its logarithm of the probability would come this near to the best,
 or above [-]: the test errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
 

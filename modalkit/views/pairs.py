@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from updating.prediction.matching import mac_of_constants, pair_modes
 from updating.prediction.prediction import Prediction
 from updating.simulation.identified import partners
@@ -46,8 +44,7 @@ def pairs_of(measured: Measured, prediction: Prediction) -> list[Pair]:
     """
     paired = pair_modes(measured, prediction)
     mac = mac_of_constants(measured, prediction) if measured.has_shapes else None
-    test = np.flatnonzero(np.isin(measured.frequency, paired.measured.frequency))
     return [
         Pair(int(t), int(m), None if mac is None else float(mac[t, m]))
-        for t, m in zip(test, partners(paired, prediction), strict=True)
+        for t, m in zip(paired.rows, partners(paired, prediction), strict=True)
     ]

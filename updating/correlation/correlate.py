@@ -16,7 +16,7 @@ from updating.case import Case
 from updating.correlation.frfs import CorrelatedFrfs, correlate_frfs
 from updating.nominal import predictor_of
 from updating.prediction.assignment import frac_of_constants
-from updating.prediction.matching import Paired, mac_of_constants, pair_modes
+from updating.prediction.matching import mac_of_constants, pair_modes
 from updating.prediction.prediction import Prediction
 from updating.simulation.identified import partners
 from updating.test_data.measured import Measured
@@ -87,7 +87,7 @@ def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:
     predictor = predictor_of(case)
     prediction = predictor.predict()
     paired = pair_modes(case.measured, prediction)
-    test, partner = _rows(case.measured, paired), partners(paired, prediction)
+    test, partner = paired.rows, partners(paired, prediction)
     both = None if frfs is None else correlate_frfs(frfs, case.measured, predictor, prediction, paired)
     return Correlation(
         _table(case.measured, prediction, test, partner),
@@ -100,10 +100,6 @@ def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:
         (*case.measured.warnings, *paired.warnings),
         both,
     )
-
-
-def _rows(measured: Measured, paired: Paired) -> IntArray:
-    return np.flatnonzero(np.isin(measured.frequency, paired.measured.frequency))
 
 
 def _dofs(frfs: FrfSet) -> list[tuple[Dof, Dof]]:

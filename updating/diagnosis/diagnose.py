@@ -31,6 +31,7 @@ from updating.prediction.assignment import frac_of_constants
 from updating.prediction.baseline import correct, doubt_in_mass
 from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
+from updating.prediction.suspended import without_suspended
 from updating.problem.gates import notes_on, on_levels, on_modes, on_reduction, theory_error
 from updating.problem.specimen import SpecimenProblem
 from updating.problem.stated_doubts import of_updates_alone
@@ -198,11 +199,13 @@ def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
         baseline, baseline_order = before.measured, before.order
         predictor = predictor.for_test(case.measured, tuple(additions))
         paired = pair_modes(case.measured, predictor.predict())
-    predictor = predictor.for_test(paired.measured)
+    measured, suspended = without_suspended(paired.measured, predictor)
+    warnings += suspended
+    predictor = predictor.for_test(measured)
     accepted = tuple(LIBRARY[name] for name, _ in case.accepted)
     problem = SpecimenProblem(
         predictor,
-        paired.measured,
+        measured,
         tolerances,
         paired.order,
         baseline,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -17,6 +18,9 @@ is known of modes without a partner in the nominal model."""
 
 SCALED = "frf"
 """The channel whose noise has an unknown scale."""
+
+
+_Array = TypeVar("_Array", FloatArray, BoolArray)
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,26 +188,19 @@ def assemble(
         scale_prior,
         np.arange(named[-1]),
         np.arange(count),
-        _idealised([(block.idealised, len(block.residual)) for block in blocks]),
-        _idle([(block.idle, len(block.residual)) for block in blocks]),
+        _filled([(block.idealised, len(block.residual)) for block in blocks], 0.0),
+        _filled([(block.idle, len(block.residual)) for block in blocks], False),
     )
 
 
-def _idle(parts: Sequence[tuple[BoolArray | None, int]]) -> BoolArray | None:
-    """Return which data are idle, each part with the number of its data; None where none is."""
-    if all(part is None for part, _ in parts):
-        return None
-    return np.concatenate([np.zeros(count, dtype=bool) if part is None else part for part, count in parts])
-
-
-def _idealised(parts: Sequence[tuple[FloatArray | None, int]]) -> FloatArray | None:
-    """Return what of the variance is a candidate's idealisation; None where none is in doubt.
+def _filled(parts: Sequence[tuple[_Array | None, int]], nothing: float) -> _Array | None:
+    """Return what parts of the data say in one, ``nothing`` where one says nothing; None where all do.
 
     Each part comes with the number of its data.
     """
     if all(part is None for part, _ in parts):
         return None
-    return np.concatenate([np.zeros(count) if part is None else part for part, count in parts])
+    return np.concatenate([np.full(count, nothing) if part is None else part for part, count in parts])
 
 
 def _source(block: Block) -> IntArray:
@@ -238,6 +235,6 @@ def join(parts: Sequence[Comparison]) -> Comparison:
         max((part.scale_prior for part in parts), key=lambda prior: -prior[0]),
         np.concatenate([part.doubts + first for part, first in zip(parts, starts, strict=False)]),
         np.concatenate([part.tolerances + first for part, first in zip(parts, starts, strict=False)]),
-        _idealised([(part.idealised, len(part.residual)) for part in parts]),
-        _idle([(part.idle, len(part.residual)) for part in parts]),
+        _filled([(part.idealised, len(part.residual)) for part in parts], 0.0),
+        _filled([(part.idle, len(part.residual)) for part in parts], False),
     )

@@ -10,13 +10,12 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
-from updating.models.state import State
 from updating.thresholds import COMPLEXITY_PER_DAMPING, LARGEST_NODE_RATIO, PHASE_DOUBT, PHASE_UNEVENNESS
 
 
 @dataclass(frozen=True, eq=False)
 class Phases(Quantity):
-    """By how much the constants of each chain are turned, beyond what a delay explains."""
+    """By how much the constants of each chain are turned, beyond what the state explains."""
 
     @property
     def present(self) -> bool:
@@ -24,10 +23,10 @@ class Phases(Quantity):
         return self.setting.measured.phase is not None and self.setting.measured.has_shapes
 
     def block(self, view: View) -> Block:
-        """Return how far each chain turns each mode beyond the delay [rad]."""
+        """Return how far each chain turns each mode beyond what the state does [rad]."""
         test = self.setting.measured
         assert test.phase_sigma is not None
-        left, turns = self._turned(view.state)
+        left, turns = self._turned(view)
         residual = left + np.pi * turns
         n_chains, n_modes = residual.shape
         columns = np.repeat(PHASE_DOUBT * np.eye(n_modes)[None], n_chains, axis=0).reshape(-1, n_modes)
@@ -46,16 +45,21 @@ class Phases(Quantity):
         """Return what a delay makes of real constants, (n_frf, n_modes): a sign, and some growth [-]."""
         test = self.setting.measured
         assert test.channel_group is not None
-        _, turns = self._turned(view.state)
+        _, turns = self._turned(view)
         # the residue of exp(-s tau) H(s) holds exp(-s tau) at the pole, whose decay makes it larger
         grown = np.exp(2 * np.pi * test.frequency * np.nan_to_num(test.damping) * view.state.delay)
         return np.where(turns[test.channel_group] % 2 == 0, grown, -grown)
 
-    def _turned(self, state: State) -> tuple[FloatArray, FloatArray]:
-        """Return the phases beyond those of a delay [rad], and by how many half turns these are nearest to zero."""
+    def _turned(self, view: View) -> tuple[FloatArray, FloatArray]:
+        """Return the phases beyond the state's [rad], and by how many half turns these are nearest to zero.
+
+        A delay turns constants, and dampers that couple modes do.
+        """
         test = self.setting.measured
         assert test.phase is not None
-        expected = -2 * np.pi * test.frequency * state.delay
+        expected = -2 * np.pi * test.frequency * view.state.delay
+        if view.now.phase is not None:
+            expected = expected + view.now.phase
         return test.phase - expected, np.round((expected - test.phase) / np.pi)
 
     @cached_property

@@ -8,15 +8,16 @@ the evidence of a state that has it is that it knew better.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from acquisition.arrays import BoolArray, FloatArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
+from updating.likelihood.phase import Phases
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.thresholds import (
@@ -60,6 +61,11 @@ class _Rows:
     idealised: float = 0.0
 
 
+def _channels(rows: _Rows, count: int) -> IntArray:
+    """Return the measuring channel of each datum of a mode, -1 of its frequency and damping, (n,)."""
+    return np.concatenate([np.full(len(rows.residual) - count, -1), np.arange(count)])
+
+
 @dataclass(frozen=True, eq=False)
 class UnpairedModes(Quantity):
     """Frequency, damping and modal constants of the modes that have no partner in the nominal model."""
@@ -91,6 +97,7 @@ class UnpairedModes(Quantity):
             np.zeros((count, 0)),
             block_diag(*(part.own for part in parts)),
             np.full(count, NO_MODE),
+            np.concatenate([_channels(part, len(self._test.seen)) for part in parts]),
             idealised=np.concatenate([np.eye(1, len(part.residual))[0] * part.idealised for part in parts])
             if view.doubt.fidelity
             else None,
@@ -107,9 +114,11 @@ class UnpairedModes(Quantity):
         factors = [whole.log_frequency_by[k]]
         if self._damped[i]:
             first.append(np.log(test.damping[i] / max(whole.damping[k], LEAST_DAMPING)))
-            variance.append(self._damping_noise(i) + view.doubt.damping**2)
+            doubts = (self.setting.tolerances.damping, view.doubt.damping)
+            variance.append(self._damping_noise(i) + sum(doubt**2 for doubt in doubts))
             factors.append(np.zeros(names))
-        measured, constants = test.constants[:, i] / scale, whole.constants[:, k] / scale
+        signs = self._signs(replace(view, now=whole.select(np.array([k]))), i)
+        measured, constants = test.constants[:, i] / scale, signs * whole.constants[:, k] / scale
         level, doubt = -1.0 if test.bare and measured @ constants < 0 else 1.0, test.level_sigma
         if not test.absolute or test.calibration > UNKNOWN_LEVEL:
             level = float(measured @ constants) / max(float(constants @ constants), 1e-300)
@@ -119,7 +128,7 @@ class UnpairedModes(Quantity):
         return _Rows(
             np.append(first, measured - level * constants),
             np.append(variance, self._shape_noise(i)),
-            np.vstack([*factors, whole.constants_by[:, k] * (level / scale)]),
+            np.vstack([*factors, whole.constants_by[:, k] * (level * signs / scale)[:, None]]),
             own,
             idle=False,
             idealised=idealised,
@@ -152,6 +161,11 @@ class UnpairedModes(Quantity):
         alone = [np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in view.state.absorbers]
         shifts = [abs(float(np.log(self._test.frequency[i] / own))) for own in alone]
         return (view.doubt.fidelity * min(shifts, default=0.0)) ** 2
+
+    def _signs(self, view: View, i: int) -> FloatArray:
+        """Return what the phases of a mode's constants make of real ones, (n_frf,) [-]."""
+        phases = Phases(replace(self.setting, measured=self._test.modes(np.array([i]))))
+        return phases.factor(view)[:, 0] if phases.present else np.ones(len(self._test.seen))
 
     @cached_property
     def _scale(self) -> FloatArray:

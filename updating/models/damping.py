@@ -26,6 +26,9 @@ COEFFICIENTS = ("alpha", "beta", "loss_factor")
 ROUNDING = 1e-4
 """Eigenvalues of a free body under this share of its first elastic one are rounding [-]."""
 
+NONE = slice(0, 0)
+"""No mode."""
+
 VISCOUS, STRUCTURAL = 0.0, -1.0
 """Powers of the frequency in the losses that are constant matrices."""
 
@@ -257,7 +260,9 @@ def layer_slowing(state: State, values: FloatArray, vectors: FloatArray) -> Floa
     return np.asarray(1 / np.sqrt(1.0 + modal_losses(state, values, vectors) / omega))
 
 
-def coupled(state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray) -> FloatArray:
+def coupled(
+    state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray, solved: slice = NONE
+) -> FloatArray:
     """Return the factors on frequencies where dampers of effects couple the modes, to second order in the dampers.
 
     Eliminating all modes but r from s^2 + s C + diag(omega^2) near s = i omega_r leaves |s|^2 = omega_r^2 (1 + sum of
@@ -270,6 +275,8 @@ def coupled(state: State, values: FloatArray, vectors: FloatArray, chosen: IntAr
         As of :func:`modal_losses`, of all modes of the basis.
     chosen : (n_modes,) array
         Modes that are asked for.
+    solved : slice
+        Modes whose coupling is solved for elsewhere; the others' alone counts.
 
     Returns
     -------
@@ -281,6 +288,7 @@ def coupled(state: State, values: FloatArray, vectors: FloatArray, chosen: IntAr
     vectors = structural(vectors, state.absorbers)
     n = len(vectors)
     squares = (vectors.T @ (sum(damper[:n, :n] for damper in dampers) @ vectors[:, chosen])) ** 2
+    squares[solved] = 0.0
     gap = values[:, None] - values[chosen]
     near = np.abs(values[chosen]) * squares
     far = np.maximum(gap**2 + near, 1e-300)

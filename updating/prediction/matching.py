@@ -46,6 +46,8 @@ class Paired:
         The test with these modes only, and the rows by which they were paired where some channel spoils the shapes.
     order : (n_modes,) int array
         Rank of each one's partner among the model's modes.
+    rows : (n_modes,) int array
+        Which of the test's modes they are, from 0.
     warnings : tuple of str
         Which modes have none.
     mostly_alone : bool
@@ -54,6 +56,7 @@ class Paired:
 
     measured: Measured
     order: IntArray
+    rows: IntArray
     warnings: tuple[str, ...]
     mostly_alone: bool = False
 
@@ -80,7 +83,9 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     """
     if not measured.has_shapes:
         return _pair_by_order(measured, prediction)
-    measured, lost = _without_faint(replace(measured, trusted=None, partner_constants=None))
+    measured = replace(measured, trusted=None, partner_constants=None)
+    clear, lost = _clear(measured)
+    measured = measured.modes(clear)
     if len(measured.frequency) > len(prediction.frequency):
         raise EstimationError(
             f"the test has {len(measured.frequency)} modes and the model {len(prediction.frequency)} in its band; "
@@ -107,7 +112,7 @@ def pair_modes(measured: Measured, prediction: Prediction) -> Paired:
     if measured.partners is not None:
         measured = replace(measured, partner_constants=prediction.constants[:, order])
     paired = replace(measured.modes(keep), trusted=trusted, unpaired=unpaired)
-    return Paired(paired, order[keep], tuple(lost), alone)
+    return Paired(paired, order[keep], np.flatnonzero(clear)[keep], tuple(lost), alone)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,23 +142,26 @@ def _without_strangers(measured: Measured, prediction: Prediction, trusted: Bool
     take what belongs to a mode that is left with a stranger: where one of those without a partner set aside leaves more
     of the others with one, it is set aside.
     """
-    every = np.ones(len(measured.frequency), dtype=bool)
-    best = _tried(measured, prediction, trusted, every)
-    aside = every
+    macs = mac_of_constants(measured, prediction, trusted)
+    first = np.ones(len(measured.frequency), dtype=bool)
+    best = _tried(measured, prediction, macs, trusted, first)
     while not best.keep.all():
-        trials = [aside & (np.arange(len(aside)) != i) for i in np.flatnonzero(aside & ~best.keep)]
-        found = [(_tried(measured, prediction, trusted, trial), trial) for trial in trials if trial.any()]
+        trials = [first & (np.arange(len(first)) != i) for i in np.flatnonzero(first & ~best.keep)]
+        found = [
+            (_tried(measured, prediction, macs, trusted, trial), trial) for trial in trials if trial.any()
+        ]
         better = max(found, key=lambda pair: pair[0].keep.sum(), default=None)
         if better is None or better[0].keep.sum() <= best.keep.sum():
             return best
-        best, aside = better
+        best, first = better
     return best
 
 
-def _tried(measured: Measured, prediction: Prediction, trusted: BoolArray | None, first: BoolArray) -> _Tried:
-    """Find partners of some modes (n_modes,), and what is most like each of the others."""
+def _tried(
+    measured: Measured, prediction: Prediction, macs: FloatArray, trusted: BoolArray | None, first: BoolArray
+) -> _Tried:
+    """Find partners of some modes (n_modes,) first, and what is most like each of the others."""
     count = len(measured.frequency)
-    macs = mac_of_constants(measured, prediction, trusted)
     order = np.argmax(macs, axis=1)
     order[first] = match(measured.modes(first), prediction, np.arange(int(first.sum())), trusted)
     mac = macs[np.arange(count), order]
@@ -189,8 +197,8 @@ MOSTLY_ALONE = (
 """What is said then."""
 
 
-def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
-    """Leave out modes whose constants drown in their own uncertainty."""
+def _clear(measured: Measured) -> tuple[BoolArray, list[str]]:
+    """Return which modes have constants that do not drown in their own uncertainty, and what is said of the others."""
     size = np.sqrt(np.mean(measured.constants**2, axis=0))
     doubt = np.sqrt(np.mean(measured.constants_sigma**2, axis=0)) / np.maximum(size, 1e-300)
     faint = doubt > FAINT
@@ -203,7 +211,7 @@ def _without_faint(measured: Measured) -> tuple[Measured, list[str]]:
         "and is left out"
         for f, d in zip(measured.frequency[faint], doubt[faint], strict=True)
     ]
-    return measured.modes(~faint), lost
+    return ~faint, lost
 
 
 def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
@@ -215,7 +223,8 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     ratio = np.log(measured.frequency[:count] / above[:count])
     if count == len(measured.frequency) and np.std(ratio) < WILD:
         order = measured.below + np.arange(count)
-        return Paired(measured, order, _distance(measured, float(np.exp(np.median(ratio)))))
+        distance = _distance(measured, float(np.exp(np.median(ratio))))
+        return Paired(measured, order, np.arange(count), distance)
     pairs = pair(measured.frequency, prediction.frequency, None)
     rows = np.array([p.test for p in pairs if p.model is not None and p.test is not None], dtype=int)
     order = np.array([p.model for p in pairs if p.model is not None and p.test is not None], dtype=int)
@@ -224,7 +233,7 @@ def _pair_by_order(measured: Measured, prediction: Prediction) -> Paired:
     keep = np.zeros(len(measured.frequency), dtype=bool)
     keep[rows] = True
     lost = [f"mode at {hertz(f)} has no partner in the model" for f in measured.frequency[~keep]]
-    return Paired(measured.modes(keep), order[np.argsort(rows)], tuple(lost))
+    return Paired(measured.modes(keep), order[np.argsort(rows)], np.flatnonzero(keep), tuple(lost))
 
 
 def _by_statement(measured: Measured, prediction: Prediction) -> Paired:
@@ -240,7 +249,7 @@ def _by_statement(measured: Measured, prediction: Prediction) -> Paired:
     lost = [f"mode at {hertz(f)} has no partner in the model" for f in measured.frequency[~keep]]
     if not keep.any():
         raise EstimationError(f"{measured.title or 'test'}: no measured frequency has a partner in the model")
-    return Paired(measured.modes(keep), order[keep], tuple(lost))
+    return Paired(measured.modes(keep), order[keep], np.flatnonzero(keep), tuple(lost))
 
 
 MISTAKEN = {

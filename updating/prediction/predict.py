@@ -13,9 +13,10 @@ from scipy import linalg
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from updating.environment import Environment
-from updating.models.absorbers import Damped, damped, energies, modes_taking_part, padded, structural
+from updating.models.absorbers import energies, padded, structural
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
+from updating.models.damped_modes import Damped, damped, modes_taking_part, turns_modes
 from updating.models.damping import (
     Matrices,
     coupled,
@@ -35,7 +36,7 @@ from updating.prediction.prediction import Prediction
 from updating.prediction.sensitivities import sensitivities
 from updating.prediction.stretch import Stretch
 from updating.test_data.chain import MeasurementChain, measurement_chain
-from updating.test_data.measured import Measured
+from updating.test_data.measured import Measured, chain_phases
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +176,7 @@ class Predictor(Displayed):
         values, vectors = reduced.eigen(total)
         first = reduced.structure.rigid_modes
         if count is None:
-            top = (2 * np.pi * 1.6 * self.measured.frequency.max()) ** 2
+            top = (2 * np.pi * 1.6 * self.measured.top) ** 2
             count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
         chosen = np.arange(first, min(first + count, len(values)))
         read = measurement_chain(self.measured, total)
@@ -196,15 +197,24 @@ class Predictor(Displayed):
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
         moved = shift * slowing
-        # what dashpots of absorbers couple holds every other damper as well
-        moved = moved * (coupled(total, values, vectors, chosen) if dashed is None else dashed.slowing)
+        if dashed is None:
+            moved = moved * coupled(total, values, vectors, chosen)
+        else:
+            solved = slice(first, first + dashed.taking_part)
+            moved = moved * dashed.slowing * coupled(total, values, vectors, chosen, solved)
         frequency = moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         # what a layer carries along is modal mass
         level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
+        product, phase = read.product(whole["w"], whole["w"]), None
+        if dashed is not None and len(product):
+            chains = self.measured.channel_group
+            chains = np.zeros(len(product), dtype=np.int64) if chains is None else chains
+            phase = chain_phases(product, chains)
+            product = product * np.exp(-1j * phase[chains])
         return Prediction(
             frequency,
             self._damping(total, values[chosen], vectors[:, chosen]) if dashed is None else dashed.ratio,
-            level * np.real(read.product(whole["w"], whole["w"])),
+            level * np.real(product),
             shapes["w"][read.seen],
             read.at_hit(shapes["w"], 1.0),
             np.stack([shapes[n][read.seen] for n in axes]),
@@ -214,14 +224,15 @@ class Predictor(Displayed):
             np.real(modes),
             total.slope + _gained(total, values[chosen], moving[:, chosen]),
             np.asarray(level),
+            phase,
         )
 
     def _damped(
         self, state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray
     ) -> Damped | None:
-        """Return the modes that dashpots of absorbers couple; None where there are none."""
-        dashpots = np.array([one.damping for one in state.absorbers])
-        if not dashpots.any() or np.isnan(values).any():
+        """Return the modes that dashpots of absorbers, or other dampers, couple; None where they hardly do."""
+        dashpots = any(one.damping for one in state.absorbers)
+        if np.isnan(values).any() or not (dashpots or turns_modes(state, values[chosen], vectors[:, chosen])):
             return None
         first = self.reduced.structure.rigid_modes
         elastic = values[first:]

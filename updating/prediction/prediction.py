@@ -37,6 +37,9 @@ class Prediction(Displayed):
         Relative change of each frequency per newton of the hits' peak force [1/N].
     gain : (n_frf, n_modes) array
         Factor of the constants over the product of the shapes at the points that they join [-].
+    phase : (n_chains, n_modes) array, optional
+        Where dampers couple modes: by how much the complex constants that each measurement chain sees were turned to
+        be the real ones above; left out, not at all [rad].
     """
 
     frequency: FloatArray
@@ -51,6 +54,7 @@ class Prediction(Displayed):
     vectors: FloatArray
     slope: FloatArray
     gain: FloatArray
+    phase: FloatArray | None = None
 
     def select(self, modes: IntArray) -> Prediction:
         """Return some of the modes, in the order given."""
@@ -67,6 +71,7 @@ class Prediction(Displayed):
             self.vectors[:, modes],
             self.slope[modes],
             self.gain[:, modes],
+            None if self.phase is None else self.phase[:, modes],
         )
 
     @cached_property

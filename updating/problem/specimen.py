@@ -260,7 +260,7 @@ class SpecimenProblem:
         return np.array(found)
 
     def strain(self, shift: FloatArray) -> float:
-        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-].
+        """Return the largest relative change that tolerances (n_names,) make of a property [-].
 
         What bends the data counts as that change of a property which a linearisation bears as well. Beside a baseline
         they make none.
@@ -268,7 +268,7 @@ class SpecimenProblem:
         if self.baseline is not None:
             return 0.0
         bent = np.sqrt(self.bending / BENT_DATA) * STRAINED_LINEARISATION
-        moved = np.abs(shift[: len(self.names)]) * np.maximum(self._relative_sigmas, bent)
+        moved = np.abs(shift) * np.maximum(self._relative_sigmas, bent)
         return float(moved.max(initial=0.0)) if np.isfinite(moved).all() else np.inf
 
     def compare(

@@ -164,6 +164,12 @@ class Measured(Displayed):
         return np.where(np.sum(self.constants * constants, axis=0) < 0, -1.0, 1.0)
 
     @property
+    def top(self) -> float:
+        """Highest measured frequency, of modes with a partner in the model and of those without [Hz]."""
+        alone = () if self.unpaired is None else self.unpaired.frequency
+        return float(np.max([*self.frequency, *alone], initial=0.0))
+
+    @property
     def level_sigma(self) -> float:
         """Relative standard deviation of the level of the constants; a shape goes with the root of an FRF [-]."""
         return self.calibration / 2 if self.bare else self.calibration
@@ -433,6 +439,16 @@ class Turned:
         return np.asarray(np.sqrt(sigma**2 + np.maximum(excess, 0.0)))
 
 
+def chain_phases(constants: ComplexArray, channel_group: IntArray) -> FloatArray:
+    """Return the direction to which most of the constants of a mode point, chain by chain, (n_chains, n_modes) [rad].
+
+    Within a quarter turn of all chains' together, which is within one of the real axis.
+    """
+    member = (channel_group == np.arange(int(channel_group.max()) + 1)[:, None]).astype(float)
+    common = np.angle(np.sum(constants**2, axis=0)) / 2
+    return np.asarray(common + np.angle((member @ constants**2) * np.exp(-2j * common)) / 2)
+
+
 def turn(constants: ComplexArray, sigma: FloatArray, seen: IntArray, hit: IntArray) -> Turned:
     """Turn complex modal constants to the real axis, chain by chain and mode by mode.
 
@@ -452,10 +468,8 @@ def turn(constants: ComplexArray, sigma: FloatArray, seen: IntArray, hit: IntArr
     transducers, channel_group = np.unique(seen, return_inverse=True)
     if len(transducers) > len(np.unique(hit)):
         channel_group = np.zeros(len(seen), dtype=np.int64)
-    count = int(channel_group.max()) + 1
-    member = (channel_group == np.arange(count)[:, None]).astype(float)
-    common = np.angle(np.sum(constants**2, axis=0)) / 2
-    phase = common + np.angle((member @ constants**2) * np.exp(-2j * common)) / 2
+    member = (channel_group == np.arange(int(channel_group.max()) + 1)[:, None]).astype(float)
+    phase = chain_phases(constants, channel_group)
     real, imaginary = (part(constants * np.exp(-1j * phase[channel_group])) for part in (np.real, np.imag))
     power = np.maximum(member @ real**2, 1e-300)
     excess = np.maximum(np.mean(imaginary**2, axis=0) - np.mean(sigma**2, axis=0), 0.0)

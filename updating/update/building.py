@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.case import Case
 from updating.models import build_structure
@@ -71,7 +71,7 @@ def build_specimen(
         )
     predictor = _on_own_basis(predictor, parameter_set) if lean else predictor
     paired = pair_modes(case.measured, predictor.predict())
-    number = 1 + _rows_of(paired.measured.frequency, case.measured.frequency)
+    number = 1 + paired.rows
     updated = {model_parameter.effect for model_parameter in parameter_set.model_parameters}
     names = [name for name, _ in case.accepted]
     if twice := sorted(name for name in updated if names.count(name) > 1):
@@ -93,15 +93,6 @@ def build_specimen(
         (*case.measured.warnings, *paired.warnings),
         np.ones(len(number)),
     )
-
-
-def _rows_of(kept: FloatArray, every: FloatArray) -> IntArray:
-    """Return which of all frequencies those kept are, in the same order; of equal ones the first that is left."""
-    rows: list[int] = []
-    for frequency in kept.tolist():
-        start = rows[-1] + 1 if rows else 0
-        rows.append(start + int(np.flatnonzero(every[start:] == frequency)[0]))
-    return np.array(rows, dtype=np.int64)
 
 
 def _on_own_basis(predictor: Predictor, parameter_set: ParameterSet) -> Predictor:

@@ -10,9 +10,10 @@ from updating_cases import BEAM as FINE
 from updating_cases import case_of, specimen, struck
 
 from updating import LIBRARY, Measured, diagnose
-from updating.diagnosis.answer.consistency import Split, splits
+from updating.diagnosis.answer.consistency import Split, _halves, splits
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
+from updating.models.state import NOMINAL
 from updating.problem.candidate import Candidate
 
 BEAM = FINE.with_elements(20)
@@ -54,3 +55,17 @@ def test_few_data_are_a_warning() -> None:
     assert any("data beyond the parameters" in warning for warning in warnings)
     many = diagnose(case_of(test, BEAM), library=[LIBRARY["E"], LIBRARY["length"]]).warnings
     assert not any("data beyond the parameters" in warning for warning in many)
+
+
+def test_a_half_without_any_mode_that_has_a_partner_is_no_half() -> None:
+    """What a test says of a mode that has none stands in both."""
+    problem, _ = pose(case_of(softer(3), BEAM))
+    found = problem.compare(NOMINAL)
+    lowest = found.mode == 0
+    one = replace(
+        found,
+        **{name: getattr(found, name)[lowest] for name in ("residual", "variance", "channel", "source")},
+    )
+    one = replace(one, mode=np.append(found.mode[lowest][:-1], -1), nuisance=found.nuisance[lowest])
+    assert "the lower and the upper modes" not in [name for name, *_ in _halves(one)]
+    assert "the lower and the upper modes" in [name for name, *_ in _halves(found)]

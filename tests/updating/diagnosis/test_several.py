@@ -226,3 +226,16 @@ def test_while_one_specimen_moves_the_others_are_not_compared_again(monkeypatch:
         anew = again.at(candidate, np.array([0.4, u]))
         assert np.array_equal(anew.residual, found.residual)
         assert np.array_equal(anew.nuisance, found.nuisance)
+
+
+def test_the_strain_of_each_specimen_is_that_of_its_own_tolerances() -> None:
+    """Whatever else a set of causes leaves in doubt beside them."""
+    both = sharing()
+    candidate = Candidate((LENGTH,))
+    middle = np.full(len(both.parameters(candidate)), 0.5)
+    found = both.at(candidate, middle)
+    second = both.specimens[1]
+    shift = np.zeros(found.nuisance.shape[1])
+    shift[found.tolerances[-len(second.names) :]] = 1.0
+    assert both.strain(shift[found.tolerances]) == second.strain(np.ones(len(second.names)))
+    assert found.tolerances[-1] >= len(both.at(Candidate(), np.zeros(0)).tolerances)

@@ -11,11 +11,13 @@ from updating_cases import BEAM, POINTS, blank, case_of, exactly
 
 from updating import LIBRARY, Measured, Predictor
 from updating.diagnosis.diagnose import pose
+from updating.diagnosis.search.held_out import _groups
 from updating.effects.base import total_mass
 from updating.likelihood.base import NO_DOUBT, Doubt
 from updating.likelihood.comparison import Comparison
 from updating.likelihood.gaussian import marginal
-from updating.models.state import NOMINAL
+from updating.likelihood.outliers import Outlier, with_outliers
+from updating.models.state import NOMINAL, State
 from updating.problem.specimen import SpecimenProblem
 from updating.thresholds import FREE_LEVEL_DOUBT
 
@@ -72,3 +74,52 @@ def test_a_level_that_is_free_is_fitted_and_paid_for(level: float, stated: dict[
     widest = column[:, np.argmax(np.abs(column).max(axis=0))]
     assert found.residual[rows][2:] == pytest.approx(np.zeros(len(POINTS)), abs=0.05)
     assert np.sqrt(np.mean(widest**2)) == pytest.approx(FREE_LEVEL_DOUBT, rel=0.05)
+
+
+def test_a_delay_turns_the_mode_as_it_turns_the_others() -> None:
+    """By half turns, which make signs of real constants, and by what the mode decays meanwhile."""
+    delay, frequency = 3e-3, TEST.frequency
+    turned = -2 * np.pi * frequency * delay
+    half_turns = np.round(-turned / np.pi)
+    grown = np.exp(2 * np.pi * frequency * TEST.damping * delay)
+    phase = (turned + np.pi * half_turns)[None]
+    late = replace(
+        TEST,
+        constants=TEST.constants * np.where(half_turns % 2, -grown, grown),
+        phase=phase,
+        phase_sigma=np.full_like(phase, 0.01),
+        channel_group=np.zeros(len(TEST.seen), dtype=int),
+    )
+    problem = posed(late)
+    assert half_turns[np.isclose(frequency, problem.measured.unpaired.frequency[0])] == 1  # type: ignore[union-attr]
+    found = problem.compare(EFFECT.state(problem.predictor, HUNG).plus(State(delay=delay)))
+    assert found.residual[found.of("unpaired")] == pytest.approx(np.zeros(2 + len(POINTS)), abs=1e-5)
+
+
+def test_its_damping_is_as_doubtful_as_that_of_the_others() -> None:
+    """A mode of the structure and of what hangs on it has of the structure's damping, too."""
+    sharp, rows = known(posed())
+    case = case_of(TEST)
+    doubts = replace(case.tolerances, damping=2 * case.tolerances.damping)
+    wide, _ = known(pose(replace(case, tolerances=doubts))[0])
+    more = 3 * case.tolerances.damping**2
+    assert wide.variance[rows[1]] - sharp.variance[rows[1]] == pytest.approx(more)
+
+
+def test_a_bad_channel_is_set_aside_in_it_too() -> None:
+    found, rows = known(posed())
+    worse = with_outliers(found, [Outlier(source=3, scale=10.0)])
+    larger = np.flatnonzero(worse.variance > 1.5 * found.variance)
+    assert np.isin(rows[2 + 3], larger)
+    assert set(found.source[larger].tolist()) == {3}
+    assert (found.source[rows[:2]] == -1).all()
+
+
+def test_points_left_out_of_a_fit_are_left_out_of_its_shape() -> None:
+    problem = posed()
+    groups = _groups(problem)
+    assert groups is not None
+    found, rows = known(problem)
+    shapes = np.flatnonzero(found.scaled)
+    by_point = {int(found.source[i]): int(groups[i]) for i in shapes}
+    assert [by_point[int(s)] for s in found.source[rows[2:]]] == groups[rows[2:]].tolist()

@@ -104,7 +104,8 @@ def _halves(comparison: Comparison) -> list[tuple[str, BoolArray, BoolArray]]:
         odd = np.isin(comparison.source, sources[1::2])
         shapes = comparison.scaled
         halves.append(("one half of the points and the other", shapes & ~odd, shapes & odd))
-    return [(name, a, b) for name, a, b in halves if a.any() and b.any()]
+    pairs = comparison.of_pairs
+    return [(name, a, b) for name, a, b in halves if (a & pairs).any() and (b & pairs).any()]
 
 
 def _part(problem: DiagnosisProblem, explanation: Explanation, columns: FloatArray, keep: BoolArray) -> _Part:

@@ -58,7 +58,7 @@ def _name_of(problem: DiagnosisProblem, titles: Sequence[str], best: Explanation
     """Name a cell: a kind of data of one mode, or all constants of one measuring channel."""
     comparison = best.best.comparison
     first = int(np.flatnonzero(rows)[0])
-    modes = np.unique(comparison.mode[rows])
+    modes = np.unique(comparison.mode[rows & comparison.of_pairs])
     which, mode, source = 0, int(modes[0]), int(comparison.source[first])
     for specimen in problem.specimens:
         count, channels = len(specimen.measured.frequency), len(specimen.measured.seen)

@@ -42,7 +42,10 @@ class DiagnosisProblem(Protocol):
         """Whether tolerances are too wide for one linearisation."""
 
     def strain(self, shift: FloatArray) -> float:
-        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
+        """Return the largest relative change that tolerances make of a property [-].
+
+        ``shift`` holds those of every specimen, one after the other [standard deviations].
+        """
 
     def applies(self, effect: Effect) -> Obstacle | None:
         """Return why an effect cannot be examined, or None."""

@@ -81,16 +81,9 @@ class Several:
         return any(problem.wide for problem in self.specimens)
 
     def strain(self, shift: FloatArray) -> float:
-        """Return the largest relative change that nuisances (p,) make of a property with a tolerance [-]."""
-        ends = np.cumsum([0, *self._counts])
-        return max(
-            problem.strain(shift[a:b]) for problem, a, b in zip(self.specimens, ends, ends[1:], strict=False)
-        )
-
-    @cached_property
-    def _counts(self) -> list[int]:
-        """How many nuisances each specimen has."""
-        return [problem.at(Candidate(), np.zeros(0)).nuisance.shape[1] for problem in self.specimens]
+        """Return the largest relative change that tolerances make of a property on any of the specimens [-]."""
+        parts = np.split(shift, np.cumsum([len(problem.names) for problem in self.specimens])[:-1])
+        return max(problem.strain(part) for problem, part in zip(self.specimens, parts, strict=True))
 
     def applies(self, effect: Effect) -> Obstacle | None:
         """Return why an effect can be examined on none of the specimens, or None."""

@@ -95,18 +95,22 @@ def evaluate(
     point = _linearised(problem, candidate, coordinates, about, keep)
     if not problem.wide:
         return point
-    best, left = point, problem.strain(_wanted(point) - _about(point))
+    best, left = point, _strain(problem, point, _wanted(point) - _about(point))
     whole = True
     for _ in range(RELINEARISATIONS):
         if left < STRAINED_LINEARISATION or not np.isfinite(left):
             break
         about = _wanted(point) if whole else 0.5 * (_about(point) + _wanted(point))
         point = _linearised(problem, candidate, coordinates, about, keep)
-        away = problem.strain(_wanted(point) - about)
+        away = _strain(problem, point, _wanted(point) - about)
         whole = away < 0.5 * left
         if away < left:
             best, left = point, away
     return best
+
+
+def _strain(problem: DiagnosisProblem, point: Point, shift: FloatArray) -> float:
+    return problem.strain(shift[point.comparison.tolerances])
 
 
 def _about(point: Point) -> FloatArray:

@@ -50,7 +50,7 @@ def points_held_out(
     residual : (n,) array
         Measured minus predicted data [-].
     told : (n,) bool array
-        Which of them are constants.
+        Which of them are constants of modes that have a partner.
     None
         Where there are too few points to leave any out.
     """
@@ -58,20 +58,20 @@ def points_held_out(
     if groups is None:
         return None
     parts = [groups != fold for fold in range(HELD_OUT_FOLDS)]
-    return held_out(diagnosis_problem, explanation, parts), groups >= 0
+    return held_out(diagnosis_problem, explanation, parts), explanation.best.comparison.scaled
 
 
 def _groups(diagnosis_problem: DiagnosisProblem) -> np.ndarray | None:
-    """Return which part each datum belongs to, -1 for what is no constant; None where there are few points."""
+    """Return which part each datum belongs to, -1 if it is of no channel; None where there are few points."""
     found = []
     for problem in diagnosis_problem.specimens:
         test = problem.measured
-        shapes = problem.at(Candidate(), np.zeros(0)).scaled
-        group = np.full(len(shapes), -1)
+        source = problem.at(Candidate(), np.zeros(0)).source
+        group = np.full(len(source), -1)
         if test.has_shapes:
             roving = test.hit if len(np.unique(test.hit)) >= len(np.unique(test.seen)) else test.seen
             rank = np.unique(roving, return_inverse=True)[1] % HELD_OUT_FOLDS
-            group[shapes] = np.repeat(rank, test.constants.shape[1])
+            group[source >= 0] = rank[source[source >= 0]]
         found.append(group)
     groups = np.concatenate(found)
     return groups if len(np.unique(groups[groups >= 0])) == HELD_OUT_FOLDS else None

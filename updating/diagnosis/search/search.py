@@ -178,10 +178,8 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     if both and _beneath(problem):
         nothing = _either(nothing, explain(problem, Candidate(fuller=True)))
     found = _with_odd(problem, [], [nothing, *_singles(problem, effects, nothing, both=both)])
-    far = not _explained(problem, found, well=True)
-    if far or _by_its_doubt(problem, found):
-        pairs = pairs_of(problem, _as_stated(found), far=far)
-        found = _with_odd(problem, found, pairs)
+    pairs = pairs_of(problem, _as_stated(found), far=not _explained(problem, found, well=True))
+    found = _with_odd(problem, found, pairs)
     for causes in range(3, len(COUNT_PRIOR)):
         if not _explained(problem, found):
             found = _with_odd(problem, found, one_more(problem, _as_stated(found), causes))

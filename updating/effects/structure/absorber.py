@@ -54,8 +54,7 @@ class Absorber(Effect):
         """Return place, mass, frequency and damping."""
         whole = total_mass(predictor.spec)
         low = lowest(predictor) / (2 * np.pi) / AWAY
-        measured = predictor.measured.frequency
-        high = max(AWAY * float(measured.max(initial=0.0)), AWAY**2 * low)
+        high = max(AWAY * predictor.measured.top, AWAY**2 * low)
         heavy = "from what hardly shows to a third of the structure's own mass"
         where = "its own mode among those of the band, or beside them"
         lossy = "from steel on steel to a mode that no test tells from the floor"

@@ -22,7 +22,7 @@ from updating.effects.box import (
 )
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import heavy_regions, region_centre, regions_meant
-from updating.effects.structure.mass_screening import frequency_gap
+from updating.effects.structure.frequency_gap import frequency_gap
 from updating.models.state import State
 from updating.models.structure import regions_at
 from updating.models.terms import modelled_mass
@@ -190,7 +190,8 @@ def _promising(effect: LocalMass, predictor: Predictor) -> FloatArray:
     """
     spec, names = predictor.spec, [p.name for p in effect.parameters(predictor)]
     gap = frequency_gap(predictor)
-    waves = (predictor.reduced.sampled["w"][:, : len(gap.vectors)] @ gap.vectors) ** 2
+    vectors = gap.prediction.vectors
+    waves = (predictor.reduced.sampled["w"][:, : len(vectors)] @ vectors) ** 2
     moving, found = predictor.reduced.fielded.fields, []
     own = modelled_mass(spec, predictor.reduced.fielded.region_of) * moving.weights
     for at in product(*((np.arange(n) + 0.5) / n for n in ALONG[spec.kind])):

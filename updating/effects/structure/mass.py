@@ -14,7 +14,7 @@ from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, tot
 from updating.effects.box import AXES, LIKE, Place, mirror_images, outline, starting_places
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import centre_of, on_basis, one_of
-from updating.effects.structure.mass_screening import frequency_gap
+from updating.effects.structure.frequency_gap import frequency_gap
 from updating.effects.structure.nodes import (
     NAMED_SHARE,
     TRIED,
@@ -337,7 +337,7 @@ def promising_points(predictor: Predictor) -> FloatArray:
             return points
         gap = frequency_gap(predictor)
         rows = structural(predictor.point_rows()[first].T, predictor.base.absorbers).T
-        masses, gained = gap.sizes(-0.5 * (rows @ gap.vectors) ** 2)
+        masses, gained = gap.sizes(-0.5 * (rows @ gap.prediction.vectors) ** 2)
         gained = np.where(masses > 0, gained, 0.0)
         return np.asarray(points[np.argsort(-gained, kind="stable")[:PROMISING]])
 

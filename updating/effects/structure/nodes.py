@@ -7,19 +7,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from updating.effects.structure.frequency_gap import frequency_gap
 from updating.models.imported.groups import Group
 from updating.models.imported.matrices import Imported
-from updating.models.state import NOMINAL, State
-from updating.prediction.matching import match
+from updating.models.state import State
 from updating.prediction.predict import Predictor
-from updating.prediction.prediction import Prediction
 
 NAMED_SHARE = 0.5
 """Prior share of the places that somebody thought of, test points and node sets, the rest that of all other nodes [-]:
 judged. Doubled, nothing sits between them."""
-
-COMMON = 2.0
-"""How much more readily a change that all modes have in common is taken for tolerances than one of their own [-]."""
 
 SOLVED = 40
 """Of so many nodes, the best to first order, frequencies are predicted. Doubled: at twice the time, a change so large
@@ -30,9 +26,6 @@ TRIED = (0.2, 0.4, 0.6, 0.8)
 
 PROMISING = 6
 """So many of these are weighed by all data. Doubled: at twice the time, neighbours further off are among them."""
-
-SPARE = 3
-"""Modes predicted beyond those of the test, so that each finds its own."""
 
 SAME = 1e-6
 """So near to each other, of the structure's size, two places are one [-]."""
@@ -114,33 +107,18 @@ def promising_nodes(
     ]
 
 
-def _gap(predictor: Predictor, now: Prediction) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Return ln f of the test over the prediction's, which modes those are, and the metric of what tells (n, n)."""
-    test = predictor.measured
-    order = np.arange(len(test.frequency)) + test.below
-    chosen = match(test, now, order)
-    count = len(chosen)
-    left = np.log(test.frequency / now.frequency[chosen])
-    return left, chosen, np.eye(count) - 1 / (count + 1 / COMMON**2)
-
-
-def _predicted(predictor: Predictor, state: State) -> Prediction:
-    test = predictor.measured
-    return predictor.predict(state, at_least=len(test.frequency) + test.below + SPARE)
-
-
 def _best_to_first_order(
     predictor: Predictor, imported: Imported, free: IntArray, *, springs: bool
 ) -> list[tuple[int, int]]:
     """Return nodes, and axes of springs, in whose pattern of shifts the gap is."""
-    nominal = _predicted(predictor, NOMINAL)
-    off, chosen, metric = _gap(predictor, nominal)
-    vectors = predictor.reduced.basis[:, : len(nominal.vectors)] @ nominal.vectors[:, chosen]
+    gap = frequency_gap(predictor)
+    nominal = gap.prediction
+    vectors = predictor.reduced.basis[:, : len(nominal.vectors)] @ nominal.vectors
     squares = np.stack([np.asarray(motion[free] @ vectors) ** 2 for motion in imported.places.moves])
-    stiff = (2 * np.pi * nominal.frequency[chosen]) ** 2
-    shifts = (squares / stiff).reshape(-1, len(off)) / 2 if springs else -squares.sum(axis=0) / 2
-    gain = np.maximum(shifts @ metric @ off, 0.0) ** 2
-    gain /= np.maximum(np.einsum("ij,jk,ik->i", shifts, metric, shifts), 1e-300)
+    stiff = (2 * np.pi * nominal.frequency) ** 2
+    shifts = (squares / stiff).reshape(-1, len(stiff)) / 2 if springs else -squares.sum(axis=0) / 2
+    size, gained = gap.sizes(shifts)
+    gain = np.where(size > 0, gained, 0.0)
     best = np.argsort(-gain, kind="stable")[:SOLVED]
     return [
         (int(free[i % len(free)]), i // len(free) if springs else -1) for i in best.tolist() if gain[i] > 0
@@ -158,8 +136,5 @@ def _misfit(
     index, axis = node
     motions = [imported.places.moves[a][[index]] for a in (range(3) if axis < 0 else [axis])]
     rows = np.vstack([np.asarray(motion @ predictor.reduced.basis) for motion in motions])
-    found = []
-    for size in sizes:
-        left, _, metric = _gap(predictor, _predicted(predictor, change(rows, size)))
-        found.append(float(left @ metric @ left))
+    found = [frequency_gap(predictor, change(rows, size)).misfit for size in sizes]
     return min((value for value in found if np.isfinite(value)), default=np.inf)
