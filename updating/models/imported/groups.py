@@ -101,7 +101,11 @@ def set_nodes(places: Places, sets: NodeSets, name: str) -> IntArray:
 
 def group_of(places: Places, sets: NodeSets, name: str) -> Group:
     """Return a node set as a place."""
-    index = set_nodes(places, sets, name)
+    return group_of_nodes(places, name, set_nodes(places, sets, name))
+
+
+def group_of_nodes(places: Places, name: str, index: IntArray) -> Group:
+    """Return nodes (n,), by their indices among the places, as one place."""
     mean = Sparse(np.full((1, len(index)), 1 / max(len(index), 1)))
     rows = []
     for motion in (*places.moves, *places.turns):
@@ -237,7 +241,7 @@ def supports_of(
     rigid = rigid_motions(places, stiffness.shape[0])
     if not len(held) or rigid is None:
         return ()
-    gathered = list(_gathered(places, held))
+    gathered = list(neighbourhoods(places, held))
     middles = np.array([places.at[group].mean(axis=0) for group in gathered])
     at, nodes = places_of_rows(places, stiffness.shape[0]), nodes_of_rows(places, stiffness.shape[0])
     away = np.stack([KDTree(places.at[group]).query(at)[0] for group in gathered])
@@ -327,10 +331,10 @@ def nodes_of_rows(places: Places, order: int) -> IntArray:
     return node
 
 
-def _gathered(places: Places, held: IntArray) -> Iterator[IntArray]:
-    """Gather held nodes that are near each other: nearer than a share of the structure."""
+def neighbourhoods(places: Places, nodes: IntArray) -> Iterator[IntArray]:
+    """Gather nodes that are near each other: nearer than a share of the structure."""
     reach = COMPACT * float(np.ptp(places.at, axis=0).max())
-    left = held
+    left = nodes
     while len(left):
         group, edge = left[:1], left[:1]
         left = left[1:]
