@@ -273,9 +273,10 @@ step, and the second is rarely taken."""
 QUANTILE_SPREAD = 0.3
 """Standard deviation of a parameter's prior quantile, even between nought and one [-]."""
 
-SET_MARGIN = 6.0
+SET_MARGIN = 5.0
 """A set is weighed where a score test says that its logarithm of the probability would come this near to the best,
-or above [-]: the test errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
+or above [-]. The test takes of the second cause what its parameters cost alone, where it has to bend to all of the gap:
+too much by up to five. Doubled: some three times as many sets are weighed where one cause fits."""
 
 CLOSES_NEARLY_ALL = 90.0
 """A cause that leaves more than noise is named where it closes so much of what can be closed, on modes held out [%].

@@ -11,6 +11,7 @@ import scipy.linalg
 from acquisition.arrays import ComplexArray, FloatArray
 from modalkit.simulator.bodies.complex_modes import ComplexModes
 from modalkit.simulator.bodies.solid.solid import Solid
+from modalkit.simulator.drawing.block import MODELLED
 from modalkit.simulator.matching import match
 from modalkit.simulator.scene import Scene, nominal_scene
 from modalkit.simulator.setup import Setup
@@ -19,7 +20,14 @@ FREQUENCY_SIGMA = 2e-4
 SHAPE_SIGMA = 0.02
 _DAMPING_SIGMA = 0.05
 _STEP = 1e-3
-_ELEMENTS: dict[str, Any] = {"beam": 6, "plate": (4, 2), "solid": 6, "frame": 3}
+_ELEMENTS: dict[str, Any] = {
+    "beam": 6,
+    "plate": (4, 2),
+    "solid": 6,
+    "frame": 3,
+    "ribbed": MODELLED,
+    "bracket": MODELLED,
+}
 _HARDER = 1.5
 _TOLERANCES = ("E", "density", "thickness", "length", "width")
 
@@ -161,6 +169,8 @@ def _tolerance_columns(setup: Setup, nominal: Reading, scale: FloatArray) -> Flo
     start = nominal.vector(scale)
     columns = []
     for name in _TOLERANCES:
+        if not getattr(setup.tolerances, name):
+            continue
         moved = read(nominal_scene(setup, factors={name: 1.0 + _STEP}))
         columns.append((moved.vector(scale) - start) / _STEP * getattr(setup.tolerances, name))
     n = setup.modes

@@ -62,13 +62,13 @@ def true_shrinkage(trial: Trial, answer: Answer) -> Shrinkage | None:
     -------
     Shrinkage or None
         None where the answer names nothing that the rig can do, or so much of it that modes are missing, as where a
-        load buckles the nominal body; and of frames, whose answers name parts. Tolerances are refitted in their
-        linearisation, each within three standard deviations, to the frequencies measured; with a baseline they are
-        known.
+        load buckles the nominal body; and of what is modelled by matrices, whose answers name parts. Tolerances are
+        refitted in their linearisation, each within three standard deviations, to the frequencies measured; with a
+        baseline they are known.
         Damping is not refitted: its tolerance is each mode's own and would explain all.
     """
     row = answer.best
-    if row is None or not row.effects or trial.scene.setup.kind == "frame":
+    if row is None or not row.effects or trial.scene.setup.by_matrices:
         return None
     added = put_in(nominal_scene(trial.scene.setup), row)
     if added is None:

@@ -11,6 +11,8 @@ import numpy as np
 
 from acquisition.errors import StudyError
 from modalkit.blind.visibility import shown
+from modalkit.simulator.block_model import write_block_model
+from modalkit.simulator.bodies.block.block import Block
 from modalkit.simulator.bodies.frame.frame import Frame
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.drawing.specimen import draw_setup, lacks_shear
@@ -39,7 +41,7 @@ class Truth:
 
     Parameters
     ----------
-    kind : {"beam", "plate", "solid", "frame"}
+    kind : {"beam", "plate", "solid", "frame", "ribbed", "bracket"}
         Of the specimen.
     effects : tuple of str
         Hidden effects; empty for none.
@@ -285,6 +287,8 @@ def write_trial(trial: Trial, folder: Path) -> Path:
     model = None
     if isinstance(setup.nominal, Frame):
         model = write_frame_model(setup.nominal, setup.elements[0], folder)
+    if isinstance(setup.nominal, Block):
+        model = write_block_model(setup.nominal, setup.elements[0], folder)
     text = study_text(setup, test_file="test.uff", baseline_file="baseline.uff", model=model)
     study.write_text(text, encoding="utf-8")
     return study

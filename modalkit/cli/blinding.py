@@ -44,7 +44,10 @@ StoreFile = Annotated[
 ]
 Resume = Annotated[bool, typer.Option("--resume", help="continue the run of a store")]
 Kinds = Annotated[
-    str, typer.Option(help="specimens: beam, plate, solid (needs CalculiX); default beam,plate")
+    str,
+    typer.Option(
+        help="specimens: beam, plate, frame, and with CalculiX solid, ribbed, bracket; default beam,plate"
+    ),
 ]
 Effects = Annotated[str, typer.Option(help="effects that may be hidden, comma-separated; default all")]
 LeaveOut = Annotated[

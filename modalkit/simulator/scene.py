@@ -11,6 +11,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray, frozen_array
 from modalkit.simulator.bodies.beam.beam import Beam
+from modalkit.simulator.bodies.block.block import Block
 from modalkit.simulator.bodies.body import Body
 from modalkit.simulator.bodies.complex_modes import ComplexModes, complex_modes
 from modalkit.simulator.bodies.frame.frame import Frame
@@ -159,7 +160,7 @@ def sensor_place(setup: Setup, marks: FloatArray) -> FloatArray:
 
 def inside_body(body: Body, places: FloatArray) -> FloatArray:
     """Return places with those off the body moved to its edge, shape (n, dim) [m]."""
-    if isinstance(body, Frame):
+    if isinstance(body, (Block, Frame)):
         return np.clip(places, [body.start, 0.0], [body.end, body.width])
     if isinstance(body, Plate):
         return np.clip(places, [body.start, body.side], [body.end, body.side + body.width])
@@ -248,7 +249,7 @@ def build_scene(
 
 def lengthened(body: Body, extension: float) -> Body:
     """Return a body longer along x by an extension, which is added at its clamped ends [m]."""
-    assert isinstance(body, (Beam, Plate, Solid, Frame))
+    assert isinstance(body, (Beam, Block, Plate, Solid, Frame))
     ends = [end for end in ("x0", "x1") if end in body.clamped] or ["x0"]
     start, end = (extension * (name in ends) / len(ends) for name in ("x0", "x1"))
     return replace(body, start=body.start - start, end=body.end + end)
@@ -256,7 +257,7 @@ def lengthened(body: Body, extension: float) -> Body:
 
 def attachments(setup: Setup, place: FloatArray) -> tuple[Attached | PlateAttached, ...]:
     """Return what the body always carries: the known sensor, and soft springs under a free one."""
-    part: Any = PlateAttached if setup.kind in ("plate", "frame") else Attached
+    part: Any = PlateAttached if len(setup.size) > 1 else Attached
     sensor = part(*(float(x) for x in place), mass=setup.sensor_mass, inertia=setup.sensor_inertia)
     if setup.clamped:
         return (sensor,)

@@ -10,10 +10,14 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from modalkit.simulator.bodies.beam.beam import Beam
+from modalkit.simulator.bodies.block.block import Block
 from modalkit.simulator.bodies.body import Body
 from modalkit.simulator.bodies.frame.frame import Frame
 from modalkit.simulator.bodies.plate.plate import Plate
 from modalkit.simulator.bodies.solid.solid import Solid
+
+BY_MATRICES = ("frame", "ribbed", "bracket")
+"""Kinds of specimen that the study models by matrices."""
 
 UNCALIBRATED = 0.3
 """From this uncertainty of the level on, a test has no absolute level [-]."""
@@ -37,8 +41,8 @@ class Setup:
 
     Parameters
     ----------
-    kind : {"beam", "plate", "solid", "frame"}
-        Of the specimen; a solid is modelled as a beam, and made of bricks; a frame as matrices.
+    kind : {"beam", "plate", "solid", "frame", "ribbed", "bracket"}
+        Of the specimen; a solid is modelled as a beam, and made of bricks; the last three as matrices.
     title : str
         Neutral title.
     length, width, thickness : float
@@ -97,7 +101,9 @@ class Setup:
         Distances of the fluid's surface above and of its bottom below the specimen, stated with the density; None
         is a fluid without end on that side [m].
     breadth : float
-        Of a frame's bars, in its plane [m].
+        Of a frame's bars, in its plane; of ribs, or of a bracket's legs and gussets [m].
+    height : float
+        Of ribs, or of a bracket [m].
     rungs : tuple of float
         Where they are in a frame, over its length [-].
     """
@@ -139,12 +145,18 @@ class Setup:
     free_surface: float | None = None
     bottom: float | None = None
     breadth: float = 0.0
+    height: float = 0.0
     rungs: tuple[float, ...] = ()
 
     @property
     def size(self) -> tuple[float, ...]:
         """Extents of the model along its axes [m]."""
-        return (self.length, self.width) if self.kind in ("plate", "frame") else (self.length,)
+        return (self.length, self.width) if self.kind == "plate" or self.by_matrices else (self.length,)
+
+    @property
+    def by_matrices(self) -> bool:
+        """Whether the study models it by matrices."""
+        return self.kind in BY_MATRICES
 
     @property
     def places(self) -> FloatArray:
@@ -159,7 +171,7 @@ class Setup:
     @property
     def mass(self) -> float:
         """Mass of the specimen as drawn [kg]."""
-        if self.kind == "frame":
+        if self.by_matrices:
             return self.nominal.mass
         return self.density * self.length * self.width * self.thickness
 
@@ -185,7 +197,9 @@ class Setup:
 
     @property
     def made(self) -> Body:
-        """The body made to the drawing, without its sensor: that of the drawing, or one of bricks."""
+        """The body made to the drawing, without its sensor: that of the drawing, or one of bricks, or of more."""
+        if self.kind in ("ribbed", "bracket"):
+            return Block(self.kind, **_drawn(self), breadth=self.breadth, height=self.height)
         if self.kind != "solid":
             return self.nominal
         return Solid("beam", **_drawn(self))
@@ -229,6 +243,9 @@ def bare_body(setup: Setup) -> Body:
     """
     if setup.kind == "frame":
         return Frame(**_drawn(setup), breadth=setup.breadth, rungs=setup.rungs)
+    if setup.kind in ("ribbed", "bracket"):
+        sizes: dict[str, Any] = {"breadth": setup.breadth, "height": setup.height}
+        return Block(setup.kind, **_drawn(setup), **sizes, elements=setup.elements[0])
     kind: type[Plate] | type[Beam] = Plate if setup.kind == "plate" else Beam
     return kind(**_drawn(setup))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from modalkit.simulator.setup import Setup
@@ -28,7 +29,7 @@ def study_text(
     expects_damping : bool
         Whether the study says what damping the modeller expects.
     model : mapping, optional
-        The study's ``[model]`` of a frame, whose matrices are files.
+        The study's ``[model]`` of a specimen whose matrices are files.
 
     Returns
     -------
@@ -48,7 +49,7 @@ def study_text(
     if model is not None:
         tolerances = {name: tolerances[name] for name in ("E", "density", "damping")}
         files = model["stiffness_parts"]
-        names = [file.removeprefix("stiffness_").removesuffix(".mtx") for file in files]
+        names = [Path(file).stem.removeprefix("stiffness_") for file in files]
         regions = [("[[model.region]]", {"name": name}) for name in names]
     tables: list[tuple[str, dict[str, Any]]] = [("[test]", test)]
     if setup.baseline:

@@ -235,7 +235,14 @@ def _locate(problem: DiagnosisProblem, found: Search, verdict: Verdict) -> Where
         return one.restricted(*problem.part(one.candidate, i))
 
     i = int(np.argmax([len(on(leader, j).names) for j in range(len(problem.specimens))]))
-    rows = tuple(replace(row, explanation=on(row.explanation, i)) for row in found.compared)
+    rows = tuple(
+        replace(
+            row,
+            explanation=on(row.explanation, i),
+            forms=tuple((on(form, i), share) for form, share in row.forms),
+        )
+        for row in found.compared
+    )
     part = replace(found, nothing=on(found.nothing, i), compared=rows)
     return locate(problem.specimens[i], part, verdict=verdict, whole=found)
 

@@ -12,6 +12,7 @@ from acquisition.errors import StudyError
 from updating.effects.base import Values
 from updating.effects.box import Place
 from updating.models.fields import Sparse
+from updating.models.imported.cords import Cords
 from updating.models.imported.groups import Group, Joint, Support
 from updating.models.spec import Spec
 from updating.prediction.predict import Predictor
@@ -22,7 +23,7 @@ WAYS = ("x", "y", "z", "rx", "ry", "rz")
 PLACED = ("region", "at", "joint", "support")
 """Values that name a place of the user's own model."""
 
-Named = TypeVar("Named", Group, Joint, Support)
+Named = TypeVar("Named", Cords, Group, Joint, Support)
 
 
 def stiff_regions(predictor: Predictor) -> tuple[str, ...]:
@@ -79,7 +80,7 @@ def region_centre(predictor: Predictor, values: Values) -> Place:
 
 
 def one_of(known: Iterable[Named], values: Values, label: str) -> Named:
-    """Return the node set, joint or support that a label names.
+    """Return the node set, suspension, joint or support that a label names.
 
     Raises
     ------

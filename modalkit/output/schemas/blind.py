@@ -300,7 +300,7 @@ class TrialEntry(TypedDict):
     trial: Annotated[int, "number of the trial [-]"]
     effect: Annotated[str, "what was hidden"]
     sort: Annotated[str, "as in `effects`"]
-    kind: Annotated[str, "specimen: beam, plate or solid"]
+    kind: Annotated[str, "specimen: beam, plate, solid, frame, ribbed or bracket"]
     level: Annotated[str, "none, mild, clear or strong"]
     severity: Annotated[float, "drawn strength, 1 for clear [-]"]
     visibility: Annotated[float, "by how much the effect moves the data beyond the tolerances [sigma]"]

@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from acquisition.errors import StudyError
 
-KINDS = ("beam", "plate", "solid", "frame")
+KINDS = ("beam", "plate", "solid", "frame", "ribbed", "bracket")
 
 
 @dataclass(frozen=True)
@@ -18,8 +18,9 @@ class DrawRanges:
     Parameters
     ----------
     kinds : tuple of str
-        Kinds of specimen, of ``beam``, ``plate``, ``solid``, a cantilever of bricks that the study models as a beam
-        (these need CalculiX), and ``frame``, bars between joints, which the study models by matrices.
+        Kinds of specimen, of ``beam``, ``plate``, ``solid``, a cantilever of bricks that the study models as a beam,
+        and what it models by matrices: ``frame``, bars between joints, ``ribbed``, a plate with ribs, and ``bracket``,
+        the last two of bricks. Those of bricks need CalculiX.
     plates : float
         Share of plates where there are other kinds too; that of solids likewise [-].
     effects : tuple of str

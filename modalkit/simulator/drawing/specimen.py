@@ -10,6 +10,7 @@ import numpy as np
 from acquisition.errors import StudyError
 from modalkit.simulator.bodies.beam.beam import Beam
 from modalkit.simulator.bodies.solid.solid import available
+from modalkit.simulator.drawing.block import draw_bracket, draw_ribbed
 from modalkit.simulator.drawing.common import (
     MATERIAL_SHARES,
     MATERIALS,
@@ -23,6 +24,9 @@ from modalkit.simulator.drawing.frame import draw_frame
 from modalkit.simulator.drawing.plate import draw_plate
 from modalkit.simulator.drawing.ranges import DrawRanges
 from modalkit.simulator.setup import Setup, Tolerances
+
+BRICKS = ("solid", "ribbed", "bracket")
+"""Kinds of specimen made of bricks, which need CalculiX."""
 
 _CLAMPS: tuple[tuple[str, ...], ...] = (("x0",), ("x0", "x1"), ())
 _CLAMP_SHARES = (0.62, 0.12, 0.26)
@@ -50,14 +54,22 @@ def draw_setup(rng: np.random.Generator, *, plan: DrawRanges = _EVERYTHING) -> S
     Raises
     ------
     StudyError
-        If solids are asked for, and there is no CalculiX.
+        If something of bricks is asked for, and there is no CalculiX.
     """
-    if "solid" in plan.kinds and not available():
+    of_bricks = [kind for kind in plan.kinds if kind in BRICKS]
+    if of_bricks and not available():
         raise StudyError(
-            "plan: solids need CalculiX, and there is no ccx on the path; "
-            "install calculix-ccx, or leave solids out of the kinds"
+            f"plan: bodies of bricks ({', '.join(of_bricks)}) need CalculiX, and there is no ccx on the path; "
+            "install calculix-ccx, or leave them out of the kinds"
         )
-    makers = {"beam": _draw_beam, "plate": draw_plate, "solid": _draw_solid, "frame": draw_frame}
+    makers = {
+        "beam": _draw_beam,
+        "plate": draw_plate,
+        "solid": _draw_solid,
+        "frame": draw_frame,
+        "ribbed": draw_ribbed,
+        "bracket": draw_bracket,
+    }
     maker = makers[_draw_kind(rng, plan)]
     while True:
         setup = maker(rng, plan)

@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 from modalkit.simulator.hidden.base import HiddenEffect, Values
+from modalkit.simulator.hidden.block import KINDS as BLOCKS
+from modalkit.simulator.hidden.block import OF_BLOCKS
 from modalkit.simulator.hidden.chain import CHAIN
 from modalkit.simulator.hidden.frame import OF_FRAMES, SHARED
 from modalkit.simulator.hidden.local import LOCAL
@@ -23,10 +25,18 @@ FRAME_EFFECTS: dict[str, HiddenEffect] = {
 }
 """All of frames by name."""
 
+BLOCK_EFFECTS: dict[str, HiddenEffect] = {
+    **{name: replace(HIDDEN_EFFECTS[name], kinds=BLOCKS) for name in SHARED},
+    **{hidden_effect.name: hidden_effect for hidden_effect in OF_BLOCKS},
+}
+"""All of ribbed plates and brackets by name."""
+
 
 def effects_of(kind: str) -> dict[str, HiddenEffect]:
     """Return what may be hidden in a kind of specimen, by name."""
+    if kind in BLOCKS:
+        return BLOCK_EFFECTS
     return FRAME_EFFECTS if kind == "frame" else HIDDEN_EFFECTS
 
 
-__all__ = ["FRAME_EFFECTS", "HIDDEN_EFFECTS", "HiddenEffect", "Values", "effects_of"]
+__all__ = ["BLOCK_EFFECTS", "FRAME_EFFECTS", "HIDDEN_EFFECTS", "HiddenEffect", "Values", "effects_of"]

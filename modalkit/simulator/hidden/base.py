@@ -114,7 +114,7 @@ class HiddenEffect:
 
     def fits(self, setup: Setup) -> bool:
         """Tell whether the specimen can have it, of what it is made of too."""
-        if self.kinds or setup.kind == "frame":
+        if self.kinds or setup.by_matrices:
             return setup.kind in self.kinds and self.applies(setup)
         return self.applies(setup) and (self.solid or setup.kind != "solid")
 

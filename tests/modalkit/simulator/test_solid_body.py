@@ -190,7 +190,7 @@ def test_solids_are_drawn_as_often_as_plates() -> None:
 
 def test_solids_are_refused_without_calculix(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
-    with pytest.raises(StudyError, match=r"solids need CalculiX.*install calculix-ccx"):
+    with pytest.raises(StudyError, match=r"bodies of bricks .solid. need CalculiX.*install calculix-ccx"):
         draw_setup(np.random.default_rng(0), plan=DrawRanges(kinds=("beam", "solid")))
 
 

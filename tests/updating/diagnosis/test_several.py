@@ -5,18 +5,21 @@ from functools import cache
 
 import numpy as np
 import pytest
+from effect_cases import imported
 from updating_cases import BEAM as FINE
-from updating_cases import DOUBTS, POINTS, blank, observed
+from updating_cases import DOUBTS, POINTS, blank, exactly, observed
 from updating_cases import PLATE as FINE_PLATE
 
 from acquisition.errors import InputError
 from updating import Case, Predictor, Spec, Tolerances
 from updating.diagnosis.answer.result import Diagnosis
-from updating.diagnosis.diagnose import diagnose_together, pose
+from updating.diagnosis.diagnose import _locate, diagnose_together, pose
 from updating.diagnosis.problem.recent import Recent
 from updating.diagnosis.problem.several import Several
 from updating.diagnosis.search.evidence import explain
+from updating.diagnosis.search.search import Compared, Search
 from updating.effects import LIBRARY
+from updating.effects.base import Variant
 from updating.likelihood.comparison import Comparison
 from updating.models.state import NOMINAL, State, combine
 from updating.problem.candidate import Candidate
@@ -200,6 +203,30 @@ def test_the_place_is_told_on_the_specimen_on_which_the_cause_acts() -> None:
     assert found.ranking[0].effects == ("orthotropy",)
     assert found.where.channels["stiffness"] > 0.95
     assert len(found.where.zones) == len(PLATE.regions)
+
+
+def test_of_matrices_places_are_those_of_the_specimen_on_which_the_cause_acts() -> None:
+    """Of two forms of one cause, a test point of both beams and a node set of the second, the first has the one."""
+    spring, cases = LIBRARY["ground_spring"], []
+    for title, sets in (("first", {}), ("second", {"tip": np.array([21])})):
+        bare = imported()
+        assert bare.spec.imported is not None
+        whole = replace(bare.spec.imported, nodes=replace(bare.spec.imported.nodes, sets=sets))
+        bare = bare.of(replace(bare.spec, imported=whole))
+        at = dict(zip("xyz", bare.measured.points[2].tolist(), strict=True))
+        state = spring.state(bare, {**at, "stiffness": 4e3})
+        test = exactly(bare, bare.predict(state, count=4), damping=np.full(4, np.nan))
+        cases.append(Case(title, bare.spec, test, tolerances=Tolerances({"E": 0.01})))
+    problem = several(*cases)
+    point = Variant({**at, "extent": 0.0, "damping": 0.0})
+    tip = Variant({**point.values, "x": 0.5, "at": "tip", "along": "z"})
+    one, other, nothing = (
+        explain(problem, Candidate(effects, chosen=forms), laplace_only=True)
+        for effects, forms in (((spring,), (point,)), ((spring,), (tip,)), ((), ()))
+    )
+    rows = Compared(one, 1.0, 0.5, 0.5, forms=((one, 0.6), (other, 0.4))), Compared(nothing, 0.0, 0.0, 0.0)
+    found = _locate(problem, Search(nothing, rows, {}), "named")
+    assert found.locations == (pytest.approx(bare.measured.points[2]),)
 
 
 def test_no_effect_on_either_is_no_gap() -> None:

@@ -230,6 +230,29 @@ def test_on_matrices_it_hangs_in_the_directions_that_are_measured() -> None:
     assert (np.diff(found.frequency) > 0).all()
 
 
+def test_on_matrices_a_search_starts_from_the_same_share_of_any_mass() -> None:
+    """A structure of a thousand times the stiffness and mass has the same modes, and starts at the same quantiles."""
+    found = []
+    for size in (1.0, 1000.0):
+        plain = imported()
+        whole = plain.spec.imported
+        assert whole is not None
+        kinds = ("stiffness", "mass", "stiffness_parts", "mass_parts")
+        own = [getattr(whole, kind) for kind in kinds]
+        scaled = [tuple(size * part for part in one) if isinstance(one, tuple) else size * one for one in own]
+        spec = replace(plain.spec, imported=replace(whole, **dict(zip(kinds, scaled, strict=True))))
+        predictor = plain.of(spec)
+        at = dict(zip("xyz", predictor.measured.points[1].tolist(), strict=True))
+        hertz = 1.02 * float(predictor.predict(count=1).frequency[0])
+        values = {**at, "mass": 0.1 * total_mass(spec), "frequency": hertz}
+        test = exactly(predictor, predictor.predict(EFFECT.state(predictor, values), count=3))
+        predictor = predictor.for_test(test.modes(np.array([0, 2])))
+        predictor = predictor.for_test(replace(predictor.measured, unpaired=test.modes(np.array([1]))))
+        found.append(np.array(EFFECT.starts(predictor)))
+    assert found[1] == pytest.approx(found[0])
+    assert 0.05 < found[0][0, -3] < 0.95
+
+
 def tuned(beam: ExactBeam, rng: np.random.Generator, *, x: float, share: float, hertz: float) -> Measured:
     """A hammer test of an exact beam with an absorber, between a dozen of its modes."""
     alone = beam.frequencies(12)

@@ -19,15 +19,18 @@ STIFF, LINE = E * WIDTH * DEPTH**3 / 12, DENSITY * WIDTH * DEPTH
 
 
 def beam_matrices(elements: int, first: int = 0, last: int | None = None) -> tuple[Sparse, Sparse]:
-    """Return the textbook matrices of a free Euler-Bernoulli beam, w and dw/dx at every node, some elements only."""
+    """Return the textbook matrices of a free Euler-Bernoulli beam, some elements only.
+
+    Each node has w and the rotation about y, which is -dw/dx.
+    """
     h = LENGTH / elements
     k = STIFF / h**3 * np.array(
-        [[12, 6 * h, -12, 6 * h], [6 * h, 4 * h**2, -6 * h, 2 * h**2],
-         [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h**2, -6 * h, 4 * h**2]]
+        [[12, -6 * h, -12, -6 * h], [-6 * h, 4 * h**2, 6 * h, 2 * h**2],
+         [-12, 6 * h, 12, 6 * h], [-6 * h, 2 * h**2, 6 * h, 4 * h**2]]
     )  # fmt: skip
     m = LINE * h / 420 * np.array(
-        [[156, 22 * h, 54, -13 * h], [22 * h, 4 * h**2, 13 * h, -3 * h**2],
-         [54, 13 * h, 156, -22 * h], [-13 * h, -3 * h**2, -22 * h, 4 * h**2]]
+        [[156, -22 * h, 54, 13 * h], [-22 * h, 4 * h**2, -13 * h, -3 * h**2],
+         [54, -13 * h, 156, 22 * h], [13 * h, -3 * h**2, 22 * h, 4 * h**2]]
     )  # fmt: skip
     n = 2 * (elements + 1)
     stiffness, mass = np.zeros((n, n)), np.zeros((n, n))
@@ -44,7 +47,7 @@ def clamp(matrix: Sparse) -> Sparse:
 
 
 def beam_table(elements: int, *, clamped: bool) -> NodeTable:
-    """Return where the rows of the beam are: along x, w along z and the rotation about -y."""
+    """Return where the rows of the beam are: along x, w along z and the rotation about y."""
     node = np.repeat(np.arange(elements + 1) + 1, 2)
     places = np.zeros((len(node), 3))
     places[:, 0] = LENGTH * (node - 1) / elements

@@ -10,8 +10,8 @@ from imported_cases import beam_matrices, imported_beam, seen_from, spec_of
 from scipy import linalg
 
 from updating import LIBRARY, Tolerances
-from updating.models.fields import Sparse
 from updating.models.imported import Imported
+from updating.models.imported.groups import rigid_motions
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.update.data.nominal import UpdatedModel
@@ -27,18 +27,14 @@ MASS_OF_ROW = 3e-4
 """What the mass of the held row, which is not known and estimated from that beside it, may move frequencies [-]."""
 
 
-def beam(*parts: int) -> Imported:
-    """The clamped beam, whose rows of rotation are about y, divided behind some of its elements."""
-    known = imported_beam(ELEMENTS, parts=parts)
-    about_y = Sparse(np.diag(np.tile([1.0, -1.0], ELEMENTS)))
-
-    def turned(matrix: Sparse) -> Sparse:
-        return Sparse(about_y @ matrix @ about_y)
-
-    kinds = ("stiffness", "mass", "stiffness_parts", "mass_parts")
-    whole = {kind: turned(getattr(known, kind)) for kind in kinds[:2]}
-    divided = {kind: tuple(map(turned, getattr(known, kind))) for kind in kinds[2:]}
-    return Imported(nodes=known.nodes, **whole, **divided)
+def test_the_beam_feels_no_force_when_it_moves_as_a_rigid_body() -> None:
+    """Its rows of rotation turn about y as the node table states, so that a support's motion is known from them."""
+    known = imported_beam(ELEMENTS, clamped=False)
+    rigid = rigid_motions(known.places, known.order)
+    assert rigid is not None
+    assert np.abs(rigid[:, [2, 4]]).max(axis=0) == pytest.approx([1.0, 1.0])
+    forces = np.abs(known.stiffness @ rigid)
+    assert forces.max() < 1e-9 * np.abs(known.stiffness.toarray()).max()
 
 
 def predictor_of(imported: Imported, etas: tuple[float, ...] = ()) -> Predictor:
@@ -83,7 +79,7 @@ def hertz(*factors: float) -> np.ndarray:
     ],
 )
 def test_another_modulus_leaves_the_spring_as_it_is(state: State, factors: tuple[float, float]) -> None:
-    predictor = predictor_of(beam(DIVIDED))
+    predictor = predictor_of(imported_beam(ELEMENTS, parts=(DIVIDED,)))
     whole = predictor.predict(turning(predictor).plus(state), count=3)
     assert whole.frequency == pytest.approx(hertz(*factors), rel=0.005)
     plain = predictor.predict(turning(predictor), count=3).frequency
@@ -92,7 +88,7 @@ def test_another_modulus_leaves_the_spring_as_it_is(state: State, factors: tuple
 
 @pytest.mark.parametrize(("factor", "regions"), [("E", ()), ("E", (0,)), ("E", (1,)), ("density", ())])
 def test_sensitivities_are_slopes_of_the_frequencies(factor: str, regions: tuple[int, ...]) -> None:
-    predictor = predictor_of(beam(DIVIDED))
+    predictor = predictor_of(imported_beam(ELEMENTS, parts=(DIVIDED,)))
     state, step = turning(predictor), 1e-3
 
     def logs(value: float) -> np.ndarray:
@@ -112,7 +108,7 @@ def test_sensitivities_are_slopes_of_the_frequencies(factor: str, regions: tuple
 
 
 def test_an_accepted_clamp_gives_way_in_an_update_of_the_modulus() -> None:
-    plain = predictor_of(beam())
+    plain = predictor_of(imported_beam(ELEMENTS))
     accepted = plain.for_test(plain.measured, (turning,))
     model = UpdatedModel(accepted, build_parameter_set(["E"], accepted, Tolerances(), {}))
     assert model.affine is None  # the support on its spring is no sum of powers of the modulus
@@ -130,7 +126,7 @@ def test_a_spring_at_a_support_is_not_damped_by_the_structure_s_coefficients(
     energy = np.array([np.sum(vectors * (half @ vectors), axis=0) for half in halves])
     lost = np.array(etas) @ energy + 1e-6 * np.sqrt(values) * energy.sum(axis=0)
     expected = (lost / (2 * values))[:3]
-    predictor = predictor_of(beam(DIVIDED), etas)
+    predictor = predictor_of(imported_beam(ELEMENTS, parts=(DIVIDED,)), etas)
     state = turning(predictor)
     assert predictor.predict(state, count=3).damping == pytest.approx(expected, rel=0.01)
     modes = predictor.complex_modes(state)

@@ -109,11 +109,7 @@ class Absorber(Effect):
         for hertz, coupling, shape in _signs(predictor):
             for where in places:
                 at = {p.name: p.value(u) for p, u in zip(self.parameters(predictor), where, strict=False)}
-                moved = (
-                    1.0
-                    if spec.kind == "matrices"
-                    else float(_rows(predictor, at)[0][: len(shape)] @ shape) ** 2
-                )
+                moved = _moved(predictor, at, shape)
                 values = {"mass": coupling / max(moved, 1e-12), "frequency": hertz}
                 found.append((*where, *self.quantiles(predictor, values)[count:]))
         return tuple(found) or ((*((0.5,) * count), 0.5, 0.5, 0.5),)
@@ -141,6 +137,17 @@ def _rows(predictor: Predictor, values: Values) -> FloatArray:
         return predictor.reduced.rows(at)["w"]
     ways = measured_directions(predictor, at)
     return predictor.reduced.rows(np.repeat(at, len(ways), axis=0), ways)["w"]
+
+
+def _moved(predictor: Predictor, at: Values, shape: FloatArray) -> float:
+    """Return the square of a mode's shape at a place [1/kg].
+
+    Imported matrices have a form for each of their places: the start they share is that of a structure which moves
+    alike everywhere.
+    """
+    if predictor.spec.kind == "matrices":
+        return 1 / total_mass(predictor.spec)
+    return float(_rows(predictor, at)[0][: len(shape)] @ shape) ** 2
 
 
 def _places(predictor: Predictor) -> list[tuple[float, ...]]:

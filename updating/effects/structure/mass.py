@@ -251,7 +251,7 @@ class LumpedMass(Effect):
         known += [_named(group.centre) | {"at": group.name} for group in groups]
         sizes = [self.parameters(predictor)[0].value(u) for u in TRIED]
         others = free_nodes(imported, np.vstack([points.reshape(-1, 3), centres]))
-        best = promising_nodes(predictor, imported, others, _with_mass, sizes, springs=False)
+        best = promising_nodes(predictor, imported, others, _with_mass, sizes)
         share = NAMED_SHARE if len(others) else 1.0
         return (
             *(Variant(at, share / len(known)) for at in known),

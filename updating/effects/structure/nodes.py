@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from scipy.spatial import KDTree
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.effects.structure.frequency_gap import frequency_gap
 from updating.models.imported.groups import Group
 from updating.models.imported.matrices import Imported
@@ -35,7 +36,7 @@ def distinct(imported: Imported, places: FloatArray, others: FloatArray) -> IntA
     """Return the indices of places (n, 3) that are none of the others (m, 3) [m]."""
     if not len(others):
         return np.arange(len(places))
-    away = np.linalg.norm(places[:, None] - others[None], axis=2).min(axis=1)
+    away, _ = KDTree(others).query(places)
     return np.flatnonzero(away > SAME * imported.reach)
 
 
@@ -66,8 +67,7 @@ def promising_nodes(
     free: IntArray,
     change: Callable[[FloatArray, float], State],
     sizes: Sequence[float],
-    *,
-    springs: bool,
+    along: BoolArray | None = None,
 ) -> list[tuple[dict[str, float], int]]:
     """Return the nodes at which a change of some size comes nearest to the frequencies, the best first.
 
@@ -86,8 +86,8 @@ def promising_nodes(
         Takes rows of the basis (n, r) and a size to the state of the model.
     sizes : sequence of float
         Sizes tried [SI].
-    springs : bool
-        Whether it is springs, each along an axis of its own.
+    along : (3, n) bool array, optional
+        Of springs, along which axes each node is asked about; left out, it is bodies, which move along all.
 
     Returns
     -------
@@ -96,11 +96,12 @@ def promising_nodes(
     """
 
     def build() -> FloatArray:
-        chosen = _best_to_first_order(predictor, imported, free, springs=springs)
+        chosen = _best_to_first_order(predictor, imported, free, along)
         best = sorted(chosen, key=lambda node: _misfit(predictor, imported, node, change, sizes))[:PROMISING]
         return np.array(best, dtype=float).reshape(-1, 2)
 
-    found = predictor.once(f"promising nodes {springs}", build).astype(int)
+    kind = "bodies" if along is None else "springs"
+    found = predictor.once(f"promising nodes of {kind}", build).astype(int)
     return [
         (dict(zip("xyz", imported.places.at[index].tolist(), strict=True)), axis)
         for index, axis in found.tolist()
@@ -108,7 +109,7 @@ def promising_nodes(
 
 
 def _best_to_first_order(
-    predictor: Predictor, imported: Imported, free: IntArray, *, springs: bool
+    predictor: Predictor, imported: Imported, free: IntArray, along: BoolArray | None
 ) -> list[tuple[int, int]]:
     """Return nodes, and axes of springs, in whose pattern of shifts the gap is."""
     gap = frequency_gap(predictor)
@@ -116,12 +117,17 @@ def _best_to_first_order(
     vectors = predictor.reduced.basis[:, : len(nominal.vectors)] @ nominal.vectors
     squares = np.stack([np.asarray(motion[free] @ vectors) ** 2 for motion in imported.places.moves])
     stiff = (2 * np.pi * nominal.frequency) ** 2
-    shifts = (squares / stiff).reshape(-1, len(stiff)) / 2 if springs else -squares.sum(axis=0) / 2
+    if along is None:
+        shifts = -squares.sum(axis=0) / 2
+    else:
+        shifts = (squares * along[:, :, None] / stiff).reshape(-1, len(stiff)) / 2
     size, gained = gap.sizes(shifts)
     gain = np.where(size > 0, gained, 0.0)
     best = np.argsort(-gain, kind="stable")[:SOLVED]
     return [
-        (int(free[i % len(free)]), i // len(free) if springs else -1) for i in best.tolist() if gain[i] > 0
+        (int(free[i % len(free)]), -1 if along is None else i // len(free))
+        for i in best.tolist()
+        if gain[i] > 0
     ]
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from scipy.spatial import KDTree
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import BoolArray, FloatArray
 from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness, total_mass
 from updating.effects.box import AXES, Place, mirror_images, outline, place, spread, starting_places
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
@@ -127,9 +128,10 @@ class GroundSpring(Effect):
         stiffness = next(p for p in self.parameters(predictor) if p.name == "stiffness")
         others = free_nodes(imported, group_centres(imported))
         sizes = [stiffness.value(u) for u in TRIED]
-        best = promising_nodes(predictor, imported, others, _with_spring, sizes, springs=True)
-        share = NAMED_SHARE if len(others) else 1.0
-        each = (1 - share) / max(3 * len(others), 1)
+        along = _along_no_other(predictor, imported.places.at[others])
+        best = promising_nodes(predictor, imported, others, _with_spring, sizes, along)
+        share = NAMED_SHARE if along.any() else 1.0
+        each = (1 - share) / max(int(along.sum()), 1)
         return [
             *((at, share / len(known)) for at in known),
             *(({**node, "along": WAYS[axis]}, each) for node, axis in best),
@@ -179,6 +181,22 @@ def _at_points(predictor: Predictor) -> list[dict[str, Any]]:
     points = np.unique(predictor.measured.points, axis=0)
     unlike = points[distinct(imported, points, group_centres(imported))]
     return [dict(zip(AXES, map(float, at), strict=True)) for at in unlike]
+
+
+def _along_no_other(predictor: Predictor, places: FloatArray) -> BoolArray:
+    """Return along which axes a spring at places (n, 3) [m] is no other form already, (3, n).
+
+    At a test point that is measured along one axis, a spring in the directions measured is one along that axis.
+    """
+    found = np.ones((3, len(places)), dtype=bool)
+    points = np.unique(predictor.measured.points, axis=0).reshape(-1, 3)
+    if not len(points):
+        return found
+    away, index = (np.asarray(each) for each in KDTree(points).query(places))
+    for i in np.flatnonzero(away <= SAME * predictor.spec.length):
+        axes = np.abs(measured_directions(predictor, points[index[[i]]])) > 1 - SAME
+        found[:, i] = ~axes.all(axis=0)
+    return found
 
 
 def _at_sets(predictor: Predictor) -> list[dict[str, Any]]:

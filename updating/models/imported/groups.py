@@ -101,7 +101,11 @@ def set_nodes(places: Places, sets: NodeSets, name: str) -> IntArray:
 
 def group_of(places: Places, sets: NodeSets, name: str) -> Group:
     """Return a node set as a place."""
-    index = set_nodes(places, sets, name)
+    return group_of_nodes(places, name, set_nodes(places, sets, name))
+
+
+def group_of_nodes(places: Places, name: str, index: IntArray) -> Group:
+    """Return nodes (n,), by their indices among the places, as one place."""
     mean = Sparse(np.full((1, len(index)), 1 / max(len(index), 1)))
     rows = []
     for motion in (*places.moves, *places.turns):
@@ -237,7 +241,7 @@ def supports_of(
     rigid = rigid_motions(places, stiffness.shape[0])
     if not len(held) or rigid is None:
         return ()
-    gathered = list(_gathered(places, held))
+    gathered = list(neighbourhoods(places, held))
     middles = np.array([places.at[group].mean(axis=0) for group in gathered])
     at, nodes = places_of_rows(places, stiffness.shape[0]), nodes_of_rows(places, stiffness.shape[0])
     away = np.stack([KDTree(places.at[group]).query(at)[0] for group in gathered])
@@ -273,8 +277,9 @@ def _mirrored(
     """Return how the rows beside a support move with it, what its held rows weigh, and what they do with those beside.
 
     A rigid body has no more force in its mass than it has mass, so that, unlike their stiffness, the mass of the rows
-    that are lost is not known. It is taken from the rows ``beside`` them as if the mesh went on evenly: they carry
-    twice what the held ones do, and have as much in common with those inside as with those held.
+    that are lost is not known. It is taken from the rows ``beside`` them as if the mesh went on evenly: node for node
+    they carry twice what the held ones do, and have as much in common with those inside as with those held. Beside the
+    face of a quadratic brick, and around a foot on a plate, there are more nodes than are held.
     """
     group, centre = support
     nearest = places.at[group][KDTree(places.at[group]).query(at)[1]]
@@ -282,8 +287,10 @@ def _mirrored(
     assert held is not None
     mirror = np.where(held[:, :3].any(axis=1), 1.0, -1.0)[:, None]  # a rotation is the other way round in it
     own, inside = np.where(beside[:, None], held, 0.0), np.where(beside[:, None], 0.0, held)
-    inertia = np.where(beside[:, None], mirror * (mass @ (mirror * inside)), 0.0)
-    return own, own.T @ (mass @ own) / 2, inertia
+    neighbours = np.unique(nodes_of_rows(places, mass.shape[0])[beside])
+    share = min(1.0, len(group) / max(len(neighbours), 1))
+    inertia = share * np.where(beside[:, None], mirror * (mass @ (mirror * inside)), 0.0)
+    return own, share * own.T @ (mass @ own) / 2, inertia
 
 
 def rigid_motions(
@@ -327,10 +334,10 @@ def nodes_of_rows(places: Places, order: int) -> IntArray:
     return node
 
 
-def _gathered(places: Places, held: IntArray) -> Iterator[IntArray]:
-    """Gather held nodes that are near each other: nearer than a share of the structure."""
+def neighbourhoods(places: Places, nodes: IntArray) -> Iterator[IntArray]:
+    """Gather nodes that are near each other: nearer than a share of the structure."""
     reach = COMPACT * float(np.ptp(places.at, axis=0).max())
-    left = held
+    left = nodes
     while len(left):
         group, edge = left[:1], left[:1]
         left = left[1:]

@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.checks import check_mass, check_size, check_sum, symmetric, with_mass_everywhere
+from updating.models.imported.cords import Cords, cords_of
 from updating.models.imported.groups import (
     Group,
     Joint,
@@ -150,6 +151,11 @@ class Imported:
     def joints(self) -> tuple[Joint, ...]:
         """The joints between two node sets."""
         return joints_of(self.places, self.nodes.sets, self.stiffness)
+
+    @cached_property
+    def cords(self) -> tuple[Cords, ...]:
+        """The suspensions that the structure may have, if it is free."""
+        return cords_of(self.places, self.nodes.sets, self.groups)
 
     @cached_property
     def supports(self) -> tuple[Support, ...]:

@@ -1,0 +1,52 @@
+"""What the modeller of a ribbed plate or a bracket has: matrices of CalculiX on a coarser mesh, part by part."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+
+from modalkit.simulator.bodies.block.assembled import Matrix
+from modalkit.simulator.bodies.block.block import Block
+
+
+def write_block_model(drawn: Block, elements: int, folder: Path) -> dict[str, Any]:
+    """Write a body as drawn, with so many bricks along it, as matrices; return the study's ``[model]``."""
+    block = replace(drawn, elements=elements, attached=())
+    moves = block.free()
+
+    def write(name: str, matrix: Matrix) -> str:
+        sparse.save_npz(folder / f"{name}.npz", Matrix(moves.T @ matrix @ moves))
+        return f"{name}.npz"
+
+    stiffness, mass = block.material()
+    parts = block.parts()
+    (folder / "nodes.csv").write_text(_table(block, moves), encoding="ascii")
+    return {
+        "type": "matrices",
+        "stiffness": write("stiffness", stiffness),
+        "mass": write("mass", mass),
+        "nodes": "nodes.csv",
+        "stiffness_parts": [write(f"stiffness_{name}", k) for name, (k, _) in parts.items()],
+        "mass_parts": [write(f"mass_{name}", m) for name, (_, m) in parts.items()],
+    }
+
+
+def _table(block: Block, moves: Matrix) -> str:
+    """Return the node table; bolts name their two sides, feet themselves."""
+    bricks = block.bricks
+    sets: dict[int, str] = {int(node): name for name, nodes in bricks.feet.items() for node in nodes}
+    for name, sides in bricks.bolts.items():
+        for side, nodes in zip(("plate", "flange"), sides, strict=True):
+            sets |= {int(node): f"{name}_{side}" for node in nodes}
+    row_of = {int(row): i for i, row in enumerate(moves.tocsc().indices, start=1)}
+    lines = ["node, x, y, z, direction, row, sets"]
+    for node, at in enumerate(bricks.mesh.nodes[1].tolist()):
+        x, y, z = (f"{c:.9g}" for c in np.add(at, [block.start, 0.0, 0.0]))
+        for axis in range(3):
+            row = row_of.get(3 * node + axis, "")
+            lines.append(f"{node + 1}, {x}, {y}, {z}, {axis + 1}, {row}, {sets.get(node, '')}")
+    return "\n".join(lines) + "\n"

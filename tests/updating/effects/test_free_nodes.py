@@ -1,0 +1,53 @@
+"""Nodes of imported matrices at which something may sit: each once, and found in little memory."""
+
+from __future__ import annotations
+
+import tracemalloc
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from effect_cases import imported
+from imported_cases import imported_beam
+
+from updating import LIBRARY
+from updating.effects.regions import WAYS
+from updating.effects.structure.nodes import distinct
+
+
+def test_places_are_told_from_others_in_little_memory() -> None:
+    """All pairs of some thousand places would be 100 MB."""
+    beam, rng = imported_beam(4), np.random.default_rng(1)
+    places = rng.random((3000, 3))
+    others = np.vstack([rng.random((1500, 3)) + 2.0, places[::2] + 0.5e-6 * beam.reach])
+    tracemalloc.start()
+    found = distinct(beam, places, others)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert found.tolist() == list(range(1, 3000, 2))
+    assert most < 5e6
+
+
+@pytest.mark.parametrize("measured", [(2,), (1, 2)])
+def test_a_spring_at_a_point_along_what_alone_is_measured_there_is_one_form(
+    measured: tuple[int, ...],
+) -> None:
+    """Measured in several directions, the point is held in all of them: along one is another form."""
+    predictor, effect = imported(), LIBRARY["ground_spring"]
+    axes = np.tile(measured, len(predictor.measured.points))
+    points = np.repeat(predictor.measured.points, len(measured), axis=0)
+    n = len(points)
+    test = replace(
+        predictor.measured, points=points, directions=np.eye(3)[axes], nodes=tuple(range(1, n + 1)),
+        seen=np.arange(n), hit=np.full(n, -1), constants=np.ones((n, 2)), constants_sigma=np.ones((n, 2)),
+        absolute=False,
+    )  # fmt: skip
+    there = predictor.of(predictor.spec).for_test(test)
+    at = dict(zip("xyz", points[-1].tolist(), strict=True))
+    held = there.predict(effect.state(there, {**at, "stiffness": 5e3, "along": "z"}), count=2).frequency
+    hit = there.for_test(replace(test, frequency=held))
+    forms = [form for form in effect.variants(hit) if "stiffness" not in form.values]
+    here = [form for form in forms if all(form.values[name] == pytest.approx(at[name]) for name in "xyz")]
+    unlike = {form.values.get("along", "".join(WAYS[a] for a in measured)) for form in here}
+    assert len(unlike) == len(here) == len(measured)
+    assert any("along" in form.values for form in forms)
