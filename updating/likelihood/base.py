@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from acquisition.arrays import IntArray
+from acquisition.arrays import FloatArray, IntArray
 from updating.likelihood.baseline_prior import Before
 from updating.likelihood.comparison import Block
 from updating.models.state import State
@@ -51,6 +51,8 @@ class Setting:
         The modeller's doubts.
     names : tuple of str
         What all data doubt alike: factors with a tolerance that the model knows, masses and places of bodies.
+    sigmas : (n_names,) array
+        Their standard deviations [-, of places m].
     nominal : Prediction
         The nominal prediction of the measured modes.
     missed : Prediction
@@ -63,6 +65,7 @@ class Setting:
     measured: Measured
     tolerances: Tolerances
     names: tuple[str, ...]
+    sigmas: FloatArray
     nominal: Prediction
     missed: Prediction
     before: Before | None = None
@@ -84,6 +87,8 @@ class View:
         All its modes, where some of them may be the unpaired measured ones.
     claims : (n_unpaired,) int array
         Which of these each unpaired measured mode is, -1 where none of them; empty where the state adds no modes.
+    offers : (n_unpaired,) int array
+        Which of these each of the others may be, -1 where none of them.
     """
 
     now: Prediction
@@ -91,6 +96,7 @@ class View:
     doubt: Doubt
     whole: Prediction | None = None
     claims: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    offers: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
 
 @dataclass(frozen=True, eq=False)

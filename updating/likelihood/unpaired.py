@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy import stats
 from scipy.linalg import block_diag
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
@@ -60,6 +61,16 @@ class _Rows:
     idle: bool
     idealised: float = 0.0
 
+    def log_likelihood(self, sigmas: FloatArray) -> float:
+        """Return their log-likelihood by themselves, all that is doubted integrated out [-].
+
+        ``sigmas`` are the standard deviations of what all data doubt alike.
+        """
+        columns = np.hstack([self.factors * sigmas, self.own])
+        return float(
+            stats.multivariate_normal(cov=np.diag(self.variance) + columns @ columns.T).logpdf(self.residual)
+        )
+
 
 def _channels(rows: _Rows, count: int) -> IntArray:
     """Return the measuring channel of each datum of a mode, -1 of its frequency and damping, (n,)."""
@@ -83,11 +94,7 @@ class UnpairedModes(Quantity):
 
     def block(self, view: View) -> Block:
         """Return each mode beside that of the state which it is; beside no mode in particular where it is none."""
-        claims = view.claims.tolist() if len(view.claims) else [-1] * len(self._test.frequency)
-        parts = [
-            self._any(i) if k < 0 or view.whole is None else self._known(view, view.whole, k, i)
-            for i, k in enumerate(claims)
-        ]
+        parts = [self._likeliest(view, i) for i in range(len(self._test.frequency))]
         count = sum(len(part.residual) for part in parts)
         return Block(
             "unpaired",
@@ -103,6 +110,17 @@ class UnpairedModes(Quantity):
             else None,
             idle=np.concatenate([np.full(len(part.residual), part.idle) for part in parts]),
         )
+
+    def _likeliest(self, view: View, i: int) -> _Rows:
+        """Return a mode beside that of a state which it is, which it may be if that is more probable, or any."""
+        if view.whole is None:
+            return self._any(i)
+        if view.claims[i] >= 0:
+            return self._known(view, view.whole, int(view.claims[i]), i)
+        parts = [self._any(i)]
+        if view.offers[i] >= 0:
+            parts.append(self._known(view, view.whole, int(view.offers[i]), i))
+        return max(parts, key=lambda part: part.log_likelihood(self.setting.sigmas))
 
     def _known(self, view: View, whole: Prediction, k: int, i: int) -> _Rows:
         """Return a mode beside the k-th of a state."""

@@ -9,7 +9,7 @@ from scipy.optimize import linear_sum_assignment
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.prediction import Prediction
-from updating.test_data.measured import UNSTATED, Measured
+from updating.test_data.measured import NO_PARTNER, UNSTATED, Measured
 
 FREQUENCY_WEIGHT = 0.5
 """How much a frequency ratio of e counts against a MAC of zero."""
@@ -137,6 +137,36 @@ def match_with_unpaired(
         count = len(measured.frequency)
         found, claims[trials[best]] = tried[best][:count], tried[best][count:]
     return found, claims
+
+
+ALIKE = 0.7
+"""Least MAC of a measured mode without a partner in the nominal model with the mode of a state that may be it [-]. It
+only offers: data decide. Doubled (there is no more than one): no state is offered any."""
+
+
+def offers(unpaired: Measured, prediction: Prediction, taken: IntArray) -> IntArray:
+    """Return which predicted mode each unpaired measured one may be, (n_unpaired,), -1 where none is like it.
+
+    A state that changes the model far enough may have what the nominal model has not. One that is stated to have no
+    partner has none.
+
+    Parameters
+    ----------
+    unpaired : Measured
+        The measured modes that have no partner in the nominal model.
+    prediction : Prediction
+        Modes of a state.
+    taken : (n,) int array
+        Those that are others' partners.
+    """
+    alike = np.nan_to_num(mac_of_constants(unpaired, prediction, unpaired.trusted))
+    away = np.abs(np.log(unpaired.frequency[:, None] / prediction.frequency))
+    alike = np.where(np.nan_to_num(away, nan=np.inf) < NEAR, alike, 0.0)
+    alike[:, taken] = 0.0
+    rows, columns = linear_sum_assignment(-alike)
+    found = np.full(len(unpaired.frequency), -1, dtype=np.int64)
+    found[rows] = np.where(alike[rows, columns] > ALIKE, columns, -1)
+    return found if unpaired.partners is None else np.where(unpaired.partners == NO_PARTNER, -1, found)
 
 
 def _beside(measured: Measured, unpaired: Measured, rows: IntArray) -> Measured:

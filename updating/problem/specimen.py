@@ -34,7 +34,7 @@ from updating.models.absorbers import Absorber
 from updating.models.base import FACTORS
 from updating.models.named_factors import departure, regions_of, unassigned
 from updating.models.state import NOMINAL, State
-from updating.prediction.assignment import match_with_unpaired
+from updating.prediction.assignment import match_with_unpaired, offers
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
@@ -223,11 +223,17 @@ class SpecimenProblem:
     def _match(self, prediction: Prediction) -> IntArray:
         return match(self.measured, prediction, self.order)
 
-    def _partners(self, prediction: Prediction, added: int) -> tuple[IntArray, IntArray]:
-        """Return the predicted mode of each measured one, and of each unpaired one where a state adds modes."""
-        if not added or self.measured.unpaired is None:
-            return self._match(prediction), np.zeros(0, dtype=np.int64)
-        return match_with_unpaired(self.measured, self.measured.unpaired, prediction, self.order, added)
+    def _partners(self, prediction: Prediction, added: int) -> tuple[IntArray, IntArray, IntArray]:
+        """Return the predicted mode of each measured one, of unpaired ones where a state adds modes, and may be."""
+        unpaired = self.measured.unpaired
+        if unpaired is None:
+            nothing = np.zeros(0, dtype=np.int64)
+            return self._match(prediction), nothing, nothing
+        if added:
+            order, claims = match_with_unpaired(self.measured, unpaired, prediction, self.order, added)
+        else:
+            order, claims = self._match(prediction), np.full(len(unpaired.frequency), -1)
+        return order, claims, offers(unpaired, prediction, np.append(order, claims[claims >= 0]))
 
     @property
     def wide(self) -> bool:
@@ -291,8 +297,10 @@ class SpecimenProblem:
         stage = self.predictor if theory is None else self.predictor.under(theory)
         whole = state.plus(self.departure(shift, stage))
         prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
-        order, claims = self._partners(prediction, len(state.absorbers))
-        view = View(prediction.select(order), self.predictor.base.plus(whole), doubt, prediction, claims)
+        partners = self._partners(prediction, len(state.absorbers))
+        view = View(
+            prediction.select(partners[0]), self.predictor.base.plus(whole), doubt, prediction, *partners[1:]
+        )
         blocks = [quantity.block(view) for quantity in self.quantities]
         return assemble(blocks, self.sigmas, shift, view.now, scatter_prior(self.measured))
 
@@ -317,7 +325,13 @@ class SpecimenProblem:
     def setting(self) -> Setting:
         """Test and model, as every kind of data needs the two."""
         return Setting(
-            self.predictor, self.measured, self.tolerances, self.names, *self._nominal, self.before
+            self.predictor,
+            self.measured,
+            self.tolerances,
+            self.names,
+            self.sigmas,
+            *self._nominal,
+            self.before,
         )
 
     @property

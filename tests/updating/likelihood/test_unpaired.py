@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from updating_cases import BEAM, POINTS, blank, case_of, exactly
 
-from updating import LIBRARY, Measured, Predictor
+from updating import LIBRARY, Measured, Predictor, diagnose
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.held_out import _groups
 from updating.effects.base import total_mass
@@ -123,3 +123,25 @@ def test_points_left_out_of_a_fit_are_left_out_of_its_shape() -> None:
     shapes = np.flatnonzero(found.scaled)
     by_point = {int(found.source[i]): int(groups[i]) for i in shapes}
     assert [by_point[int(s)] for s in found.source[rows[2:]]] == groups[rows[2:]].tolist()
+
+
+PROPPED = {"x": BEAM.length, "extent": 0.0, "stiffness": 1e5, "damping": 0.0}
+
+
+def test_a_state_that_has_the_mode_by_another_cause_knows_it_too() -> None:
+    """A spring at the tip changes the first mode beyond recognition, and the model with that spring has it."""
+    spring = LIBRARY["ground_spring"]
+    problem = posed(exactly(LOOK, LOOK.predict(spring.state(LOOK, PROPPED), count=6)))
+    assert not problem.compare(NOMINAL).stated.all()
+    found = problem.compare(spring.state(problem.predictor, PROPPED))
+    assert found.stated.all()
+    assert found.residual[found.of("unpaired")] == pytest.approx(np.zeros(2 + len(POINTS)), abs=1e-6)
+    off = problem.compare(spring.state(problem.predictor, {**PROPPED, "stiffness": 3e4}))
+    assert not off.stated.all()
+
+
+def test_what_explains_all_modes_needs_nothing_that_hangs_beside_it() -> None:
+    spring = LIBRARY["ground_spring"]
+    test = exactly(LOOK, LOOK.predict(spring.state(LOOK, PROPPED), count=6))
+    found = diagnose(case_of(test), library=[spring, EFFECT, LIBRARY["E"]])
+    assert found.sets == (("ground_spring",),)
