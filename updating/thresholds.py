@@ -325,11 +325,6 @@ TWIST_ALONE = 0.1
 """Modes of that plate that move the middle line by less than this share of what the liveliest does are twist [-].
 Doubled: a bending mode that the line's ends alone see may be missed."""
 
-DOUBT_BEYOND_NOISE = 3.0
-"""Where the idealisation of the best single effect leaves a frequency in doubt by so many times its noise [-], pairs
-are sought beside it though it fits: nine tenths of the variance are its own. Doubled: a second cause of six sigma may
-hide in a sketch."""
-
 WITHIN_REACH = 7.0
 """Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]: a draft's
 evidence errs by one or two. Doubled: twice the predictions for the same answer."""

@@ -174,11 +174,15 @@ class UnpairedModes(Quantity):
     def _idealised(self, view: View, i: int) -> float:
         """Return how far the idealisation of what makes a mode leaves its ln f off, relative to the shift it suffers.
 
-        A mass on a spring is moved by the structure as far as it moves the structure: from where it swings alone.
+        A mass on a spring is moved by the structure as far as it moves the structure: from where it swings alone. What
+        changes a mode beyond recognition shifts it as far as it shifts any.
         """
         alone = [np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in view.state.absorbers]
         shifts = [abs(float(np.log(self._test.frequency[i] / own))) for own in alone]
-        return (view.doubt.fidelity * min(shifts, default=0.0)) ** 2
+        most = np.nan_to_num(np.abs(np.log(view.now.frequency / self.setting.nominal.frequency))).max(
+            initial=0.0
+        )
+        return (view.doubt.fidelity * min(shifts, default=float(most))) ** 2
 
     def _signs(self, view: View, i: int) -> FloatArray:
         """Return what the phases of a mode's constants make of real ones, (n_frf,) [-]."""

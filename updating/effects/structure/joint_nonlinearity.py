@@ -17,6 +17,7 @@ from updating.effects.structure.axial_load import buckling_load, unit_tension
 from updating.effects.structure.clamp import unit_edges
 from updating.effects.structure.length import clamped_places
 from updating.models.state import NOMINAL, State
+from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 
 LARGEST, SMALLEST = 0.2, 1e-4
@@ -85,8 +86,8 @@ class JointNonlinearity(Effect):
     approach each other a tension grows with the force. Each mode's slope then follows from the joint's share of its
     own strain energy, d ln f / dF = phi^T (dK/dF) phi / 2 lambda. In a joint that nobody knows all slopes are alike.
 
-    ``slope`` is the mean over as many of the lowest modes as were measured, in proportion to the force from a clamp
-    that gives way by some per cent of frequency.
+    ``slope`` is the mean over all modes up to the highest measured one, in proportion to the force from a clamp that
+    gives way by some per cent of frequency: a mode that a test misses in between changes nothing.
     """
 
     name = "joint_nonlinearity"
@@ -94,8 +95,9 @@ class JointNonlinearity(Effect):
     summary = "A joint softens or stiffens with the force: frequencies follow the level of the hits."
     footprint = (
         "Frequencies of single hits change in proportion to their peak force, each by the joint's share of its strain"
-        " energy. Its slope is the mean over the measured modes; joint is 1 for a clamp that turns, 2 for one that"
-        " shifts, 3 for a stretch between two clamps, 0 for one not known, in which all modes change alike."
+        " energy. Its slope is the mean over the modes up to the highest measured; joint is 1 for a clamp that turns,"
+        " 2 for one that shifts, 3 for a stretch between two clamps, 0 for one not known, in which all modes change"
+        " alike."
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ()
@@ -197,7 +199,9 @@ def _tension_share(predictor: Predictor) -> float:
 
 
 def _mean_shift(predictor: Predictor, state: State) -> float:
-    """Return the mean relative change over as many of the lowest modes as were measured [-]."""
-    count = len(predictor.measured.frequency)
+    """Return the mean relative change over the lowest modes, up to the highest that was measured [-]."""
+    test = predictor.measured
+    measured = match(test, predictor.predict(), np.arange(len(test.frequency)) + test.below)
+    count = 1 + int(measured.max())
     moved, plain = (predictor.predict(s, count=count).frequency for s in (state, NOMINAL))
     return float(np.mean(moved / plain - 1))

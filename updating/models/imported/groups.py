@@ -277,9 +277,9 @@ def _mirrored(
     """Return how the rows beside a support move with it, what its held rows weigh, and what they do with those beside.
 
     A rigid body has no more force in its mass than it has mass, so that, unlike their stiffness, the mass of the rows
-    that are lost is not known. It is taken from the rows ``beside`` them as if the mesh went on evenly: node for node
-    they carry twice what the held ones do, and have as much in common with those inside as with those held. Beside the
-    face of a quadratic brick, and around a foot on a plate, there are more nodes than are held.
+    that are lost is not known. It is taken from the rows ``beside`` them as if the mesh went on evenly: they carry
+    twice what the held ones do, and have as much in common with those inside as with those held. So in frames, whose
+    nodes turn; beside the face of a brick there are more nodes than are held, and it is so node for node.
     """
     group, centre = support
     nearest = places.at[group][KDTree(places.at[group]).query(at)[1]]
@@ -287,8 +287,9 @@ def _mirrored(
     assert held is not None
     mirror = np.where(held[:, :3].any(axis=1), 1.0, -1.0)[:, None]  # a rotation is the other way round in it
     own, inside = np.where(beside[:, None], held, 0.0), np.where(beside[:, None], 0.0, held)
+    turning = any(np.asarray(turn.sum(axis=0)).ravel()[beside].any() for turn in places.turns)
     neighbours = np.unique(nodes_of_rows(places, mass.shape[0])[beside])
-    share = min(1.0, len(group) / max(len(neighbours), 1))
+    share = 1.0 if turning else min(1.0, len(group) / max(len(neighbours), 1))
     inertia = share * np.where(beside[:, None], mirror * (mass @ (mirror * inside)), 0.0)
     return own, share * own.T @ (mass @ own) / 2, inertia
 
