@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from identification.poles.stabilisation import StabilisationChart, stabilise
     from identification.scaling import Shapes, modal_constants, mode_shapes, real_modes
     from identification.sdypy_bridge import beside, from_sdypy, second_opinion, to_sdypy
+    from identification.trend import Trend
 
 __all__ = [
     "ESTIMATORS",
@@ -54,6 +55,7 @@ __all__ = [
     "StabilisationChart",
     "Stretched",
     "Subspace",
+    "Trend",
     "at_cut_edge",
     "at_one_level",
     "auto_mac",
@@ -120,5 +122,6 @@ load_on_demand(
         ".scaling": "Shapes modal_constants mode_shapes real_modes",
         ".sdypy_bridge": "beside from_sdypy second_opinion to_sdypy",
         ".poles.stabilisation": "StabilisationChart stabilise",
+        ".trend": "Trend",
     },
 )

@@ -17,6 +17,7 @@ from acquisition.quantities import hertz, percent
 from acquisition.warned import Consequential
 from identification.arrangement import arrange, signs, unsigned
 from identification.band.uninformed import uninformed_modes
+from identification.fit.course import course_of, resampled
 from identification.fit.equations import basis
 from identification.fit.equations.pruning import inside, located
 from identification.fit.equations.residues import Residues, synthesise
@@ -29,6 +30,7 @@ from identification.poles import ESTIMATORS
 from identification.poles.selection import candidates
 from identification.poles.stabilisation import StabilisationChart, stabilise
 from identification.scaling import Shapes, mode_shapes
+from identification.trend import Trend, frequency_trend
 from identification.uncertainty import covariance, doubts
 from identification.uncertainty.hit_scatter import NoiseFactors
 
@@ -42,6 +44,9 @@ _KEPT = 8  # fits with modes named by the user that are kept: so many picks can 
 _CLEAR = 5.0
 # Damping ratios by which frequencies must differ for a word: a peak that moves by less looks the same.
 _DRIFT = 0.05
+_TREND = (
+    4.0  # standard deviations of a trend that is worth a word: as of other courses that are sought unasked
+)
 _BEYOND = 2.0  # a band may end beyond the lines, but not at a number that scales their background to nothing
 
 
@@ -214,8 +219,9 @@ def prepare(
 def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None, method: str) -> Prepared:
     data, points_rejected = _usable(frfs, band)
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
-    estimator = ESTIMATORS[method]
-    sets = estimator(data, orders=order_list(data, order, poly_reference=estimator.poly_reference))
+    estimator, course = ESTIMATORS[method], course_of(data)
+    even = data if course is None else resampled(data, course)
+    sets = estimator(even, orders=order_list(data, order, poly_reference=estimator.poly_reference))
     chart = stabilise(sets, band=limits)
     start = candidates(chart)
     if len(start) == 0:
@@ -223,7 +229,7 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
             f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
             "order rises; widen the band, raise the order or check the FRFs"
         )
-    fitted = fit_candidates(data, start, band=limits)
+    fitted = fit_candidates(data, start, band=limits, course=course)
     return Prepared(frfs, data, limits, chart, fitted, points_rejected)
 
 
@@ -329,6 +335,7 @@ def _assemble(
     shapes = mode_shapes(data, constants, alone, poles=poles)
     scatter = np.sqrt(separation.scatter[own, 1, 1])
     statement = doubts.about(data, poles, fit.poles[rest], constants, sigma, scatter)
+    trend = frequency_trend(data, fitted.drift.at(poles), constants)
     terms = dict(zip(fit.linear.powers, fit.linear.terms.T, strict=True))
     return ModalModel(
         modal=_modal_data(data, poles, spread, shapes),
@@ -347,9 +354,10 @@ def _assemble(
         band=band,
         frfs=data,
         chart=chart,
-        warnings=shapes.warnings + _warnings(fitted, poles) + statement,
+        warnings=shapes.warnings + _warnings(fitted, poles, trend) + statement,
         points_rejected=points_rejected,
         carried=None if fitted.frfs is data else fitted.frfs,
+        trend=trend,
     )
 
 
@@ -394,7 +402,7 @@ def _struck(poles: ComplexArray) -> tuple[str, ...]:
     )
 
 
-def _warnings(fitted: Fitted, poles: ComplexArray) -> tuple[str, ...]:
+def _warnings(fitted: Fitted, poles: ComplexArray, trend: Trend | None) -> tuple[str, ...]:
     notes = []
     shift = np.sqrt(fitted.drift.at(poles).variance)
     if np.any(shift > _DRIFT * -poles.real / np.abs(poles)):
@@ -403,6 +411,12 @@ def _warnings(fitted: Fitted, poles: ComplexArray) -> tuple[str, ...]:
             "sensor or hammer that roves and loads the structure, or temperature; the FRFs are carried over to common "
             "poles, and what that leaves in doubt is in the standard deviations"
         )
+        if trend is not None and abs(trend.rate) > _TREND * trend.rate_sigma:
+            notes.append(
+                f"the frequencies drift: from the first of {trend.setups} points to the last, in the order of the "
+                f"file, by {100 * trend.rate:+.2g} % (sigma {percent(100 * trend.rate_sigma)}); what is identified "
+                "is the structure in the middle of the test"
+            )
     if not fitted.fit.converged:
         notes.append("the refinement of the poles did not converge; standard deviations may be too small")
     left = fitted.excess()

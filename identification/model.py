@@ -17,6 +17,7 @@ from identification.arrangement import signs
 from identification.fit.equations import basis
 from identification.fit.equations.residues import Residues, synthesise
 from identification.poles.stabilisation import StabilisationChart
+from identification.trend import Trend
 
 if TYPE_CHECKING:
     from identification.levels.slopes import LevelDependence
@@ -70,6 +71,8 @@ class ModalModel(Shown, Animated):
         The data as they were fitted, carried over to common poles, where frequencies differ from FRF to FRF.
     levels : LevelDependence, optional
         How the modes follow the force of the hits, where it is known that they do.
+    trend : Trend, optional
+        How frequencies change from the first point to the last; None where a test does not rove over enough points.
     """
 
     modal: ModalData
@@ -92,6 +95,7 @@ class ModalModel(Shown, Animated):
     points_rejected: tuple[str, ...] = ()
     carried: FrfSet | None = None
     levels: LevelDependence | None = None
+    trend: Trend | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays."""

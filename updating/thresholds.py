@@ -144,6 +144,28 @@ LEAST_DRIFT = 3e-5
 """That drift is at least this, relative [-]: what steel does in a quarter of a kelvin. Doubled: as above, in a good
 test."""
 
+# ------------------------------------------------------------------------------- the course of a test over time
+
+UNREMARKABLE_TREND = 3e-4
+"""Change of all frequencies from the first point of a test to the last that no test is free of, relative (1 sigma) [-]:
+two kelvin in a laboratory, of steel or aluminium, whose moduli fall by 2.5e-4 to 5e-4 per kelvin and frequencies by
+half of that. Doubled: a drift must be twice as large to be named."""
+
+TREND_SHARE = 1.0
+"""That change over the scatter of re-mounting, beside the above [-]. Judged: two ends of a test differ by root 2 times
+what one state scatters, and half of its variance is of the mount, which stays. Doubled: as above, in a test that
+scatters much."""
+
+BENT_COURSE = 0.15
+"""How far a drift from first to last point may be from that of the line through all points, relative to it (1 sigma)
+[-]: what warms up by two to five time constants during a test does 6 to 26 % more. Doubled: rates are known half as
+well."""
+
+LARGEST_TREND = 0.04
+"""Largest drift that is looked for, relative [-]: identification believes shifts of 2 % to either side of the middle;
+plastics, ten times as soft to temperature as metals, reach it in some 15 K. Doubled: faint drifts need a little more
+evidence."""
+
 # ---------------------------------------------------------------------------------------- gates and warnings
 
 FEWEST_DATA = 6

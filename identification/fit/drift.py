@@ -33,7 +33,7 @@ where one FRF in which the model does not hold would pass for a drift of all. Tw
 _CHANCE, _CHANCE_OF_ONE = 0.01, 1e-3
 """Chance by which noise alone passes for a drift of all modes, and for one of a mode by itself: there are as many tests
 as modes, and what is missed is no larger than the noise. Twice as much finds hardly more."""
-_LARGEST = 0.02
+LARGEST = 0.02
 """Largest shift believed, relative [-]: a structure that changes more is another structure. Twice as much changes
 nothing where frequencies differ by per mille, as set-ups make them."""
 
@@ -57,6 +57,9 @@ class Drift:
     mean_variance : (n_modes,) array
         Variance that the finite number of groups leaves in the common frequency, widened so that 1.96 standard
         deviations are a 95 % interval however few the groups are [-].
+    raw, raw_variance : (n_frf, n_modes) arrays
+        Each shift as the FRFs measured together show it by themselves, and its variance by their noise, infinite where
+        they show nothing: what a course over the test is fitted to, since shifts held to a mean are too small [-].
     """
 
     poles: ComplexArray
@@ -65,12 +68,21 @@ class Drift:
     doubt: FloatArray
     variance: FloatArray
     mean_variance: FloatArray
+    raw: FloatArray
+    raw_variance: FloatArray
 
     @classmethod
     def none(cls, n_frf: int, poles: ComplexArray) -> Drift:
         """Return the drift of FRFs that agree."""
         wide, flat = np.zeros((n_frf, len(poles))), np.zeros(len(poles))
-        return cls(poles, wide, np.zeros(n_frf), wide, flat, flat)
+        return cls(poles, wide, np.zeros(n_frf), wide, flat, flat, wide, np.full_like(wide, np.inf))
+
+    @classmethod
+    def common_to(cls, poles: ComplexArray, shift: FloatArray) -> Drift:
+        """Return the drift of FRFs in which all poles are shifted alike, (n_frf,) [-]."""
+        wide = np.repeat(shift[:, None], len(poles), axis=1)
+        size = np.full(len(poles), float(np.var(shift)))
+        return replace(cls.none(len(shift), poles), shift=wide, common=shift, variance=size)
 
     def at(self, poles: ComplexArray) -> Drift:
         """Return the drift of other poles: of the nearest known ones, or what all modes share."""
@@ -86,6 +98,8 @@ class Drift:
             doubt=np.where(known, self.doubt[:, near], 0.0),
             variance=np.where(known, self.variance[near], 0.0),
             mean_variance=np.where(known, self.mean_variance[near], 0.0),
+            raw=np.where(known, self.raw[:, near], 0.0),
+            raw_variance=np.where(known, self.raw_variance[:, near], np.inf),
         )
 
 
@@ -102,6 +116,12 @@ def setups(frfs: FrfSet) -> IntArray:
         for number, group in enumerate(frfs.scatter.hit_groups):
             label[group] = number
     return label
+
+
+def measuring_order(frfs: FrfSet) -> IntArray:
+    """Return the place of each FRF in measuring order, from 0; those measured together share one, (n_frf,)."""
+    _, first, group = np.unique(setups(frfs), return_index=True, return_inverse=True)
+    return np.asarray(np.argsort(np.argsort(first))[group])
 
 
 def estimate_drift(
@@ -171,16 +191,19 @@ def _from_scores(
     prior = common * np.outer(within, within) + np.diag(each)
     given = np.linalg.inv(np.eye(n_modes) + information @ prior)
     posterior = prior @ given
-    shift = np.clip(np.einsum("gnm,gm->gn", posterior, pulls), -_LARGEST, _LARGEST)
+    shift = np.clip(np.einsum("gnm,gm->gn", posterior, pulls), -LARGEST, LARGEST)
     total = np.diag(prior)
     shared = common * np.einsum("gnm,gm->gn", given, pulls) @ within
+    raw, raw_variance = _own_shifts(pulls, information, within)
     return Drift(
         poles=fit.poles,
         shift=shift[label],
-        common=np.clip(shared, -_LARGEST, _LARGEST)[label],
+        common=np.clip(shared, -LARGEST, LARGEST)[label],
         doubt=np.einsum("gnn->gn", posterior)[label],
         variance=total,
         mean_variance=total * _of_the_mean(np.einsum("gnn->gn", information), total, common),
+        raw=raw[label],
+        raw_variance=window_shaped_noise * raw_variance[label],
     )
 
 

@@ -11,6 +11,7 @@ from scipy import stats
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.alignment import aligned, distinct
+from identification.fit.course import without_course
 from identification.fit.drift import Drift, carried_over, estimate_drift
 from identification.fit.equations import background
 from identification.fit.equations.normal_equations import Weights
@@ -85,7 +86,9 @@ class Fitted:
         return float(np.median(ratio.mean(axis=1) / np.maximum(1.0 - self.absorbed, 0.02).mean(axis=1)))
 
 
-def fit_candidates(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float]) -> Fitted:
+def fit_candidates(
+    frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float], course: FloatArray | None = None
+) -> Fitted:
     """Fit a modal model starting from candidate poles.
 
     Candidates that the data do not bear out are struck off; poles beyond the band's edges and more residual
@@ -100,6 +103,9 @@ def fit_candidates(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, floa
         Candidate poles [rad/s].
     band : tuple of float
         The band [Hz].
+    course : (n_frf,) array, optional
+        By what all frequencies of each FRF lie beside the candidates, where that is known beforehand; see
+        :func:`identification.fit.course.course_of` [-].
 
     Returns
     -------
@@ -112,11 +118,13 @@ def fit_candidates(frfs: FrfSet, start: ComplexArray, *, band: tuple[float, floa
         If no candidate is a mode of the band.
     """
     ladder = background.term_ladder(band)
-    fit = refine(frfs, start, uniform_weights(frfs), powers=ladder[0], iterations=SHORT, tolerance=COARSE)
-    weights = search_weights(frfs, fit)
-    fit = refine(frfs, fit.poles, weights, powers=ladder[0], iterations=SHORT, tolerance=COARSE)
-    fit = pruned(frfs, fit, weights, band, iterations=SHORT, tolerance=COARSE)
-    data, fit, drift = aligned(frfs, without_split_modes(frfs, fit))
+    data = frfs if course is None else without_course(frfs, start, course, ladder[0])
+    fit = refine(data, start, uniform_weights(data), powers=ladder[0], iterations=SHORT, tolerance=COARSE)
+    weights = search_weights(data, fit)
+    fit = refine(data, fit.poles, weights, powers=ladder[0], iterations=SHORT, tolerance=COARSE)
+    fit = without_split_modes(data, pruned(data, fit, weights, band, iterations=SHORT, tolerance=COARSE))
+    known = None if course is None else Drift.common_to(fit.poles, course)
+    data, fit, drift = aligned(frfs, fit, known)
     fit = completed(data, fit, band, ladder)
     if drift.variance.any():
         data, fit, drift = aligned(frfs, without_split_modes(data, fit), drift)

@@ -11,6 +11,7 @@ import scipy.linalg
 from acquisition.arrays import ComplexArray, FloatArray
 from modalkit.simulator.bodies.complex_modes import ComplexModes
 from modalkit.simulator.bodies.solid.solid import Solid
+from modalkit.simulator.conduct import DRIFTS
 from modalkit.simulator.drawing.block import MODELLED
 from modalkit.simulator.matching import match
 from modalkit.simulator.scene import Scene, nominal_scene
@@ -29,6 +30,9 @@ _ELEMENTS: dict[str, Any] = {
     "bracket": MODELLED,
 }
 _HARDER = 1.5
+_TREND = 2.4 * DRIFTS / np.sqrt(3)
+"""What a slow drift of temperature in every test puts into a line through it, over the repeatability: 24 / pi^2 times
+the size of a half-wave, a share of 0 to `DRIFTS` [-]."""
 _TOLERANCES = ("E", "density", "thickness", "length", "width")
 
 
@@ -37,8 +41,8 @@ class Reading:
     """What a test reads of the modes the band was chosen for.
 
     Frequency [rad/s], decay [1/s], modal constants phi_i phi_sensor [1/kg], how these change along each axis
-    (n_axes, n_points, n_modes) [1/(kg m)], the change of ln f from the median level to a harder hit, and the
-    scatter that the test's conduct adds to ln f and to the constants [-].
+    (n_axes, n_points, n_modes) [1/(kg m)], the change of ln f from the median level to a harder hit and from the
+    first hit to the last, and the scatter that the test's conduct adds to the constants [-].
     """
 
     frequency: FloatArray
@@ -50,8 +54,8 @@ class Reading:
     tilt: float
 
     def vector(self, scale: FloatArray) -> FloatArray:
-        """Return ln f, ln decay, level shifts, and the constants over their modes' ``scale``, in one row."""
-        whole = [np.log(self.frequency), np.log(self.decay), self.level_shift]
+        """Return ln f, ln decay, level shifts, drift, and the constants over their modes' ``scale``, in one row."""
+        whole = [np.log(self.frequency), np.log(self.decay), self.level_shift, [self.drift]]
         return np.concatenate([*whole, shape_part(self.constants, scale)])
 
 
@@ -153,7 +157,8 @@ def scales(setup: Setup) -> Scales:
             np.full(n, np.hypot(FREQUENCY_SIGMA, setup.repeatability)),
             np.full(n, _DAMPING_SIGMA),
             np.full(n, FREQUENCY_SIGMA),
-            np.full(size - 3 * n, SHAPE_SIGMA),
+            [np.hypot(FREQUENCY_SIGMA, _TREND * setup.repeatability)],
+            np.full(size - 3 * n - 1, SHAPE_SIGMA),
         ]
     )
     covariance = np.diag(sigma**2) * (2.0 if setup.baseline else 1.0)
@@ -174,7 +179,7 @@ def _tolerance_columns(setup: Setup, nominal: Reading, scale: FloatArray) -> Flo
         moved = read(nominal_scene(setup, factors={name: 1.0 + _STEP}))
         columns.append((moved.vector(scale) - start) / _STEP * getattr(setup.tolerances, name))
     n = setup.modes
-    gain = np.concatenate([np.zeros(3 * n), shape_part(nominal.constants, scale)])
+    gain = np.concatenate([np.zeros(3 * n + 1), shape_part(nominal.constants, scale)])
     damping = np.zeros((len(start), n))
     share = (nominal.decay - setup.window) / nominal.decay
     damping[n + np.arange(n), np.arange(n)] = setup.tolerances.damping * share

@@ -127,7 +127,7 @@ def _of_the_measurement(of: Scales) -> dict[str, list[list[FloatArray]]]:
     """Return what effects of the measurement do, which needs no other modes than the nominal ones."""
     setup, base = of.nominal.setup, of.base
     n, hit = setup.modes, hit_points(setup)
-    nothing = np.zeros(3 * n)
+    nothing = np.zeros(3 * n + 1)
 
     def shapes(constants: ComplexArray) -> FloatArray:
         return np.concatenate([nothing, shape_part(constants, of.scale)])
@@ -143,11 +143,14 @@ def _of_the_measurement(of: Scales) -> dict[str, list[list[FloatArray]]]:
 
     window = np.zeros(len(base.vector(of.scale)))
     window[n : 2 * n] = 1.0 / base.decay
+    drift = np.zeros(len(window))
+    drift[3 * n] = 1.0
     return {
         "calibration_gain": [[shapes(base.constants)]],
         "channel_gain": [[shapes(only(p, base.constants[p]))] for p in hit],
         "time_delay": [[shapes(-1j * base.frequency * base.constants)]],
         "exponential_window": [[window]],
+        "drift": [[drift]],
         "polarity": [[shapes(only(p, -2 * base.constants[p]))] for p in hit],
         "swapped_points": [[shapes(exchange(a, b))] for a, b in combinations(hit, 2)],
         "position_error": [[shapes(only(p, g[p])) for g in base.gradients] for p in hit],

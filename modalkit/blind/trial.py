@@ -208,7 +208,7 @@ def _truth(
         parameters={
             f"{s.known_as or s.name}.{key}": float(value) if isinstance(value, np.floating) else value
             for s, drawn in named
-            for key, value in drawn.items()
+            for key, value in s.stated(setup, drawn).items()
             if not isinstance(value, str)
         },
         accepted=right_answers(hidden_effects, values, setup, without),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from modalkit.blind.reading import FREQUENCY_SIGMA, SHAPE_SIGMA, Scales, scales
+from modalkit.blind.reading import SHAPE_SIGMA, Scales, scales
 from modalkit.blind.signatures import signatures
 from modalkit.simulator.scene import Scene
 
@@ -64,6 +64,5 @@ def shown(scene: Scene, before: Scene) -> Shown:
     """
     setup, chain = scene.setup, scene.chain
     of = scales(setup)
-    scatter = setup.modes * (chain.drift / FREQUENCY_SIGMA) ** 2 / len(setup.points)
-    scatter += len(setup.points) * (0.5 * chain.tilt**2 / SHAPE_SIGMA) ** 2
+    scatter = len(setup.points) * (0.5 * chain.tilt**2 / SHAPE_SIGMA) ** 2
     return Shown(of.change(scene, before), float(scatter), of)

@@ -14,7 +14,7 @@ from modalkit.output.schemas.diagnosis import (
     RemainderEntry,
     ShrinkEntry,
 )
-from modalkit.output.schemas.modes import HitEntry, ModeEntry, ModesDocument, ShapeEntry
+from modalkit.output.schemas.modes import HitEntry, ModeEntry, ModesDocument, ShapeEntry, TrendEntry
 from modalkit.workflow.existing import Modes
 from updating import Diagnosis
 from updating.diagnosis.answer.result import Ranked, Remainder, Shrink
@@ -26,7 +26,8 @@ def modes_document(
 ) -> ModesDocument:
     """Return an identification, or modes that were read, as ``modalkit.modes/1``.
 
-    Beside the contract's keys it has ``nodes``, where their places are known, so that the file can be read back.
+    Beside the contract's keys it has ``nodes``, where their places are known, so that the file can be read back, and
+    the ``trend`` of the frequencies over the test, which is not.
     """
     modal = model.modal
     assert modal.damping is not None
@@ -58,7 +59,15 @@ def modes_document(
             {"node": node, "x": x, "y": y, "z": z}
             for node, (x, y, z) in zip(modal.geometry.nodes, modal.geometry.coordinates, strict=True)
         ],
+        "trend": None if isinstance(model, Modes) else _trend(model),
     }
+
+
+def _trend(model: ModalModel) -> TrendEntry | None:
+    found = model.trend
+    if found is None:
+        return None
+    return {"rate": found.rate, "sigma": found.rate_sigma, "points": found.setups}
 
 
 def _shape(modal: ModalData, mode: int) -> list[ShapeEntry]:

@@ -12,6 +12,7 @@ NOT_FORECAST = {
     "swapped_points": "as a point far from where it is said to be",
     "time_delay": "it turns the constants and nothing else does: seen from some 0.01 rad on",
     "absorber": "it makes a mode of its own, which no other effect does: seen wherever that lies in the band",
+    "drift": "it shows in how points differ in measuring order: seen from twice what a laboratory and re-mounting do",
     "joint_nonlinearity": "it shows in how single hits differ, and needs hits of different force",
 }
 """Effects that the forecast leaves out, and why."""

@@ -17,7 +17,7 @@ from modalkit.simulation.damping import damped_spec
 from modalkit.simulation.measured import rig_of_data
 from modalkit.simulation.planned import rig_of_model
 from modalkit.simulation.setup import SAMPLING, MeasurementSetup, Options
-from modalkit.simulation.systems import known_sensors, remounted, systems
+from modalkit.simulation.systems import drifting, known_sensors, remounted, systems
 from modalkit.study.named_effects import EffectValues, check_effect, departure, statement
 from modalkit.study.read import Study, read_study
 from modalkit.workflow.case import Session, open_study
@@ -189,9 +189,10 @@ def simulate_test(
         gain=test_setup.plan.gain * model.gain * level,
     )
     title = f"simulated, {ready.study.name}: {statement(effects)}; seed {seed}"
+    hit = [remounted(system, factors) for system in systems(model.hung(), test_setup, state)]
     tests = [
-        hammer_test(remounted(system, factors), plan, rng=rng, geometry=test_setup.geometry)
-        for system in systems(model.hung(), test_setup, state)
+        hammer_test(system, plan, rng=rng, geometry=test_setup.geometry, at_hit=at_hit)
+        for system, at_hit in zip(hit, drifting(hit, state.drift), strict=True)
     ]
     poles = modes.poles * factors - model.decay
     inside = (poles.imag > 2 * np.pi * test_setup.band[0]) & (poles.imag < 2 * np.pi * test_setup.band[1])

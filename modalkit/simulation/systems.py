@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from updating import Predictor
 from updating.models.state import NOMINAL, State
 from updating.simulation import Simulated, modal_system
 from updating.test_data.chain import measurement_chain
+
+AtHit = Callable[[int, int, float], ModalSystem]
+"""Row of the point, hit and peak force [N] to the structure at that hit."""
 
 
 def systems(model: Simulated, test_setup: MeasurementSetup, state: State = NOMINAL) -> list[ModalSystem]:
@@ -53,6 +57,36 @@ def systems(model: Simulated, test_setup: MeasurementSetup, state: State = NOMIN
         )
         found.append(_late(system, state.delay))
     return found
+
+
+def drifting(found: Sequence[ModalSystem], rate: float) -> list[AtHit | None]:
+    """Return what each hit meets where frequencies drift as the hammer goes from point to point, None where they stay.
+
+    Parameters
+    ----------
+    found : sequence of ModalSystem
+        As :func:`systems` returns them, in the order in which they are hit.
+    rate : float
+        Relative change of the frequencies from the first point to the last, about those of the systems [-].
+
+    Raises
+    ------
+    StudyError
+        If fewer than two points are hit.
+    """
+    if not rate:
+        return [None] * len(found)
+    counts = [len(system.points) for system in found]
+    if sum(counts) < 2:
+        raise StudyError(
+            "drift: one point is hit, and all that it moves is measured at once: nothing drifts over it"
+        )
+    factors = np.split(1.0 + rate * np.linspace(-0.5, 0.5, sum(counts)), np.cumsum(counts)[:-1])
+    return [partial(_drifted, system, own) for system, own in zip(found, factors, strict=True)]
+
+
+def _drifted(system: ModalSystem, factors: FloatArray, point: int, hit: int, level: float) -> ModalSystem:
+    return system.with_frequencies(float(factors[point]))
 
 
 def _late(system: ModalSystem, delay: float) -> ModalSystem:

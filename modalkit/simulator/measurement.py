@@ -238,11 +238,13 @@ def slow_drift(sigma: float, points: int, rng: np.random.Generator) -> FloatArra
 
 
 def _stages(drift: float, shape: tuple[int, int], rng: np.random.Generator) -> FloatArray:
-    """Return the factor on all frequencies at each hit: a trend through the test, and some wandering."""
+    """Return the factor on all frequencies at each hit: a trend through the test, and some wandering about its line."""
     count = shape[0] * shape[1]
     time = np.linspace(-0.5, 0.5, count)
     wander = np.cumsum(rng.standard_normal(count)) / np.sqrt(count)
-    stages: FloatArray = (1.0 + drift * (time + _WANDER * (wander - wander.mean()))).reshape(shape)
+    wander -= wander.mean()
+    wander -= time * (time @ wander) / max(float(time @ time), 1e-300)
+    stages: FloatArray = (1.0 + drift * (time + _WANDER * wander)).reshape(shape)
     return stages
 
 

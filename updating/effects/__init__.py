@@ -14,6 +14,7 @@ from updating.effects.hypothesis import hypotheses_of
 from updating.effects.limits import PLACES, check_values
 from updating.effects.measurement.channel_gain import ChannelGain
 from updating.effects.measurement.delay import TimeDelay
+from updating.effects.measurement.drift import Drift
 from updating.effects.measurement.gain import CalibrationGain
 from updating.effects.measurement.polarity import Polarity
 from updating.effects.measurement.position_error import PositionError
@@ -76,6 +77,7 @@ LIBRARY: dict[str, Effect] = {
         Polarity(),
         SwappedPoints(),
         PositionError(),
+        Drift(),
     )
 }
 """All effects by name."""

@@ -12,9 +12,9 @@ from scipy.linalg import block_diag
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.prediction.prediction import Prediction
 
-CHANNELS = ("frequency", "damping", "frf", "phase", "level", "unpaired")
-"""What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force; and all that
-is known of modes without a partner in the nominal model."""
+CHANNELS = ("frequency", "damping", "frf", "phase", "level", "trend", "unpaired")
+"""What the data tell: ln f, ln zeta, real modal constants, their phase, dependence on the hammer's force, change over
+the test; and all that is known of modes without a partner in the nominal model."""
 
 SCALED = "frf"
 """The channel whose noise has an unknown scale."""
@@ -68,8 +68,8 @@ class Comparison:
     Parameters
     ----------
     residual : (n,) array
-        ln f, then ln damping ratio, then modal constants over their r.m.s. per mode, their phases [rad], and the
-        frequencies' dependence on force times its mean [-].
+        ln f, then ln damping ratio, then modal constants over their r.m.s. per mode, their phases [rad], the
+        frequencies' dependence on force times its mean, and their change over the test [-].
     nuisance : (n, p) array
         Change of the prediction per standard deviation of each nuisance [-].
     variance : (n,) array

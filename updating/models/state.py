@@ -90,6 +90,9 @@ class State(Displayed):
         Masses on springs that hang on the structure: each adds a degree of freedom behind those of the basis.
     yielding : mapping of str to Yielding
         Supports of imported matrices that give way, by name, as the nominal model pulls at them.
+    drift : float
+        Relative change of all frequencies from the first point of the test to the last, about the state itself, which
+        is that in the middle of the test [-].
     """
 
     factors: Mapping[str, float] = field(default_factory=_nothing)
@@ -113,6 +116,7 @@ class State(Displayed):
     fluid: Mapping[str, float] = field(default_factory=_nothing)
     absorbers: tuple[Absorber, ...] = ()
     yielding: Mapping[str, Yielding] = field(default_factory=lambda: MappingProxyType({}))
+    drift: float = 0.0
 
     def plus(self, other: State) -> State:
         """Return both departures together: factors multiply, matrices add, later dampers win."""
@@ -138,6 +142,7 @@ class State(Displayed):
             MappingProxyType({**self.fluid, **other.fluid}),
             self.absorbers + other.absorbers,
             MappingProxyType(together(self.yielding, other.yielding)),
+            self.drift + other.drift,
         )
 
 

@@ -29,6 +29,7 @@ from updating.likelihood.gaussian import gaussian
 from updating.likelihood.level import Levels
 from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
+from updating.likelihood.trend import Trends
 from updating.likelihood.unpaired import UnpairedModes
 from updating.models.absorbers import Absorber
 from updating.models.base import FACTORS
@@ -317,6 +318,7 @@ class SpecimenProblem:
             Constants(setting, phases, further),
             phases,
             Levels(setting),
+            Trends(setting),
             UnpairedModes(setting),
         )
         return tuple(quantity for quantity in every if quantity.present)

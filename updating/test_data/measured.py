@@ -97,6 +97,11 @@ class Measured(Displayed):
         Constants of those modes, by which they are known again in a model that has changed [as ``constants``].
     guessed : bool
         Whether ``constants_sigma`` is a guess: nobody stated how well the shapes are known.
+    trend, trend_sigma : (n_modes,) arrays, optional
+        Relative change of each frequency from the first point to the last in measuring order, and the standard
+        deviation of what it has for itself, nan where unknown; None where a test does not rove [-].
+    common_trend_sigma : float
+        Standard deviation of the error that all of them share [-].
     unpaired : Measured, optional
         The modes of the same test that have no partner in the nominal model; None where all have one.
     """
@@ -136,6 +141,9 @@ class Measured(Displayed):
     partner_constants: FloatArray | None = None
     guessed: bool = False
     unpaired: Measured | None = None
+    trend: FloatArray | None = None
+    trend_sigma: FloatArray | None = None
+    common_trend_sigma: float = 0.0
 
     @property
     def own_sigma(self) -> FloatArray:
@@ -192,6 +200,8 @@ class Measured(Displayed):
             "damping_sigma",
             "slope",
             "slope_sigma",
+            "trend",
+            "trend_sigma",
             "partners",
         )
         columns = {n: getattr(self, n)[:, keep] for n in across if getattr(self, n) is not None}
@@ -391,6 +401,9 @@ def measured_from_identified(
         phase=constants.phase,
         phase_sigma=constants.phase_sigma,
         channel_group=constants.channel_group,
+        trend=None if model.trend is None else model.trend.value,
+        trend_sigma=None if model.trend is None else model.trend.sigma,
+        common_trend_sigma=0.0 if model.trend is None else model.trend.common_sigma,
         **options,  # type: ignore[arg-type]
     )
 

@@ -51,6 +51,7 @@ _CHANNELS: Mapping[str, tuple[str, ...]] = {
             "polarity",
             "swapped_points",
             "position_error",
+            "drift",
         ),
     ),
 }

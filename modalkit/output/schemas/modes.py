@@ -53,6 +53,14 @@ class NodeEntry(TypedDict):
     z: Annotated[float, "likewise [m]"]
 
 
+class TrendEntry(TypedDict):
+    """Change of the frequencies over a test that roves, about the modes listed, which are those in its middle."""
+
+    rate: Annotated[float, "relative change from the first point to the last, in the order of the file [-]"]
+    sigma: Annotated[float, "its standard deviation [-]"]
+    points: Annotated[int, "number of points, or sets of FRFs, measured one after the other [-]"]
+
+
 class ModesDocument(TypedDict):
     """Written by `modalkit identify --json` (or `-o` with the ending `.json`), and read back like any file of modes."""
 
@@ -65,3 +73,7 @@ class ModesDocument(TypedDict):
     ]
     warnings: Annotated[Sequence[str], "what the user ought to know"]
     nodes: Annotated[Sequence[NodeEntry], "places of the nodes; empty where the file has none"]
+    trend: Annotated[
+        TrendEntry | None,
+        "drift of the frequencies over the test; null where it does not rove, or for modes that were read",
+    ]

@@ -51,6 +51,11 @@ def no_equals(setup: Setup, values: Values) -> tuple[str, ...]:
     return ()
 
 
+def as_drawn(setup: Setup, values: Values) -> Values:
+    """Return the parameters as they are drawn."""
+    return values
+
+
 @dataclass(frozen=True)
 class HiddenEffect:
     """One kind of hidden effect.
@@ -84,6 +89,8 @@ class HiddenEffect:
         Whether a body of bricks can have it.
     kinds : tuple of str
         Kinds of specimen that it is for; empty for beams, plates and, where ``solid`` says so, bricks.
+    stated : callable
+        ``stated(setup, values)``: the parameters as the library defines them, where the rig's differ.
     share : float
         About the share of setups that can have it, so that all effects come up about as often [-].
     """
@@ -101,6 +108,7 @@ class HiddenEffect:
     metric: str = "frequency"
     solid: bool = False
     kinds: tuple[str, ...] = ()
+    stated: Callable[[Setup, Values], Values] = as_drawn
     share: float = 1.0
 
     def __post_init__(self) -> None:

@@ -14,6 +14,7 @@ KNOWN_SINCE: Mapping[str, str] = MappingProxyType(
         "channel_gain": "channel_gain",
         "taper": "taper",
         "absorber": "absorber",
+        "drift": "drift",
     }
 )
 """Effects that were drawn as what no library knows, and that the library has learnt since: its name for each.

@@ -93,6 +93,12 @@ def _draw_drift(rng: np.random.Generator, setup: Setup, strength: float) -> Valu
     return {"rate": float(either_sign(rng) * min(strength * log_uniform(rng, 0.004, 0.03), 0.08))}
 
 
+def _from_point_to_point(setup: Setup, values: Values) -> Values:
+    """Return the rate from the first point to the last, each by the mean of its hits, for one from hit to hit."""
+    points, hits = len(hit_points(setup)), setup.hits
+    return {"rate": values["rate"] * (points - 1) * hits / (points * hits - 1)}
+
+
 def _draw_tilt(rng: np.random.Generator, setup: Setup, strength: float) -> Values:
     return {"angle": float(min(strength * rng.uniform(0.25, 0.5), 0.8))}
 
@@ -143,7 +149,12 @@ OUTSIDE = tuple(
             share=0.31,
         ),
         HiddenEffect(
-            "drift", _draw_drift, lambda scene, values: scene.with_chain(drift=values["rate"]), solid=True
+            "drift",
+            _draw_drift,
+            lambda scene, values: scene.with_chain(drift=values["rate"]),
+            metric="",
+            stated=_from_point_to_point,
+            solid=True,
         ),
         HiddenEffect(
             "oblique_hits",

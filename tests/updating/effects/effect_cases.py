@@ -29,10 +29,11 @@ def imported() -> Predictor:
 
 
 def complex_test(points: np.ndarray) -> Any:
-    """A test that carries phases, and levels of the hammer, as far as effects ask for them."""
+    """A test that carries phases, and the course of its frequencies, as far as effects ask for them."""
     test = blank(points)
     chains = len(set(test.seen.tolist()))
-    return replace(test, phase=np.zeros((chains, 2)), phase_sigma=np.full((chains, 2), 0.01))
+    course = {"trend": np.zeros(2), "trend_sigma": np.full(2, 1e-4)}
+    return replace(test, phase=np.zeros((chains, 2)), phase_sigma=np.full((chains, 2), 0.01), **course)
 
 
 LOOK = {
@@ -276,6 +277,7 @@ CHANGES: dict[str, Callable[[FieldStructure, dict[str, Any]], dict[str, Any]]] =
     "calibration_gain": _nothing,
     "channel_gain": _nothing,
     "time_delay": _nothing,
+    "drift": _nothing,
     "polarity": _nothing,
     "swapped_points": _nothing,
     "position_error": _nothing,
@@ -318,6 +320,7 @@ CONTRACT = {
     "calibration_gain": {"gain"},
     "channel_gain": {"gain", "points"},
     "time_delay": {"delay"},
+    "drift": {"rate"},
     "polarity": {"points"},
     "swapped_points": {"points"},
     "position_error": {"point", "dx", "dy"},
@@ -349,6 +352,7 @@ VANISHING = {
     "calibration_gain": {"gain": 1.0},
     "channel_gain": {"gain": 1.0},
     "time_delay": {"delay": 0.0},
+    "drift": {"rate": 0.0},
     "position_error": {"dx": 0.0, "dy": 0.0},
     "joint_nonlinearity": {"slope": 0.0},
 }

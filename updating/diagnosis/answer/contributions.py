@@ -22,6 +22,7 @@ NAMES = {
     "frf": "shape and level",
     "phase": "phase",
     "level": "change with force",
+    "trend": "change over the test",
 }
 """How the kinds of data are called."""
 

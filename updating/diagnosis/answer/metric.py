@@ -21,8 +21,9 @@ TOLD_AS: dict[str, Metric] = {
     "frf": "frf",
     "phase": "frf",
     "level": "combined",
+    "trend": "combined",
 }
-"""The metric of each channel: phases are of the FRFs, and the dependence on force has no error of its own."""
+"""The metric of each channel: phases are of the FRFs; the dependence on force and on time has no error of its own."""
 
 
 def metric_of(point: Point) -> Metric:

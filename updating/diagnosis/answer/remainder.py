@@ -15,7 +15,14 @@ from updating.likelihood.cells import cells
 from updating.likelihood.comparison import CHANNELS
 from updating.thresholds import DOUBTED_FIT, NOTABLE_REMAINDER
 
-KINDS = {"frequency": "frequency", "damping": "damping", "frf": "shape", "phase": "phase", "level": "level"}
+KINDS = {
+    "frequency": "frequency",
+    "damping": "damping",
+    "frf": "shape",
+    "phase": "phase",
+    "level": "level",
+    "trend": "trend",
+}
 """What the data of each channel are of a mode."""
 
 

@@ -124,6 +124,8 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
         trusted=None,
         slope=None,
         slope_sigma=None,
+        trend=None,
+        trend_sigma=None,
         noise=None,
         shared=None,
         unpaired=None,

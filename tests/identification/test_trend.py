@@ -1,0 +1,131 @@
+"""Frequencies that change from point to point in measuring order: the trend, its sigma, and what is none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from identification_cases import lines, structure
+
+from acquisition.frfs.frf import FrfSet
+from identification import ModalModel, identify
+from identification.fit.course import course_of
+
+HERTZ, DAMPING, POINTS = np.array([70.0, 150.0, 260.0]), (0.004, 0.003, 0.002), 13
+REFERENCE = 4
+
+
+def joined(parts: list[FrfSet]) -> FrfSet:
+    return replace(
+        parts[0],
+        values=np.concatenate([p.values for p in parts]),
+        responses=sum((p.responses for p in parts), ()),
+        references=sum((p.references for p in parts), ()),
+    )
+
+
+def roved(
+    factors: np.ndarray, seed: int, *, hammer: bool = True, shapes: int = 5, noise: float = 0.005
+) -> FrfSet:
+    """FRFs measured one after the other, all frequencies, or each of them, times a factor that is the point's own."""
+    rng = np.random.default_rng(seed)
+    points = len(factors)
+    pairs = [(REFERENCE, i + 1) if hammer else (i + 1, REFERENCE) for i in range(points)]
+    parts = [
+        structure(HERTZ * factor, DAMPING, POINTS, seed=shapes).frfs(
+            lines(df=0.25, high=350.0), [pair], noise=noise, rng=rng
+        )
+        for factor, pair in zip(factors, pairs, strict=True)
+    ]
+    return joined(parts)
+
+
+def line(rate: float, points: int = POINTS) -> np.ndarray:
+    return 1.0 + rate * np.linspace(-0.5, 0.5, points)
+
+
+def cut(factors: np.ndarray) -> FrfSet:
+    return roved(factors, 1).band(20.0, 340.0)
+
+
+def found(frfs: FrfSet) -> ModalModel:
+    return identify(frfs, band=(20.0, 340.0))
+
+
+@pytest.mark.parametrize("rate", [5e-4, -2e-3, 4e-3])
+@pytest.mark.parametrize("hammer", [True, False])
+def test_a_drift_is_found_with_its_sign_and_the_modes_are_those_of_the_middle(
+    rate: float, hammer: bool
+) -> None:
+    model = found(roved(line(rate), 3, hammer=hammer))
+    trend = model.trend
+    assert trend is not None
+    assert trend.setups == POINTS
+    assert trend.rate == pytest.approx(rate, abs=4 * trend.rate_sigma + 0.01 * abs(rate))
+    assert trend.rate_sigma < 0.02 * abs(rate)
+    np.testing.assert_allclose(trend.value, rate, rtol=0.05)
+    np.testing.assert_allclose(model.modal.frequency, HERTZ, rtol=0.3 * abs(rate))
+    assert any(f"drift: from the first of {POINTS} points" in w for w in model.warnings)
+
+
+def test_without_drift_the_trend_is_none_within_its_sigma() -> None:
+    trends = [found(roved(line(0.0), seed)).trend for seed in range(8)]
+    scores = np.array([t.rate / t.rate_sigma for t in trends if t is not None])
+    assert len(scores) == 8
+    assert np.abs(scores).max() < 3.0
+    assert 0.3 < np.sqrt(np.mean(scores**2)) < 1.7
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_each_point_has_of_its_own_widens_the_sigma_and_is_no_trend(seed: int) -> None:
+    scatter = 1.0 + 1e-3 * np.random.default_rng(20 + seed).standard_normal(POINTS)
+    trend = found(roved(scatter, seed)).trend
+    assert trend is not None
+    assert abs(trend.rate) < 3 * trend.rate_sigma
+    assert 5e-4 < trend.rate_sigma < 3e-3  # 1e-3 over 13 points, 12 / 13 of them squared
+
+
+@pytest.mark.parametrize(("rate", "shapes"), [(0.0, 5), (0.0, 6), (1e-3, 5)])
+def test_the_mass_of_a_roving_sensor_is_no_trend(rate: float, shapes: int) -> None:
+    """It lowers each mode by its square where the sensor sits, the more the further out it goes."""
+    square = structure(HERTZ, DAMPING, POINTS, seed=shapes).shapes ** 2
+    loaded = line(rate)[:, None] * (1.0 - 2e-3 * square / square.mean(axis=0))
+    trend = found(roved(loaded, 1, hammer=False, shapes=shapes)).trend
+    assert trend is not None
+    assert trend.rate == pytest.approx(rate, abs=3 * trend.rate_sigma)
+    assert trend.rate_sigma < 1e-3
+
+
+def test_a_mode_that_goes_its_own_way_is_told_from_those_that_drift_together() -> None:
+    factors = np.stack([line(0.0), line(0.0), line(4e-3)], axis=1)
+    trend = found(roved(factors, 2)).trend
+    assert trend is not None
+    np.testing.assert_allclose(trend.value[:2], 0.0, atol=1e-4)
+    assert trend.value[2] == pytest.approx(4e-3, rel=0.05)
+
+
+def test_a_test_that_does_not_rove_has_none() -> None:
+    both = roved(line(0.0, 2), 1)
+    assert found(both).trend is None
+    assert found(roved(line(0.0, 3), 1)).trend is not None
+    assert found(roved(line(0.0, 3), 1, hammer=False)).trend is None  # a line, and the sensor's mass
+
+
+@pytest.mark.parametrize("rate", [0.02, -0.035])
+def test_a_drift_of_many_widths_makes_no_rows_of_modes(rate: float) -> None:
+    model = found(roved(line(rate), 4))
+    assert len(model) == 3, model.table()
+    np.testing.assert_allclose(model.modal.frequency, HERTZ, rtol=5e-4)
+    np.testing.assert_allclose(model.modal.damping, DAMPING, rtol=0.2)
+    assert model.trend is not None
+    assert model.trend.rate == pytest.approx(rate, rel=0.05)
+
+
+def test_a_course_is_looked_for_only_where_peaks_are_beside_each_other() -> None:
+    assert course_of(cut(line(0.0))) is None
+    assert course_of(cut(line(1e-3))) is None
+    assert course_of(cut(line(0.02, 3))) is None
+    course = course_of(cut(line(0.02)))
+    assert course is not None
+    np.testing.assert_allclose(course, line(0.02) - 1.0, atol=1e-3)

@@ -1,0 +1,60 @@
+"""A structure that changes while the hammer or the sensor goes from point to point."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from updating.effects.base import Effect, Parameter, Values
+from updating.effects.obstacles import Lack, Obstacle
+from updating.effects.structure.joint_nonlinearity import EitherSign
+from updating.models.state import State
+from updating.prediction.predict import Predictor
+from updating.thresholds import LARGEST_TREND, UNREMARKABLE_TREND
+
+
+class Drift(Effect):
+    """All frequencies change by one factor while a test goes on, in proportion to the place in measuring order.
+
+    The frequencies of the state are those in the middle of the test, which a fit to all FRFs finds: a drift moves none
+    of them. Were the specimen nominal at the first point rather than then, E would be off by the rate.
+    """
+
+    name = "drift"
+    channel = "measurement"
+    summary = "Frequencies drift during the test, from point to point: it got warmer or colder, or a support settled."
+    footprint = (
+        "Frequencies of the FRFs change by one factor for all modes, in proportion to the place in measuring order; "
+        "those of the test as a whole are those in its middle."
+    )
+    models = ("beam", "plate", "matrices")
+    phrase = "a drift during the test"
+    separated_by = "hit the first point again at the end, and note the temperature"
+    fidelity = 0.05  # modes with other shares of clamps and joints drift by other factors
+
+    def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
+        """Return the rate."""
+        why = "from what no test is free of, 2 K on metals, to 15 K on plastics; of either sign, uniform in its log"
+        bounds = -LARGEST_TREND, LARGEST_TREND
+        return (EitherSign("rate", "-", *bounds, why, signed=True, least=UNREMARKABLE_TREND),)
+
+    def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
+        """Start from what the modes show."""
+        test = predictor.measured
+        if test.trend is None or test.trend_sigma is None:
+            return ((0.5,),)
+        known = np.isfinite(test.trend)
+        (rate,) = self.parameters(predictor)
+        weight = test.trend_sigma[known] ** -2.0
+        return ((rate.coordinate(float(weight @ test.trend[known] / weight.sum())),),)
+
+    def obstacle(self, predictor: Predictor) -> Obstacle | None:
+        """Need FRFs that were measured one after the other."""
+        test = predictor.measured
+        if test.trend is not None and np.isfinite(test.trend).any():
+            return None
+        what = "nothing says in which order at least three points were measured: it takes FRFs or hits of a roving test"
+        return Obstacle(Lack.DATA, what)
+
+    def state(self, predictor: Predictor, values: Values) -> State:
+        """Return the drift."""
+        return State(drift=values["rate"])

@@ -1,0 +1,46 @@
+"""Change of the frequencies over a test, in measuring order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from updating.likelihood.base import Quantity, View
+from updating.likelihood.comparison import Block
+from updating.thresholds import BENT_COURSE, TREND_SHARE, UNREMARKABLE_TREND
+
+
+@dataclass(frozen=True, eq=False)
+class Trends(Quantity):
+    """Relative change of each frequency from the first point to the last."""
+
+    @property
+    def present(self) -> bool:
+        """Whether the test has such data."""
+        return self.setting.measured.trend is not None
+
+    def block(self, view: View) -> Block:
+        """Return by how much more than the state drifts each frequency has changed.
+
+        What no test is free of is common to all modes, as is what they did together beside a line, and that a drift
+        need not follow one.
+        """
+        test, rate = self.setting.measured, view.state.drift
+        assert test.trend is not None
+        assert test.trend_sigma is not None
+        n = len(test.trend)
+        known = np.isfinite(test.trend)
+        uneven = np.where(known, view.doubt.fidelity * rate, 0.0)
+        always = np.hypot(UNREMARKABLE_TREND, TREND_SHARE * test.repeatability)
+        common = np.linalg.norm([always, test.common_trend_sigma, BENT_COURSE * rate])
+        return Block(
+            "trend",
+            np.where(known, test.trend - rate, 0.0),
+            np.where(known, test.trend_sigma**2 + uneven**2, 1.0),
+            np.zeros((n, len(self.setting.names))),
+            np.zeros((n, 0)),
+            np.where(known, common, 0.0)[:, None],
+            np.arange(n),
+            idealised=uneven**2 if view.doubt.fidelity else None,
+        )
