@@ -56,6 +56,9 @@ class Parameter:
     like : str
         Parameter whose value it takes where it is put into a model and not told, or ``nothing``; empty where it has
         to be told.
+    scale_doubt : float
+        Relative standard deviation of the scale that the value is read on, which no datum shows, as that of the force
+        on a slope per newton [-].
     """
 
     name: str
@@ -69,6 +72,7 @@ class Parameter:
     or_none: bool = False
     like: str = ""
     signed: bool = False
+    scale_doubt: float = 0.0
 
     @property
     def needed(self) -> bool:

@@ -74,3 +74,18 @@ def test_slopes_that_are_none_acquit_it() -> None:
     test = with_slopes(struck(specimen(rng, E=0.9), rng), 0.0, 4e-6, rng)
     found = diagnose(case_of(test), library=[EFFECT, LIBRARY["E"], LIBRARY["sensor_mass"]])
     assert found.sets == (("E",),)
+
+
+def test_a_slope_per_newton_is_no_better_known_than_the_force() -> None:
+    """The data hold slope times force alone: a hammer 3 % off makes a slope 3 % off, with nothing to show it."""
+    rng = np.random.default_rng(8)
+    test = with_slopes(struck(specimen(rng), rng), -1e-4, 1e-7, rng)
+    widths = []
+    for calibration in (0.001, 0.03):
+        found = diagnose(case_of(replace(test, calibration=calibration)), library=[EFFECT])
+        slope = found.ranking[0].parameters["joint_nonlinearity.slope"]
+        assert slope.low95 is not None
+        assert slope.high95 is not None
+        widths.append((slope.high95 - slope.low95) / abs(float(slope.value)))
+    assert widths[1] >= 2 * 1.96 * 0.03
+    assert widths[0] < widths[1]

@@ -245,6 +245,11 @@ def estimates(
     result = {}
     for name, parameter in searched:
         low, middle, high = _quantiles(np.array([d[name] for d in drawn]), weights)
+        scale = TWO_SIDED * parameter.scale_doubt * middle
+        low, high = (
+            middle - float(np.hypot(middle - low, scale)),
+            middle + float(np.hypot(high - middle, scale)),
+        )
         aside = parameter.default is not None
         result[name] = ParameterEstimate(middle, parameter.unit, low, high, name in extreme, aside)
     result |= {name: place for name, place in _at_form_places(problem, candidate).items() if name in drawn[0]}

@@ -115,7 +115,15 @@ class JointNonlinearity(Effect):
         )
         which = "not known, a clamp that turns or shifts, a stretch between clamps: a form each"
         return (
-            EitherSign("slope", "1/N", -LARGEST / level, LARGEST / level, why, least=SMALLEST / level),
+            EitherSign(
+                "slope",
+                "1/N",
+                -LARGEST / level,
+                LARGEST / level,
+                why,
+                least=SMALLEST / level,
+                scale_doubt=predictor.measured.calibration,
+            ),
             Parameter("joint", "-", ANYWHERE, STRETCHING, which, default=float(ANYWHERE), natural=EDGES),
         )
 
