@@ -99,6 +99,7 @@ def test_a_mode_of_another_shape_between_true_ones_has_no_partner() -> None:
         damping=np.append(measured.damping, 0.01)[order],
         damping_sigma=np.append(measured.damping_sigma, 0.001)[order],
         constants=both, constants_sigma=size, noise=None, shared=None, phase=None, phase_sigma=None, channel_group=None,
+        trend=None, trend_sigma=None,
     )  # fmt: skip
     paired = pair_modes(many, Predictor(BEAM, many).predict())
     np.testing.assert_allclose(paired.measured.frequency, frequency)

@@ -129,7 +129,7 @@ def test_trial_hides_an_effect_in_bricks(name: str) -> None:
 @needs_ccx
 def test_trials_of_all_sorts_are_drawn() -> None:
     trials = [
-        draw_trial(3, index, plan=replace(SOLIDS, none=0.3, pairs=0.3, outside=0.2)) for index in range(9)
+        draw_trial(3, index, plan=replace(SOLIDS, none=0.3, pairs=0.3, outside=0.2)) for index in range(16)
     ]
     assert {len(trial.truth.effects) for trial in trials} == {0, 1, 2}
     assert not all(trial.truth.in_library for trial in trials)

@@ -30,7 +30,7 @@ def perfect(state: State = NOMINAL, **changes: object) -> Measured:
         damping=truth.damping, damping_sigma=0.03 * truth.damping,
         constants=truth.constants, constants_sigma=0.01 * np.abs(truth.constants).max(axis=0) * np.ones((5, MODES)),
         phase=np.zeros((1, MODES)), phase_sigma=np.full((1, MODES), 0.01), channel_group=np.zeros(5, dtype=np.int64),
-        slope=0.0 * ones, slope_sigma=1e-6 * ones, level=100.0,
+        slope=0.0 * ones, slope_sigma=1e-6 * ones, level=100.0, trend=0.0 * ones, trend_sigma=1e-4 * ones,
     )  # fmt: skip
     return replace(test, **changes)  # type: ignore[arg-type]
 
@@ -74,6 +74,7 @@ def test_nothing_is_left_of_data_that_the_model_made(
         ("damping", {"damping": 1.2}, np.log(1.2)),
         ("level", {"slope": 2e-5}, 2e-3),
         ("phase", {"phase": 0.02}, 0.02),
+        ("trend", {"trend": 2e-3}, 2e-3),
     ],
 )
 def test_each_kind_reads_its_own_data(channel: str, changes: dict[str, float], expected: float) -> None:
@@ -90,20 +91,19 @@ def test_each_kind_reads_its_own_data(channel: str, changes: dict[str, float], e
         assert block.residual == pytest.approx(expected if block.channel == channel else 0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("lacking", ["phase", "slope", "damping", "shapes"])
+@pytest.mark.parametrize("lacking", ["phase", "slope", "trend", "damping", "shapes"])
 def test_what_was_not_measured_adds_no_rows(lacking: str) -> None:
     nothing = {
         "phase": {"phase": None},
         "slope": {"slope": None},
+        "trend": {"trend": None},
         "damping": {"damping": np.full(MODES, np.nan)},
         "shapes": {
             "points": POINTS[:0, None], "nodes": (), "seen": np.zeros(0, dtype=int), "hit": np.zeros(0, dtype=int),
             "constants": np.zeros((0, MODES)), "constants_sigma": np.zeros((0, MODES)), "absolute": False,
         },
     }[lacking]  # fmt: skip
-    kinds = {"phase": {"phase"}, "slope": {"level"}, "damping": {"damping"}, "shapes": {"frf", "phase"}}[
-        lacking
-    ]
+    kinds = {"slope": {"level"}, "shapes": {"frf", "phase"}}.get(lacking, {lacking})
     comparison = problem(perfect(**nothing)).compare(NOMINAL)
     assert {name for name in CHANNELS if not comparison.of(name).any()} == {*kinds, "unpaired"}
 
