@@ -2,8 +2,8 @@
 
 A joint that slips or closes makes a structure softer or stiffer the harder it is hit. The poles of each hit alone are
 found by a few steps from those identified, its residues free, so that where exactly a hit landed does not matter.
-Their shifts are then fitted by a slope common to all points and an offset of each point in each run, which takes up
-drift from point to point and what a roving transducer does.
+Their shifts are then fitted by a curve common to all points and an offset of each point in each run, which takes up
+drift from point to point and what a roving transducer does; its slope is that at the level of the averaged FRFs.
 """
 
 from __future__ import annotations
@@ -29,6 +29,10 @@ from identification.model import ModalModel
 STEPS = 2
 """Steps to the poles of each hit, each held to about a half-power half-width, before the last, free one."""
 
+BENT = 0.3
+"""How far the slope may change over the mean level, relative to itself, 1 sigma [-]: what gives way in proportion to
+the force moves a mode the less, the softer it is already. Doubled: few levels tell a slope half as well."""
+
 AT_REST = 0.03
 """Part of a half-width that a step may leave before the next is taken: its error goes as the square [-]."""
 
@@ -43,7 +47,7 @@ class LevelDependence(Displayed):
     Parameters
     ----------
     slope, slope_sigma : (n_modes,) arrays
-        d ln f / dF of each mode and its standard deviation; nan where no hit shows the mode [1/N].
+        d ln f / dF of each mode at ``level`` and its standard deviation; nan where no hit shows the mode [1/N].
     damping_slope, damping_slope_sigma : (n_modes,) arrays
         d zeta / dF, likewise [1/N].
     level : float
@@ -122,7 +126,7 @@ def level_dependence(
     found = [_of_hit(model, f, weights, rows, d) for f, d in zip(singles, expected, strict=True)]
     shifts, variances = (np.array(part) for part in zip(*found, strict=True))
     point = np.repeat(np.arange(len(entries)), [len(e.levels) for e in entries])
-    lines = [_line(levels, point, shifts[:, :, i], variances[:, :, i]) for i in range(2)]
+    lines = [_slopes(levels, common, point, shifts[:, :, i], variances[:, :, i]) for i in range(2)]
     return LevelDependence(
         *lines[0], *lines[1], common, float(levels.min()), float(levels.max()), levels, point,
         shifts[:, :, 0], np.sqrt(variances[:, :, 0]), shifts[:, :, 1],
@@ -232,17 +236,26 @@ def _complex(values: FloatArray) -> ComplexArray:
     return np.asarray(values[0::2] + 1j * values[1::2])
 
 
-def _line(
-    levels: FloatArray, point: IntArray, shifts: FloatArray, variances: FloatArray
+def _slopes(
+    levels: FloatArray, common: float, point: IntArray, shifts: FloatArray, variances: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Fit one slope per mode and an offset per point, weighted; return slopes and standard deviations.
+    """Fit a curve of second degree per mode and an offset per point, weighted; return its slopes at a level.
 
     Parameters
     ----------
-    levels, point : (n_hits,) arrays
-        Level and point of each hit.
+    levels : (n_hits,) array
+        Level of each hit [N].
+    common : float
+        Level at which the slope is wanted [N].
+    point : (n_hits,) int array
+        Point of each hit.
     shifts, variances : (n_hits, n_modes) arrays
         What is fitted, and its variance up to a factor per mode.
+
+    Returns
+    -------
+    slope, sigma : (n_modes,) arrays
+        Slopes and their standard deviations [1/N].
     """
     member = (point[:, None] == np.arange(point.max() + 1)[None, :]).astype(np.float64)
     weight = 1 / (
@@ -253,12 +266,18 @@ def _line(
     def within(values: FloatArray) -> FloatArray:
         return np.asarray(values - member @ ((member.T @ (weight * values)) / total))
 
-    disagreement = within(np.broadcast_to(levels[:, None], shifts.shape))
+    away = (levels - common)[:, None]
+    straight, bent = (within(np.broadcast_to(part, shifts.shape)) for part in (away, away**2 / common))
     about = within(shifts)
-    power = np.sum(weight * disagreement**2, axis=0)
-    slope = np.sum(weight * disagreement * about, axis=0) / power
-    left = about - slope * disagreement
+    power = np.sum(weight * straight**2, axis=0)
+    line = np.sum(weight * straight * about, axis=0) / power
     freedom = len(levels) - len(np.unique(point)) - 1
-    scale = np.sum(weight * left**2, axis=0) / freedom
+    scale = np.sum(weight * (about - line * straight) ** 2, axis=0) / freedom
+    # a bend that may stand for a slope, held by its prior and eliminated
+    shared = np.sum(weight * straight * bent, axis=0) / scale
+    least = np.finfo(float).tiny ** 0.5
+    held = np.sum(weight * bent**2, axis=0) / scale + 1 / np.maximum(np.abs(BENT * line / 2), least) ** 2
+    information = power / scale - shared**2 / held
+    pull = line * power / scale - shared / held * np.sum(weight * bent * about, axis=0) / scale
     wider = stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)
-    return slope, wider * np.sqrt(scale / power)
+    return pull / information, wider / np.sqrt(information)

@@ -10,6 +10,7 @@ from level_cases import BAND, FREQUENCY, PLAN, SLOPES, struck, structure
 
 from acquisition import HammerPlan, HammerTest, Windows, estimate_frfs, judge_hits
 from identification import LevelDependence, identify, level_dependence, why_no_level_dependence
+from identification.levels.slopes import _slopes
 
 
 def found(test: HammerTest, windows: Windows | None = None) -> LevelDependence:
@@ -120,3 +121,18 @@ def test_the_level_is_the_one_that_averages_stand_for() -> None:
     stands_for = np.log(model.modal.frequency / FREQUENCY) / -5e-5 * np.mean(dependence.levels / true)
     assert np.median(stands_for) == pytest.approx(dependence.level, rel=0.1)
     assert dependence.level > 1.1 * dependence.levels.mean()
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.0015])
+def test_a_slope_is_that_at_the_level_of_the_averages(bend: float) -> None:
+    """Averages stand for hard hits, most hits are softer, and a clamp that gives way moves a mode less and less."""
+    rng = np.random.default_rng(3)
+    levels, point = rng.lognormal(np.log(60.0), 0.5, 60), np.repeat(np.arange(12), 5)
+    common, slope, noise = 110.0, -3e-4, 2e-4
+    start = slope * (1 + bend * common) ** 2  # so that the slope at the common level is as it is there
+    shifts = start * levels / (1 + bend * levels)
+    scatter = noise * rng.standard_normal((60, 40))
+    measured, sigma = _slopes(levels, common, point, shifts[:, None] + scatter, np.full((60, 40), noise**2))
+    assert np.mean(measured) == pytest.approx(slope, rel=0.03)
+    assert np.std(measured) < 1.2 * np.mean(sigma)
+    assert np.mean(np.abs(measured - slope) < 1.96 * sigma) > 0.9
