@@ -295,10 +295,9 @@ step, and the second is rarely taken."""
 QUANTILE_SPREAD = 0.3
 """Standard deviation of a parameter's prior quantile, even between nought and one [-]."""
 
-SET_MARGIN = 5.0
+SET_MARGIN = 2.0
 """A set is weighed where a score test says that its logarithm of the probability would come this near to the best,
-or above [-]. The test takes of the second cause what its parameters cost alone, where it has to bend to all of the gap:
-too much by up to five. Doubled: some three times as many sets are weighed where one cause fits."""
+or above [-]: the test errs by one or two. Doubled: some three times as many sets are weighed where one cause fits."""
 
 CLOSES_NEARLY_ALL = 90.0
 """A cause that leaves more than noise is named where it closes so much of what can be closed, on modes held out [%].
@@ -346,6 +345,11 @@ STRIP_ACROSS = 4
 TWIST_ALONE = 0.1
 """Modes of that plate that move the middle line by less than this share of what the liveliest does are twist [-].
 Doubled: a bending mode that the line's ends alone see may be missed."""
+
+DOUBT_BEYOND_NOISE = 3.0
+"""Where the idealisation of the best single effect leaves a frequency in doubt by so many times its noise [-], pairs
+are sought beside it though it fits: nine tenths of the variance are its own. Doubled: a second cause of six sigma may
+hide in a sketch."""
 
 WITHIN_REACH = 7.0
 """Drafts whose logarithm of the probability lies further behind the best are not weighed more closely [-]: a draft's

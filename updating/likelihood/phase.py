@@ -42,7 +42,7 @@ class Phases(Quantity):
         )
 
     def factor(self, view: View) -> FloatArray:
-        """Return what a delay makes of real constants, (n_frf, n_modes): a sign, and some growth [-]."""
+        """Return what a state makes of real constants, (n_frf, n_modes): a sign, and of a delay some growth [-]."""
         test = self.setting.measured
         assert test.channel_group is not None
         _, turns = self._turned(view)

@@ -15,10 +15,13 @@ CLEAR = 8
 """So many modes beyond those asked for take part where dashpots couple them: what lies further off is moved by the
 square of its coupling over its distance [-]. Doubled: no pole moves by 1e-4 of its damping."""
 
-TURNED = 0.1
-"""Share of one mode in another [-] from which dampers of effects are taken to make modes of their own: the shapes that
-are compared change by its square, as much as good tests repeat them. Doubled, close modes on a damped suspension are
-compared with shapes that are wrong by 4 %."""
+TURNED = 0.03
+"""Share of one mode in another [-] from which dampers of effects are taken to make modes of their own: phases change by
+as much [rad], which is their doubt, and levels where a sensor sits near a node. Doubled, close modes on a damped
+suspension are compared with phases that are wrong by twice that."""
+
+BY_ROUNDING = 1e-10
+"""Coupling of two modes over what damps either that is rounding [-]: of a pair at one frequency it would decide."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +70,7 @@ def damped(values: FloatArray, viscous: FloatArray, count: int) -> Damped:
     -------
     Damped
     """
-    n = len(viscous)
+    n, viscous = len(viscous), _without_rounding(viscous)
     omega = np.sqrt(np.maximum(values[:n], 1e-12))
     system = np.block([[np.zeros((n, n)), np.diag(omega)], [-np.diag(omega), -viscous]])
     poles, states = np.linalg.eig(system)
@@ -88,7 +91,7 @@ def turns_modes(state: State, values: FloatArray, vectors: FloatArray) -> bool:
     """Tell whether dampers of effects turn modes into each other by more than ``TURNED``.
 
     To first order mode k takes part in mode r with i omega_r C_kr / (omega_k^2 - omega_r^2): little unless they are
-    close. Their real parts change by the square of that.
+    close.
 
     Parameters
     ----------
@@ -106,6 +109,13 @@ def turns_modes(state: State, values: FloatArray, vectors: FloatArray) -> bool:
     n, omega = len(vectors), np.sqrt(np.maximum(values, 1e-12))
     middle = np.sqrt(np.outer(omega, omega))
     rates = sum(vectors.T @ loss.matrix[:n, :n] @ vectors * middle**loss.power for loss in losses)
+    rates = _without_rounding(np.asarray(rates))
     gap = np.abs(values[:, None] - values)
     np.fill_diagonal(gap, np.inf)
     return bool((np.abs(rates) * omega > TURNED * gap).any())
+
+
+def _without_rounding(coupling: FloatArray) -> FloatArray:
+    """Return a matrix (n, n) without entries that are rounding beside its diagonal."""
+    own = np.sqrt(np.abs(np.diag(coupling)))
+    return np.where(np.abs(coupling) > BY_ROUNDING * np.outer(own, own), coupling, 0.0)

@@ -231,13 +231,14 @@ class Predictor(Displayed):
         self, state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray
     ) -> Damped | None:
         """Return the modes that dashpots of absorbers, or other dampers, couple; None where they hardly do."""
-        dashpots = any(one.damping for one in state.absorbers)
-        if np.isnan(values).any() or not (dashpots or turns_modes(state, values[chosen], vectors[:, chosen])):
-            return None
         first = self.reduced.structure.rigid_modes
+        size = modes_taking_part(values[first:], len(chosen))
+        near = slice(first, first + size)
+        dashpots = any(one.damping for one in state.absorbers)
+        if np.isnan(values).any() or not (dashpots or turns_modes(state, values[near], vectors[:, near])):
+            return None
         elastic = values[first:]
-        size = modes_taking_part(elastic, len(chosen))
-        modes, omega = vectors[:, first : first + size], np.sqrt(np.maximum(elastic[:size], 1e-12))
+        modes, omega = vectors[:, near], np.sqrt(np.maximum(elastic[:size], 1e-12))
         viscous, hysteretic = (modes.T @ matrix @ modes for matrix in self._damping_matrices(state))
         rates = 2 * self._ratios(state, modes) * omega + modal_losses(state, elastic[:size], modes)
         viscous = viscous + hysteretic / np.sqrt(np.outer(omega, omega)) + np.diag(rates + 2 * state.decay)

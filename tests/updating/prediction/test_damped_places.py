@@ -43,10 +43,13 @@ def test_poles_and_constants_are_those_of_the_state_space(damping: float) -> Non
     frequency, ratio, constants = exact(cords(damping))
     assert found.frequency == pytest.approx(frequency, rel=1e-4)
     assert found.damping == pytest.approx(ratio, rel=0.05, abs=1e-5)
-    for one, other in zip(found.constants.T, constants.T, strict=True):
-        turned = np.real(other * np.exp(-0.5j * np.angle(np.sum(other**2))))
-        alike = (one @ turned) ** 2 / ((one @ one) * (turned @ turned))
-        assert alike > 0.999
+    direction = np.angle(np.sum(constants**2, axis=0)) / 2
+    exactly_real = np.real(constants * np.exp(-1j * direction))
+    turned = np.zeros(COUNT) if found.phase is None else found.phase[0]
+    alike = np.sum(found.constants * exactly_real, axis=0) / np.sum(exactly_real**2, axis=0)
+    left = found.constants - exactly_real * np.sign(alike)
+    assert np.abs(np.exp(2j * (turned - direction)) - 1).max() < 0.1
+    assert np.sqrt(np.sum(left**2, axis=0) / np.sum(exactly_real**2, axis=0)).max() < 0.12
 
 
 def test_without_the_dampers_these_shapes_are_others() -> None:

@@ -11,6 +11,7 @@ from updating_cases import BEAM, blank, case_of, exactly
 from updating import LIBRARY, Measured, Predictor
 from updating.diagnosis.diagnose import pose
 from updating.effects.base import total_mass
+from updating.prediction.suspended import _independent
 
 FREE = replace(BEAM, clamped=())
 ALONG = np.linspace(0, FREE.length, 9)
@@ -74,3 +75,32 @@ def test_a_clamped_structure_has_none() -> None:
     problem, warnings = pose(case_of(hung))
     assert taken_out(warnings) == 0
     assert problem.measured.unpaired is not None
+
+
+def test_motions_that_look_alike_at_the_points_count_once() -> None:
+    """Of six motions of a body, sensors along one axis tell three, or two; rounding of the rest explains anything."""
+    rng = np.random.default_rng(1)
+    bounce, pitch = np.ones(9), np.linspace(-1, 1, 9)
+    nothing = 1e-13 * rng.standard_normal((9, 4))
+    motions = np.column_stack([bounce, pitch, nothing])
+    assert _independent(motions).shape == (9, 2)
+    bending = pitch**2 - np.mean(pitch**2)
+    explained = _independent(motions).T @ bending
+    assert explained @ explained < 0.05 * bending @ bending
+
+
+def test_no_more_modes_are_taken_out_than_the_body_has_motions() -> None:
+    test = with_bounce(exactly(LOOK, LOOK.predict(count=5)))
+    third = replace(
+        test,
+        frequency=np.append(20.0, test.frequency),
+        frequency_sigma=np.append(0.01, test.frequency_sigma),
+        damping=np.append(0.05, test.damping),
+        damping_sigma=np.append(0.002, test.damping_sigma),
+        constants=np.hstack([test.constants[:, :1], test.constants]),
+        constants_sigma=np.hstack([test.constants_sigma[:, :1], test.constants_sigma]),
+    )
+    problem, warnings = pose(case_of(third, FREE))
+    assert taken_out(warnings) == 2
+    assert problem.measured.unpaired is not None
+    assert problem.measured.unpaired.frequency.tolist() == [20.0]

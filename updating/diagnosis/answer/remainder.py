@@ -48,7 +48,7 @@ def remainder_of(
     stated = as_stated.settled(point.marginal.share).noise(point.marginal.scale)
     off = np.where(comparison.of_pairs, np.abs(point.left_over) / np.sqrt(stated), 0.0)
     group = cells(comparison)
-    strength = np.sqrt(group.sums(off**2) / np.maximum(group.size, 1))
+    strength = np.sqrt(group.sums(off**2) / np.maximum(group.sums(comparison.of_pairs.astype(float)), 1.0))
     order = [int(i) for i in np.argsort(strength)[::-1] if group.size[i]]
     significant = best.p_value < DOUBTED_FIT or bool(outliers)
     carried = [i for i in order if strength[i] > NOTABLE_REMAINDER] if significant else []

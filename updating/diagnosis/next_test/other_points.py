@@ -59,6 +59,8 @@ def _one_more(test: Measured, place: FloatArray) -> Measured:
         else np.append(test.channel_group, test.channel_group[0]),
         noise=None,
         shared=None,
+        trend=None,
+        trend_sigma=None,
         trusted=None,
         rows=None,
         signs=None,

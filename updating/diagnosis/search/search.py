@@ -30,6 +30,7 @@ from updating.problem.candidate import Candidate
 from updating.problem.theory_error import theory_shows
 from updating.thresholds import (
     COUNT_PRIOR,
+    DOUBT_BEYOND_NOISE,
     DOUBTED_FIT,
     FINISHING_ROUNDS,
     FORM_SHARE,
@@ -162,7 +163,7 @@ def examine(problem: DiagnosisProblem, library: Sequence[Effect]) -> tuple[list[
 
 
 def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
-    """Weigh nothing, every single effect, pairs, and sets of more where those of fewer do not explain the data.
+    """Weigh nothing, every single effect, and sets of more where those of fewer do not explain the data.
 
     Parameters
     ----------
@@ -177,8 +178,10 @@ def search(problem: DiagnosisProblem, library: Sequence[Effect]) -> Search:
     if both and _beneath(problem):
         nothing = _either(nothing, explain(problem, Candidate(fuller=True)))
     found = _with_odd(problem, [], [nothing, *_singles(problem, effects, nothing, both=both)])
-    pairs = pairs_of(problem, _as_stated(found), far=not _explained(problem, found, well=True))
-    found = _with_odd(problem, found, pairs)
+    far = not _explained(problem, found, well=True)
+    if far or _by_its_doubt(problem, found):
+        pairs = pairs_of(problem, _as_stated(found), far=far)
+        found = _with_odd(problem, found, pairs)
     for causes in range(3, len(COUNT_PRIOR)):
         if not _explained(problem, found):
             found = _with_odd(problem, found, one_more(problem, _as_stated(found), causes))
@@ -211,6 +214,20 @@ def _explained(problem: DiagnosisProblem, found: list[Explanation], *, well: boo
     top = max(row.probability for row in rows)
     near = [row for row in rows if row.probability > top * np.exp(-PROBABLE_BEHIND)]
     return any(row.p_value >= least and not _extreme(problem, row.explanation) for row in near)
+
+
+def _by_its_doubt(problem: DiagnosisProblem, found: list[Explanation]) -> bool:
+    """Tell whether the most probable explanation is a sketch that may fit by what it leaves in doubt of itself.
+
+    It may where that doubt is far larger than the noise of the frequencies.
+    """
+    top = max(_compare(found), key=lambda row: row.probability).explanation
+    for one, now in zip(problem.specimens, top.best.comparison.predictions, strict=True):
+        test, doubt = one.measured, top.best.marginal.share * top.candidate.doubt_on(one.predictor).fidelity
+        noise = np.hypot(test.frequency_sigma / test.frequency, test.repeatability)
+        if np.any(doubt * np.abs(np.log(now.frequency / one.nominal.frequency)) > DOUBT_BEYOND_NOISE * noise):
+            return True
+    return False
 
 
 def _finished(problem: DiagnosisProblem, found: list[Explanation]) -> list[Explanation]:

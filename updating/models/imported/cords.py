@@ -21,8 +21,8 @@ MOST = 8
 """Cords of one suspension at most: a set of more places is a face, an edge or a row of bolts. Doubled, such sets count
 as suspensions, too, and each costs a form for every direction."""
 
-NUMBERED = re.compile(r"(.*?)[_\-. ]*\d+")
-"""A name and its number: ``cord_1`` and ``cord_2`` are a suspension of two."""
+NUMBERED = re.compile(r"(.+?)[_\-. ]*\d+")
+"""A name and its number: ``cord_1`` and ``cord_2`` are a suspension of two; a number alone names nothing."""
 
 ENDS, CORNERS = "ends", "corners"
 """What a suspension is called that nobody named: at both ends, or at the four corners."""
@@ -75,7 +75,10 @@ def cords_of(places: Places, sets: NodeSets, groups: Sequence[Group]) -> tuple[C
     for group in groups:
         if number := NUMBERED.fullmatch(group.name):
             alike.setdefault(number[1], []).append(group)
-    found = {name: held for name, held in (alike | spread).items() if 2 <= len(held) <= MOST}
+    alike, spread = (
+        {name: held for name, held in some.items() if 2 <= len(held) <= MOST} for some in (alike, spread)
+    )
+    found = alike | spread
     unnamed = {name: held for name, held in _outermost(places) if name not in found}
     return (
         *(_together(name, held, named=True) for name, held in found.items()),
