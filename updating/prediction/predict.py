@@ -197,11 +197,7 @@ class Predictor(Displayed):
         shift = 1.0 + total.slope * (self.measured.level or 0.0)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
         moved = shift * slowing
-        if dashed is None:
-            moved = moved * coupled(total, values, vectors, chosen)
-        else:
-            solved = slice(first, first + dashed.taking_part)
-            moved = moved * dashed.slowing * coupled(total, values, vectors, chosen, solved)
+        moved = moved * self._slowed(total, values, vectors, chosen, dashed)
         frequency = moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
         # what a layer carries along is modal mass
         level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
@@ -244,6 +240,25 @@ class Predictor(Displayed):
         viscous = viscous + hysteretic / np.sqrt(np.outer(omega, omega)) + np.diag(rates + 2 * state.decay)
         found = damped(elastic, viscous, len(chosen))
         return found if self.expects(state) else replace(found, ratio=np.full(len(chosen), np.nan))
+
+    def _slowed(
+        self, state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray, damped: Damped | None
+    ) -> FloatArray:
+        """Return the factors on frequencies where dampers couple modes, those solved for with their damping in it."""
+        if damped is None:
+            return coupled(state, values, vectors, chosen)
+        first = self.reduced.structure.rigid_modes
+        solved = slice(first, first + damped.taking_part)
+        return np.asarray(damped.slowing * coupled(state, values, vectors, chosen, solved))
+
+    def slowing(self, state: State, count: int) -> FloatArray:
+        """Return the factors (count,) on the lowest frequencies of a state where dampers couple modes."""
+        total, first = self.base.plus(state), self.reduced.structure.rigid_modes
+        if not total.losses:
+            return np.ones(count)
+        values, vectors = self.reduced.eigen(total)
+        chosen = np.arange(first, first + count)
+        return self._slowed(total, values, vectors, chosen, self._damped(total, values, vectors, chosen))
 
     @cached_property
     def nominal_rows(self) -> dict[str, FloatArray]:

@@ -8,7 +8,6 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from updating.models.base import added
-from updating.models.damping import coupled
 from updating.models.fields import Sparse
 from updating.models.solve import DENSE
 from updating.models.state import State
@@ -58,18 +57,12 @@ def full_modes(
         values, vectors = structure.eigen(wanted, stiffness=stiffness, mass=mass, released=state.released)
     shift = 1.0 + state.slope * (predictor.measured.level or 0.0)
     frequency = (
-        shift * _coupling(predictor, change, count) * np.sqrt(np.maximum(values[first:], 0.0)) / (2 * np.pi)
+        shift
+        * predictor.slowing(change(predictor), count)
+        * np.sqrt(np.maximum(values[first:], 0.0))
+        / (2 * np.pi)
     )
     return np.asarray(frequency), vectors[:, first:]
-
-
-def _coupling(predictor: Predictor, change: Callable[[Predictor], State], count: int) -> FloatArray:
-    """Return the factors (count,) on frequencies where dampers couple the modes, by all of the reduced basis."""
-    state = predictor.base.plus(change(predictor))
-    if not state.losses:
-        return np.ones(count)
-    first = predictor.reduced.structure.rigid_modes
-    return coupled(state, *predictor.reduced.eigen(state), np.arange(first, first + count))
 
 
 def _on_all(whole: Predictor, change: Callable[[Predictor], State]) -> State | None:
