@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from scipy import sparse
 
 from modalkit.simulator.bodies.block.assembled import Matrix
 from modalkit.simulator.bodies.block.block import Block
+from modalkit.simulator.matrices_model import write_nodes, write_parts
 
 
 def write_block_model(drawn: Block, elements: int, folder: Path) -> dict[str, Any]:
@@ -22,31 +24,19 @@ def write_block_model(drawn: Block, elements: int, folder: Path) -> dict[str, An
         sparse.save_npz(folder / f"{name}.npz", Matrix(moves.T @ matrix @ moves))
         return f"{name}.npz"
 
-    stiffness, mass = block.material()
-    parts = block.parts()
-    (folder / "nodes.csv").write_text(_table(block, moves), encoding="ascii")
-    return {
-        "type": "matrices",
-        "stiffness": write("stiffness", stiffness),
-        "mass": write("mass", mass),
-        "nodes": "nodes.csv",
-        "stiffness_parts": [write(f"stiffness_{name}", k) for name, (k, _) in parts.items()],
-        "mass_parts": [write(f"mass_{name}", m) for name, (_, m) in parts.items()],
-    }
+    write_nodes(folder, _nodes(block, moves))
+    return write_parts(write, block.material(), block.parts())
 
 
-def _table(block: Block, moves: Matrix) -> str:
-    """Return the node table; bolts name their two sides, feet themselves."""
+def _nodes(block: Block, moves: Matrix) -> Iterator[tuple[int, str, int, int | str, str]]:
+    """Yield the lines of the node table; bolts name their two sides, feet themselves."""
     bricks = block.bricks
     sets: dict[int, str] = {int(node): name for name, nodes in bricks.feet.items() for node in nodes}
     for name, sides in bricks.bolts.items():
         for side, nodes in zip(("plate", "flange"), sides, strict=True):
             sets |= {int(node): f"{name}_{side}" for node in nodes}
     row_of = {int(row): i for i, row in enumerate(moves.tocsc().indices, start=1)}
-    lines = ["node, x, y, z, direction, row, sets"]
     for node, at in enumerate(bricks.mesh.nodes[1].tolist()):
-        x, y, z = (f"{c:.9g}" for c in np.add(at, [block.start, 0.0, 0.0]))
+        place = ", ".join(f"{c:.9g}" for c in np.add(at, [block.start, 0.0, 0.0]))
         for axis in range(3):
-            row = row_of.get(3 * node + axis, "")
-            lines.append(f"{node + 1}, {x}, {y}, {z}, {axis + 1}, {row}, {sets.get(node, '')}")
-    return "\n".join(lines) + "\n"
+            yield node, place, axis + 1, row_of.get(3 * node + axis, ""), sets.get(node, "")

@@ -97,7 +97,7 @@ def test_the_mass_of_a_roving_sensor_is_no_trend(rate: float, shapes: int) -> No
     assert trend.rate_sigma < 1e-3
 
 
-def test_a_mode_that_goes_its_own_way_is_told_from_those_that_drift_together() -> None:
+def test_one_mode_that_shifts_alone_is_no_drift_of_all() -> None:
     factors = np.stack([line(0.0), line(0.0), line(4e-3)], axis=1)
     trend = found(roved(factors, 2)).trend
     assert trend is not None
@@ -122,7 +122,7 @@ def test_a_drift_of_many_widths_makes_no_rows_of_modes(rate: float) -> None:
     assert model.trend.rate == pytest.approx(rate, rel=0.05)
 
 
-def test_a_course_is_looked_for_only_where_peaks_are_beside_each_other() -> None:
+def test_a_drift_is_sought_in_the_spectra_only_where_peaks_do_not_overlap() -> None:
     assert course_of(cut(line(0.0))) is None
     assert course_of(cut(line(1e-3))) is None
     assert course_of(cut(line(0.02, 3))) is None

@@ -5,16 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from modalkit.simulator.bodies.block.block import Block
-from modalkit.simulator.drawing.common import (
-    MATERIAL_SHARES,
-    MATERIALS,
-    draw_test,
-    near_a_node,
-    rayleigh,
-    two_digits,
-)
+from modalkit.simulator.drawing.common import MATERIAL_SHARES, MATERIALS
+from modalkit.simulator.drawing.of_matrices import draw_on
 from modalkit.simulator.drawing.ranges import DrawRanges
-from modalkit.simulator.setup import Setup, Tolerances
+from modalkit.simulator.setup import Setup
+
+HIGHEST = 6000.0
+"""Frequency at which a band ends at the most: a hammer's pulse holds no more [Hz]."""
 
 MODELLED = 12
 """Bricks along the modeller's mesh; the specimen has those of :class:`Block` [-]. With 10, meshes of some ribbed plates
@@ -54,7 +51,8 @@ def _draw(
     Returns
     -------
     Setup or None
-        Its dimensions are those of the drawing, since its model takes no others; None where the band ends above 6 kHz.
+        Its dimensions are those of the drawing, since its model takes no others; None where the band ends
+        above ``HIGHEST``.
     """
     length, width, thickness = size[0], round(size[0] * size[1], 3), size[2]
     modulus, density, poisson = MATERIALS[int(rng.choice(3, p=MATERIAL_SHARES))]
@@ -63,45 +61,12 @@ def _draw(
         kind, 0.0, length, width, thickness, height, breadth, modulus, density, poisson, elements=MODELLED
     )
     points = _points(rng, body)
-    modes = int(rng.choice([7, 8, 9]))
-    omega, shapes = body.real_modes(modes + 1)
-    seen = body.rows(np.array(points), "w") @ shapes[:, :modes]
-    share = np.abs(seen) / np.abs(seen).max(axis=0)
-    sensor = near_a_node(rng, seen, int(np.argmax(share.min(axis=1))))
-    bare = omega / (2 * np.pi)
-    alpha, beta = rayleigh(rng, float(bare[0]), float(bare[modes - 1]))
-    test = draw_test(rng, plan) | {
-        "baseline": False,
-        "environment": None,
-        "repeatability": REPEATABILITY,
-    }
-    if bare[modes] > 6000.0:
-        return None
-    return Setup(
-        kind=kind,
-        title=f"{kind.capitalize()} of {1e3 * length:.0f} x {1e3 * width:.0f} mm",
-        length=length,
-        width=width,
-        thickness=thickness,
-        E=modulus,
-        density=density,
-        poisson=poisson,
-        clamped=("x0",),
-        theory="",
-        elements=(MODELLED,),
-        tolerances=Tolerances(thickness=0.0, length=0.0, width=0.0),
-        alpha=alpha,
-        beta=beta,
-        points=points,
-        sensor=sensor,
-        sensor_mass=0.0,
-        modes=modes,
-        band=(two_digits(0.25 * bare[0]), float(np.sqrt(bare[modes - 1] * bare[modes]).round(1))),
-        window=0.0,
-        breadth=breadth,
-        height=height,
-        **test,
-    )
+    setup, bare = draw_on(
+        rng, plan, body, points,
+        kind=kind, title=f"{kind.capitalize()} of {1e3 * length:.0f} x {1e3 * width:.0f} mm",
+        elements=(MODELLED,), height=height, repeatability=REPEATABILITY,
+    )  # fmt: skip
+    return None if bare[-1] > HIGHEST else setup
 
 
 def _points(rng: np.random.Generator, body: Block) -> tuple[tuple[float, float], ...]:

@@ -5,16 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from modalkit.simulator.bodies.frame.frame import Frame
-from modalkit.simulator.drawing.common import (
-    MATERIAL_SHARES,
-    MATERIALS,
-    draw_test,
-    near_a_node,
-    rayleigh,
-    two_digits,
-)
+from modalkit.simulator.drawing.common import MATERIAL_SHARES, MATERIALS
+from modalkit.simulator.drawing.of_matrices import draw_on
 from modalkit.simulator.drawing.ranges import DrawRanges
-from modalkit.simulator.setup import Setup, Tolerances
+from modalkit.simulator.setup import Setup
 
 _RUNGS = (0.36, 0.7, 1.0)
 _MODELLED = 6
@@ -44,40 +38,12 @@ def draw_frame(rng: np.random.Generator, plan: DrawRanges) -> Setup | None:
     rungs = (*(round(share + rng.uniform(-0.04, 0.04), 3) for share in _RUNGS[:-1]), _RUNGS[-1])
     body = Frame(0.0, length, width, breadth, depth, modulus, density, poisson, rungs)
     points = _points(rng, body)
-    modes = int(rng.choice([7, 8, 9]))
-    omega, shapes = body.real_modes(modes + 1)
-    seen = body.rows(np.array(points), "w") @ shapes[:, :modes]
-    sensor = near_a_node(rng, seen, int(np.argmax(np.abs(seen).min(axis=1))))
-    bare = omega / (2 * np.pi)
-    alpha, beta = rayleigh(rng, float(bare[0]), float(bare[modes - 1]))
-    test = draw_test(rng, plan) | {"baseline": False, "environment": None}
-    if bare[0] < 5.0:
-        return None
-    return Setup(
-        kind="frame",
-        title=f"Frame of {1e3 * length:.0f} x {1e3 * width:.0f} mm",
-        length=length,
-        width=width,
-        thickness=depth,
-        E=modulus,
-        density=density,
-        poisson=poisson,
-        clamped=("x0",),
-        theory="",
-        elements=(_MODELLED,),
-        tolerances=Tolerances(thickness=0.0, length=0.0, width=0.0),
-        alpha=alpha,
-        beta=beta,
-        points=points,
-        sensor=sensor,
-        sensor_mass=0.0,
-        modes=modes,
-        band=(two_digits(0.25 * bare[0]), float(np.sqrt(bare[modes - 1] * bare[modes]).round(1))),
-        window=0.0,
-        breadth=breadth,
-        rungs=rungs,
-        **test,
-    )
+    setup, bare = draw_on(
+        rng, plan, body, points,
+        kind="frame", title=f"Frame of {1e3 * length:.0f} x {1e3 * width:.0f} mm",
+        elements=(_MODELLED,), rungs=rungs,
+    )  # fmt: skip
+    return None if bare[0] < 5.0 else setup
 
 
 def _points(rng: np.random.Generator, body: Frame) -> tuple[tuple[float, float], ...]:

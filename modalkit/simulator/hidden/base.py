@@ -14,6 +14,7 @@ from modalkit.simulator.setup import Setup
 Values = dict[str, Any]
 Place = tuple[float, ...]
 Draw = Callable[[np.random.Generator, Setup, float], Values]
+Act = Callable[[Scene, Values], Scene]
 
 
 def everywhere(setup: Setup) -> bool:
@@ -97,7 +98,7 @@ class HiddenEffect:
 
     name: str
     draw: Draw
-    act: Callable[[Scene, Values], Scene]
+    act: Act
     applies: Callable[[Setup], bool] = everywhere
     equals: Callable[[Setup, Values], tuple[str, ...]] = no_equals
     places: Callable[[Setup, Values], tuple[Place, ...]] = nowhere

@@ -15,7 +15,7 @@ from updating.effects.regions import WAYS
 from updating.effects.structure.nodes import distinct
 
 
-def test_places_are_told_from_others_in_little_memory() -> None:
+def test_distinct_places_are_found_in_little_memory() -> None:
     """All pairs of some thousand places would be 100 MB."""
     beam, rng = imported_beam(4), np.random.default_rng(1)
     places = rng.random((3000, 3))

@@ -77,7 +77,7 @@ def test_a_clamped_structure_has_none() -> None:
     assert problem.measured.unpaired is not None
 
 
-def test_motions_that_look_alike_at_the_points_count_once() -> None:
+def test_rigid_body_modes_of_equal_shape_at_the_points_count_once() -> None:
     """Of six motions of a body, sensors along one axis tell three, or two; rounding of the rest explains anything."""
     rng = np.random.default_rng(1)
     bounce, pitch = np.ones(9), np.linspace(-1, 1, 9)

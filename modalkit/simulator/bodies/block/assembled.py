@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from pathlib import Path
 
 import numpy as np
 from scipy import sparse
 
 from acquisition.arrays import FloatArray, IntArray
-from acquisition.errors import StudyError
 from modalkit.simulator.bodies.block.shape import Mesh, Shape
-from modalkit.simulator.bodies.solid.deck import TIME_LIMIT, Bricks, program
+from modalkit.simulator.bodies.solid.deck import Bricks, finished
 
 Matrix = sparse.csr_array
 
@@ -125,22 +120,7 @@ def _run(
     bricks: Bricks, element: str, poisson: float
 ) -> tuple[sparse.coo_array, sparse.coo_array, IntArray, IntArray]:
     """Return stiffness and mass of bricks that nothing holds, and node and direction of every row."""
-    ccx = program()
-    if ccx is None:
-        raise StudyError("blocks of bricks need CalculiX, and there is no ccx: install calculix-ccx")
-    with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "job.inp").write_text(_deck(bricks, element, poisson), encoding="ascii")
-        try:
-            done = subprocess.run(
-                [ccx, "job"], cwd=folder, capture_output=True, text=True, timeout=TIME_LIMIT, check=False,
-                env={**os.environ, "OMP_NUM_THREADS": "1"},
-            )  # fmt: skip
-        except subprocess.TimeoutExpired as late:
-            message = f"ccx has not made matrices within {TIME_LIMIT:g} s: ask for fewer elements"
-            raise StudyError(message) from late
-        files = [Path(folder, f"job.{ending}") for ending in ("sti", "mas", "dof")]
-        if not all(file.is_file() and file.stat().st_size for file in files):
-            raise StudyError(f"ccx failed on blocks: {' '.join(done.stdout.split()[-30:])}")
+    with finished(_deck(bricks, element, poisson), ("sti", "mas", "dof")) as files:
         names = np.array([line.split(".") for line in files[2].read_text().split()], dtype=np.int64)
         stiffness, mass = (_symmetric(np.loadtxt(file), len(names)) for file in files[:2])
     return stiffness, mass, names[:, 0], names[:, 1]

@@ -110,6 +110,13 @@ class Block:
         """Stiffness of a bolt as drawn, in every direction [N/m]."""
         return BOLT * self.E * self.thickness
 
+    def place_of(self, name: str) -> tuple[float, float]:
+        """Return the middle of a part, a bolt or a foot along x and y [m]."""
+        shape = self.bricks.mesh.shape
+        boxes = {known: box for known, box, _ in shape.parts} | dict(shape.feet) | dict(shape.bolts)
+        (x0, x1), (y0, y1), _ = boxes[name]
+        return self.start + (x0 + x1) / 2, (y0 + y1) / 2
+
     def parts(self) -> dict[str, tuple[Matrix, Matrix]]:
         """Return stiffness and mass of every part as it is, (order, order) [SI]."""
         stiff, heavy = dict(self.stiff), dict(self.heavy)
@@ -207,14 +214,6 @@ def _solved(block: Block, count: int) -> tuple[FloatArray, FloatArray]:
     values, vectors = eigsh(held, count, sparse.csc_array(mass), sigma=0.0, v0=start)
     order = np.argsort(values)
     return frozen_array(np.sqrt(values[order])), frozen_array(moves @ vectors[:, order])
-
-
-def part_place(block: Block, name: str) -> tuple[float, float]:
-    """Return the middle of a part, a bolt or a foot along x and y [m]."""
-    shape = block.bricks.mesh.shape
-    boxes = {known: box for known, box, _ in shape.parts} | dict(shape.feet) | dict(shape.bolts)
-    (x0, x1), (y0, y1), _ = boxes[name]
-    return block.start + (x0 + x1) / 2, (y0 + y1) / 2
 
 
 def _linear(lines: FloatArray, place: float) -> FloatArray:

@@ -142,6 +142,15 @@ class Frame:
         rigidity = self.E * self.breadth * self.thickness**3 / 12
         return SHIFT * rigidity / self.width**3, TURN * rigidity / self.width
 
+    def place_of(self, name: str) -> tuple[float, float]:
+        """Return the middle of a part, a joint or a foot along x and y [m]."""
+        mesh = self.mesh
+        nodes: Sequence[int] = [n for bar in mesh.bars if bar.part == name for n in bar.nodes]
+        nodes = nodes or mesh.joints.get(name) or [self.held[name]]
+        low, high = mesh.places[list(nodes)].min(axis=0), mesh.places[list(nodes)].max(axis=0)
+        x, y = ((low + high) / 2).tolist()
+        return float(x), float(y)
+
     def parts(self) -> dict[str, tuple[FloatArray, FloatArray]]:
         """Return stiffness and mass of every part as it is, (order, order) [SI]."""
         plain = self.mesh.parts((self.breadth, self.thickness), (self.E, self.density, self.poisson))
@@ -210,13 +219,3 @@ class Frame:
     def modal_losses(self, shapes: FloatArray) -> tuple[Loss, ...]:
         """Return structural damping of the whole."""
         return (Loss(self.added_loss * self._material(shapes)[1], -1.0),) if self.added_loss else ()
-
-
-def part_place(frame: Frame, name: str) -> tuple[float, float]:
-    """Return the middle of a part, a joint or a foot [m]."""
-    mesh = frame.mesh
-    nodes: Sequence[int] = [n for bar in mesh.bars if bar.part == name for n in bar.nodes]
-    nodes = nodes or mesh.joints.get(name) or [frame.held[name]]
-    low, high = mesh.places[list(nodes)].min(axis=0), mesh.places[list(nodes)].max(axis=0)
-    x, y = ((low + high) / 2).tolist()
-    return float(x), float(y)

@@ -7,6 +7,8 @@ import re
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -175,9 +177,33 @@ def run(text: str, *, read: IntArray, time_limit: float = TIME_LIMIT) -> tuple[F
     StudyError
         If CalculiX is missing, fails, or takes too long.
     """
+    with finished(text, ("dat",), time_limit=time_limit) as (table,):
+        return printed(table.read_text(), read)
+
+
+@contextmanager
+def finished(
+    text: str, endings: Sequence[str], *, time_limit: float = TIME_LIMIT
+) -> Iterator[tuple[Path, ...]]:
+    """Run CalculiX in a folder of its own, and lend the files that it wrote.
+
+    Parameters
+    ----------
+    text : str
+        The deck.
+    endings : sequence of str
+        Of the files wanted.
+    time_limit : float
+        After which it is stopped [s].
+
+    Raises
+    ------
+    StudyError
+        If CalculiX is missing, fails, or takes too long.
+    """
     ccx = program()
     if ccx is None:
-        raise StudyError("a solid needs CalculiX, and there is no ccx: install calculix-ccx")
+        raise StudyError("bodies of bricks need CalculiX, and there is no ccx: install calculix-ccx")
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "job.inp").write_text(text, encoding="ascii")
         try:
@@ -186,12 +212,12 @@ def run(text: str, *, read: IntArray, time_limit: float = TIME_LIMIT) -> tuple[F
                 env={**os.environ, "OMP_NUM_THREADS": "1"},
             )  # fmt: skip
         except subprocess.TimeoutExpired as late:
-            message = f"ccx has not solved a solid within {time_limit:g} s: ask for fewer elements or modes"
+            message = f"ccx has not ended within {time_limit:g} s: ask for fewer elements or modes"
             raise StudyError(message) from late
-        table = Path(folder, "job.dat")
-        if done.returncode or not table.exists() or not table.stat().st_size:
-            raise StudyError(f"ccx failed on a solid: {' '.join(done.stdout.split()[-30:])}")
-        return printed(table.read_text(), read)
+        files = tuple(Path(folder, f"job.{ending}") for ending in endings)
+        if done.returncode or not all(file.is_file() and file.stat().st_size for file in files):
+            raise StudyError(f"ccx failed on a body of bricks: {' '.join(done.stdout.split()[-30:])}")
+        yield files
 
 
 def program() -> str | None:
