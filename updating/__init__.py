@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from updating.prediction.predict import Predictor
     from updating.prediction.prediction import Prediction
     from updating.test_data.axes import Axes
-    from updating.test_data.measured import Measured, measured_from_identified, measured_from_modes
+    from updating.test_data.measured import Measured
+    from updating.test_data.taken import measured_from_identified, measured_from_modes
     from updating.tolerances import Tolerances
 
 __all__ = [
@@ -52,7 +53,8 @@ load_on_demand(
         ".diagnosis.answer.result": "Diagnosis",
         ".effects": "LIBRARY Effect Parameter register",
         ".environment": "Environment",
-        ".test_data.measured": "Measured measured_from_identified measured_from_modes",
+        ".test_data.measured": "Measured",
+        ".test_data.taken": "measured_from_identified measured_from_modes",
         ".models": "Damping Material PointMass Region Spec Structure build_structure",
         ".prediction.predict": "Predictor",
         ".prediction.prediction": "Prediction",

@@ -14,7 +14,7 @@ from diagnosis.mesh import Floats
 from diagnosis.solve import Solved, solve
 from diagnosis.specimen import Rig, Specimen, shares
 from updating import Measured
-from updating.test_data.measured import turn
+from updating.test_data.chain_phase import turn
 
 NONE: Mapping[int, tuple[float, ...]] = MappingProxyType({})
 SAME_MARK = 0.8

@@ -36,7 +36,8 @@ from updating.prediction.prediction import Prediction
 from updating.prediction.sensitivities import sensitivities
 from updating.prediction.stretch import Stretch
 from updating.test_data.chain import MeasurementChain, measurement_chain
-from updating.test_data.measured import Measured, chain_phases
+from updating.test_data.chain_phase import chain_phases
+from updating.test_data.measured import Measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,45 +173,37 @@ class Predictor(Displayed):
             other = self.under(total.theory)
             bare = replace(state, theory=None)
             return other.predict(bare, factors=factors, count=count, at_least=at_least)
-        reduced = self.reduced
-        values, vectors = reduced.eigen(total)
-        first = reduced.structure.rigid_modes
-        if count is None:
-            top = (2 * np.pi * 1.6 * self.measured.top) ** 2
-            count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
-        chosen = np.arange(first, min(first + count, len(values)))
+        values, vectors = self.reduced.eigen(total)
+        chosen = self._chosen(values, count, at_least)
+        first = self.reduced.structure.rigid_modes
         read = measurement_chain(self.measured, total)
         axes = ("wx", "wy", "wz")[: self.measured.points.shape[1]]
         rows = self._rows(total, read.points)
         moving = structural(vectors, total.absorbers)
-        dashed = self._damped(total, values, vectors, chosen)
+        damped_modes = self._damped(total, values, vectors, chosen)
         modes = (
             moving[:, chosen]
-            if dashed is None
-            else _turned(moving[:, first:] @ dashed.turn, moving[:, chosen], rows["w"])
+            if damped_modes is None
+            else _turned(moving[:, first:] @ damped_modes.turn, moving[:, chosen], rows["w"])
         )
         whole = {n: m[:, : len(modes)] @ modes for n, m in rows.items()}
         shapes = {n: np.real(m) for n, m in whole.items()}
         by, changes = np.zeros((0, len(chosen))), np.zeros((0, len(read.points), len(chosen)))
         if factors:
             by, changes = self._by_factors(total, (values, moving), chosen, factors, rows, read.points)
-        shift = 1.0 + total.slope * (self.measured.level or 0.0)
         slowing = layer_slowing(total, values[chosen], vectors[:, chosen])
-        moved = shift * slowing
-        moved = moved * self._slowed(total, values, vectors, chosen, dashed)
-        frequency = moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi)
+        shift = 1.0 + total.slope * (self.measured.level or 0.0)
+        moved = shift * slowing * self._slowed(total, values, vectors, chosen, damped_modes)
         # what a layer carries along is modal mass
         level = read.gain[:, None] * np.where(read.hit[:, None] < 0, slowing, slowing**2)
-        product, phase = read.product(whole["w"], whole["w"]), None
-        if dashed is not None and len(product):
-            chains = self.measured.channel_group
-            chains = np.zeros(len(product), dtype=np.int64) if chains is None else chains
-            phase = chain_phases(product, chains)
-            product = product * np.exp(-1j * phase[chains])
+        product = read.product(whole["w"], whole["w"])
+        constants, phase = (product, None) if damped_modes is None else self._made_real(product)
         return Prediction(
-            frequency,
-            self._damping(total, values[chosen], vectors[:, chosen]) if dashed is None else dashed.ratio,
-            level * np.real(product),
+            moved * np.sqrt(np.where(values[chosen] > 0, values[chosen], np.nan)) / (2 * np.pi),
+            self._damping(total, values[chosen], vectors[:, chosen])
+            if damped_modes is None
+            else damped_modes.ratio,
+            level * constants,
             shapes["w"][read.seen],
             read.at_hit(shapes["w"], 1.0),
             np.stack([shapes[n][read.seen] for n in axes]),
@@ -222,6 +215,23 @@ class Predictor(Displayed):
             np.asarray(level),
             phase,
         )
+
+    def _chosen(self, values: FloatArray, count: int | None, at_least: int) -> IntArray:
+        """Return which modes of those with eigenvalues (n,) [rad^2/s^2] are predicted, the lowest elastic ones."""
+        first = self.reduced.structure.rigid_modes
+        if count is None:
+            top = (2 * np.pi * 1.6 * self.measured.top) ** 2
+            count = max(int(np.sum(values < top)) - first, len(self.measured.frequency) + 3, at_least)
+        return np.arange(first, min(first + count, len(values)))
+
+    def _made_real(self, product: ComplexArray) -> tuple[FloatArray, FloatArray | None]:
+        """Return complex constants (n_frf, n_modes) turned to the real axis, and by how much in each chain [rad]."""
+        if not len(product):
+            return np.real(product), None
+        chains = self.measured.channel_group
+        chains = np.zeros(len(product), dtype=np.int64) if chains is None else chains
+        phase = chain_phases(product, chains)
+        return np.real(product * np.exp(-1j * phase[chains])), phase
 
     def _damped(
         self, state: State, values: FloatArray, vectors: FloatArray, chosen: IntArray

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from scipy.stats import chi2
 
 from acquisition.arrays import FloatArray
-from updating.test_data.measured import GUESSED_SHAPE_SIGMA
+from updating.test_data.taken import GUESSED_SHAPE_SIGMA
 from updating.update.data.system import Linear, System
 from updating.update.solve import Solution, solve
 from updating.update.statistics.leverage import leverage

@@ -24,7 +24,7 @@ from updating.prediction.predict import Predictor
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.axes import Axes
-from updating.test_data.measured import measured_from_modes
+from updating.test_data.taken import measured_from_modes
 from updating.thresholds import BALANCE_SIGMA
 from updating.tolerances import Tolerances
 

@@ -10,7 +10,7 @@ from updating_cases import blank
 
 from updating import LIBRARY, Case, Diagnosis, Predictor, diagnose
 from updating.effects.measurement.points import indices
-from updating.test_data.measured import turn
+from updating.test_data.chain_phase import turn
 
 pytestmark = pytest.mark.long
 

@@ -1,0 +1,221 @@
+"""Modal data and identified models, taken to the axes of a model."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from acquisition import Dof, ModalData
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.errors import StudyError
+from identification import ModalModel
+from identification.scaling.shapes import turned
+from updating.models import Spec
+from updating.test_data.axes import Axes
+from updating.test_data.chain_phase import turn
+from updating.test_data.measured import UNKNOWN_LEVEL, Measured
+from updating.test_data.placement import Key, matched, place
+
+GUESSED_SHAPE_SIGMA = 0.02
+"""Error of a shape of which none is stated, over its r.m.s. [-]: two transducers' calibrations. The diagnosis takes it
+times an unknown scale, an update estimates it. Doubled: shapes of few points count a quarter as much."""
+
+
+def measured_from_modes(
+    modes: ModalData,
+    axes: Axes,
+    spec: Spec,
+    *,
+    shape_sigma: float | None = None,
+    match_tolerance: float | None = None,
+    **options: float | str,
+) -> Measured:
+    """Take plain modal data to the model's axes.
+
+    Parameters
+    ----------
+    modes : ModalData
+        Frequencies, and where known damping and shapes.
+    axes : Axes
+        The model's axes in test coordinates.
+    spec : Spec
+        The model, whose outline the points must meet.
+    shape_sigma : float, optional
+        Standard deviation of every component over the r.m.s. of its shape, in place of what the modes state [-].
+    match_tolerance : float, optional
+        How far from the model's nodes a point may lie; left out, as far as they are apart [m].
+    **options
+        Calibration, repeatability, position_sigma, title of :class:`Measured`.
+
+    Returns
+    -------
+    Measured
+        Mass-normalised shapes keep their level, whose doubt is the calibration; others are compared up to a factor
+        per mode. Complex shapes are turned to be as real as they can be.
+    """
+    placed = place(modes.dofs if modes.shapes is not None else (), modes.geometry, axes, spec)
+    points, beside = matched(placed.points, placed.keys, spec, match_tolerance)
+    rows = placed.rows
+    shapes = (
+        np.zeros((0, len(modes)))
+        if modes.shapes is None
+        else _straight(modes.shapes)[rows] * placed.signs[:, None]
+    )
+    absolute = modes.scaled and len(rows) > 0
+    guessed = modes.shape_sigma is None and shape_sigma is None
+    if modes.shape_sigma is not None and shape_sigma is None:
+        sigma = modes.shape_sigma[rows]
+    else:
+        part = GUESSED_SHAPE_SIGMA if shape_sigma is None else shape_sigma
+        sigma = part * np.sqrt(np.sum(shapes**2, axis=0) / max(len(shapes), 1)) * np.ones_like(shapes)
+    return Measured(
+        modes.frequency,
+        np.where(np.isfinite(modes.frequency_sigma), modes.frequency_sigma, 0.0),
+        _column(modes.damping, len(modes)),
+        _column(modes.damping_sigma, len(modes)),
+        points,
+        tuple(node for node, _ in placed.keys),
+        placed.index,
+        np.full(len(rows), -1),
+        shapes,
+        sigma,
+        absolute=absolute,
+        repeated=False,
+        warnings=(
+            *placed.warnings,
+            *beside,
+            *_without_sigma(modes, float(options.get("repeatability", 0.0))),
+            *modes.doubts(),
+            *(_with_level(float(options.get("calibration", Measured.calibration))) if absolute else ()),
+        ),
+        directions=_directions(placed.keys, spec),
+        guessed=guessed,
+        **options,  # type: ignore[arg-type]
+    )
+
+
+def _straight(shapes: ComplexArray) -> FloatArray:
+    """Return shapes turned to be as real as they can be, in the sense that their real parts had, (n_dofs, n_modes)."""
+    real = turned(shapes)[0].real
+    return np.asarray(real * np.where(np.sum(real * shapes.real, axis=0) < 0, -1.0, 1.0))
+
+
+def _with_level(calibration: float) -> tuple[str, ...]:
+    """Say that the level of mass-normalised shapes is compared, and how to have it left alone."""
+    if calibration > UNKNOWN_LEVEL:
+        return ()
+    return (
+        f"the shapes are stated to be mass-normalised: their level is compared too, with calibration = {calibration:g} "
+        "for the doubt in it; if nobody measured the modal masses (many programs write 1), set calibration = 1",
+    )
+
+
+def _without_sigma(modes: ModalData, repeatability: float) -> tuple[str, ...]:
+    """Warn where nobody said how well frequencies are known; refuse such that nothing makes uncertain."""
+    exact = np.flatnonzero(~(np.nan_to_num(modes.frequency_sigma) > 0))
+    if repeatability == 0 and len(exact):
+        raise StudyError(
+            f"mode {exact[0] + 1} at {modes.frequency[exact[0]]:g} Hz has no uncertainty: its sigma is 0 or missing, "
+            "and repeatability is 0; give one of them"
+        )
+    missing = int(np.sum(~np.isfinite(modes.frequency_sigma)))
+    if not missing:
+        return ()
+    return (
+        f"{missing} of {len(modes)} frequencies came without a sigma: they are taken to be as good as the stated "
+        f"repeatability, {100 * repeatability:g} %; add a column sigma [Hz] if they are worse",
+    )
+
+
+def measured_from_identified(
+    model: ModalModel,
+    axes: Axes,
+    spec: Spec,
+    *,
+    match_tolerance: float | None = None,
+    **options: float | str,
+) -> Measured:
+    """Take an identified modal model to the model's axes, with absolute level.
+
+    Parameters
+    ----------
+    model : ModalModel
+        Identified from FRFs.
+    axes, spec, match_tolerance, **options
+        As in :func:`measured_from_modes`.
+    """
+    geometry = model.modal.geometry
+    responses = place(model.responses, geometry, axes, spec)
+    references = place(model.references, geometry, axes, spec)
+    both = np.intersect1d(responses.rows, references.rows)
+    if len(both) == 0:
+        raise StudyError(
+            f"{options.get('title', 'test')}: no FRF is measured and hit along the model's z; check axes in [test]"
+        )
+    at_response = {row: i for i, row in enumerate(responses.rows.tolist())}
+    at_reference = {row: i for i, row in enumerate(references.rows.tolist())}
+    left = np.array([at_response[row] for row in both.tolist()])
+    right = np.array([at_reference[row] for row in both.tolist()])
+    keys = tuple(dict.fromkeys(responses.keys + references.keys))
+    where = {key: i for i, key in enumerate(keys)}
+    points = np.stack([(responses if k in responses.keys else references).point(k) for k in keys])
+    points, beside = matched(points, keys, spec, match_tolerance)
+    seen, hit = responses.index[left], references.index[right]
+    signs = responses.signs[left] * references.signs[right]
+    constants = turn(model.constants[both] * signs[:, None], model.constant_sigma[both], seen, hit)
+    return Measured(
+        model.modal.frequency,
+        model.modal.frequency_sigma,
+        _column(model.modal.damping, len(model.modal)),
+        _column(model.modal.damping_sigma, len(model.modal)),
+        points,
+        tuple(node for node, _ in keys),
+        np.array([where[responses.keys[i]] for i in seen.tolist()]),
+        np.array([where[references.keys[i]] for i in hit.tolist()]),
+        constants.real,
+        constants.widened(model.constant_sigma[both]),
+        absolute=True,
+        repeated=model.frfs.variance is not None,
+        warnings=tuple(dict.fromkeys(responses.warnings + references.warnings + beside)),
+        rows=both,
+        signs=signs,
+        directions=_directions(keys, spec),
+        written=_written(
+            (
+                *(where[references.keys[i]] for i in hit.tolist()),
+                *(where[responses.keys[i]] for i in seen.tolist()),
+            ),
+            (*(model.references[i] for i in both.tolist()), *(model.responses[i] for i in both.tolist())),
+        ),
+        noise=constants.widened(
+            model.constant_noise[both],
+            _across(constants.real * signs[:, None], model.constant_shared[both]),
+        ),
+        shared=model.constant_shared[both] * signs[:, None, None],
+        phase=constants.phase,
+        phase_sigma=constants.phase_sigma,
+        channel_group=constants.channel_group,
+        trend=None if model.trend is None else model.trend.value,
+        trend_sigma=None if model.trend is None else model.trend.sigma,
+        common_trend_sigma=0.0 if model.trend is None else model.trend.common_sigma,
+        **options,  # type: ignore[arg-type]
+    )
+
+
+def _written(points: tuple[int, ...], dofs: tuple[Dof, ...]) -> tuple[str, ...]:
+    """Return every point as the test writes the last of its degrees of freedom."""
+    last = dict(zip(points, dofs, strict=True))
+    return tuple(str(last[point]) for point in range(len(last)))
+
+
+def _across(constants: FloatArray, shared: FloatArray) -> FloatArray:
+    """Return the mean square of shared errors across each mode's shape, (n_modes,) [1/kg^2]."""
+    along = np.einsum("jr,jrk->rk", constants, shared) / np.sum(constants**2, axis=0)[:, None]
+    return np.asarray(np.mean(np.sum((shared - constants[..., None] * along) ** 2, axis=2), axis=0))
+
+
+def _directions(keys: tuple[Key, ...], spec: Spec) -> FloatArray | None:
+    return np.array([d for _, d in keys]).reshape(-1, 3) if spec.imported is not None else None
+
+
+def _column(values: FloatArray | None, count: int) -> FloatArray:
+    return np.full(count, np.nan) if values is None else values
