@@ -22,6 +22,11 @@ SPARE = 1
 """Sets of FRFs beyond the coefficients of a line from which one is fitted [-]. Twice as many: tests of three points say
 nothing of a trend; with one, its standard deviation is so wide that only a plain one shows."""
 
+PLAIN = 3.0
+"""So many standard deviations are what they are of a normal distribution [-]: few points scatter with long tails, and
+what calls a drift one asks for more than twice. At 2, one test of three or four points in fifty drifts by chance; at 4,
+tests of five show none."""
+
 ROUNDS = 2
 """Fits of a line: the second weighs points by their scatter about the first beside their noise [-]. A third changes
 little: weights may err by a fifth."""
@@ -85,9 +90,10 @@ def frequency_trend(frfs: FrfSet, drift: Drift, constants: ComplexArray) -> Tren
 
     Notes
     -----
-    Standard deviations come from the scatter about the lines, widened for its degrees of freedom so that 1.96 of them
-    are a 95 % interval; noise alone is their least. A sensor that roves lowers each frequency in proportion to its mass
-    and to the square of the mode where it sits (Rayleigh): that is fitted beside the line.
+    Standard deviations come from the scatter about the lines, widened for its degrees of freedom so that ``PLAIN`` of
+    them are exceeded as seldom as of a normal distribution; noise alone is their least. A sensor that roves lowers
+    each frequency in proportion to its mass and to the square of the mode where it sits (Rayleigh): that is fitted
+    beside the line.
     """
     order = measuring_order(frfs)
     _, rows = np.unique(order, return_index=True)
@@ -139,7 +145,7 @@ def _lines(
         left = shifts - np.einsum("rgn,rnh,rh->rg", design, gain, shifts)
         square = np.sum(weight * left**2, axis=1)
         floor = np.maximum(floor, square / weight.sum(axis=1))
-    slope, wider = gain[:, 1], (stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)) ** 2
+    slope, wider = gain[:, 1], (stats.t.isf(stats.norm.sf(PLAIN), freedom) / PLAIN) ** 2
     total = np.maximum(wider * square / freedom * own, np.sum(slope**2 * noise, axis=1))
     alike = wider * _common(weight, left) / (1.0 - design.shape[2] / design.shape[1])
     least = np.sum(slope**2 * noise, axis=1)

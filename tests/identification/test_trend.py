@@ -11,6 +11,7 @@ from identification_cases import lines, structure
 from acquisition.frfs.frf import FrfSet
 from identification import ModalModel, identify
 from identification.fit.course import course_of
+from identification.trend import _lines
 
 HERTZ, DAMPING, POINTS = np.array([70.0, 150.0, 260.0]), (0.004, 0.003, 0.002), 13
 REFERENCE = 4
@@ -129,3 +130,17 @@ def test_a_drift_is_sought_in_the_spectra_only_where_peaks_do_not_overlap() -> N
     course = course_of(cut(line(0.02)))
     assert course is not None
     np.testing.assert_allclose(course, line(0.02) - 1.0, atol=1e-3)
+
+
+@pytest.mark.parametrize("points", [3, 4, 6])
+def test_chance_hardly_makes_a_plain_drift_of_few_points(points: int) -> None:
+    """Scatter from point to point, of which each is sure: three points have one spare, whose tails are long."""
+    rng = np.random.default_rng(points)
+    design = np.tile(np.stack([np.ones(points), np.linspace(-0.5, 0.5, points)], axis=1), (1, 1, 1))
+    plain = 0
+    for _ in range(2000):
+        slope, sigma, common = _lines(
+            1e-3 * rng.standard_normal((1, points)), np.full((1, points), 1e-12), design
+        )
+        plain += bool(abs(slope[0]) > 4 * np.hypot(sigma[0], common))
+    assert plain < 12

@@ -104,6 +104,29 @@ Values = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
+class EitherSign(Parameter):
+    """A parameter of unknown sign: log-uniform from ``least`` to the end of the range on either side of zero.
+
+    Parameters
+    ----------
+    least : float
+        Smallest size [unit].
+    """
+
+    least: float = 0.0
+
+    def value(self, coordinate: float) -> float:
+        """Take a prior quantile in [0, 1] to the parameter's value [unit]."""
+        side = -1.0 if coordinate < 0.5 else 1.0
+        return float(side * self.least * (self.high / self.least) ** abs(2 * coordinate - 1))
+
+    def coordinate(self, value: float) -> float:
+        """Take a value to its prior quantile, clipped to [0, 1]."""
+        size = np.log(max(abs(value), self.least) / self.least) / np.log(self.high / self.least)
+        return float(np.clip(0.5 + 0.5 * np.copysign(size, value), 0.0, 1.0))
+
+
+@dataclass(frozen=True)
 class Variant:
     """One of several forms in which an effect may come: which point, which sign, which of its parameters act.
 

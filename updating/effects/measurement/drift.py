@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from updating.effects.base import Effect, Parameter, Values
+from updating.effects.base import Effect, EitherSign, Parameter, Values
 from updating.effects.obstacles import Lack, Obstacle
-from updating.effects.structure.joint_nonlinearity import EitherSign
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.thresholds import LARGEST_TREND, UNREMARKABLE_TREND

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, bending_stiffness
+from updating.effects.base import EDGES, Effect, EitherSign, Parameter, Values, Variant, bending_stiffness
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.structure.axial_load import buckling_load, unit_tension
@@ -25,29 +24,6 @@ LARGEST, SMALLEST = 0.2, 1e-4
 
 COMMON_LEVEL = 100.0
 """Level that stands in for one that is not known, where only the prior is listed [N]."""
-
-
-@dataclass(frozen=True)
-class EitherSign(Parameter):
-    """A parameter of unknown sign: log-uniform from ``least`` to the end of the range on either side of zero.
-
-    Parameters
-    ----------
-    least : float
-        Smallest size [unit].
-    """
-
-    least: float = 0.0
-
-    def value(self, coordinate: float) -> float:
-        """Take a prior quantile in [0, 1] to the parameter's value [unit]."""
-        side = -1.0 if coordinate < 0.5 else 1.0
-        return float(side * self.least * (self.high / self.least) ** abs(2 * coordinate - 1))
-
-    def coordinate(self, value: float) -> float:
-        """Take a value to its prior quantile, clipped to [0, 1]."""
-        size = np.log(max(abs(value), self.least) / self.least) / np.log(self.high / self.least)
-        return float(np.clip(0.5 + 0.5 * np.copysign(size, value), 0.0, 1.0))
 
 
 ANYWHERE, TURNING, SHIFTING, STRETCHING = 0, 1, 2, 3
