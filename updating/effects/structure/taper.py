@@ -9,8 +9,7 @@ from scipy.special import binom
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import StudyError
-from updating.effects.base import Effect, Parameter, Values
-from updating.effects.structure.joint_nonlinearity import EitherSign
+from updating.effects.base import Effect, EitherSign, Parameter, Values
 from updating.models.base import Term
 from updating.models.state import State
 from updating.prediction.predict import Predictor
