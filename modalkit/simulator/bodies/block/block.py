@@ -19,10 +19,7 @@ from acquisition.arrays import FloatArray, IntArray, frozen_array
 from modalkit.simulator.bodies.block.assembled import Assembled, Matrix, added, assembled
 from modalkit.simulator.bodies.block.shape import SHAPES
 from modalkit.simulator.bodies.body import Loss
-from modalkit.simulator.bodies.plate.parts import PlateAttached
-
-Shares = tuple[tuple[str, float], ...]
-"""Factors, or springs, by name."""
+from modalkit.simulator.bodies.parted import Parted
 
 BOLT = 0.1
 """A bolt as drawn, over E t: firm, and not rigid [-]."""
@@ -32,7 +29,7 @@ ELEMENT = "C3D20R"
 
 
 @dataclass(frozen=True)
-class Block:
+class Block(Parted):
     """The body.
 
     Parameters
@@ -45,20 +42,11 @@ class Block:
         Of the ribs, or of the angle beneath it [m].
     E, density, poisson : float
         Material [Pa], [kg/m3], [-].
-    clamped : tuple of {"x0"}
-        It stands on its feet.
-    stiff, heavy : tuple of (str, float)
-        Factors on stiffness and mass of parts [-].
-    loose : tuple of (str, float)
-        What is left of the stiffness of bolts [-].
-    feet : tuple of (str, float)
-        Feet that shift along z, each as one, and on what spring [N/m].
-    attached : tuple of PlateAttached
-        What is fixed; a mass moves along all axes and does not turn.
-    alpha, beta, added_alpha, added_beta, added_loss : float
-        Damping, as a beam's.
     elements : int
         Bricks along its length [-].
+    **more
+        As of :class:`Parted`: joints are bolts, feet shift along z, each as one [N/m], and a mass that is fixed moves
+        along all axes and does not turn.
     """
 
     kind: str
@@ -71,21 +59,7 @@ class Block:
     E: float
     density: float
     poisson: float
-    clamped: tuple[str, ...] = ("x0",)
-    stiff: Shares = ()
-    heavy: Shares = ()
-    loose: Shares = ()
-    feet: Shares = ()
-    attached: tuple[PlateAttached, ...] = ()
-    alpha: float = 0.0
-    beta: float = 0.0
-    added_alpha: float = 0.0
-    added_beta: float = 0.0
-    added_loss: float = 0.0
     elements: int = 16
-
-    gradients = ("slope_x", "slope_y")
-    rigid_modes = 0
 
     @property
     def bricks(self) -> Assembled:

@@ -17,10 +17,7 @@ from scipy.linalg import eigh
 from acquisition.arrays import FloatArray
 from modalkit.simulator.bodies.body import Loss
 from modalkit.simulator.bodies.frame.grillage import Bar, Grillage, rows_of
-from modalkit.simulator.bodies.plate.parts import PlateAttached
-
-Shares = tuple[tuple[str, float], ...]
-"""Factors by name [-]."""
+from modalkit.simulator.bodies.parted import Parted
 
 SHIFT, TURN = 3e3, 60.0
 """A joint as drawn, over E I / L^3 and E I / L of a rung: firm, and not rigid [-]."""
@@ -29,7 +26,7 @@ STEEL = 7850.0
 
 
 @dataclass(frozen=True)
-class Frame:
+class Frame(Parted):
     """The ladder.
 
     Parameters
@@ -42,20 +39,11 @@ class Frame:
         Material [Pa], [kg/m3], [-].
     rungs : tuple of float
         Where they are, over the length of the rails [-].
-    clamped : tuple of {"x0"}
-        The rails' feet are held at x0.
-    stiff, heavy : tuple of (str, float)
-        Factors on stiffness and mass of parts [-].
-    loose : tuple of (str, float)
-        What is left of the stiffness with which joints turn [-].
-    feet : tuple of (str, float)
-        Feet that turn about y, and on what spring [N m/rad].
-    attached : tuple of PlateAttached
-        What is fixed; a mass turns as a steel cube does.
-    alpha, beta, added_alpha, added_beta, added_loss : float
-        Damping, as a beam's.
     elements : int
         Of each stretch of bar between joints [-].
+    **more
+        As of :class:`Parted`: joints turn, feet turn about y [N m/rad], and a mass that is fixed turns as a steel cube
+        does.
     """
 
     start: float
@@ -67,21 +55,7 @@ class Frame:
     density: float
     poisson: float
     rungs: tuple[float, ...]
-    clamped: tuple[str, ...] = ("x0",)
-    stiff: Shares = ()
-    heavy: Shares = ()
-    loose: Shares = ()
-    feet: Shares = ()
-    attached: tuple[PlateAttached, ...] = ()
-    alpha: float = 0.0
-    beta: float = 0.0
-    added_alpha: float = 0.0
-    added_beta: float = 0.0
-    added_loss: float = 0.0
     elements: int = 12
-
-    gradients = ("slope_x", "slope_y")
-    rigid_modes = 0
 
     @property
     def mass(self) -> float:
