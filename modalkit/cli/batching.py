@@ -7,7 +7,7 @@ from typing import Annotated
 
 import pandas as pd
 import typer
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from acquisition.display import counted
 from acquisition.errors import EstimationError
@@ -20,7 +20,7 @@ from modalkit.batch import (
     tables,
     write_tables,
 )
-from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, show_table
+from modalkit.cli.common import bar_of, check_folder, check_workers, out, progress, read_by, show_table
 from modalkit.output.destinations import check_outputs, json_of, store_of
 from modalkit.output.whole import write_json
 
@@ -60,7 +60,7 @@ def batch(
     there = [(path, PART) for path in parts if path.exists()]
     check_outputs(*places, *there, reads=[path for one in studies for path in one.inputs])
     columns = (TextColumn("studies"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=progress, disable=not progress.is_terminal) as bar:
+    with bar_of(*columns) as bar:
         task = bar.add_task("studies", total=len(studies))
         result = run_batch(
             studies,

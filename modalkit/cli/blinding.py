@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 
 from acquisition.display import counted
 from acquisition.errors import InputError
 from modalkit.blind import BlindResult, DrawRanges, check_store, run_blind, score
-from modalkit.cli.common import check_folder, check_workers, out, progress, read_by, show_figures
+from modalkit.cli.common import bar_of, check_folder, check_workers, out, progress, read_by, show_figures
 from modalkit.cli.options import Figures, Report
 from modalkit.cli.reporting import report_wanted
 from modalkit.cli.scores import MARKDOWN, score_figures, show_score, write_markdown
@@ -210,7 +210,7 @@ def _run(
     resume: bool,
 ) -> BlindResult:
     columns = (TextColumn("blind trials"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=progress, disable=not progress.is_terminal) as bar:
+    with bar_of(*columns) as bar:
         task = bar.add_task("trials", total=trials)
         return run_blind(
             trials, seed, plan=plan, workers=workers, scheduler=scheduler, store=store, resume=resume,

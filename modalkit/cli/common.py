@@ -6,12 +6,19 @@ import math
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    ProgressColumn,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
 from rich.table import Table
 
 from acquisition.errors import InputError
@@ -41,6 +48,14 @@ def working(what: str) -> Iterator[None]:
 
 
 @contextmanager
+def bar_of(*columns: ProgressColumn, transient: bool = False) -> Iterator[Progress]:
+    """Show a progress bar on stderr in a terminal; elsewhere it does not start: rich 14 writes an empty line."""
+    bar = Progress(*columns, console=progress, transient=transient, disable=not progress.is_terminal)
+    with bar if progress.is_terminal else nullcontext(bar):
+        yield bar
+
+
+@contextmanager
 def reading(then: str = "reading") -> Iterator[Callable[[float], None]]:
     """Show a progress bar while files are read, and after that what is done with them.
 
@@ -50,7 +65,7 @@ def reading(then: str = "reading") -> Iterator[Callable[[float], None]]:
         What is done once the files are read.
     """
     columns = TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=progress, transient=True, disable=not progress.is_terminal) as bar:
+    with bar_of(*columns, transient=True) as bar:
         task = bar.add_task("reading", total=1.0)
 
         def stated(part: float) -> None:

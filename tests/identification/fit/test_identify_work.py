@@ -65,7 +65,9 @@ def test_close_modes_of_several_references_are_told_apart_by_one_set_of_sums(bas
     frfs = truth.frfs(lines(), pairs, noise=0.01, rng=np.random.default_rng(2))
     model = identify(frfs, band=(300.0, 600.0))
     assert len(model) == 5
-    assert len(bases) < 75
+    assert (
+        len(bases) < 100
+    )  # 64 to 84 over seeds and BLAS; a projection per trial would be 56 more for each close pair
 
 
 def test_lengths_of_lines_for_many_matrices_as_for_few():

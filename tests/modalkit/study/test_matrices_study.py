@@ -177,7 +177,7 @@ def test_what_matrices_do_not_know_cannot_be_updated(tmp_path: Path, name: str) 
 def scaled_to_millimetres(folder: Path) -> None:
     """Write the beam's files anew in mm, t and s; its free rows are displacements and slopes dw/dx."""
     sparse.save_npz(folder / "k.npz", sparse.load_npz(folder / "k.npz") / 1000)
-    mmwrite(folder / "m.mtx", mmread(folder / "m.mtx") / 1000, precision=17)
+    mmwrite(folder / "m.mtx", mmread(folder / "m.mtx", spmatrix=False) / 1000, precision=17)
     lines = (folder / "nodes.csv").read_text().splitlines()
     for i, line in enumerate(lines[1:], start=1):
         node, x, *rest = line.split(", ")

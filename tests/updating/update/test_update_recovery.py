@@ -71,7 +71,8 @@ def test_the_frequencies_at_the_end_are_those_of_a_rebuilt_full_model() -> None:
     result = update(case_of(model, np.sort(disturbed)), parameters=names, weights="relative")
     rebuilt = regional(model, names, [float(p.factor or 0) for p in result.parameters])
     assert result.exact
-    assert result.pairs["after_hz"].to_numpy() == pytest.approx(frequencies(rebuilt, 6), rel=1e-9)
+    rounding = 4e-9  # of a solve: half of eps times the largest over the smallest eigenvalue, 3.2e7
+    assert result.pairs["after_hz"].to_numpy() == pytest.approx(frequencies(rebuilt, 6), rel=rounding)
     assert result.pairs["before_hz"].to_numpy() == pytest.approx(frequencies(model, 6), rel=1e-7)
 
 

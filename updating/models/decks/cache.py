@@ -63,7 +63,8 @@ def _write(path: Path, arrays: Arrays) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as aside:
             try:
-                np.savez(aside, allow_pickle=False, **arrays)
+                # without allow_pickle: numpy 2.0 keeps that as one more array
+                np.savez(aside, **arrays)  # type: ignore[arg-type]
                 aside.close()  # before it is renamed: on some systems an open file cannot be
                 Path(aside.name).replace(path)
             finally:
