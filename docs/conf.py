@@ -17,7 +17,12 @@ copyright = "2026, the modalkit developers"
 version = release = version_of("modalkit-ema")
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_design", "modalkit_site"]
-exclude_patterns = ["made", "_ext", "**/.ipynb_checkpoints"]
+exclude_patterns = [
+    "made",
+    "_ext",
+    "**/.ipynb_checkpoints",
+    "trust/blind_score.md",
+]  # the score is a download
 source_suffix = {".md": "myst-nb"}
 nitpicky = False
 default_role = None
