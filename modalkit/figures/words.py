@@ -33,9 +33,9 @@ def phrase(names: Sequence[str]) -> str:
 
 
 def parameters(row: Ranked) -> str:
-    """Write the parameters of a row of the ranking on one line."""
+    """Write the parameters of a row of the ranking on one line, those that the summary leaves aside last."""
     parts = []
-    for name, estimate in row.parameters.items():
+    for name, estimate in sorted(row.parameters.items(), key=lambda item: item[1].aside):
         if numbers_a_form(name, estimate):
             continue
         bound = " at its bound" if estimate.at_bound else ""

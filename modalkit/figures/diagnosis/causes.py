@@ -99,12 +99,12 @@ def _under(row: _Row, width: float) -> list[str]:
     """Return what is said of an answer's parameters below its bar."""
     if not row.answer:
         return []
-    room, lines = 72 * width, broken(row.detail, 72 * width, SMALL - 1)
-    return (
-        lines
-        if len(lines) <= UNDER
-        else [*lines[: UNDER - 1], shortened(" ".join(lines[UNDER - 1 :]), room, SMALL - 1)]
-    )
+    room, parts = 72 * width, row.detail.split(", ")
+    lines = broken(row.detail, room, SMALL - 1)
+    while len(lines) > UNDER and len(parts) > 1:  # a parameter is there whole or not at all
+        parts.pop()
+        lines = broken(", ".join([*parts, "…"]), room, SMALL - 1)
+    return lines[:UNDER]
 
 
 def _bar(axes: Axes, row: _Row, bottom: float, width: float) -> None:

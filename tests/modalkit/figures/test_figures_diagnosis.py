@@ -62,6 +62,19 @@ def test_diagnosis_with_its_case_shows_points_and_sensor(kind: str) -> None:
     assert "test points" in text and "sensor" in text and "acts on all of it" in text
 
 
+def test_a_parameter_is_written_whole_or_not_at_all() -> None:
+    names = ("density", "surface", "bottom", "side", "extent", "mass", "ratio", "slope")
+    sizes = {f"E.{name}": ParameterEstimate(0.9, "-", 0.891, 0.912, False) for name in names}
+    aside = {"E.hidden": ParameterEstimate(0.5, "-", 0.4, 0.6, False, aside=True)}
+    found = diagnosis_of("beam", first="E", place=None)
+    ranking = (replace(found.ranking[0], parameters={**aside, **sizes}), *found.ranking[1:])
+    text = " ".join(
+        t.get_text() for t in panels(diagnosis_figure(replace(found, ranking=ranking)))["causes"].texts
+    )
+    assert "density" in text and "…" in text and "hidden" not in text
+    assert text.count("0.9") - text.count("0.912") == text.count("0.9 (0.891 to 0.912)") > 2
+
+
 def test_errors_before_and_after_are_those_of_the_modulus() -> None:
     case = case_of("beam", factor=0.9, modes=2)  # which this mesh leaves no doubt in
     row = Ranked(("E",), 0.9, (), {"E.factor": ParameterEstimate(0.9, "-", 0.89, 0.91, False)}, True, 0.5)
