@@ -71,7 +71,7 @@ def test_a_parameter_is_written_whole_or_not_at_all() -> None:
     text = " ".join(
         t.get_text() for t in panels(diagnosis_figure(replace(found, ranking=ranking)))["causes"].texts
     )
-    assert "density" in text and "…" in text and "hidden" not in text
+    assert "density" in text and "), …" in text and "hidden" not in text
     assert text.count("0.9") - text.count("0.912") == text.count("0.9 (0.891 to 0.912)") > 2
 
 
