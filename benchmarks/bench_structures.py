@@ -1,25 +1,28 @@
-"""Changes hidden by hand in the structures of `examples/matrices`: which are named, by part and size.
+"""Changes hidden by hand in the structures of `examples`: which are named, by part and size.
 
-    python benchmarks/bench_structures.py [frame|machine] [NUMBER ...]
+    python benchmarks/bench_structures.py [--seed N] [frame|machine|bracket] [NUMBER ...]
 
-Each change is made in the bars themselves, not by the effects; the specimen is hit, and the study, which does not hold
-the change, diagnosed. All stiffness and all mass of the specimen scatter as the study's tolerances say.
+Each change is made in the bars themselves, or in the cards of a finer deck of other elements that CalculiX solves, not
+by the effects; the specimen is hit, and the study, which does not hold the change, diagnosed. All stiffness and all
+mass of the specimen scatter as the study's tolerances say.
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "examples" / "matrices"))
+sys.path[:0] = [str(ROOT / "examples" / name) for name in ("matrices", "deck")]
 
+import bracket  # noqa: E402
 import frame  # noqa: E402
 import machine  # noqa: E402
 from bars import Structure, rows_of  # noqa: E402
@@ -31,8 +34,8 @@ from updating import Diagnosis  # noqa: E402
 SCATTER = (0.01, 0.003)
 """Of modulus and density, relative: the tolerances of a study that states none [-]."""
 
-NEAR = 0.1
-"""A body named so near to where it sits is there [m]."""
+NEAR = 0.15
+"""A body named so near to where it sits is there, as a share of the longest side of what is hit [-]."""
 
 SIZES = 0.15
 """A size so near to the hidden one is right [-]."""
@@ -51,7 +54,15 @@ class Hidden:
     turned : mapping
         Options of the example's own structure: joints that turn, feet.
     further : callable, optional
-        What is done to the structure.
+        What is done to the structure of bars.
+    cards : callable, optional
+        Takes the number of a node nearest to a place [mm] to what is added to the deck.
+    face : float
+        Where the upper face of a bracket's web is [mm].
+    stated : str
+        What the study says besides.
+    reach : float
+        Longest side of the structure [m].
     also : mapping
         Other names of an effect that are as right: a hypothesis.
     """
@@ -62,6 +73,10 @@ class Hidden:
     turned: Mapping[str, float] = field(default_factory=dict)
     further: Callable[[Structure], None] | None = None
     also: Mapping[str, str] = field(default_factory=dict)
+    cards: Callable[[Callable[..., int]], str] | None = None
+    face: float = bracket.SIDES[1]
+    stated: str = ""
+    reach: float = 0.7
 
 
 def body(node: int, mass: float) -> Callable[[Structure], None]:
@@ -147,9 +162,112 @@ MACHINE = (
     Hidden((soft(FOOT[2], 0.7), heavy("rail_left", 1.2)), {FOOT[2]: 0.7}, {"rail_left": 1.2}),
 )  # fmt: skip
 
+CORNER, RIM = (0.0, 60.0, 80.0), (8.0, 30.0, 80.0)
+"""Of the bracket's wall: an upper corner, and the middle of its upper edge [mm]."""
+
+THIN = """
+[[hypothesis]]
+name = "web is milled"
+parameter = "WEBFACE.y"
+range = ["-0.75 mm", "0 mm"]
+"""
+
+
+def weight(place: tuple[float, float, float], mass: float) -> Callable[[Callable[..., int]], str]:
+    """Put a mass on a node of a deck [g]."""
+    return lambda node: (
+        f"*ELEMENT, TYPE=MASS, ELSET=HIDDEN\n900001, {node(*place)}\n*MASS, ELSET=HIDDEN\n{mass * 1e-6:g}\n"
+    )
+
+
+def stay(
+    place: tuple[float, float, float], axis: int, stiffness: float
+) -> Callable[[Callable[..., int]], str]:
+    """Hold a node of a deck by a spring to the ground [N/mm]."""
+    return lambda node: (
+        f"*ELEMENT, TYPE=SPRING1, ELSET=HIDDEN\n900001, {node(*place)}\n"
+        f"*SPRING, ELSET=HIDDEN\n{axis}\n{stiffness:.1f}\n"
+    )
+
+
+def metres(place: tuple[float, float, float]) -> str:
+    """Write a place of a deck as answers are looked for [m]."""
+    return ", ".join(f"{c / 1000:g}" for c in place)
+
+
+BRACKET = (
+    Hidden((("web is milled", "", "value", -4e-4),), face=bracket.SIDES[1] - 0.4, stated=THIN),
+    Hidden((soft("WALL", 0.88),), {"WALL": 0.88}),
+    Hidden((soft("BASE", 1.15),), {"BASE": 1.15}),
+    Hidden((soft("WEB", 0.8),), {"WEB": 0.8}),
+    Hidden((heavy("WALL", 1.1),), mass={"WALL": 1.1}),
+    Hidden((("lumped_mass", metres(CORNER), "mass", 0.02),), cards=weight(CORNER, 20.0)),
+    Hidden((("lumped_mass", metres(RIM), "mass", 0.02),), cards=weight(RIM, 20.0)),
+    Hidden((("ground_spring", metres((0.0, 10.0, 80.0)), "stiffness", 5e5),),
+           cards=stay((0.0, 10.0, 80.0), 1, 500.0)),
+    Hidden((soft("WALL", 0.85), soft("BASE", 1.2)), {"WALL": 0.85, "BASE": 1.2}),
+    Hidden((soft("WEB", 0.75), ("lumped_mass", metres(CORNER), "mass", 0.02)), {"WEB": 0.75},
+           cards=weight(CORNER, 20.0)),
+)  # fmt: skip
+
+
+def of_bars(
+    make: Callable[[Path], Path],
+    build: Callable[..., tuple[Structure, Mapping[int, tuple[str, ...]]]],
+    points: Mapping[int, object],
+) -> Callable[[Hidden, Path, np.random.Generator], Path]:
+    """Return what hides a change in bars, hits them, and returns the study of the unchanged ones."""
+
+    def prepare(hidden: Hidden, folder: Path, rng: np.random.Generator) -> Path:
+        study = make(folder)
+        nominal, sets = build()
+        (folder / "nodes.csv").write_text(nominal.table(sets), encoding="ascii")  # with the sides of joints
+        specimen, _ = build(hidden.turned or None)
+        if hidden.further is not None:
+            hidden.further(specimen)
+        factors = 1 + np.array(SCATTER) * rng.standard_normal(2)
+        own = [part for part in specimen.parts if part != "hidden"]
+        pair = (
+            specimen.matrix("stiffness", factors={p: factors[0] * hidden.stiffness.get(p, 1.0) for p in own}),
+            specimen.matrix("mass", factors={p: factors[1] * hidden.mass.get(p, 1.0) for p in own}),
+        )
+        hit(folder / "hits.uff", specimen, *pair, points, rate=2048.0, rng=rng)
+        return study
+
+    return prepare  # fmt: skip
+
+
+def of_bricks(hidden: Hidden, folder: Path, rng: np.random.Generator) -> Path:
+    """Hide a change in the finer deck of a bracket, hit it, and return the study of the unchanged one."""
+    study = bracket.make(folder)
+    study.write_text(study.read_text() + hidden.stated)
+    modulus, density = (210000.0, 7.85e-9) * (1 + np.array(SCATTER) / (2, 1) * rng.standard_normal(2))
+    text = bracket.deck(1, face=hidden.face, kind="C3D20")
+    for part in ("BASE", "WALL", "WEB"):
+        text = text.replace(
+            f"ELSET={part}, MATERIAL=STEEL\n",
+            f"ELSET={part}, MATERIAL=OF_{part}\n*MATERIAL, NAME=OF_{part}\n"
+            f"*ELASTIC\n{modulus * hidden.stiffness.get(part, 1.0):.9g}, 0.3\n"
+            f"*DENSITY\n{density * hidden.mass.get(part, 1.0):.9g}\n",
+        )
+    nodes = np.array([line.split(",") for line in text.split("*ELEMENT")[0].splitlines()[1:]], dtype=float)
+
+    def nearest(x: float, y: float, z: float) -> int:
+        return int(nodes[np.argmin(np.linalg.norm(nodes[:, 1:] - (x, y, z), axis=1)), 0])
+
+    if hidden.cards is not None:
+        text = text.replace("*BOUNDARY", f"{hidden.cards(nearest)}*BOUNDARY")
+    specimen = folder / "specimen.inp"
+    specimen.write_text(text, encoding="ascii")
+    bracket.hit(specimen, folder, rng)
+    specimen.unlink()
+    return study
+
+
 STRUCTURES = {
-    "frame": (frame.make, frame.frame, frame.POINTS, FRAME),
-    "machine": (machine.make, machine.machine, machine.POINTS, MACHINE),
+    "frame": (of_bars(frame.make, frame.frame, frame.POINTS), FRAME),
+    "machine": (of_bars(machine.make, machine.machine, machine.POINTS), MACHINE),
+    "bracket": (of_bricks, BRACKET),
 }
 
 
@@ -192,8 +310,11 @@ def fits(name: str, form: Mapping[str, object], own: Mapping[str, object], answe
         return False
     if "," in place:
         at = [float(form[n]) for n in "xyz"]  # type: ignore[arg-type]
-        return float(np.linalg.norm(np.subtract(at, [float(c) for c in place.split(",")]))) <= NEAR
-    return place in (form.get(label) for label in ("region", "joint", "support", "at"))
+        return (
+            float(np.linalg.norm(np.subtract(at, [float(c) for c in place.split(",")])))
+            <= NEAR * hidden.reach
+        )
+    return not place or place in (form.get(label) for label in ("region", "joint", "support", "at"))
 
 
 def answer(diagnosis: Diagnosis) -> str:
@@ -209,29 +330,17 @@ def answer(diagnosis: Diagnosis) -> str:
     return " | ".join(said) or diagnosis.verdict
 
 
-def run(name: str, number: int, folder: Path) -> None:
+def run(name: str, number: int, seed: int, folder: Path) -> None:
     """Hide one change, hit, diagnose, and write a line."""
-    make, build, points, every = STRUCTURES[name]
-    hidden = every[number - 1]
-    study = make(folder)
-    nominal, sets = build()
-    (folder / "nodes.csv").write_text(nominal.table(sets), encoding="ascii")  # with the sides of joints
-    rng = np.random.default_rng(100 * number + len(name))
-    specimen, _ = build(hidden.turned or None)
-    if hidden.further is not None:
-        hidden.further(specimen)
-    factors = 1 + np.array(SCATTER) * rng.standard_normal(2)
-    own = [part for part in specimen.parts if part != "hidden"]
-    pair = (
-        specimen.matrix("stiffness", factors={p: factors[0] * hidden.stiffness.get(p, 1.0) for p in own}),
-        specimen.matrix("mass", factors={p: factors[1] * hidden.mass.get(p, 1.0) for p in own}),
-    )
-    hit(folder / "hits.uff", specimen, *pair, points, rate=2048.0, rng=rng)
-    start = time.perf_counter()
+    prepare, every = STRUCTURES[name]
+    hidden = replace(every[number - 1], reach=0.1 if name == "bracket" else 0.7)
+    rng = np.random.default_rng((seed, number, len(name)))
+    study = prepare(hidden, folder, rng)
+    start = time.process_time()
     diagnosis = diagnose_studies([study])
-    took = time.perf_counter() - start
+    took = time.process_time() - start
     done = "; ".join(
-        f"{effect} {place} {parameter} {value:g}" for effect, place, parameter, value in hidden.answers
+        f"{effect} {place} {parameter} {value:.3g}" for effect, place, parameter, value in hidden.answers
     )
     cells = (f"{name} {number}", done, outcome(diagnosis, hidden), answer(diagnosis), f"{took:.0f} s")
     sys.stdout.write(f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |\n")
@@ -240,13 +349,19 @@ def run(name: str, number: int, folder: Path) -> None:
 
 def main() -> None:
     """Run all changes, or those asked for."""
-    chosen = [a for a in sys.argv[1:] if a in STRUCTURES] or list(STRUCTURES)
-    numbers = [int(a) for a in sys.argv[1:] if a.isdecimal()]
-    sys.stdout.write("| specimen | hidden | outcome | answer | time |\n|---|---|---|---|---|\n")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("wanted", nargs="*", help="frame, machine, bracket, numbers of changes")
+    parser.add_argument("--seed", type=int, default=0, help="of scatter and noise")
+    options = parser.parse_args()
+    chosen = [word for word in options.wanted if word in STRUCTURES] or list(STRUCTURES)
+    numbers = [int(word) for word in options.wanted if word.isdecimal()]
+    sys.stdout.write("| specimen | hidden | outcome | answer | CPU |\n|---|---|---|---|---|\n")
     for name in chosen:
-        for number in numbers or range(1, len(STRUCTURES[name][3]) + 1):
+        for number in numbers or range(1, len(STRUCTURES[name][1]) + 1):
             with tempfile.TemporaryDirectory() as folder:
-                run(name, number, Path(folder))
+                run(name, number, options.seed, Path(folder))
 
 
 if __name__ == "__main__":
