@@ -77,14 +77,14 @@ class Joint(Effect):
 
     def obstacle(self, predictor: Predictor) -> Obstacle | None:
         """Need two node sets at one place."""
-        if _joints(predictor):
+        if joints_of(predictor):
             return None
         what = "no two node sets have nodes at the same places: name both sides of a joint, each with nodes of its own"
         return Obstacle(Lack.MODEL, what)
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return every joint softer and stiffer, in shifting, in turning, and in both."""
-        joints = _joints(predictor)
+        joints = joints_of(predictor)
         return tuple(
             Variant(form.values, form.weight / len(joints), form.within)
             for joint in joints
@@ -131,11 +131,8 @@ class Joint(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with the joint's springs in place of the modelled ones."""
-        joint = one_of(_joints(predictor), values, "joint")
-        units = [
-            on_basis(predictor, ("joint", joint.name, i), partial(_same, springs))
-            for i, springs in enumerate(joint.springs)
-        ]
+        joint = one_of(joints_of(predictor), values, "joint")
+        units = [joint_springs(predictor, joint, i) for i in range(2)]
         changes = []
         for unit, (name, own) in zip(units, _modelled(joint).items(), strict=True):
             wanted = float(values.get(name, own))
@@ -156,7 +153,7 @@ class Joint(Effect):
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
         """Return what the joint has of the modelled stiffness, in shifting and in turning, where that is another."""
-        joint = one_of(_joints(predictor), values, "joint")
+        joint = one_of(joints_of(predictor), values, "joint")
         names = {"stiffness": "of_modelled", "turning": "of_modelled_turning"}
         return {
             names[name]: (float(values[name]) / own, "-")
@@ -166,14 +163,20 @@ class Joint(Effect):
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the joint."""
-        return (centre_of(one_of(_joints(predictor), values, "joint")),)
+        return (centre_of(one_of(joints_of(predictor), values, "joint")),)
+
+
+def joint_springs(predictor: Predictor, joint: Sides, i: int) -> FloatArray:
+    """Return the springs of a joint's translations (0) or rotations (1) on the basis, (r, r) [SI]."""
+    return on_basis(predictor, ("joint", joint.name, i), partial(_same, joint.springs[i]))
 
 
 def _same(springs: Sparse) -> Sparse:
     return springs
 
 
-def _joints(predictor: Predictor) -> tuple[Sides, ...]:
+def joints_of(predictor: Predictor) -> tuple[Sides, ...]:
+    """Return the joints between node sets, none of models that are not imported."""
     imported = predictor.spec.imported
     return () if imported is None else imported.joints
 
@@ -194,7 +197,7 @@ def _range(predictor: Predictor, joint: Sides, i: int) -> tuple[float, float]:
 
 def _spans(predictor: Predictor) -> FloatArray:
     """Return the widest range of any joint in shifting and in turning, (2, 2) [N/m, N m/rad]."""
-    joints = _joints(predictor)
+    joints = joints_of(predictor)
     return np.array([_span([_range(predictor, joint, i) for joint in joints]) for i in range(2)])
 
 

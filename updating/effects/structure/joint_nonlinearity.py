@@ -12,8 +12,10 @@ from acquisition.arrays import FloatArray
 from updating.effects.base import EDGES, Effect, EitherSign, Parameter, Values, Variant, bending_stiffness
 from updating.effects.box import Place
 from updating.effects.obstacles import Lack, Obstacle
+from updating.effects.regions import centre_of, one_of
 from updating.effects.structure.axial_load import buckling_load, unit_tension
 from updating.effects.structure.clamp import unit_edges
+from updating.effects.structure.joint import joint_springs, joints_of
 from updating.effects.structure.length import clamped_places
 from updating.models.state import NOMINAL, State
 from updating.prediction.matching import match
@@ -50,6 +52,10 @@ WORDS: Mapping[int, str] = MappingProxyType(
 TIGHT = 0.01
 """Tension that moves frequencies in proportion, over the load that buckles the model [-]."""
 
+UNNAMED = 0.25
+"""Prior of a joint that nobody knows, beside those that node sets name [-]: as beside clamps. Judged; doubled, the
+named ones lose ln 1.5."""
+
 SPREAD, OWN = 0.15, 0.05
 """How far modes differ in a joint that nobody knows, and in one whose strain energy is computed, relative [-]."""
 
@@ -59,11 +65,13 @@ class JointNonlinearity(Effect):
 
     A clamp that softens holds as modelled at rest, and its compliance grows in proportion to the force; one that
     stiffens closes under the force, to which its stiffness is proportional. Between two clamps whose ends cannot
-    approach each other a tension grows with the force. Each mode's slope then follows from the joint's share of its
+    approach each other a tension grows with the force. A joint of imported matrices, between two node sets, does either
+    from the stiffness that it has there. Each mode's slope then follows from the joint's share of its
     own strain energy, d ln f / dF = phi^T (dK/dF) phi / 2 lambda. In a joint that nobody knows all slopes are alike.
 
     ``slope`` is the mean over all modes up to the highest measured one, in proportion to the force from a clamp that
-    gives way by some per cent of frequency: a mode that a test misses in between changes nothing.
+    gives way by some per cent of frequency, or from a joint as modelled: a mode that a test misses in between changes
+    nothing.
     """
 
     name = "joint_nonlinearity"
@@ -73,10 +81,11 @@ class JointNonlinearity(Effect):
         "Frequencies of single hits change in proportion to their peak force, each by the joint's share of its strain"
         " energy. Its slope is the mean over the modes up to the highest measured; joint is 1 for a clamp that turns,"
         " 2 for one that shifts, 3 for a stretch between two clamps, 0 for one not known, in which all modes change"
-        " alike."
+        " alike; of imported matrices, 1 or 2 for the joint of the name at."
     )
     models = ("beam", "plate", "matrices")
     equivalent_to = ()
+    named = ("at",)
     separated_by = "hits at each point over a wider range of levels, softest and hardest some 1 : 5"
     phrase = "a joint that is not linear"
     undone_by = frozenset({"unclamped"})
@@ -116,12 +125,16 @@ class JointNonlinearity(Effect):
         return Obstacle(Lack.DATA, what)
 
     def fidelity_on(self, predictor: Predictor) -> float:
-        """Return how far modes differ from what is predicted; less where there are clamps to give way [-]."""
-        return OWN if predictor.spec.clamped else SPREAD
+        """Return how far modes differ from what is predicted; less where clamps or joints may give way [-]."""
+        return OWN if predictor.spec.clamped or _springs(predictor) else SPREAD
 
     def variants(self, predictor: Predictor) -> tuple[Variant, ...]:
         """Return each joint that the structure has, and one that is not known."""
         clamped = set(predictor.spec.clamped)
+        if springs := _springs(predictor):
+            share = (1 - UNNAMED) / len(springs)
+            named = (Variant({"joint": float(kind), "at": name}, share) for name, kind in springs)
+            return (Variant({"joint": float(ANYWHERE)}, UNNAMED), *named)
         if not clamped:
             return (Variant({"joint": float(ANYWHERE)}),)
         shares = {ANYWHERE: 0.25, TURNING: 0.45, SHIFTING: 0.3}
@@ -133,6 +146,8 @@ class JointNonlinearity(Effect):
         """Return the structure at the level of the test, and its dependence on that."""
         joint, slope = round(values.get("joint", ANYWHERE)), values["slope"]
         level = predictor.measured.level or COMMON_LEVEL
+        if joint in FREED and slope and "at" in values:
+            return _worked(predictor, str(values["at"]), joint, slope, level)
         if joint == ANYWHERE or not slope or not predictor.spec.clamped:
             return State(slope=slope)
         if joint == STRETCHING:
@@ -146,6 +161,9 @@ class JointNonlinearity(Effect):
 
     def sentence(self, values: Values) -> str:
         """Return the summary, and which joint it is where that is known."""
+        if "at" in values:
+            moves = "turning" if round(values["joint"]) == TURNING else "shifting"
+            return f"{self.summary} It is {values['at']}, in {moves}."
         return self.summary + WORDS.get(round(values.get("joint", ANYWHERE)), "")
 
     def derived(self, predictor: Predictor, values: Values) -> dict[str, tuple[float, str]]:
@@ -153,7 +171,9 @@ class JointNonlinearity(Effect):
         return {"joint": (float(round(values.get("joint", ANYWHERE))), "-")}
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
-        """Return the clamps where they are the joint."""
+        """Return the clamps where they are the joint, or the joint between two node sets."""
+        if "at" in values:
+            return (centre_of(one_of(joints_of(predictor), values, "at")),)
         return clamped_places(predictor) if round(values.get("joint", ANYWHERE)) in FREED else ()
 
 
@@ -182,10 +202,49 @@ def _tension_share(predictor: Predictor) -> float:
     return float(predictor.once("tightens", build))
 
 
+def _springs(predictor: Predictor) -> tuple[tuple[str, int], ...]:
+    """Return the joints of imported matrices by name, each with what it may give way in: where it has springs."""
+    return tuple(
+        (joint.name, kind)
+        for joint in joints_of(predictor)
+        for kind, stiffness in zip((SHIFTING, TURNING), joint.stiffness, strict=True)
+        if stiffness
+    )
+
+
+def _worked(predictor: Predictor, name: str, kind: int, slope: float, level: float) -> State:
+    """Return a joint between two node sets at the level of the test, and its dependence on that.
+
+    Its compliance c, the modelled one times 1 + x, has x in proportion to the force F where it softens, and to 1/F
+    where it closes: at the level d(1/c)/dF = -+ x / (c_0 F (1 + x)^2).
+    """
+    joint = one_of(joints_of(predictor), {"at": name}, "at")
+    unit = joint_springs(predictor, joint, (SHIFTING, TURNING).index(kind))
+    more = abs(slope) * level / _strain_share(predictor, name, unit)
+    return State(
+        stiffness=((1 / (1 + more) - 1) * unit,),
+        per_newton=(np.sign(slope) * more / level / (1 + more) ** 2 * unit,),
+    )
+
+
+def _strain_share(predictor: Predictor, name: str, unit: FloatArray) -> float:
+    """Return half of the strain energy that a joint's springs have of all, the mean over modes [-]."""
+
+    def build() -> FloatArray:
+        count = _count(predictor)
+        return np.array(np.mean(predictor.predict(State(per_newton=(unit,)), count=count).slope[:count]))
+
+    return float(predictor.once(f"strain energy of {name} {id(unit)}", build))
+
+
+def _count(predictor: Predictor) -> int:
+    """Return how many modes there are up to the highest that was measured."""
+    test = predictor.measured
+    return 1 + int(match(test, predictor.predict(), np.arange(len(test.frequency)) + test.below).max())
+
+
 def _mean_shift(predictor: Predictor, state: State) -> float:
     """Return the mean relative change over the lowest modes, up to the highest that was measured [-]."""
-    test = predictor.measured
-    measured = match(test, predictor.predict(), np.arange(len(test.frequency)) + test.below)
-    count = 1 + int(measured.max())
+    count = _count(predictor)
     moved, plain = (predictor.predict(s, count=count).frequency for s in (state, NOMINAL))
     return float(np.mean(moved / plain - 1))
