@@ -19,6 +19,7 @@ from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.likelihood.base import Quantity, View
 from updating.likelihood.comparison import Block
 from updating.likelihood.phase import Phases
+from updating.models.absorbers import swinging
 from updating.prediction.prediction import Prediction
 from updating.test_data.measured import UNKNOWN_LEVEL, Measured
 from updating.thresholds import (
@@ -177,7 +178,7 @@ class UnpairedModes(Quantity):
         A mass on a spring is moved by the structure as far as it moves the structure: from where it swings alone. What
         changes a mode beyond recognition shifts it as far as it shifts any.
         """
-        alone = [np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in view.state.absorbers]
+        alone = [np.sqrt(one.stiffness / one.mass) / (2 * np.pi) for one in swinging(view.state.absorbers)]
         shifts = [abs(float(np.log(self._test.frequency[i] / own))) for own in alone]
         most = np.nan_to_num(np.abs(np.log(view.now.frequency / self.setting.nominal.frequency))).max(
             initial=0.0

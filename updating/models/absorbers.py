@@ -27,12 +27,16 @@ class Absorber:
         Displacement of the place that it hangs from, in the coordinates of the reduced basis [kg^-1/2].
     mass, stiffness, damping : float
         Of the mass [kg], the spring [N/m] and the dashpot [N s/m].
+    attached : bool
+        Whether the spring is the structure's own flexibility at the place: a body that sits there swings by itself far
+        above all that is measured, and takes part in the structure's modes like its own mass.
     """
 
     row: FloatArray
     mass: float
     stiffness: float
     damping: float
+    attached: bool = False
 
     def size(self, kind: Kind) -> float:
         """Return its stiffness [N/m], mass [kg] or damping [N s/m]."""
@@ -77,6 +81,11 @@ def structural(vectors: FloatArray, absorbers: Sequence[Absorber]) -> FloatArray
     return vectors[: len(vectors) - len(absorbers)]
 
 
+def swinging(absorbers: Sequence[Absorber]) -> tuple[Absorber, ...]:
+    """Return those that make a mode of their own: all but bodies on the flexibility of their place."""
+    return tuple(one for one in absorbers if not one.attached)
+
+
 def motions(vectors: FloatArray, absorbers: Sequence[Absorber]) -> tuple[FloatArray, FloatArray]:
     """Return how the masses move in modes (n + k, m), and how they move against their places, each (k, m)."""
     n = len(vectors) - len(absorbers)
@@ -91,3 +100,9 @@ def energies(vectors: FloatArray, absorbers: Sequence[Absorber]) -> dict[Kind, F
     parts: dict[Kind, FloatArray] = {"stiffness": against, "mass": own, "damping": against}
     sizes = {kind: np.array([one.size(kind) for one in absorbers]) for kind in parts}
     return {kind: np.asarray(sizes[kind] @ part**2) for kind, part in parts.items()}
+
+
+def swinging_mass(vectors: FloatArray, absorbers: Sequence[Absorber]) -> FloatArray:
+    """Return the share in the modal mass of modes (n + k, m) of what makes modes of its own, (m,) [-]."""
+    sizes = np.array([0.0 if one.attached else one.mass for one in absorbers])
+    return np.asarray(sizes @ motions(vectors, absorbers)[0] ** 2)

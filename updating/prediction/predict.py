@@ -13,7 +13,7 @@ from scipy import linalg
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.display import Displayed
 from updating.environment import Environment
-from updating.models.absorbers import energies, padded, structural
+from updating.models.absorbers import padded, structural, swinging_mass
 from updating.models.build import build_structure
 from updating.models.complex_modes import ComplexModes, complex_modes
 from updating.models.damped_modes import Damped, damped, modes_taking_part, turns_modes
@@ -356,7 +356,7 @@ class Predictor(Displayed):
         given = self._given(state)
         if given is None:
             return np.zeros(vectors.shape[1])
-        share = 1 - energies(vectors, state.absorbers)["mass"]
+        share = 1 - swinging_mass(vectors, state.absorbers)
         rank = np.round(np.cumsum(share) - share).astype(int)
         return np.asarray(np.asarray(given)[np.clip(rank, 0, len(given) - 1)] * share, dtype=float)
 

@@ -31,7 +31,7 @@ from updating.likelihood.outliers import with_outliers
 from updating.likelihood.phase import Phases
 from updating.likelihood.trend import Trends
 from updating.likelihood.unpaired import UnpairedModes
-from updating.models.absorbers import Absorber
+from updating.models.absorbers import Absorber, swinging
 from updating.models.base import FACTORS
 from updating.models.named_factors import departure, regions_of, unassigned
 from updating.models.state import NOMINAL, State
@@ -298,7 +298,7 @@ class SpecimenProblem:
         stage = self.predictor if theory is None else self.predictor.under(theory)
         whole = state.plus(self.departure(shift, stage))
         prediction = self.predictor.predict(whole, factors=self.names, at_least=self.reach)
-        partners = self._partners(prediction, len(state.absorbers))
+        partners = self._partners(prediction, len(swinging(state.absorbers)))
         view = View(
             prediction.select(partners[0]), self.predictor.base.plus(whole), doubt, prediction, *partners[1:]
         )
@@ -359,7 +359,7 @@ class SpecimenProblem:
             return np.zeros(len(self.measured.frequency))
         without = self.predictor.for_test(self.measured, self.predictor.additions[len(self.accepted) :])
         plain = without.predict(at_least=self.reach)
-        hung = self.predictor.base.absorbers
+        hung = swinging(self.predictor.base.absorbers)
         before = _undisturbed(self.nominal, plain, hung) if hung else plain.frequency[self._match(plain)]
         shift = np.log(self.nominal.frequency / before)
         return np.asarray((self.doubt_of_accepted * shift) ** 2)

@@ -73,7 +73,7 @@ def clusters(problem: SpecimenProblem, explanation: Explanation, channel: str) -
 
 
 def _stated(found: list[Cluster]) -> Iterator[Cluster]:
-    """Share the weight of each seat among its places, and drop those with little of it."""
+    """Share the weight of each effect among its places, and drop those with little of it."""
     for likely_place in {cluster.likely_place for cluster in found}:
         here = [cluster for cluster in found if cluster.likely_place == likely_place]
         total = sum(cluster.weight for cluster in here)
@@ -91,7 +91,7 @@ class Sampled:
     weights : (n,) array
         Posterior weight; that of one sample is shared among the places that are alternatives [-].
     likely_places : (n,) int array
-        Places of one seat are alternatives, such as mirror images; those of several are taken at the same time.
+        Places of one effect are alternatives, such as mirror images; those of several are taken at the same time.
     """
 
     places: FloatArray
@@ -99,7 +99,7 @@ class Sampled:
     likely_places: IntArray
 
     def of(self, likely_place: int) -> Sampled:
-        """Return the places of one seat."""
+        """Return the places of one effect."""
         here = self.likely_places == likely_place
         return Sampled(self.places[here], self.weights[here], self.likely_places[here])
 
@@ -137,7 +137,7 @@ def sampled_places(problem: SpecimenProblem, explanation: Explanation, channel: 
 def _places_of_sample(
     problem: SpecimenProblem, explanation: Explanation, sample: FloatArray, channel: str | None
 ) -> list[list[Place]]:
-    """Return the places of one sample by seat: an effect that searches its place has one, with alternatives."""
+    """Return the places of one sample by effect: one that searches its place has one, with alternatives."""
     candidate = explanation.candidate
     stage = candidate.stage(problem.predictor)
     by_channel: dict[bool, list[list[Place]]] = {True: [], False: []}
@@ -156,7 +156,7 @@ def _span(problem: SpecimenProblem) -> float:
 
 
 def _gather(sampled: Sampled, span: float, likely_place: int) -> list[Cluster]:
-    """Gather the samples of one seat: what hangs together is one place."""
+    """Gather the samples of one effect: what hangs together is one place."""
     bold = sampled.weights >= BRIDGE_SAMPLE * sampled.weights.max()
     places, weights = sampled.places[bold], sampled.weights[bold]
     labels = np.ones(len(places), dtype=int)

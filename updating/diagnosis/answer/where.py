@@ -160,7 +160,7 @@ def _zones(problem: SpecimenProblem, probability: FloatArray) -> tuple[Zone, ...
 
 
 def _by_explanations(problem: SpecimenProblem, found: Search) -> FloatArray:
-    """Spread each explanation over the regions: a seated one by its places, any other by area."""
+    """Spread each explanation over the regions: one that has places by these, any other by area."""
     even = areas(problem)
     total = np.zeros(len(even))
     for row in found.compared:

@@ -12,6 +12,7 @@ from acquisition.arrays import FloatArray, IntArray
 from updating.diagnosis.next_test.base import Outcome, Rival, Site, Trial
 from updating.effects.base import Effect
 from updating.likelihood.comparison import Comparison
+from updating.models.absorbers import swinging
 from updating.models.state import State
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
@@ -104,9 +105,9 @@ def imagined(measured: Measured, predictor: Predictor, state: State, order: IntA
     order : (n_modes,) int array
         Ranks of the modes.
     """
-    prediction = predictor.predict(state, at_least=int(order.max()) + 3 + len(state.absorbers))
+    prediction = predictor.predict(state, at_least=int(order.max()) + 3 + len(swinging(state.absorbers)))
     ranks = np.argsort(prediction.frequency)[np.sort(order)]
-    if state.absorbers:
+    if swinging(state.absorbers):
         ranks = _of_structure(predictor, prediction, np.sort(order))
     modes = prediction.select(ranks)
     known = np.median(measured.frequency_sigma / measured.frequency)

@@ -60,6 +60,9 @@ def frequency_gap(predictor: Predictor, state: State = NOMINAL) -> FrequencyGap:
     count = len(test.frequency)
     now = predictor.predict(state, at_least=count + test.below + SPARE)
     paired = now.select(match(test, now, np.arange(count) + test.below))
-    return FrequencyGap(
-        np.log(test.frequency / paired.frequency), np.eye(count) - 1 / (count + 1 / COMMON**2), paired
-    )
+    return FrequencyGap(np.log(test.frequency / paired.frequency), common_metric(count), paired)
+
+
+def common_metric(count: int) -> FloatArray:
+    """Return by which misfits of modes are compared, (count, count): without what is common to all modes [-]."""
+    return np.asarray(np.eye(count) - 1 / (count + 1 / COMMON**2))

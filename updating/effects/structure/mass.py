@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -14,6 +15,7 @@ from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, tot
 from updating.effects.box import AXES, LIKE, Place, mirror_images, outline, starting_places
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import centre_of, on_basis, one_of
+from updating.effects.structure.attachment import attachment_of, with_body
 from updating.effects.structure.frequency_gap import frequency_gap
 from updating.effects.structure.nodes import (
     NAMED_SHARE,
@@ -251,7 +253,7 @@ class LumpedMass(Effect):
         known += [_named(group.centre) | {"at": group.name} for group in groups]
         sizes = [self.parameters(predictor)[0].value(u) for u in TRIED]
         others = free_nodes(imported, np.vstack([points.reshape(-1, 3), centres]))
-        best = promising_nodes(predictor, imported, others, _with_mass, sizes)
+        best = promising_nodes(predictor, imported, others, partial(with_body, predictor), sizes)
         share = NAMED_SHARE if len(others) else 1.0
         return (
             *(Variant(at, share / len(known)) for at in known),
@@ -272,8 +274,7 @@ class LumpedMass(Effect):
         """Return the structure with the body."""
         inertia = values.get("bulk", CUBE) * cube_inertia(values["mass"])
         if predictor.spec.imported is not None:
-            moves, turns = _carried(predictor, predictor.spec.imported, values)
-            return State(mass=(values["mass"] * moves + inertia * turns,))
+            return _on_matrices(predictor, predictor.spec.imported, values, inertia)
         point = np.array([[values[name] for name in AXES[: predictor.spec.dim]]])
         return State(mass=(_body(predictor, point, values["mass"], inertia),))
 
@@ -285,27 +286,25 @@ class LumpedMass(Effect):
         return (at,) if predictor.measured.has_shapes else mirror_images(predictor.spec, at)
 
 
-def _with_mass(rows: FloatArray, mass: float) -> State:
-    """Return the state with a body that moves as some rows of the basis do [kg]."""
-    return State(mass=(mass * (rows.T @ rows),))
+def _on_matrices(predictor: Predictor, imported: Imported, values: Values, inertia: float) -> State:
+    """Return imported matrices with a body of some rotary inertia [kg m^2] at a node set or a place."""
+    if "at" in values:
+        group = one_of(imported.groups, values, "at")
 
+        def unit(axes: range) -> FloatArray:
+            rows = group.motions(axes)
+            return on_basis(predictor, ("body", group.name, axes.start), lambda: Sparse(rows.T @ rows))
 
-def _carried(predictor: Predictor, imported: Imported, values: Values) -> tuple[FloatArray, FloatArray]:
-    """Return the matrices of 1 kg, and of 1 kg m^2, at a node set or a place of imported matrices, (r, r)."""
-    place = np.array([[values[name] for name in AXES]]) if "at" not in values else None
-    found = []
-    for axes in (range(3), range(3, 6)):
-
-        def unit(axes: range = axes) -> Sparse:
-            if place is None:
-                rows = one_of(imported.groups, values, "at").motions(axes)
-            else:
-                rows = imported.places.motions(place, axes)
-            return Sparse(rows.T @ rows)
-
-        where = values["at"] if place is None else tuple(place[0].tolist())
-        found.append(on_basis(predictor, ("body", where, axes.start), unit))
-    return found[0], found[1]
+        return State(mass=(values["mass"] * unit(range(3)) + inertia * unit(range(3, 6)),))
+    place = np.array([[values[name] for name in AXES]])
+    key = tuple(place[0].tolist())
+    attachment = attachment_of(predictor, ("body", *key), lambda: imported.places.motions(place))
+    turning = on_basis(
+        predictor,
+        ("turning", *key),
+        lambda: unit_inertia(predictor.reduced.structure, place),
+    )
+    return with_body(predictor, attachment, values["mass"]).plus(State(mass=(inertia * turning,)))
 
 
 def _body(predictor: Predictor, point: FloatArray, mass: float, inertia: float) -> FloatArray:

@@ -12,6 +12,7 @@ from updating.effects.base import EDGES, Effect, Parameter, Values, Variant, ben
 from updating.effects.box import AXES, Place, mirror_images, outline, place, spread, starting_places
 from updating.effects.obstacles import Lack, Obstacle, damping_obstacle
 from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
+from updating.effects.structure.attachment import Attachment, attachment_of, with_spring
 from updating.effects.structure.nodes import (
     NAMED_SHARE,
     TRIED,
@@ -22,6 +23,7 @@ from updating.effects.structure.nodes import (
     promising_nodes,
 )
 from updating.models.fields import Sparse
+from updating.models.imported.matrices import Imported
 from updating.models.spec import Spec
 from updating.models.state import Loss, State
 from updating.prediction.predict import Predictor
@@ -129,7 +131,7 @@ class GroundSpring(Effect):
         others = free_nodes(imported, group_centres(imported))
         sizes = [stiffness.value(u) for u in TRIED]
         along = _along_no_other(predictor, imported.places.at[others])
-        best = promising_nodes(predictor, imported, others, _with_spring, sizes, along)
+        best = promising_nodes(predictor, imported, others, with_spring, sizes, along)
         share = NAMED_SHARE if along.any() else 1.0
         each = (1 - share) / max(int(along.sum()), 1)
         return [
@@ -158,12 +160,16 @@ class GroundSpring(Effect):
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with springs and dashpots."""
-        unit = _unit(predictor, values)
         stiffness, damping = values.get("stiffness", 0.0), values.get("damping", 0.0)
-        return State(
-            stiffness=(stiffness * unit,) if stiffness else (),
-            losses=(Loss(damping * unit),) if damping else (),
-        )
+        imported = predictor.spec.imported
+        if imported is not None and "at" not in values:
+            attachment = _attachment(predictor, imported, values)
+            held = with_spring(attachment, stiffness) if stiffness else State()
+            unit = attachment.rows.T @ attachment.rows
+        else:
+            unit = _unit(predictor, values)
+            held = State(stiffness=(stiffness * unit,) if stiffness else ())
+        return held.plus(State(losses=(Loss(damping * unit),) if damping else ()))
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the middle; where no shapes tell it from its mirror images, these too."""
@@ -257,31 +263,23 @@ def _unit(predictor: Predictor, values: Values) -> FloatArray:
     if spec.imported is not None and "at" in values:
         row = one_of(spec.imported.groups, values, "at").rows[way(values, "along")]
         return on_basis(predictor, ("springs", values["at"], values["along"]), lambda: Sparse(row.T @ row))
-    if not spec.outlined:
-        return _at_place(predictor, values)
     if not values.get("extent"):
         return springs(predictor, np.array([[values[name] for name, _ in _sides(spec)]]), np.ones(1))
     points, weights = spread(spec, values)
     return springs(predictor, points, weights / weights.sum())
 
 
-def _at_place(predictor: Predictor, values: Values) -> FloatArray:
-    """Return the stiffness of 1 N/m at a place on imported matrices, ``along`` an axis or as that is measured."""
+def _attachment(predictor: Predictor, imported: Imported, values: Values) -> Attachment:
+    """Return a place on imported matrices, ``along`` an axis or as that is measured."""
     at = np.array([[values[name] for name in AXES]])
     directions = (
         np.eye(3)[[way(values, "along")]] if "along" in values else measured_directions(predictor, at)
     )
-    kept, key = predictor.reduced.kept, ("spring", *at[0].tolist(), *directions.ravel().tolist())
-    if key not in kept:
-        points = np.repeat(at, len(directions), axis=0)
-        kept[key] = springs(predictor, points, np.ones(len(directions)), directions)
-    found: FloatArray = kept[key]
-    return found
 
+    def motions() -> Sparse:
+        return imported.places.rows(np.repeat(at, len(directions), axis=0), directions)["w"]
 
-def _with_spring(rows: FloatArray, stiffness: float) -> State:
-    """Return the state with a spring to the ground at what moves as some rows of the basis do [N/m]."""
-    return State(stiffness=(stiffness * (rows.T @ rows),))
+    return attachment_of(predictor, ("spring", *at[0].tolist(), *directions.ravel().tolist()), motions)
 
 
 def _sides(spec: Spec) -> list[tuple[str, float]]:

@@ -212,6 +212,25 @@ class ImportedStructure(Structure):
         """Return the answers of K + s M to loads (n_dofs, n); the shift is that of the one factor [SI]."""
         return self._nominal.solve(loads)
 
+    def left_out(self, rows: Sparse, basis: FloatArray) -> FloatArray:
+        """Return the residual flexibility of a basis: how much further forces move what they act on, (k, k) [m/N].
+
+        Parameters
+        ----------
+        rows : (k, n_dofs) sparse array
+            Along which forces act.
+        basis : (n_dofs, r) array
+            Columns orthonormal in the mass [kg^-1/2].
+        """
+        loads, shift = (
+            rows.toarray().T,
+            self._nominal.shift,
+        )  # the shift holds a structure that is free, in both
+        held = basis.T @ (self.matrix("stiffness") @ basis) + shift * np.eye(basis.shape[1])
+        own = basis.T @ loads
+        left = rows @ self.solve(loads, shift) - own.T @ np.linalg.solve(held, own)
+        return np.asarray((left + left.T) / 2)
+
     def eigen(
         self,
         count: int,
