@@ -56,6 +56,10 @@ PROMISING = 3
 STILL, CUBE = 0.0, 1.0
 """Rotary inertia of a sensor and of a body where none is told, as a multiple of a steel cube's [-]."""
 
+SIZES = 9
+"""So many masses at a place of imported matrices are starts, three in a decade: the search begins at the best of them,
+and from one twice as heavy it ends where modes have changed places. Doubled: twice the time of a first look."""
+
 LARGEST = 6.0
 """Largest rotary inertia of a body, as a multiple of a steel cube's of its mass [-]."""
 
@@ -261,9 +265,9 @@ class LumpedMass(Effect):
         )
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
-        """Start from a row of places and the ends, with a middling mass."""
+        """Start from a row of places and the ends, with a middling mass; on imported matrices from several masses."""
         if predictor.spec.kind == "matrices":
-            return tuple((u, 0.5, 0.5, 0.5, 0.2) for u in (0.3, 0.6))
+            return tuple((u, 0.5, 0.5, 0.5, 0.12 + 0.1 * u) for u in np.linspace(0.04, 0.96, SIZES))
         ends = (
             ((0.02,), (0.98,)) if predictor.spec.kind == "beam" else ((0.98, 0.02), (0.98, 0.98), (0.98, 0.5))
         )

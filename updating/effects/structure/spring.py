@@ -39,6 +39,11 @@ visible 0.02 %, and all but holds the tip at the upper end [-]."""
 SLIPS = 0.1
 """How far what touches a structure leaves its damping in doubt: it rubs and slips, and is no dashpot, 1 sigma [-]."""
 
+SIZES = 9
+"""So many stiffnesses at a place of imported matrices are starts, three in two decades: the search begins at the best
+of them, and from one ten times as stiff it ends where modes have changed places. Doubled: twice the time of a first
+look."""
+
 SHORTEST = 0.03
 """Shortest stretch that differs from a point, of the length [-]."""
 
@@ -140,10 +145,14 @@ class GroundSpring(Effect):
         ]
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
-        """Start from a row of places and the ends, with a middling spring that hardly damps."""
+        """Start from a row of places and the ends, with a middling spring that hardly damps.
+
+        On imported matrices, where each place is a form of its own, from sizes over the whole range: above the one that
+        fits, modes have changed places and the likelihood has maxima of its own.
+        """
         spec = predictor.spec
         if spec.kind == "matrices":
-            return tuple((0.5, 0.5, 0.5, 0.5, u, 0.4) for u in (0.4, 0.6))
+            return tuple((0.5, 0.5, 0.5, 0.5, u, 0.2 + 0.4 * u) for u in np.linspace(0.06, 0.94, SIZES))
         ends = ((0.98,),) if spec.kind == "beam" else ((0.98, 0.02), (0.98, 0.98))
         return tuple((*where, 0.6, 0.5, 0.5) for where in (*starting_places(spec), *ends))
 

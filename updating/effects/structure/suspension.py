@@ -132,7 +132,7 @@ class Suspension(Effect):
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
         """Start from cords at the ends, at the nodes and inside them."""
         if predictor.spec.imported is not None:
-            return ((0.35, 0.5), (0.6, 0.5), (0.8, 0.5))
+            return tuple((u, 0.2 + 0.4 * u) for u in (0.2, 0.35, 0.5, 0.65, 0.8))
         return tuple((0.6, 0.5, inset, 0.5) for inset in (0.1, 0.5, 0.9))
 
     def state(self, predictor: Predictor, values: Values) -> State:
