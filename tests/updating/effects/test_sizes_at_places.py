@@ -15,9 +15,9 @@ from updating_cases import observed
 from updating import LIBRARY, Case, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
+from updating.diagnosis.search.fit import evaluate
 from updating.models.imported import Imported
 from updating.models.imported.nodes import read_table
-from updating.diagnosis.search.fit import evaluate
 from updating.problem.candidate import Candidate
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
