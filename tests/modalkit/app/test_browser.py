@@ -376,6 +376,45 @@ def test_the_keyboard_reaches_hits_and_poles(browser, shown):
     assert page.tab.locator('[data-hit="1+Z:1"]').is_checked()
 
 
+PIXELS = "canvas => canvas.width / canvas.clientWidth"
+"""Pixels drawn per pixel of the page."""
+
+
+def test_without_a_graphics_card_few_pixels_are_drawn_while_shapes_move(browser, shown):
+    """One each, without further samples, on whatever screen; a picture that stands still is drawn as fine as any."""
+    page = Page(browser, shown, device_scale_factor=2)
+    page.open("shapes")
+    canvas = page.tab.locator("canvas[data-fps]")
+    canvas.wait_for()
+    if canvas.get_attribute("data-soft") != "true":
+        pytest.skip("this machine has a graphics card")
+    assert canvas.evaluate(PIXELS) == pytest.approx(1.0, abs=0.01)
+    assert canvas.evaluate("c => c.getContext('webgl2').getContextAttributes().antialias") is False
+    page.tab.locator("#play").click()
+    page.tab.wait_for_timeout(1500)
+    assert canvas.evaluate(PIXELS) == pytest.approx(2.0, abs=0.01)
+    assert page.faults == []
+
+
+def test_points_of_shapes_are_as_large_on_a_fine_screen(browser, shown):
+    """Sizes are those of the page's pixels; three.js multiplies by the pixels drawn."""
+    sizes = []
+    for scale in (1, 2):
+        page = Page(browser, shown, device_scale_factor=scale)
+        page.open("shapes")
+        sizes.append(page.tab.evaluate(SIZE))
+    assert sizes[0] == sizes[1] > 0
+
+
+SIZE = """async () => {
+  const { Body } = await import("./static/body.js");
+  const made = [];
+  new Body({ add: (object) => made.push(object) }, [[0, 0, 0]]);
+  return made[0].material.size;
+}"""
+"""The size of a point, as three.js is told."""
+
+
 def test_a_faint_mode_is_picked_by_keys(browser, serve, faint, tmp_path):
     """What the automatic choice leaves out is kept once it is picked, with the numbers of the command line."""
     page = Page(browser, serve(faint))
