@@ -21,15 +21,23 @@ from updating import LIBRARY
 from updating.correlation.frfs import correlate_frfs
 from updating.effects import Effect, Parameter, Variant, accepted_state, names_of
 from updating.effects.limits import PLACES
-from updating.models.state import NOMINAL, State
+from updating.models.named_factors import departure
+from updating.models.spec import Spec
+from updating.models.state import State
 from updating.prediction.matching import mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
 
 FACTORS = ("E", "density", "thickness", "length", "width")
 """Factors of the whole model that can be moved."""
 
+REGIONAL = ("E", "density", "thickness")
+"""Factors of one region that can be moved."""
+
 REACH = 0.25
 """How far a factor can be moved either way: ten times what a modeller doubts of any; beyond, pairs are lost [-]."""
+
+LIMITS = (0.5, 2.0)
+"""Between which any factor is taken; those of a region, which moves frequencies less, are moved that far [-]."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +97,7 @@ class Moved:
     effects : sequence of mapping
         Each with its name and values, as ``[[model.effect]]``.
     factors : mapping of str to float
-        Factors of the whole model [-].
+        Factors of the whole model, ``E``, or of a region, ``root.E`` [-].
     """
 
     effects: Sequence[Mapping[str, Any]] = ()
@@ -114,9 +122,30 @@ def model_page(content: Mapping[str, Any], study: Study, beside: Beside | None, 
     page["correlation"] = correlation_document(beside.correlation)
     page["model_hz"] = predictor.predict().frequency
     page["sliders"] = _sliders(predictor)
-    if predictor.spec.imported is None:
-        page["factors"] = [{"name": name, "low": 1 - REACH, "high": 1 + REACH} for name in FACTORS]
+    page["factors"] = _factors(predictor.spec)
     return page
+
+
+def _factors(spec: Spec) -> list[dict[str, Any]]:
+    """Return the factors that mean something to a model: those of the whole, and of its regions by their names."""
+    found: list[dict[str, Any]] = [
+        {"name": name, "region": "", "low": 1 - REACH, "high": 1 + REACH, "log": False}
+        for name in FACTORS
+        if _scales(spec, name)
+    ]
+    if spec.imported is None or spec.imported.deck is None:  # numbers of a deck are those of its own cards
+        found += [
+            {"name": f"{region}.{name}", "region": region, "low": LIMITS[0], "high": LIMITS[1], "log": True}
+            for region in dict.fromkeys(one.name for one in spec.regions)
+            for name in REGIONAL
+            if _scales(spec, name, regional=True)
+        ]
+    return found
+
+
+def _scales(spec: Spec, name: str, *, regional: bool = False) -> bool:
+    """Tell whether a factor means something to a model; imported matrices know few."""
+    return spec.imported is None or spec.imported.obstacle(name, regional=regional) is None
 
 
 def _fields(content: Mapping[str, Any], study: Study) -> list[dict[str, Any]]:
@@ -252,13 +281,14 @@ def _frf(identified: ModalModel, row: int, beside: Beside, predictor: Predictor)
 def _with(predictor: Predictor, moved: Moved) -> Predictor:
     """Return the predictor with what is moved in its model, on the same basis."""
     factors = dict(moved.factors or {})
-    if strange := sorted(set(factors) - set(FACTORS)):
-        raise InputError(f"there is no factor {strange[0]}; those that can be moved are {', '.join(FACTORS)}")
-    if wild := [v for v in factors.values() if not 0.5 <= v <= 2.0]:
+    known = [one["name"] for one in _factors(predictor.spec)]
+    if strange := sorted(set(factors) - set(known)):
+        raise InputError(f"there is no factor {strange[0]}; those that can be moved are {', '.join(known)}")
+    if wild := [v for v in factors.values() if not LIMITS[0] <= v <= LIMITS[1]]:
         raise InputError(f"a factor of {wild[0]:g} is no small change; edit the study")
 
     def state(own: Predictor) -> State:
-        total = State(factors=factors) if factors else NOMINAL
+        total = departure(own.spec, factors)
         for entry in moved.effects:
             values = {key: value for key, value in entry.items() if key != "name"}
             total = total.plus(accepted_state(own, str(entry.get("name")), values))

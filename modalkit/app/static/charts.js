@@ -156,8 +156,13 @@ function without(object, key) {
   return rest;
 }
 
-/** Return an axis of numbered modes, written upright however many there are. */
-export const modesAxis = (title, more = {}) => axis(title, { type: "category", tickangle: 0, ...more });
+/** Return an axis of numbered modes, written upright; where many stand on a narrow page, every second. */
+export function modesAxis(title, count, more = {}) {
+  const dtick = window.innerWidth < 600 && count > CLOSE ? 2 : 1;
+  return axis(title, { type: "category", tickangle: 0, tick0: 0, dtick, ...more });
+}
+
+const CLOSE = 12; // numbers of two digits that stand beside each other on a phone
 
 /** Return the trace of a matrix of MACs. */
 export function macMatrix(matrix, rows, columns) {

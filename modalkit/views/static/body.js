@@ -70,7 +70,7 @@ export class Body {
         new THREE.Points(
           geometry([...Array(seen).keys()]),
           new THREE.PointsMaterial({
-            size: size * Math.min(2, window.devicePixelRatio),
+            size, // of the page's pixels: three.js multiplies by those drawn per pixel
             sizeAttenuation: false,
             vertexColors: true,
             map: disc(),

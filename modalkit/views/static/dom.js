@@ -113,4 +113,4 @@ export function colour(name) {
 
 /** Return the colours that a scene needs. */
 export const palette = () =>
-  Object.fromEntries(["blue", "orange", "green", "red", "muted", "middle", "ink"].map((name) => [name, colour(name)]));
+  Object.fromEntries(["blue", "orange", "green", "red", "muted", "middle", "ink", "panel"].map((name) => [name, colour(name)]));

@@ -5,12 +5,32 @@ import { orbit } from "./orbit.js";
 
 const NEAR = 16; // pixels within which a point is meant
 
+const FINE = 2; // pixels drawn per pixel of the page at the most; beyond, nothing more is seen
+
+const STILL = 200; // milliseconds without a change after which a picture is drawn as fine as it can be
+
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i; // what draws without a graphics card
+
+/** Tell whether a page is drawn in software: its browser says so, or gives no fast context. */
+function software() {
+  const wanted = { failIfMajorPerformanceCaveat: true };
+  const gl = document.createElement("canvas").getContext("webgl2", wanted);
+  if (!gl) return true;
+  const told = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return SOFTWARE.test(name);
+}
+
 /** A canvas with a camera; what is drawn says `places()`, the points that are seen, and `pose()`, how they stand. */
 export class Stage {
   constructor(canvas, colours, { kept = false } = {}) {
     this.canvas = canvas;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: kept });
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.soft = software();
+    // In software several samples of each pixel cost more than all else: none are taken, and nothing shows through.
+    const fast = { antialias: !this.soft, alpha: !this.soft };
+    this.renderer = new THREE.WebGLRenderer({ canvas, ...fast, preserveDrawingBuffer: kept });
+    canvas.dataset.soft = this.soft;
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100);
     this.camera.up.set(0, 0, 1);
@@ -32,6 +52,7 @@ export class Stage {
 
   recolour(colours) {
     this.colours = colours;
+    if (this.soft) this.renderer.setClearColor(colours.panel);
     this.dirty = true;
   }
 
@@ -63,7 +84,12 @@ export class Stage {
     const step = Math.min(100, now - (this.last ?? now)) / 1000;
     this.last = now;
     this.advance(step);
-    if (!this.dirty || !this.ready()) return;
+    const still = !this.dirty && now - this.drawn > STILL;
+    if (!this.ready() || !(this.dirty || (this.soft && still && this.refine(FINE)))) return;
+    if (this.dirty) {
+      this.refine(this.soft ? 1 : Math.min(FINE, window.devicePixelRatio));
+      this.drawn = now;
+    }
     this.dirty = false;
     const begun = performance.now();
     this.pose();
@@ -76,6 +102,13 @@ export class Stage {
       this.frames = this.work = 0;
       this.since = now;
     }
+  }
+
+  /** Set how many pixels are drawn per pixel of the page, tell whether that is news. */
+  refine(ratio) {
+    const news = ratio !== this.renderer.getPixelRatio();
+    if (news) this.renderer.setPixelRatio(ratio);
+    return news;
   }
 
   advance() {}

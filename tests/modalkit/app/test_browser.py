@@ -17,6 +17,7 @@ from typing import Any
 
 import pytest
 from accessible import grave_findings
+from glider import make_glider
 from opening import FAINT
 
 CHROMIUM = os.environ.get("MODALKIT_CHROMIUM") or shutil.which("chromium")
@@ -374,6 +375,78 @@ def test_the_keyboard_reaches_hits_and_poles(browser, shown):
     page.tab.keyboard.press("Control+z")
     page.settle()
     assert page.tab.locator('[data-hit="1+Z:1"]').is_checked()
+
+
+def test_a_region_is_softened_and_every_number_can_be_read_on_a_phone(browser, serve, tmp_path):
+    page = Page(browser, serve(make_glider(tmp_path / "glider")), viewport={"width": 390, "height": 850})
+    page.open("model")
+    page.tab.locator(".heatmaplayer image").wait_for(state="attached")
+    assert page.tab.evaluate(OVERLAPS) == []
+    before = page.tab.locator("#rms").inner_text()
+    page.tab.locator("#region").select_option("wing_left_outer")
+    slider = page.tab.locator('[id="factor-wing_left_outer.E"]')
+    slider.evaluate("input => { input.value = Math.log10(0.6); input.dispatchEvent(new Event('input')); }")
+    page.tab.get_by_text("over 17 pairs").wait_for()
+    after = page.tab.locator("#rms").inner_text()
+    assert float(after.split()[0]) < float(before.split()[0])
+    page.tab.locator("#slide-reset").click()
+    page.tab.get_by_text(before, exact=True).wait_for()
+    page.open("modes")
+    rows = page.tab.locator(".page-modes tbody tr")
+    assert max(row.bounding_box()["height"] for row in rows.all()) < THREE_LINES
+    page.tab.locator(".heatmaplayer image").wait_for(state="attached")
+    assert page.tab.evaluate(OVERLAPS) == []
+    assert page.faults == []
+
+
+THREE_LINES = 80
+"""Height of a row of three lines at the most [pixels]."""
+
+OVERLAPS = """[...document.querySelectorAll(".xaxislayer-above")].flatMap((layer) => {
+  const boxes = [...layer.querySelectorAll(".xtick text")].map((t) => [t.textContent, t.getBoundingClientRect()]);
+  boxes.sort((a, b) => a[1].left - b[1].left);
+  return boxes.slice(1).filter(([, b], i) => boxes[i][1].right > b.left).map(([text]) => text);
+})"""
+"""Numbers at an axis that run into those before them."""
+
+
+PIXELS = "canvas => canvas.width / canvas.clientWidth"
+"""Pixels drawn per pixel of the page."""
+
+
+def test_without_a_graphics_card_few_pixels_are_drawn_while_shapes_move(browser, shown):
+    """One each, without further samples, on whatever screen; a picture that stands still is drawn as fine as any."""
+    page = Page(browser, shown, device_scale_factor=2)
+    page.open("shapes")
+    canvas = page.tab.locator("canvas[data-fps]")
+    canvas.wait_for()
+    if canvas.get_attribute("data-soft") != "true":
+        pytest.skip("this machine has a graphics card")
+    assert canvas.evaluate(PIXELS) == pytest.approx(1.0, abs=0.01)
+    assert canvas.evaluate("c => c.getContext('webgl2').getContextAttributes().antialias") is False
+    page.tab.locator("#play").click()
+    page.tab.wait_for_timeout(1500)
+    assert canvas.evaluate(PIXELS) == pytest.approx(2.0, abs=0.01)
+    assert page.faults == []
+
+
+def test_points_of_shapes_are_as_large_on_a_fine_screen(browser, shown):
+    """Sizes are those of the page's pixels; three.js multiplies by the pixels drawn."""
+    sizes = []
+    for scale in (1, 2):
+        page = Page(browser, shown, device_scale_factor=scale)
+        page.open("shapes")
+        sizes.append(page.tab.evaluate(SIZE))
+    assert sizes[0] == sizes[1] > 0
+
+
+SIZE = """async () => {
+  const { Body } = await import("./static/body.js");
+  const made = [];
+  new Body({ add: (object) => made.push(object) }, [[0, 0, 0]]);
+  return made[0].material.size;
+}"""
+"""The size of a point, as three.js is told."""
 
 
 def test_a_faint_mode_is_picked_by_keys(browser, serve, faint, tmp_path):

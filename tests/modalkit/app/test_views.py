@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from glider import PARTS, SOFT, make_glider
 from opening import FAINT, opened
 
 from acquisition import Dof, Geometry, ModalData
@@ -120,6 +121,21 @@ def test_a_slider_shows_what_the_study_shows_with_the_same_number(beam):
     put = plain(controller.moved(Moved(), 0))
     assert moved["pairs"] == put["pairs"]
     assert moved["frf"]["model"] == pytest.approx(put["frf"]["model"], rel=1e-9)
+
+
+def test_the_slider_of_a_region_finds_what_the_specimen_has_lost(tmp_path):
+    """Where the outer left wing is as soft as in the full matrices that made the test, the gap closes on all modes."""
+    controller = opened(make_glider(tmp_path / "glider"))
+    page = controller.model()
+    assert {one["region"] for one in page["factors"]} == {"", *PARTS}
+    assert "thickness" not in {one["name"] for one in page["factors"]}  # imported matrices know none
+    stated = controller.moved(Moved(), 0)["pairs"]
+    moved = controller.moved(Moved((), {"wing_left_outer.E": SOFT}), 0)["pairs"]
+    assert max(abs(one["error_percent"]) for one in stated) > 5.0
+    assert len(moved) == 17 > len(stated)
+    assert max(abs(one["error_percent"]) for one in moved) < 0.02
+    with pytest.raises(InputError, match=r"no factor fin\.thickness"):
+        controller.moved(Moved((), {"fin.thickness": 0.9}), 0)
 
 
 def test_the_shapes_of_test_and_model_agree_where_their_mac_does(beam):

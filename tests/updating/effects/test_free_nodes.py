@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from effect_cases import imported
-from imported_cases import imported_beam
+from imported_cases import imported_beam, seen_from
+from scipy.spatial import KDTree
 
 from updating import LIBRARY
 from updating.effects.regions import WAYS
@@ -51,3 +52,19 @@ def test_a_spring_at_a_point_along_what_alone_is_measured_there_is_one_form(
     unlike = {form.values.get("along", "".join(WAYS[a] for a in measured)) for form in here}
     assert len(unlike) == len(here) == len(measured)
     assert any("along" in form.values for form in forms)
+
+
+@pytest.mark.parametrize("name", ["lumped_mass", "ground_spring"])
+def test_where_every_node_is_a_test_point_there_are_no_others(name: str) -> None:
+    """Forms at test points share all of the prior; the beam moves along z alone."""
+    predictor = imported()
+    assert predictor.spec.imported is not None
+    places = predictor.spec.imported.places.at
+    along = np.tile([0.0, 0.0, 1.0], (len(places), 1))
+    everywhere = predictor.of(predictor.spec).for_test(seen_from(places, along, np.array([20.0, 400.0])))
+    at = [
+        [form.values[k] for k in "xyz"] for form in LIBRARY[name].variants(everywhere) if "x" in form.values
+    ]
+    away, _ = KDTree(places).query(at)
+    assert len({tuple(place) for place in at}) == len(places)
+    assert away.max() < 1e-9

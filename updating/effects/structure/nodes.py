@@ -139,6 +139,8 @@ def _best_in_modes(
     asked = [(node, -1) for node in range(len(free))]
     if along is not None:
         asked = [(node, axis) for axis in range(3) for node in np.flatnonzero(along[axis]).tolist()]
+    if not asked:  # all nodes are test points or in node sets
+        return []
     stiff = (2 * np.pi * nominal.frequency) ** 2
     tried = np.geomspace(sizes[0], sizes[-1], STEPS)
 

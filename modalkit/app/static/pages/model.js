@@ -41,7 +41,7 @@ export function open(root, app) {
     h("div", { class: "two stacked" }, h("div", {}, moving, drawn), h("div", {}, comparing, matrix)),
     stated,
   );
-  const view = { page: null, frf: null, effect: "", form: 0, values: {}, factors: {}, asked: 0, running: false };
+  const view = { page: null, frf: null, region: "", effect: "", form: 0, values: {}, factors: {}, asked: 0, running: false };
 
   async function update() {
     view.page = await get("model");
@@ -147,18 +147,8 @@ export function open(root, app) {
     const anything = effect || Object.values(view.factors).some((v) => v !== 1);
     fill(
       sliders,
-      page.factors.map((f) =>
-        slider(
-          `${f.name} ×`,
-          "",
-          { low: f.low, high: f.high, log: false },
-          view.factors[f.name] ?? 1,
-          (v) => {
-            view.factors[f.name] = v;
-          },
-          `factor-${f.name}`,
-        ),
-      ),
+      page.factors.filter((f) => !f.region).map(factored),
+      regioned(),
       field(
         "Effect",
         select(
@@ -213,7 +203,7 @@ export function open(root, app) {
         button(
           "Back to the study",
           () => {
-            view.effect = "";
+            view.region = view.effect = "";
             view.values = {};
             view.factors = {};
             slid();
@@ -224,6 +214,42 @@ export function open(root, app) {
         effect ? button("Put the effect into the model", () => put(effect), { id: "slide-put" }) : null,
       ),
     );
+  }
+
+  const factored = (f) =>
+    slider(
+      `${f.name} ×`,
+      "",
+      f,
+      view.factors[f.name] ?? 1,
+      (v) => {
+        view.factors[f.name] = v;
+      },
+      `factor-${f.name}`,
+    );
+
+  /** The factors of one region; those of the others stay as they were moved, and the list says so. */
+  function regioned() {
+    const all = view.page.factors.filter((f) => f.region);
+    const names = [...new Set(all.map((f) => f.region))];
+    if (!names.includes(view.region)) view.region = "";
+    const touched = (name) => all.some((f) => f.region === name && (view.factors[f.name] ?? 1) !== 1);
+    if (!names.length) return null;
+    return [
+      field(
+        "Region",
+        select(
+          [["", "none"], ...names.map((name) => [name, touched(name) ? `${name} (moved)` : name])],
+          view.region,
+          (v) => {
+            view.region = v;
+            slid();
+          },
+          { id: "region" },
+        ),
+      ),
+      all.filter((f) => f.region === view.region).map(factored),
+    ];
   }
 
   /** Where an effect acts, by the names of the user's own model; a page read anew may have fewer places. */
@@ -367,8 +393,8 @@ export function open(root, app) {
         ],
         {
           height: 340,
-          xaxis: modesAxis("model mode"),
-          yaxis: modesAxis("test mode", { autorange: "reversed" }),
+          xaxis: modesAxis("model mode", found.mac[0].length),
+          yaxis: modesAxis("test mode", found.mac.length, { autorange: "reversed" }),
         },
       );
     }

@@ -298,8 +298,8 @@ export function open(root, app) {
     const names = view.page.table.map((m) => `${m.mode}`);
     await draw(mac, [macMatrix(values, names, names)], {
       height: 360,
-      xaxis: modesAxis("mode"),
-      yaxis: modesAxis("mode", { autorange: "reversed" }),
+      xaxis: modesAxis("mode", names.length),
+      yaxis: modesAxis("mode", names.length, { autorange: "reversed" }),
     });
   }
 
