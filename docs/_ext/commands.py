@@ -21,12 +21,25 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 
+import matplotlib.pyplot as plt
+import numpy as np
 from blocks import Block, blocks, page_name, renewed, same
 
 ROOT = Path(__file__).resolve().parents[2]
 MADE = ROOT / "docs" / "made"
 LONGEST = 900.0
 """A command that runs longer hangs [s]."""
+
+FIGURES = ("five_minutes/figures/diagnosis.png", "tutorials/app/figures/app.png")
+"""Figures made by a build that are kept for those who read without one: README's, and what needs a browser."""
+
+FRONT_DIFFERS = (
+    "README.md: docs/figures/diagnosis.png shows something else now; docs/_ext/commands.py --refresh"
+)
+
+UNLIKE = 0.2
+"""Mean difference, of 255, from which on the pixels of two figures are another result: a digit of one label, which may
+be another on another processor, makes 0.05, a sentence that was worded anew 0.25."""
 
 
 @dataclass(frozen=True)
@@ -172,11 +185,19 @@ def refresh(outcomes: Iterable[Outcome]) -> None:
             outcome.page.write_text(text[:start] + outcome.printed + text[end:], encoding="utf-8")
 
 
-def keep_front_figure() -> None:
-    """Lay the figure of README where it is looked for without a build."""
-    made = MADE / "five_minutes" / "figures" / "diagnosis.png"
-    if made.exists():
-        shutil.copy(made, ROOT / "docs" / "figures" / made.name)
+def keep_figures() -> None:
+    """Lay the figures of README and of the app where they are looked for without a build."""
+    for page in FIGURES:
+        made = MADE / page
+        if made.exists():
+            shutil.copy(made, ROOT / "docs" / "figures" / made.name)
+
+
+def front_figure_differs() -> bool:
+    """Tell whether the figure of README shows something else than the one just made."""
+    made = MADE / FIGURES[0]
+    now, before = (255.0 * plt.imread(path) for path in (made, ROOT / "docs" / "figures" / made.name))
+    return now.shape != before.shape or float(np.abs(now - before).mean()) > UNLIKE
 
 
 def main() -> int:
@@ -196,8 +217,12 @@ def main() -> int:
         sys.stdout.write(outcome.message() + "\n")
     if given.refresh:
         refresh(wrong)
-        keep_front_figure()
-    return 0 if given.refresh else min(1, len(wrong))
+        keep_figures()
+        return 0
+    if not given.pages and front_figure_differs():
+        sys.stdout.write(f"{FRONT_DIFFERS}\n")
+        return 1
+    return min(1, len(wrong))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from commands import MADE, Outcome, pages, run_pages
+from commands import FRONT_DIFFERS, MADE, Outcome, front_figure_differs, pages, run_pages
 from docutils import nodes
 from latex2mathml.converter import convert
 from reference import MAKERS
@@ -43,6 +43,8 @@ def run_all(app: Sphinx) -> None:
     for outcome in outcomes:
         if not outcome.agrees:
             LOGGER.warning(outcome.message())
+    if front_figure_differs():
+        LOGGER.warning(FRONT_DIFFERS)
     longest = sorted(outcomes, key=lambda o: -o.seconds)[:5]
     LOGGER.info(
         "ran %d blocks in %.0f s; longest: %s", len(outcomes), time.perf_counter() - begun, _list(longest)
