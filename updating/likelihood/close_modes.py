@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from acquisition.arrays import FloatArray, IntArray
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.likelihood.base import Setting
 from updating.prediction.prediction import Prediction
 from updating.thresholds import LEAST_TURN
@@ -59,8 +59,7 @@ class CloseModes:
         """Return what constants of modes change by as others are added to their shapes, (n_frf, k) [1/kg]."""
         lost = self.setting.missed
         seen, hit = np.hstack([now.seen, lost.seen])[:, other], np.hstack([now.hit, lost.hit])[:, other]
-        both = now.seen[:, mode] * np.where((self.setting.measured.hit < 0)[:, None], 0.0, hit)
-        return np.asarray(now.gain[:, mode] * (seen * now.hit[:, mode] + both))
+        return taken_up(now.select(mode), seen, hit, self.setting.measured.hit < 0)
 
     @cached_property
     def _pairs(self) -> tuple[IntArray, FloatArray]:
@@ -77,7 +76,27 @@ class CloseModes:
         g = np.concatenate([test.frequency, lost])[j]
         scatter = np.concatenate([test.repeatability**2 + self.further, np.zeros(len(lost))])
         mean = np.where(both, (scatter[i] + scatter[j]) / 2, scatter[i])
-        far = np.abs(g**2 - f**2)
-        angle = 2 * np.sqrt(mean) * f * g / np.maximum(far, 1e-12 * f * g)
+        angle = turn(f, g, np.sqrt(mean))
         shows = angle > LEAST_TURN
-        return np.stack([i, j])[:, shows], np.minimum(angle[shows], 1.0)
+        return np.stack([i, j])[:, shows], angle[shows]
+
+
+def turn(f: FloatArray, g: FloatArray, scatter: FloatArray) -> FloatArray:
+    """Return how much modes of f [Hz] take up of others of g [Hz] whose frequencies scatter so far, relative [rad]."""
+    far = np.abs(g**2 - f**2)
+    return np.minimum(2 * scatter * f * g / np.maximum(far, 1e-12 * f * g), 1.0)
+
+
+def taken_up(now: Prediction, seen: FloatArray, hit: FloatArray, bare: BoolArray) -> FloatArray:
+    """Return what constants of modes change by as others are added to their shapes, (n_frf, k) [1/kg].
+
+    Parameters
+    ----------
+    now : Prediction
+        The k modes.
+    seen, hit : (n_frf, k) arrays
+        The others' shapes at the points seen and hit [1/sqrt(kg)].
+    bare : (n_frf,) bool array
+        Where a constant is a shape and has no point that is hit.
+    """
+    return np.asarray(now.gain * (seen * now.hit + now.seen * np.where(bare[:, None], 0.0, hit)))

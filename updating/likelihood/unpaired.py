@@ -17,6 +17,7 @@ from scipy.linalg import block_diag
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.likelihood.base import Quantity, View
+from updating.likelihood.close_modes import taken_up, turn
 from updating.likelihood.comparison import Block
 from updating.likelihood.phase import Phases
 from updating.models.absorbers import swinging
@@ -27,6 +28,7 @@ from updating.thresholds import (
     FREE_LEVEL_DOUBT,
     LEAST_DAMPING,
     LEAST_FREQUENCY_NOISE,
+    LEAST_TURN,
     UNPAIRED_NEIGHBOURS,
     UNPAIRED_SHAPE_NOISE,
     UNPAIRED_SPREAD,
@@ -48,7 +50,8 @@ class _Rows:
     factors : (n, n_names) array
         Change of what is expected per unit of what all data doubt alike [-].
     own : (n, UNPAIRED_NEIGHBOURS) array
-        Change per standard deviation of nuisances of this mode alone [-].
+        Change per standard deviation of nuisances of this mode alone: its level, and what it takes up of close modes;
+        of one that is none in particular, shares of the modes next to it [-].
     idle : bool
         Whether the state says nothing of it.
     idealised : float
@@ -144,6 +147,8 @@ class UnpairedModes(Quantity):
             doubt = FREE_LEVEL_DOUBT
         own = np.zeros((len(first) + len(measured), UNPAIRED_NEIGHBOURS))
         own[len(first) :, 0] = doubt * level * constants
+        turned = self._turned(whole, k) * (level / scale)
+        own[len(first) :, 1 : 1 + turned.shape[1]] = turned
         return _Rows(
             np.append(first, measured - level * constants),
             np.append(variance, self._shape_noise(i)),
@@ -152,6 +157,16 @@ class UnpairedModes(Quantity):
             idle=False,
             idealised=idealised,
         )
+
+    def _turned(self, whole: Prediction, k: int) -> FloatArray:
+        """Return what the k-th mode of a state takes up of its neighbours by 1 sigma, (n_frf, n_near) [1/kg]."""
+        test, f = self._test, whole.frequency
+        others = np.flatnonzero(np.arange(len(f)) != k)
+        near = others[np.argsort(np.abs(np.log(f[others] / f[k])))[: UNPAIRED_NEIGHBOURS - 1]]
+        angle = turn(f[near], f[[k]], np.asarray(test.repeatability))
+        mode = whole.select(np.full(len(near), k))
+        change = taken_up(mode, whole.seen[:, near], whole.hit[:, near], test.hit < 0)
+        return np.asarray(np.where(angle > LEAST_TURN, angle, 0.0) * change)
 
     def _any(self, i: int) -> _Rows:
         """Return a mode beside no mode in particular."""

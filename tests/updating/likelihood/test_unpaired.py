@@ -145,3 +145,25 @@ def test_what_explains_all_modes_needs_nothing_that_hangs_beside_it() -> None:
     test = exactly(LOOK, LOOK.predict(spring.state(LOOK, PROPPED), count=6))
     found = diagnose(case_of(test), library=[spring, EFFECT, LIBRARY["E"]])
     assert found.sets == (("ground_spring",),)
+
+
+def test_it_takes_up_as_much_of_its_neighbours_as_what_scatters_frequencies_makes_it(
+    rng: np.random.Generator,
+) -> None:
+    """Changes of the stiffness that no model knows, by 1 % of omega_i omega_j, beside a test that states so much."""
+    scatter, now = 0.01, LOOK.predict(EFFECT.state(LOOK, HUNG), count=6)
+    omega, shapes = 2 * np.pi * now.frequency, now.constants / np.sqrt(np.abs(now.constants[-1]))
+    found = []
+    for _ in range(12):
+        change = rng.standard_normal((6, 6)) * np.outer(omega, omega) * np.sqrt(2) * scatter
+        values, turned = np.linalg.eigh(np.diag(omega**2) + (change + change.T) / 2)
+        mixed = shapes @ turned
+        test = replace(
+            TEST, frequency=np.sqrt(values) / (2 * np.pi), constants=mixed * mixed[-1], repeatability=scatter
+        )
+        comparison, rows = known(posed(test))
+        shape = rows[2:]
+        own = np.diag(comparison.variance[shape]) + comparison.nuisance[shape] @ comparison.nuisance[shape].T
+        found.append(comparison.residual[shape] @ np.linalg.solve(own, comparison.residual[shape]))
+        assert mixed[:, 1] != pytest.approx(shapes[:, 1], rel=1e-3)
+    assert np.mean(found) < len(shape)
