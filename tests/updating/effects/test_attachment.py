@@ -149,5 +149,5 @@ def test_the_flexibility_under_a_body_is_damped_as_the_structure(damping: Dampin
 def test_what_hangs_on_another_basis_is_refused() -> None:
     predictor, other = specimen(clamped=True), specimen(clamped=True, modes=2 * MODES)
     hung = State(absorbers=with_body(other, attachment(other), HEAVY).absorbers)
-    with pytest.raises(StudyError, match="another|other points"):
+    with pytest.raises(StudyError, match="other points"):
         simulated(predictor, hung)
