@@ -7,7 +7,7 @@ the dashpot dissipates c (u' - w')^2 / 2 and the mass has m u'^2 / 2 (Den Hartog
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -86,6 +86,12 @@ def swinging(absorbers: Sequence[Absorber]) -> tuple[Absorber, ...]:
     return tuple(one for one in absorbers if not one.attached)
 
 
+def own_flexibility(n: int, absorbers: Sequence[Absorber]) -> FloatArray:
+    """Return the stiffness on which bodies are attached to a structure of n columns, (n + k, n + k) [SI]."""
+    springs = [replace(one, stiffness=one.stiffness if one.attached else 0.0) for one in absorbers]
+    return bordered(np.zeros((n, n)), springs, "stiffness")
+
+
 def motions(vectors: FloatArray, absorbers: Sequence[Absorber]) -> tuple[FloatArray, FloatArray]:
     """Return how the masses move in modes (n + k, m), and how they move against their places, each (k, m)."""
     n = len(vectors) - len(absorbers)
@@ -95,10 +101,14 @@ def motions(vectors: FloatArray, absorbers: Sequence[Absorber]) -> tuple[FloatAr
 
 
 def energies(vectors: FloatArray, absorbers: Sequence[Absorber]) -> dict[Kind, FloatArray]:
-    """Return what absorbers add to phi^T K phi, phi^T M phi and phi^T C phi of modes (n + k, m), each (m,) [SI]."""
+    """Return what absorbers add to phi^T K phi, phi^T M phi and phi^T C phi of modes (n + k, m), each (m,) [SI].
+
+    The flexibility on which a body is attached is the structure's: nothing is added to its stiffness.
+    """
     own, against = motions(vectors, absorbers)
     parts: dict[Kind, FloatArray] = {"stiffness": against, "mass": own, "damping": against}
     sizes = {kind: np.array([one.size(kind) for one in absorbers]) for kind in parts}
+    sizes["stiffness"] = np.where([one.attached for one in absorbers], 0.0, sizes["stiffness"])
     return {kind: np.asarray(sizes[kind] @ part**2) for kind, part in parts.items()}
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import linalg
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.models.absorbers import bordered, energies, padded, structural
+from updating.models.absorbers import bordered, energies, own_flexibility, padded, structural
 from updating.models.base import region_scales, supports_at
 from updating.models.reduced import Reduced
 from updating.models.spec import Damping
@@ -145,6 +145,9 @@ def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[
     if state.absorbers:
         viscous = bordered(viscous, state.absorbers, "damping")
         hysteretic = padded(padded(hysteretic, state.absorbers).T, state.absorbers).T
+        seats = own_flexibility(n, state.absorbers)  # damped as the structure is, whose regions make it up
+        viscous = viscous + np.mean(own["beta"]) * seats
+        hysteretic = hysteretic + np.mean(own["loss_factor"]) * seats
     return viscous, hysteretic
 
 

@@ -164,6 +164,7 @@ def _check(predictor: Predictor) -> None:
     more = added(predictor.reduced.structure, state)
     matrices = (*more["stiffness"], *more["mass"], *state.damping)
     wrong = [matrix.shape for matrix in matrices if matrix.shape != (size, size)]
+    wrong += [one.row.shape for one in state.absorbers if one.row.shape != (size,)]
     if wrong:
         raise StudyError(
             f"a state adds a matrix of shape {wrong[0]} to a model whose basis has {size} columns: it was made for "

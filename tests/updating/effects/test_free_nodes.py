@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from effect_cases import imported
-from imported_cases import imported_beam, seen_from
+from imported_cases import imported_beam, seen_from, spec_of
+from scipy.linalg import eigh
 from scipy.spatial import KDTree
 
-from updating import LIBRARY
+from updating import LIBRARY, Predictor
 from updating.effects.regions import WAYS
 from updating.effects.structure.nodes import distinct
 
@@ -68,3 +69,29 @@ def test_where_every_node_is_a_test_point_there_are_no_others(name: str) -> None
     away, _ = KDTree(places).query(at)
     assert len({tuple(place) for place in at}) == len(places)
     assert away.max() < 1e-9
+
+
+@pytest.mark.parametrize("clamped", [True, False])
+@pytest.mark.parametrize(("effect", "sizes"), [("lumped_mass", (0.03, 0.25)), ("ground_spring", (5e3, 1e6))])
+def test_the_node_where_something_sits_is_among_the_promising(
+    clamped: bool, effect: str, sizes: tuple[float, float]
+) -> None:
+    """Bodies of a twentieth to nearly half of the beam's mass, springs up to a stop, from matrices of all rows."""
+    spec = spec_of(imported_beam(60, clamped=clamped))
+    beam, ends = spec.imported, np.array([[0.5, 0.0, 0.0], [0.3, 0.0, 0.0]])
+    assert beam is not None
+    along = np.tile([0.0, 0.0, 1.0], (2, 1))
+    rows = beam.places.rows(ends, along)["w"]
+    first, kind = (0 if clamped else 2), "mass" if effect == "lumped_mass" else "stiffness"
+    for node in (23, 41, 52):
+        for size in sizes:
+            matrices = {"stiffness": beam.stiffness.toarray(), "mass": beam.mass.toarray()}
+            own = beam.places.moves[2][[node]]
+            matrices[kind] = matrices[kind] + size * (own.T @ own).toarray()
+            values, modes = eigh(*matrices.values(), subset_by_index=(first, first + 4))
+            test = seen_from(ends, along, np.sqrt(values) / (2 * np.pi))
+            seen = rows @ modes
+            found = Predictor(spec, replace(test, constants=seen[test.seen] * seen[test.hit]))
+            forms = LIBRARY[effect].variants(found)
+            places = [form.values["x"] for form in forms if "x" in form.values]
+            assert min(abs(x - 0.5 * node / 60) for x in places) < 1e-9

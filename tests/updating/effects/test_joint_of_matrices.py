@@ -17,6 +17,7 @@ from updating_cases import observed
 from updating import LIBRARY, Case, Predictor, Tolerances, diagnose
 from updating.models.imported import Imported
 from updating.models.imported.nodes import read_table
+from updating.models.state import State
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
 EFFECT = LIBRARY["joint_nonlinearity"]
@@ -79,6 +80,13 @@ def test_a_joint_that_turns_is_the_frame_built_at_each_level(
     assert np.mean(found.slope) == pytest.approx(
         slope, rel=0.2
     )  # of a joint as modelled: it is softer at the level
+
+
+def test_what_else_follows_the_force_is_no_strain_energy_of_the_joint(predictor: Predictor) -> None:
+    values = {"slope": -2e-5, "joint": 1.0, "at": "joint_2"}
+    alone = EFFECT.state(predictor, values)
+    beside = EFFECT.state(predictor.for_test(predictor.measured, (lambda _: State(slope=-1e-4),)), values)
+    assert beside.stiffness[0] == pytest.approx(alone.stiffness[0], rel=1e-9)
 
 
 def test_forms_name_every_joint_in_turning_and_shifting(predictor: Predictor) -> None:

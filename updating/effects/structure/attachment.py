@@ -18,7 +18,7 @@ from updating.models.absorbers import Absorber
 from updating.models.fields import Sparse
 from updating.models.imported.structure import ImportedStructure
 from updating.models.reduced import Reduced
-from updating.models.state import State
+from updating.models.state import NOMINAL, Loss, State
 from updating.prediction.predict import Predictor
 
 YIELDS = 1e-3
@@ -68,7 +68,8 @@ def _build(reduced: Reduced, motions: Sparse) -> Attachment:
     assert isinstance(structure, ImportedStructure)
     if reduced.whole or reduced.basis.shape[1] >= structure.unknowns:
         return Attachment(rows, np.zeros(motions.shape[0]))
-    flexibility, along = np.linalg.eigh(structure.left_out(motions, reduced.basis))
+    left_out = structure.left_out(motions, reduced.basis, reduced.matrices(NOMINAL)[0])
+    flexibility, along = np.linalg.eigh((left_out + left_out.T) / 2)
     return Attachment(along.T @ rows, np.maximum(flexibility, 0.0))
 
 
@@ -86,7 +87,15 @@ def with_body(predictor: Predictor, attachment: Attachment, mass: float) -> Stat
     )
 
 
-def with_spring(attachment: Attachment, stiffness: float) -> State:
-    """Return the state with springs of one stiffness to the ground along all directions of an attachment [N/m]."""
-    each = stiffness / (1 + stiffness * attachment.flexibility)
-    return State(stiffness=(attachment.rows.T @ (each[:, None] * attachment.rows),))
+def with_spring(attachment: Attachment, stiffness: float, damping: float = 0.0) -> State:
+    """Return the state with springs [N/m] and dashpots [N s/m] to the ground along all directions of an attachment.
+
+    The spring takes part of the place's motion from the dashpot beside it: to first order in the damping c there acts
+    c / (1 + k (F - F_r))^2.
+    """
+    rows, held = attachment.rows, 1 + stiffness * attachment.flexibility
+
+    return State(
+        stiffness=(rows.T @ ((stiffness / held)[:, None] * rows),) if stiffness else (),
+        losses=(Loss(rows.T @ ((damping / held**2)[:, None] * rows)),) if damping else (),
+    )

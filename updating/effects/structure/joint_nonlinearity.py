@@ -220,21 +220,24 @@ def _worked(predictor: Predictor, name: str, kind: int, slope: float, level: flo
     """
     joint = one_of(joints_of(predictor), {"at": name}, "at")
     unit = joint_springs(predictor, joint, (SHIFTING, TURNING).index(kind))
-    more = abs(slope) * level / _strain_share(predictor, name, unit)
+    more = abs(slope) * level / _strain_share(predictor, name, kind, unit)
     return State(
         stiffness=((1 / (1 + more) - 1) * unit,),
         per_newton=(np.sign(slope) * more / level / (1 + more) ** 2 * unit,),
     )
 
 
-def _strain_share(predictor: Predictor, name: str, unit: FloatArray) -> float:
+def _strain_share(predictor: Predictor, name: str, kind: int, unit: FloatArray) -> float:
     """Return half of the strain energy that a joint's springs have of all, the mean over modes [-]."""
 
     def build() -> FloatArray:
         count = _count(predictor)
-        return np.array(np.mean(predictor.predict(State(per_newton=(unit,)), count=count).slope[:count]))
+        found, before = (
+            predictor.predict(state, count=count).slope for state in (State(per_newton=(unit,)), NOMINAL)
+        )
+        return np.array(np.mean(found - before))
 
-    return float(predictor.once(f"strain energy of {name} {id(unit)}", build))
+    return float(predictor.once(f"strain energy of {name} {kind}", build))
 
 
 def _count(predictor: Predictor) -> int:

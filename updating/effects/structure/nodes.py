@@ -12,6 +12,7 @@ from scipy.spatial import KDTree
 from acquisition.arrays import BoolArray, FloatArray, IntArray
 from updating.effects.structure.attachment import Attachment, attachment_of
 from updating.effects.structure.frequency_gap import common_metric, frequency_gap
+from updating.models.absorbers import structural
 from updating.models.fields import Sparse
 from updating.models.imported.groups import Group
 from updating.models.imported.matrices import Imported
@@ -32,8 +33,9 @@ BEYOND, STEPS, SAMPLED = 12, 12, 2000
 structure before those near the best [-]. Doubled: a change's own bending is held better, its size met better, a change
 between the places is missed less; at eight times, twice, twice the time."""
 
-TRIED = (0.2, 0.4, 0.6, 0.8)
-"""Quantiles of the prior of a size at which frequencies are predicted, before the best is refined [-]."""
+TRIED = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
+"""Quantiles of the prior of a size, from end to end, at which frequencies are predicted before the best is refined [-].
+Doubled: at twice the time, two sizes that fit by chance are told apart."""
 
 CLOSE = 0.02
 """A size refined so far is near enough, relative [-]: what is left of a gap of 10 % is then some 0.1 % in error, less
@@ -86,8 +88,9 @@ def promising_nodes(
     """Return the nodes at which a change of some size comes nearest to the frequencies, the best first.
 
     What a mass or a spring does is first solved in the lowest modes, which it couples (to first order a heavy one
-    misleads: it turns modes into each other); of the nodes that are the best so far frequencies are predicted, each at
-    the size that suits it best.
+    misleads: it turns modes into each other). There the measured modes are the lowest, or those that they are in the
+    model as it is: a change that is large enough makes shapes that it does not have. Of the nodes that are the best so
+    far frequencies are predicted, each at the size that suits it best.
 
     Parameters
     ----------
@@ -133,24 +136,30 @@ def _best_in_modes(
     """Return nodes, and axes of springs, whose change, solved in the lowest modes, comes nearest to the frequencies."""
     test, count = predictor.measured, len(predictor.measured.frequency)
     nominal = predictor.predict(at_least=count + test.below + BEYOND)
-    partner = np.sort(match(test, nominal, np.arange(count) + test.below))
-    vectors = predictor.reduced.basis[:, : len(nominal.vectors)] @ nominal.vectors
+    ranks = np.arange(count) + test.below
+    likely = {tuple(ranks.tolist()), tuple(np.sort(match(test, nominal, ranks)).tolist())}
+    rigid = predictor.reduced.structure.rigid_modes
+    values, states = predictor.reduced.eigen(predictor.base)
+    states = structural(states[:, : rigid + len(nominal.frequency)], predictor.base.absorbers)
+    vectors = predictor.reduced.basis[:, : len(states)] @ states
+    stiff = np.append(np.maximum(values[:rigid], 0.0), (2 * np.pi * nominal.frequency) ** 2)
     moves = np.stack([np.asarray(motion[free] @ vectors) for motion in imported.places.moves[:3]], axis=1)
     asked = [(node, -1) for node in range(len(free))]
     if along is not None:
         asked = [(node, axis) for axis in range(3) for node in np.flatnonzero(along[axis]).tolist()]
     if not asked:  # all nodes are test points or in node sets
         return []
-    stiff = (2 * np.pi * nominal.frequency) ** 2
     tried = np.geomspace(sizes[0], sizes[-1], STEPS)
+    whitening = np.linalg.cholesky(common_metric(count))
 
     def left(chosen: IntArray) -> FloatArray:
         rows = np.stack(
             [moves[node] if axis < 0 else moves[node, [axis]] for node, axis in np.take(asked, chosen, 0)]
         )
         values = _changed(stiff, rows, tried, spring=along is not None)
-        off = np.log(test.frequency) - np.log(values[..., partner]) / 2 + np.log(2 * np.pi)
-        return np.asarray(np.einsum("sni,ij,snj->sn", off, common_metric(count), off).min(axis=0))
+        known = np.log(np.maximum(values[..., rigid:], 1e-300)) / 2
+        offs = (np.log(2 * np.pi * test.frequency) - known[..., list(partner)] for partner in likely)
+        return np.asarray(np.min([_nearest(off @ whitening) for off in offs], axis=0))
 
     nodes = np.arange(len(asked), dtype=np.intp)
     coarse = nodes[:: 1 + len(nodes) // SAMPLED]
@@ -166,10 +175,13 @@ def _best_in_modes(
 def _changed(stiff: FloatArray, rows: FloatArray, sizes: FloatArray, *, spring: bool) -> FloatArray:
     """Return eigenvalues in modes that a mass or a spring couples, ascending, (n_sizes, n, n_modes) [rad^2/s^2].
 
+    With rows a, those of a mass m are the eigenvalues of L^1/2 (1 + m a^T a)^-1 L^1/2, where (1 + m a^T a)^-1 = 1 - m
+    a^T (1 + m a a^T)^-1 a: a rigid-body mode, whose L is zero, moves the mass along.
+
     Parameters
     ----------
     stiff : (n_modes,) array
-        Of the modes, mass-normalised [rad^2/s^2].
+        L of the modes, mass-normalised, rigid-body modes included [rad^2/s^2].
     rows : (n, n_axes, n_modes) array
         How they move where something sits [1/sqrt(kg)].
     sizes : (n_sizes,) array
@@ -177,12 +189,22 @@ def _changed(stiff: FloatArray, rows: FloatArray, sizes: FloatArray, *, spring: 
     spring : bool
         Which of the two.
     """
-    if not spring:
-        rows = rows / np.sqrt(stiff)
-    squares = rows.transpose(0, 2, 1) @ rows
-    own = np.diag(stiff if spring else 1 / stiff)
-    values = np.stack([np.linalg.eigvalsh(own + size * squares) for size in sizes])
-    return values if spring else 1 / values[..., ::-1]
+    across = rows.transpose(0, 2, 1)
+    if spring:
+        changes = (size * across @ rows for size in sizes)
+    else:
+        strained = rows * np.sqrt(stiff)
+        shares = (np.linalg.inv(np.eye(rows.shape[1]) / size + rows @ across) for size in sizes)
+        changes = (-strained.transpose(0, 2, 1) @ share @ strained for share in shares)
+    return np.stack([np.linalg.eigvalsh(np.diag(stiff) + change) for change in changes])
+
+
+def _nearest(path: FloatArray) -> FloatArray:
+    """Return the least square of what lies on the lines between successive points (n_points, n, n_modes), (n,)."""
+    start, step = path[:-1], np.diff(path, axis=0)
+    share = -np.sum(start * step, axis=-1) / np.maximum(np.sum(step**2, axis=-1), 1e-300)
+    left = start + np.clip(share, 0, 1)[..., None] * step
+    return np.asarray(np.sum(left**2, axis=-1).min(axis=0))
 
 
 def _misfit(

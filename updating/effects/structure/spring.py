@@ -172,13 +172,12 @@ class GroundSpring(Effect):
         stiffness, damping = values.get("stiffness", 0.0), values.get("damping", 0.0)
         imported = predictor.spec.imported
         if imported is not None and "at" not in values:
-            attachment = _attachment(predictor, imported, values)
-            held = with_spring(attachment, stiffness) if stiffness else State()
-            unit = attachment.rows.T @ attachment.rows
-        else:
-            unit = _unit(predictor, values)
-            held = State(stiffness=(stiffness * unit,) if stiffness else ())
-        return held.plus(State(losses=(Loss(damping * unit),) if damping else ()))
+            return with_spring(_attachment(predictor, imported, values), stiffness, damping)
+        unit = _unit(predictor, values)
+        return State(
+            stiffness=(stiffness * unit,) if stiffness else (),
+            losses=(Loss(damping * unit),) if damping else (),
+        )
 
     def locations(self, predictor: Predictor, values: Values) -> tuple[Place, ...]:
         """Return the middle; where no shapes tell it from its mirror images, these too."""

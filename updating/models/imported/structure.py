@@ -212,8 +212,12 @@ class ImportedStructure(Structure):
         """Return the answers of K + s M to loads (n_dofs, n); the shift is that of the one factor [SI]."""
         return self._nominal.solve(loads)
 
-    def left_out(self, rows: Sparse, basis: FloatArray) -> FloatArray:
+    def left_out(self, rows: Sparse, basis: FloatArray, held: FloatArray) -> FloatArray:
         """Return the residual flexibility of a basis: how much further forces move what they act on, (k, k) [m/N].
+
+        It is the energy of what the answers on all degrees of freedom have beyond those on the basis, e^T (K + s M) e.
+        The difference of the two flexibilities is the same, but of a structure that is free both are those of a rigid
+        body on the shift s, beside which it is rounding.
 
         Parameters
         ----------
@@ -221,15 +225,14 @@ class ImportedStructure(Structure):
             Along which forces act.
         basis : (n_dofs, r) array
             Columns orthonormal in the mass [kg^-1/2].
+        held : (r, r) array
+            The stiffness on it [rad^2/s^2].
         """
-        loads, shift = (
-            rows.toarray().T,
-            self._nominal.shift,
-        )  # the shift holds a structure that is free, in both
-        held = basis.T @ (self.matrix("stiffness") @ basis) + shift * np.eye(basis.shape[1])
-        own = basis.T @ loads
-        left = rows @ self.solve(loads, shift) - own.T @ np.linalg.solve(held, own)
-        return np.asarray((left + left.T) / 2)
+        loads, shift = rows.toarray().T, self._nominal.shift
+        known = basis @ np.linalg.solve(held + shift * np.eye(len(held)), basis.T @ loads)
+        beyond = self.solve(loads, shift) - known
+        forces = self.matrix("stiffness") @ beyond + shift * (self.matrix("mass") @ beyond)
+        return np.asarray(beyond.T @ forces)
 
     def eigen(
         self,
