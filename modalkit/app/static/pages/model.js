@@ -329,12 +329,11 @@ export function open(root, app) {
       ["0", "none"],
       ...page.model_hz.map((f, i) => [i + 1, `${i + 1}: ${fixed(f, 1)} Hz`]),
     ];
-    const alone = page.correlation.unpaired_test.map((u) => ({
-      test_mode: u.mode,
-      test_hz: u.frequency_hz,
-      model_mode: null,
-    }));
-    const rows = [...found.pairs, ...alone.filter((u) => !found.pairs.some((p) => p.test_mode === u.test_mode))].sort(
+    const every = [
+      ...page.correlation.pairs,
+      ...page.correlation.unpaired_test.map((u) => ({ test_mode: u.mode, test_hz: u.frequency_hz })),
+    ].map(({ test_mode, test_hz }) => ({ test_mode, test_hz, model_mode: null }));
+    const rows = [...found.pairs, ...every.filter((u) => !found.pairs.some((p) => p.test_mode === u.test_mode))].sort(
       (a, b) => a.test_mode - b.test_mode,
     );
     const columns = ["test", "test [Hz]", "model [Hz]", "error [%]", "study's [%]", "MAC", "partner"].map(
