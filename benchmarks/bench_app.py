@@ -10,6 +10,7 @@ import json
 import resource
 import shutil
 import statistics
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -18,6 +19,7 @@ from typing import Any
 
 import numpy as np
 from common import synthetic
+from threadpoolctl import threadpool_limits
 
 from acquisition import write_uff
 from acquisition.errors import ModalkitError
@@ -30,7 +32,9 @@ from modalkit.app.store import Store
 from modalkit.output.whole import plain
 
 OUTPUTS, LINES, ORDER, PICKS = 25, 1025, 100, 100
-SAMPLE = Path(__file__).resolve().parents[1] / "sample_data" / "beam_dry"
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tests" / "modalkit" / "report"))
+from glider import make_glider  # noqa: E402
 
 
 def timed(work: Callable[[], Any]) -> tuple[float, float]:
@@ -80,16 +84,21 @@ def picks(folder: Path, rng: np.random.Generator) -> None:
 
 
 def sliders(folder: Path) -> None:
-    """Move the modulus of a beam."""
-    shutil.copytree(SAMPLE, folder / "beam")
-    controller = opened(folder / "beam" / "study.toml")
-    controller.model()
-    moved = [timed(lambda e=e: controller.moved(Moved((), {"E": e}), 0)) for e in np.linspace(0.8, 1.2, 100)]
-    row("slider: frequencies, MAC and an FRF", moved)
+    """Move the modulus of a beam, and that of a region of a structure whose shapes disagree with its test's."""
+    shutil.copytree(ROOT / "sample_data" / "beam_dry", folder / "beam")
+    for name, study, factor in (
+        ("a beam", folder / "beam" / "study.toml", "E"),
+        ("a glider of 65 points", make_glider(folder / "glider"), "wing_left_outer.E"),
+    ):
+        controller = opened(study)
+        controller.model()
+        sizes = np.linspace(0.8, 1.2, 100)
+        moved = [timed(lambda e=e, c=controller, f=factor: c.moved(Moved((), {f: e}), 0)) for e in sizes]
+        row(f"slider of {name}", moved)
 
 
 def main() -> None:
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, threadpool_limits(1, user_api="blas"):  # as the command
         picks(Path(folder), np.random.default_rng(0))
         sliders(Path(folder))
     print(f"largest memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")

@@ -15,7 +15,7 @@ from modalkit.app.toml import toml_text
 from modalkit.output.correlation import correlation_document
 from modalkit.study.read import Study
 from modalkit.views.curves import lines
-from modalkit.views.pairs import pairs_of
+from modalkit.views.pairs import pairs_in
 from modalkit.views.shapes import Beside
 from updating import LIBRARY
 from updating.correlation.frfs import correlate_frfs
@@ -24,7 +24,7 @@ from updating.effects.limits import PLACES
 from updating.models.named_factors import departure
 from updating.models.spec import Spec
 from updating.models.state import State
-from updating.prediction.matching import mac_of_constants, pair_modes
+from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.predict import Predictor
 
 FACTORS = ("E", "density", "thickness", "length", "width")
@@ -239,7 +239,7 @@ def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, inde
     if measured.has_shapes:
         page["mac"] = mac_of_constants(measured, prediction)
     try:
-        pairs = pairs_of(measured, prediction)
+        paired = pair_modes(measured, prediction)
     except ModalkitError as error:
         return page | {"why": str(error)}
     page["pairs"] = [
@@ -251,22 +251,19 @@ def moved_page(beside: Beside, identified: ModalModel | None, moved: Moved, inde
             "error_percent": 100 * (prediction.frequency[one.model] / measured.frequency[one.test] - 1),
             "mac": one.mac,
         }
-        for one in pairs
+        for one in pairs_in(paired, measured, prediction)
     ]
     if identified is not None:
         row = min(max(index, 0), len(identified.frfs.responses) - 1)
-        page["frf"] = _frf(identified, row, beside, predictor)
+        page["frf"] = _frf(identified, row, predictor, paired)
     return page
 
 
-def _frf(identified: ModalModel, row: int, beside: Beside, predictor: Predictor) -> dict[str, Any] | None:
+def _frf(identified: ModalModel, row: int, predictor: Predictor, paired: Paired) -> dict[str, Any] | None:
     """Return an FRF with the model's; None where it is none of the test's."""
-    measured = beside.session.case.measured
-    prediction = predictor.predict()
+    frfs = identified.frfs.select([row])
     try:
-        both = correlate_frfs(
-            identified.frfs.select([row]), measured, predictor, prediction, pair_modes(measured, prediction)
-        )
+        both = correlate_frfs(frfs, predictor.measured, predictor, predictor.predict(), paired)
     except ModalkitError:
         return None
     return lines(

@@ -112,7 +112,7 @@ def _errors(result: Update) -> list[Part]:
         pairs = result.pairs[result.pairs["study"] == study]
         test = pairs["test_hz"].to_numpy(float)
         before, after = (100 * (pairs[name].to_numpy(float) / test - 1) for name in ("before_hz", "after_hz"))
-        errors = ModeErrors(test, before, after, None, None, "frequency")
+        errors = ModeErrors(test, before, after, None, None, "frequency", pairs["test_mode"].to_numpy(int))
         found.append(gap_chart(errors, "gap" if i == 1 else f"gap-{i}"))
     return found
 

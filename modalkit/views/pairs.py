@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from updating.prediction.matching import mac_of_constants, pair_modes
+from updating.prediction.matching import Paired, mac_of_constants, pair_modes
 from updating.prediction.prediction import Prediction
 from updating.simulation.identified import partners
 from updating.test_data.measured import Measured
@@ -42,7 +42,11 @@ def pairs_of(measured: Measured, prediction: Prediction) -> list[Pair]:
     EstimationError
         If no measured mode has a partner.
     """
-    paired = pair_modes(measured, prediction)
+    return pairs_in(pair_modes(measured, prediction), measured, prediction)
+
+
+def pairs_in(paired: Paired, measured: Measured, prediction: Prediction) -> list[Pair]:
+    """Return the pairs of modes that are paired already."""
     mac = mac_of_constants(measured, prediction) if measured.has_shapes else None
     return [
         Pair(int(t), int(m), None if mac is None else float(mac[t, m]))

@@ -273,7 +273,13 @@ class Predictor(Displayed):
     @cached_property
     def nominal_rows(self) -> dict[str, FloatArray]:
         """Displacement and slopes of the basis at the test points, each (n_points, r)."""
-        return self.reduced.rows(self.measured.points, self.measured.directions)
+        points, directions = self.measured.points, self.measured.directions
+        kept = self.reduced.kept
+        key = "rows", points.tobytes(), None if directions is None else directions.tobytes()
+        if key not in kept:
+            kept[key] = self.reduced.rows(points, directions)
+        rows: dict[str, FloatArray] = kept[key]
+        return rows
 
     def _rows(self, state: State, places: FloatArray | None = None) -> dict[str, FloatArray]:
         """Return the rows of the basis at places, the test's points where none are given."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 
@@ -35,6 +35,9 @@ behind beside it may be taken for it [-]."""
 
 FEWEST = 3
 """Points that have to be left for shapes to be compared: fewer resemble everything."""
+
+ROUNDING = 1e-9
+"""How far rounding may put a bound of MACs below them [-], some million times what it does."""
 
 KEPT = 0.6
 """Share of the points, and half of the fixed sensors, that have to be left: a test is not judged by its minority."""
@@ -126,14 +129,35 @@ def _exchanged(
     anything: neither of the two alone mends these.
     """
     every = np.ones(len(measured.seen), dtype=bool)
+    least = float(_macs(measured, prediction, every).mean()) + MENDED
     moved = [c.rows for c in channels if c.moved]
     pairs = [
-        (a, b) for a, b in combinations(moved, 2) if a.sum() == b.sum() and _enough(measured, every & ~a & ~b)
+        (a, b)
+        for a, b in _promising(measured, prediction, moved, least - ROUNDING)
+        if _enough(measured, every & ~a & ~b)
     ]
     means = [float(_macs(_swapped(measured, a, b), prediction, every).mean()) for a, b in pairs]
     best = max(means, default=0.0)
-    reached = float(_macs(measured, prediction, every).mean())
-    return None if best < reached + MENDED else pairs[means.index(best)]
+    return None if not pairs or best < least else pairs[means.index(best)]
+
+
+def _promising(
+    measured: Measured, prediction: Prediction, points: Sequence[BoolArray], least: float
+) -> list[tuple[BoolArray, BoolArray]]:
+    """Return the pairs of points of as many rows that, exchanged, let the mean MAC be so high with any partners.
+
+    An exchange changes what two shapes have in common by their differences between the two points alone.
+    """
+    a, b = np.nan_to_num(measured.constants), np.nan_to_num(prediction.constants)
+    power = np.maximum(np.outer(np.sum(a**2, axis=0), np.sum(b**2, axis=0)), 1e-300)
+    common, rows, found = a.T @ b, [np.flatnonzero(point) for point in points], []
+    for i, one in enumerate(rows):
+        others = [j for j in range(i + 1, len(rows)) if len(rows[j]) == len(one)]
+        two = np.array([rows[j] for j in others], dtype=np.intp).reshape(-1, len(one))
+        changed = (a[two] - a[one]).transpose(0, 2, 1) @ (b[one] - b[two])
+        most = ((common + changed) ** 2 / power).max(axis=2).mean(axis=1)
+        found += [(points[i], points[others[k]]) for k in np.flatnonzero(most > least)]
+    return found
 
 
 def _swapped(measured: Measured, first: BoolArray, second: BoolArray) -> Measured:

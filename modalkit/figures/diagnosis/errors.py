@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
+from acquisition.quantities import hertz
 from modalkit.figures.diagnosis.fitted import Fitted, fitted
 from updating import Case, Diagnosis
 from updating.diagnosis.answer.metric import noise_squares, squares
@@ -35,6 +36,8 @@ class ModeErrors:
         Two standard deviations of the noise, and of noise and tolerances together; either may be None [%].
     channel : str
         A key of ``LABELS``.
+    modes : (n_modes,) int array, optional
+        Numbers of the modes; left out, they are counted from 1.
     """
 
     frequency: FloatArray
@@ -43,6 +46,13 @@ class ModeErrors:
     floor: FloatArray | None
     doubt: FloatArray | None
     channel: str
+    modes: IntArray | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Number and frequency of each mode."""
+        numbers = np.arange(1, len(self.frequency) + 1) if self.modes is None else self.modes
+        return tuple(f"{i}: {hertz(f)}" for i, f in zip(numbers.tolist(), self.frequency, strict=True))
 
     @property
     def label(self) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.arrays import FloatArray
 from acquisition.display import counted
-from acquisition.quantities import hertz, percent, sigmas
+from acquisition.quantities import percent, sigmas
 from modalkit.figures.diagnosis.errors import ModeErrors
 from modalkit.figures.words import METRICS
 from modalkit.views.chart import Axis, Chart, Series
@@ -38,13 +38,12 @@ def gap_chart(errors: ModeErrors, name: str = "gap", *, after: str = "after") ->
     series.append(_dots("model as it stands", rows, errors, errors.before, hollow=True))
     if errors.after is not None:
         series.append(_dots(after, rows, errors, errors.after))
-    names = tuple(f"{i + 1}: {hertz(f)}" for i, f in enumerate(errors.frequency))
     return Chart(
         name,
         gap_title(errors, after),
         _text(errors, after),
         Axis(errors.label, zero=not errors.signed),
-        Axis(names=names),
+        Axis(names=errors.names),
         [one for one in series if one is not None],
         more={"zero": True},
     )
@@ -100,10 +99,8 @@ def _dots(
 ) -> Series:
     unit = "σ" if errors.channel == "combined" else "%"
     text = [
-        "\n".join(
-            [f"mode {i + 1}, {hertz(f)}", f"{name}: {_signed(v, unit, errors.signed)}", *_bands(errors, i)]
-        )
-        for i, (f, v) in enumerate(zip(errors.frequency, values, strict=True))
+        "\n".join([f"mode {mode}", f"{name}: {_signed(v, unit, errors.signed)}", *_bands(errors, i)])
+        for i, (mode, v) in enumerate(zip(errors.names, values, strict=True))
     ]
     more = {"text": text, "hollow": hollow, "size": 5}
     return Series(name, "points", values, rows, "ink" if hollow else "blue", more)

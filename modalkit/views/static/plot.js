@@ -4,6 +4,7 @@ import { s, mark } from "./marks.js";
 import { minus, scale } from "./scales.js";
 
 const LETTER = 6.9; // mean width of a letter [px]
+const LINE = 14; // from one turned name to the next [px]
 
 /** Draw the picture. Returns the drawing, its series and scales, and what can be pointed at. */
 export function plot(place, given, chosen) {
@@ -105,7 +106,9 @@ function axes(svg, given, { x, y }, { left, right, top, bottom, width, height, s
     if (above) label(svg, tick, { x: left, y: tick.name - 3 }, width - 20);
     else label(svg, tick, { x: left - 6, y: tick.at + 4, "text-anchor": "end" }, left - 4 - (given.y.title ? 16 : 0));
   }
-  for (const tick of given.bare ? [] : x.ticks) {
+  const every = slant ? Math.ceil(LINE / Math.abs(x.ticks[1].at - x.ticks[0].at)) : 1; // turned names need a line each
+  for (const [i, tick] of (given.bare ? [] : x.ticks).entries()) {
+    if (i % every) continue;
     if (!tick.name) svg.append(s("path", { d: `M${tick.at},${top}V${base}`, class: "grid" }));
     const turned = slant
       ? { x: tick.at + 4, y: base + 12, "text-anchor": "end", transform: `rotate(-60 ${tick.at + 4} ${base + 12})` }

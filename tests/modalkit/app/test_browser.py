@@ -119,12 +119,17 @@ class Page:
         return [row.locator("td").all_inner_texts()[:4] for row in rows]
 
 
-def identified(path: Path, folder: Path) -> dict[str, Any]:
-    """Return what the command line gives of a study."""
-    out = folder / "check.json"
-    command = [sys.executable, "-m", "modalkit", "identify", str(path), "--json", str(out)]
-    subprocess.run(command, check=True, capture_output=True)
+def commanded(command: str, path: Path, folder: Path, *options: str) -> dict[str, Any]:
+    """Return the JSON that the command line gives of a study."""
+    out = folder / f"{command}.json"
+    words = [sys.executable, "-m", "modalkit", command, str(path), *options, "--json", str(out)]
+    subprocess.run(words, check=True, capture_output=True)
     return json.loads(out.read_text(encoding="utf-8"))
+
+
+def identified(path: Path, folder: Path) -> dict[str, Any]:
+    """Return the modes that the command line gives of a study."""
+    return commanded("identify", path, folder)
 
 
 def printed(document: dict[str, Any]) -> list[list[str]]:
@@ -168,9 +173,10 @@ def test_the_way_of_the_work(browser, serve, beam, tmp_path):
     assert page.tab.locator("#diagnosis-answer").inner_text() == answer
 
     folder = export(page)
-    found = identified(folder / "study.toml", tmp_path)
-    assert found == json.loads((folder / "modes.json").read_text(encoding="utf-8"))
-    assert printed(found) == without
+    for command, name in (("identify", "modes"), ("update", "update"), ("diagnose", "diagnose")):
+        found = commanded(command, folder / "study.toml", tmp_path)
+        assert found == json.loads((folder / f"{name}.json").read_text(encoding="utf-8")), command
+    assert printed(identified(folder / "study.toml", tmp_path)) == without
     assert page.faults == []
     assert page.foreign == []
 
@@ -217,9 +223,16 @@ def slide_and_pair(page: Page) -> None:
     tab.wait_for_timeout(600)
     page.settle()
     assert tab.locator("#rms").inner_text() != before
+    tab.locator("#factor-E").fill("1")
+    tab.get_by_text(before, exact=True).wait_for()
     tab.locator("#effect").select_option("clamp_rotation")
-    tab.wait_for_timeout(600)
-    page.settle()
+    stiffness = tab.locator("#effect-stiffness")
+    stiffness.fill(stiffness.get_attribute("min"))  # as soft as the effect may be ...
+    tab.get_by_text(before, exact=True).wait_for(state="detached")
+    soft = tab.locator("#rms").inner_text()
+    stiffness.fill(str((float(stiffness.get_attribute("min")) + float(stiffness.get_attribute("max"))) / 2))
+    tab.get_by_text(soft, exact=True).wait_for(state="detached")  # ... is further off than half way
+    assert rms(soft) > rms(tab.locator("#rms").inner_text())
     tab.locator("#slide-reset").click()
     tab.wait_for_timeout(600)
     page.settle()
@@ -228,9 +241,21 @@ def slide_and_pair(page: Page) -> None:
     page.settle()
     assert tab.locator('[data-pair="2"]').input_value() == "4"
     assert tab.locator("#rms").inner_text() != before
+    paired = tab.locator("#rms").inner_text()
     tab.locator("#undo").click()  # ... and taken back
     page.settle()
     assert tab.locator("#rms").inner_text() == before
+    tab.locator("#redo").click()  # ... done again, and taken back
+    page.settle()
+    assert tab.locator("#rms").inner_text() == paired
+    tab.locator("#undo").click()
+    page.settle()
+    assert tab.locator("#rms").inner_text() == before
+
+
+def rms(text: str) -> float:
+    """Return the number of a line of the page of the model [%]."""
+    return float(text.split(maxsplit=1)[0])
 
 
 def update_the_model(page: Page) -> None:
@@ -387,8 +412,7 @@ def test_a_region_is_softened_and_every_number_can_be_read_on_a_phone(browser, s
     slider = page.tab.locator('[id="factor-wing_left_outer.E"]')
     slider.evaluate("input => { input.value = Math.log10(0.6); input.dispatchEvent(new Event('input')); }")
     page.tab.get_by_text("over 17 pairs").wait_for()
-    after = page.tab.locator("#rms").inner_text()
-    assert float(after.split()[0]) < float(before.split()[0])
+    assert rms(page.tab.locator("#rms").inner_text()) < rms(before)
     page.tab.locator("#slide-reset").click()
     page.tab.get_by_text(before, exact=True).wait_for()
     page.open("modes")
@@ -463,18 +487,6 @@ def test_a_faint_mode_is_picked_by_keys(browser, serve, faint, tmp_path):
     assert len(picked) == len(before) + 1
     assert any(abs(float(row[0]) - FAINT) < 0.01 * FAINT for row in picked)
     assert "picked by you" in page.tab.locator(".page-modes table").inner_text()
-    out = tmp_path / "out.json"
-    command = [
-        sys.executable,
-        "-m",
-        "modalkit",
-        "identify",
-        str(faint),
-        "--add",
-        str(FAINT),
-        "--json",
-        str(out),
-    ]
-    subprocess.run(command, check=True, capture_output=True)
-    assert printed(json.loads(out.read_text(encoding="utf-8"))) == picked
+    named = commanded("identify", faint, tmp_path, "--add", str(FAINT))
+    assert printed(named) == picked
     assert page.faults == []

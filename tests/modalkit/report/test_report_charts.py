@@ -71,6 +71,15 @@ def test_a_gap_without_bands_says_how_far_off_it_is() -> None:
     )
 
 
+def test_modes_of_the_gap_have_the_numbers_of_the_test() -> None:
+    """Where a mode has no partner, those after it keep their numbers."""
+    chart = gap_chart(replace(errors(AFTER, None), modes=np.array([1, 2, 4, 7])))
+    assert [name.split(":")[0] for name in chart.y.names] == ["1", "2", "4", "7"]
+    assert [text.split(":")[0] for text in chart.series[-1].more["text"]] == [
+        f"mode {i}" for i in (1, 2, 4, 7)
+    ]
+
+
 def test_no_frequency_outside_the_band_counts_as_none() -> None:
     assert "none outside" in gap_title(replace(errors(None, DOUBT), before=AFTER * 0.5))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from updating_cases import BEAM, blank, exactly
 
 from updating import Measured, Predictor
 from updating.prediction.prediction import Prediction
-from updating.prediction.trusted_frfs import trusted_rows
+from updating.prediction.trusted_frfs import _macs, _promising, _swapped, trusted_rows
 
 FREE = replace(BEAM, clamped=())
 ENDS = np.linspace(0.0, 0.376, 12)
@@ -38,3 +39,17 @@ def test_modes_are_paired_without_two_ends_that_changed_places() -> None:
 @pytest.mark.parametrize("swapped", [None, (5, 6)])
 def test_points_that_hardly_matter_stay(swapped: tuple[int, int] | None) -> None:
     assert trusted_rows(*struck(swapped)) is None
+
+
+def test_no_pair_of_points_is_passed_over_that_could_mend_the_shapes() -> None:
+    """What an exchange is asked to reach is never held for out of reach, and most pairs are told without a trial."""
+    measured, prediction = struck((0, 11))
+    points = [measured.hit == point for point in range(len(ENDS))]
+    pairs = list(combinations(points, 2))
+    means = [float(_macs(_swapped(measured, *pair), prediction, points[0] | True).mean()) for pair in pairs]
+    for pair, mean in zip(pairs, means, strict=True):
+        found = _promising(measured, prediction, points, mean - 1e-9)
+        assert any(one is pair[0] and two is pair[1] for one, two in found)
+    best = pairs[int(np.argmax(means))]
+    assert np.flatnonzero(best[0] | best[1]).tolist() == [0, 11]
+    assert len(_promising(measured, prediction, points, 0.95 * max(means))) < len(pairs) / 10

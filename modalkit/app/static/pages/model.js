@@ -149,7 +149,7 @@ export function open(root, app) {
       sliders,
       page.factors.filter((f) => !f.region).map(factored),
       regioned(),
-      field(
+      choice(
         "Effect",
         select(
           [["", "none"], ...page.sliders.map((s) => [s.name, s.name])],
@@ -228,6 +228,8 @@ export function open(root, app) {
       `factor-${f.name}`,
     );
 
+  const choice = (name, made) => h("div", { class: "row" }, field(name, made));
+
   /** The factors of one region; those of the others stay as they were moved, and the list says so. */
   function regioned() {
     const all = view.page.factors.filter((f) => f.region);
@@ -236,7 +238,7 @@ export function open(root, app) {
     const touched = (name) => all.some((f) => f.region === name && (view.factors[f.name] ?? 1) !== 1);
     if (!names.length) return null;
     return [
-      field(
+      choice(
         "Region",
         select(
           [["", "none"], ...names.map((name) => [name, touched(name) ? `${name} (moved)` : name])],
@@ -329,12 +331,11 @@ export function open(root, app) {
       ["0", "none"],
       ...page.model_hz.map((f, i) => [i + 1, `${i + 1}: ${fixed(f, 1)} Hz`]),
     ];
-    const alone = page.correlation.unpaired_test.map((u) => ({
-      test_mode: u.mode,
-      test_hz: u.frequency_hz,
-      model_mode: null,
-    }));
-    const rows = [...found.pairs, ...alone.filter((u) => !found.pairs.some((p) => p.test_mode === u.test_mode))].sort(
+    const every = [
+      ...page.correlation.pairs,
+      ...page.correlation.unpaired_test.map((u) => ({ test_mode: u.mode, test_hz: u.frequency_hz })),
+    ].map(({ test_mode, test_hz }) => ({ test_mode, test_hz, model_mode: null }));
+    const rows = [...found.pairs, ...every.filter((u) => !found.pairs.some((p) => p.test_mode === u.test_mode))].sort(
       (a, b) => a.test_mode - b.test_mode,
     );
     const columns = ["test", "test [Hz]", "model [Hz]", "error [%]", "study's [%]", "MAC", "partner"].map(
