@@ -12,6 +12,9 @@ from updating.tolerances import Tolerances
 REGIONAL = ("E", "density", "thickness", "area", "inertia")
 """Properties of a region of which a doubt may be stated."""
 
+OF_MATRICES = REGIONAL[:2]
+"""Those of a region that is nothing but matrices."""
+
 
 def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] = ()) -> None:
     """See that every stated doubt is of a region's property, or of a parameter that is updated.
@@ -31,14 +34,16 @@ def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] =
         If one is of neither.
     """
     own = list(dict.fromkeys(region.name for region in spec.regions))
+    bare = spec.imported is not None and spec.imported.deck is None
+    regional = OF_MATRICES if bare else REGIONAL
     for name in (*tolerances.parts, *tolerances.bounds):
         region, _, prop = name.rpartition(".")
-        if name in parameters or name in unassigned(spec) or (region in own and prop in REGIONAL):
+        if name in parameters or name in unassigned(spec) or (region in own and prop in regional):
             continue
         named = ", ".join(own[:6]) + (", ..." if len(own) > 6 else "")
         beyond = " or ".join(unassigned(spec))
         raise StudyError(
-            f"[tolerances] {name}: neither E, density, thickness, area or inertia of a region ({named}) nor "
+            f"[tolerances] {name}: neither {', '.join(regional)} of a region ({named}) nor "
             f"{f'{beyond}, of what is in no region, nor ' if beyond else ''}among the parameters of [update]; correct "
             "the name or leave it out"
         )
