@@ -31,14 +31,17 @@ def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] =
     Raises
     ------
     StudyError
-        If one is of neither.
+        If one is of neither, or bounds of a factor leave out 1.
     """
     own = list(dict.fromkeys(region.name for region in spec.regions))
     bare = spec.imported is not None and spec.imported.deck is None
     regional = OF_MATRICES if bare else REGIONAL
     for name in (*tolerances.parts, *tolerances.bounds):
         region, _, prop = name.rpartition(".")
-        if name in parameters or name in unassigned(spec) or (region in own and prop in regional):
+        if name in unassigned(spec) or (region in own and prop in regional):
+            _check_bounds(name, tolerances)
+            continue
+        if name in parameters:
             continue
         named = ", ".join(own[:6]) + (", ..." if len(own) > 6 else "")
         beyond = " or ".join(unassigned(spec))
@@ -46,6 +49,16 @@ def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] =
             f"[tolerances] {name}: neither {', '.join(regional)} of a region ({named}) nor "
             f"{f'{beyond}, of what is in no region, nor ' if beyond else ''}among the parameters of [update]; correct "
             "the name or leave it out"
+        )
+
+
+def _check_bounds(name: str, tolerances: Tolerances) -> None:
+    """See that the bounds of a property hold the model as it stands; a diagnosis asks how far it may be from there."""
+    low, high = tolerances.bounds.get(name, (1.0, 1.0))
+    if not 0 < low <= 1 <= high:
+        raise StudyError(
+            f"[tolerances] bounds of {name}: [{low:g}, {high:g}] leaves out where it starts, 1; it is a factor, where "
+            "1 leaves the model as it is"
         )
 
 

@@ -149,6 +149,8 @@ def test_bounds_that_cannot_be(bounds: tuple[float, float], message: str) -> Non
     case = storeys(np.zeros(3), 3, Tolerances({"E": 0.1}, bounds={"storey_1.E": bounds}))
     with pytest.raises(StudyError, match=message):
         turned(case)
+    with pytest.raises(StudyError, match=message):  # as a nuisance of a diagnosis as well
+        check_doubts(case.tolerances, case.spec)
 
 
 def test_doubts_of_what_there_is_not_are_refused() -> None:
