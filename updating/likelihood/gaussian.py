@@ -20,6 +20,7 @@ from scipy.linalg.lapack import dposv
 
 from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import Comparison
+from updating.likelihood.separate import Separate, separate
 from updating.thresholds import (
     IDEALISATION_SHARES,
     LARGEST_SENSITIVITY,
@@ -78,10 +79,12 @@ def marginal(comparison: Comparison, keep: BoolArray | None = None) -> Marginal:
     scales = SHAPE_NOISE_SCALES if shapes.any() else SHAPE_NOISE_SCALES[:1]
     shares = (1.0,) if comparison.idealised is None else IDEALISATION_SHARES
     prior = dict(zip(scales, np.log(comparison.scale_prior if len(scales) > 1 else (1.0,)), strict=True))
+    rows = slice(None) if keep is None else keep
+    groups = separate(comparison.nuisance[rows], comparison.scaled[rows])
     parts = [
         replace(part, share=share)
         for share in shares
-        for part in _worth_adding(gaussian(comparison.settled(share), scales, keep))
+        for part in _worth_adding(gaussian(comparison.settled(share), scales, keep, groups))
     ]
     score = np.array([part.log_likelihood + prior[part.scale] for part in parts]) - np.log(len(shares))
     top = parts[int(np.argmax(score))]
@@ -113,23 +116,34 @@ def _sound(comparison: Comparison) -> bool:
 
 
 def gaussian(
-    comparison: Comparison, scales: Sequence[float], keep: BoolArray | None = None
+    comparison: Comparison,
+    scales: Sequence[float],
+    keep: BoolArray | None = None,
+    groups: Separate | None = None,
 ) -> Iterator[Marginal]:
-    """Integrate the nuisances out at one scale of the noise of the shapes after the other; see :func:`marginal`."""
+    """Integrate the nuisances out at one scale of the noise of the shapes after the other; see :func:`marginal`.
+
+    ``groups`` are those of the data kept, where they are found already.
+    """
     rows = slice(None) if keep is None else keep
     r, j, d = comparison.residual[rows], comparison.nuisance[rows], comparison.variance[rows]
     shapes = comparison.scaled[rows]
-    data = np.column_stack([j, r])
+    groups = separate(j, shapes) if groups is None else groups
+    data = np.column_stack([j[:, groups.common], r])
     # every scale weighs the same two Gram matrices, those of the shapes and of the rest
     gram_matrices = [(data[part].T / d[part]) @ data[part] for part in (~shapes, shapes)]
-    p, noise = j.shape[1], float(np.sum(np.log(d))) + len(r) * np.log(2 * np.pi)
+    own = groups.beside(d, data)
+    p, noise = len(groups.common), float(np.sum(np.log(d))) + len(r) * np.log(2 * np.pi)
     for scale in scales:
-        gram = gram_matrices[0] + gram_matrices[1] / scale**2
+        gram = gram_matrices[0] + gram_matrices[1] / scale**2 - own.share(scale)
         load = gram[:p, p]
         shift, pivots = _solved(np.eye(p) + gram[:p, :p], load)
         chi2 = float(gram[p, p] - load @ shift)
-        log_det = 2 * float(np.log(pivots).sum() + shapes.sum() * np.log(scale))
-        yield Marginal(-0.5 * (chi2 + log_det + noise), chi2, shift, len(r), scale)
+        log_det = 2 * float(np.log(pivots).sum() + shapes.sum() * np.log(scale)) + own.log_det(scale)
+        whole = np.zeros(j.shape[1])
+        whole[groups.common] = shift
+        own.fill(whole, scale, np.append(-shift, 1.0))
+        yield Marginal(-0.5 * (chi2 + log_det + noise), chi2, whole, len(r), scale)
 
 
 def _solved(matrix: FloatArray, load: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -172,6 +186,10 @@ def normal_equations(
     """
     rows = slice(None) if keep is None else keep
     j, d, columns = comparison.nuisance[rows], comparison.noise(scale)[rows], columns[rows]
-    inner = cho_factor(np.eye(j.shape[1]) + (j.T / d) @ j)
-    solved = (columns.T / d).T - ((j.T / d).T) @ cho_solve(inner, (j.T / d) @ columns)
+    groups = separate(j, comparison.scaled[rows])
+    common = j[:, groups.common]
+    weighed = groups.precise(d, np.hstack([common, columns]))
+    own, free = weighed[:, : common.shape[1]], weighed[:, common.shape[1] :]
+    inner = cho_factor(np.eye(common.shape[1]) + common.T @ own)
+    solved = free - own @ cho_solve(inner, common.T @ free)
     return columns.T @ solved, solved.T @ comparison.residual[rows]

@@ -12,6 +12,9 @@ from updating.tolerances import Tolerances
 REGIONAL = ("E", "density", "thickness", "area", "inertia")
 """Properties of a region of which a doubt may be stated."""
 
+OF_MATRICES = REGIONAL[:2]
+"""Those of a region that is nothing but matrices."""
+
 
 def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] = ()) -> None:
     """See that every stated doubt is of a region's property, or of a parameter that is updated.
@@ -28,19 +31,34 @@ def check_doubts(tolerances: Tolerances, spec: Spec, parameters: Sequence[str] =
     Raises
     ------
     StudyError
-        If one is of neither.
+        If one is of neither, or bounds of a factor leave out 1.
     """
     own = list(dict.fromkeys(region.name for region in spec.regions))
+    bare = spec.imported is not None and spec.imported.deck is None
+    regional = OF_MATRICES if bare else REGIONAL
     for name in (*tolerances.parts, *tolerances.bounds):
         region, _, prop = name.rpartition(".")
-        if name in parameters or name in unassigned(spec) or (region in own and prop in REGIONAL):
+        if name in unassigned(spec) or (region in own and prop in regional):
+            _check_bounds(name, tolerances)
+            continue
+        if name in parameters:
             continue
         named = ", ".join(own[:6]) + (", ..." if len(own) > 6 else "")
         beyond = " or ".join(unassigned(spec))
         raise StudyError(
-            f"[tolerances] {name}: neither E, density, thickness, area or inertia of a region ({named}) nor "
+            f"[tolerances] {name}: neither {', '.join(regional)} of a region ({named}) nor "
             f"{f'{beyond}, of what is in no region, nor ' if beyond else ''}among the parameters of [update]; correct "
             "the name or leave it out"
+        )
+
+
+def _check_bounds(name: str, tolerances: Tolerances) -> None:
+    """See that the bounds of a property hold the model as it stands; a diagnosis asks how far it may be from there."""
+    low, high = tolerances.bounds.get(name, (1.0, 1.0))
+    if not 0 < low <= 1 <= high:
+        raise StudyError(
+            f"[tolerances] bounds of {name}: [{low:g}, {high:g}] leaves out where it starts, 1; it is a factor, where "
+            "1 leaves the model as it is"
         )
 
 

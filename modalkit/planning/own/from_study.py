@@ -239,9 +239,14 @@ def _in_band(study: Study, frequency: FloatArray, shown: IntArray) -> tuple[IntA
     Raises
     ------
     StudyError
-        If it holds fewer than two.
+        If it holds fewer than two, or the points show fewer.
     """
     band = study.test.band
+    if len(shown) < 2:
+        raise StudyError(
+            f"{study.path}: [test] points: of the model's modes {len(shown)} move any point; a forecast needs two: do "
+            "the points lie at supports, or point where nothing moves?"
+        )
     if band is None:
         last, above = frequency[shown[min(FIRST_MODES, len(shown) - 1) - 1 :][:2]]
         band = (float(f"{0.25 * frequency[0]:.2g}"), float(f"{np.sqrt(last * above):.3g}"))

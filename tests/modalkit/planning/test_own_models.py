@@ -314,6 +314,17 @@ def test_what_cannot_be_planned_is_refused_in_one_line(
     assert "\n" not in str(error.value)
 
 
+def test_points_at_supports_are_refused(tmp_path: Path) -> None:
+    """Two nodes that supports hold: nothing moves where the test would hit."""
+    path = study(tmp_path, test='points = ["7+X", "8+X"]')
+    with (tmp_path / "nodes.csv").open("a") as table:
+        table.write("7, 0, 0, 0, 1, ,\n8, 0, 0.1, 0, 1, ,\n")
+    with pytest.raises(
+        StudyError, match="0 move any point; a forecast needs two: do the points lie at supports"
+    ):
+        bench_of(read_study(path))
+
+
 def test_a_band_without_modes_is_refused(tmp_path: Path) -> None:
     path = study(tmp_path)
     path.write_text(path.read_text().replace("band = [1.0, 290.0]", "band = [1.0, 50.0]"))

@@ -366,6 +366,15 @@ def test_parts_that_sum_to_more_than_the_whole_are_refused() -> None:
         Imported(whole.stiffness, whole.mass, whole.nodes, (), (M, M))
 
 
+def test_parts_of_a_whole_without_a_diagonal_are_refused_without_a_warning() -> None:
+    """The row named is one that the whole has not at all; warnings are errors here."""
+    whole = imported_beam(24, parts=(8,))
+    emptied = whole.stiffness
+    keep = sparse.diags_array(np.where(np.arange(emptied.shape[0]) == 6, 0.0, 1.0))
+    with pytest.raises(StudyError, match=r"stiffness: row 7 has .* and 0 in the whole"):
+        Imported(Sparse(keep @ emptied @ keep), whole.mass, whole.nodes, whole.stiffness_parts)
+
+
 def test_a_region_without_parts_cannot_be_turned() -> None:
     bare, parted = imported_beam(8), imported_beam(8, parts=(4,))
     assert bare.obstacle("E") is None

@@ -149,6 +149,8 @@ def test_bounds_that_cannot_be(bounds: tuple[float, float], message: str) -> Non
     case = storeys(np.zeros(3), 3, Tolerances({"E": 0.1}, bounds={"storey_1.E": bounds}))
     with pytest.raises(StudyError, match=message):
         turned(case)
+    with pytest.raises(StudyError, match=message):  # as a nuisance of a diagnosis as well
+        check_doubts(case.tolerances, case.spec)
 
 
 def test_doubts_of_what_there_is_not_are_refused() -> None:
@@ -203,3 +205,9 @@ def test_a_change_within_the_doubt_of_its_region_is_no_gap() -> None:
     doubted = diagnose(storeys(logs, 5, Tolerances({"E": 0.001}, parts={"storey_2.E": 0.1}), shapes=0.01))
     assert sharp.significant
     assert not doubted.significant
+
+
+def test_a_region_of_matrices_has_no_thickness_to_doubt() -> None:
+    case = storeys(np.zeros(3), 3, Tolerances(parts={"storey_1.thickness": 0.1}))
+    with pytest.raises(StudyError, match=r"storey_1\.thickness: neither E, density of a region \(storey_1"):
+        check_doubts(case.tolerances, case.spec)

@@ -177,7 +177,20 @@ def read_deck_model(path: Path, regions: Sequence[tuple[str, str]] = (), *, unit
     """
     units_of(units)
     mesh = Mesh(read_cards(path), str(path))
-    return DeckModel(path, read_deck(path), divide(mesh, regions), units)
+    model = DeckModel(path, read_deck(path), divide(mesh, regions), units)
+    _check_nodes(model)
+    return model
+
+
+def _check_nodes(model: DeckModel) -> None:
+    """See that the nodes of elements are there, without which CalculiX dies and does not say of what."""
+    known = model.nodes.nodes.keys()
+    for element, (_, nodes) in model.mesh.elements.items():
+        if missing := [node for node in nodes if node not in known]:
+            raise StudyError(
+                f"{model.path}: element {element} has node {missing[0]}, which stands in no *NODE card; add it or "
+                "correct its number"
+            )
 
 
 def deck_matrices(path: Path, like: DeckModel) -> tuple[Sparse, Sparse]:

@@ -179,8 +179,10 @@ def check_sum(whole: Sparse, parts: tuple[Sparse, ...], sources: tuple[str, ...]
             )
     lacking = rest.diagonal() < -10 * rounding
     if lacking.any():
-        row = int(np.argmin(rest.diagonal() / np.maximum(np.abs(diagonal), 1e-300)))
-        total = float(sum(p.diagonal()[row] for p in parts))
+        together = np.asarray(sum(p.diagonal() for p in parts))
+        largest = np.maximum(np.maximum(np.abs(diagonal), np.abs(together)), 1e-300)
+        row = int(np.argmin(rest.diagonal() / largest))
+        total = float(together[row])
         raise StudyError(
             f"{name}_parts: they sum to more than the {name}: row {row + 1} has {total:.6g} on the diagonal of their "
             f"sum and {diagonal[row]:.6g} in the whole; give each region's own matrix, made with the same mesh"

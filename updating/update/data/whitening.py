@@ -37,7 +37,8 @@ class Whitening:
         """Return (I + V V')^(-1/2) diag(sigma)^-1 values, for values of shape (n,) or (n, m) [-]."""
         scaled = values / (self.sigma if values.ndim == 1 else self.sigma[:, None])
         shrink = 1 / np.sqrt(1 + self.size**2) - 1
-        return np.asarray(scaled + (self.left * shrink) @ (self.left.T @ scaled))
+        along = self.left.T @ scaled
+        return np.asarray(scaled + self.left @ ((shrink if values.ndim == 1 else shrink[:, None]) * along))
 
     def draw(self, rng: np.random.Generator) -> FloatArray:
         """Draw errors with this covariance, shape (n,) [unit of the data]."""

@@ -1,0 +1,119 @@
+"""Nuisances with data of their own: what is integrated out group by group is what one large Gaussian gives."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.stats import multivariate_normal
+
+from acquisition.arrays import BoolArray, FloatArray
+from updating.likelihood.comparison import CHANNELS, Comparison
+from updating.likelihood.gaussian import gaussian, marginal, normal_equations
+from updating.likelihood.separate import FEW, MOST_TOGETHER, separate
+from updating.thresholds import SHAPE_NOISE_SCALES
+
+Pattern = tuple[int, int, int, int]
+
+
+def comparison(pattern: Pattern, seed: int) -> Comparison:
+    """Return random data of points, modes, directions and sensors, with places, gains, scatter of each frequency."""
+    points, modes, directions, sensors = pattern
+    rng = np.random.default_rng(seed)
+    frfs = points * sensors
+    n = modes + frfs * modes
+    columns = [rng.standard_normal((n, 3)), np.vstack([np.eye(modes), np.zeros((frfs * modes, modes))])]
+    for ends in (np.tile(np.arange(points), sensors), np.repeat(np.arange(sensors), points)):
+        for place in np.unique(ends):
+            block = rng.standard_normal((frfs, modes, directions)) * (ends == place)[:, None, None]
+            columns.append(np.vstack([np.zeros((modes, directions)), block.reshape(-1, directions)]))
+    columns.append(np.zeros((n, FEW)))  # of places that move nothing
+    nuisance = np.hstack(columns)
+    channel = np.repeat([CHANNELS.index("frequency"), CHANNELS.index("frf")], [modes, frfs * modes])
+    return Comparison(
+        rng.standard_normal(n), nuisance[:, rng.permutation(nuisance.shape[1])], rng.uniform(0.01, 0.1, n), channel,
+        np.tile(np.arange(modes), 1 + frfs), np.repeat(np.arange(-1, frfs), modes), (),
+        tuple(np.full(len(SHAPE_NOISE_SCALES), 1 / len(SHAPE_NOISE_SCALES))), np.arange(1), np.arange(1),
+    )  # fmt: skip
+
+
+def covariance(data: Comparison, scale: float, keep: BoolArray) -> FloatArray:
+    return np.diag(data.noise(scale)[keep]) + data.nuisance[keep] @ data.nuisance[keep].T
+
+
+patterns = st.tuples(st.integers(2, 9), st.integers(1, 4), st.integers(1, 3), st.integers(1, 2))
+
+
+@settings(max_examples=30, deadline=None)
+@given(pattern=patterns, seed=st.integers(0, 2**31), share=st.floats(0.5, 1.0))
+def test_the_likelihood_is_that_of_one_normal_distribution(pattern: Pattern, seed: int, share: float) -> None:
+    data = comparison(pattern, seed)
+    keep = np.random.default_rng(seed + 1).random(len(data.residual)) < share
+    keep[0] = True
+    for found in gaussian(data, SHAPE_NOISE_SCALES[::3], keep):
+        whole = covariance(data, found.scale, keep)
+        residual = data.residual[keep]
+        expected = multivariate_normal(np.zeros(len(residual)), whole).logpdf(residual)
+        assert found.log_likelihood == pytest.approx(float(expected), rel=1e-9, abs=1e-7)
+        # the most probable nuisances are their covariance with the data, divided by the data's own
+        shift = data.nuisance[keep].T @ np.linalg.solve(whole, residual)
+        np.testing.assert_allclose(found.shift, shift, atol=1e-8)
+
+
+@settings(max_examples=20, deadline=None)
+@given(pattern=patterns, seed=st.integers(0, 2**31))
+def test_the_normal_equations_are_those_of_generalised_least_squares(pattern: Pattern, seed: int) -> None:
+    data = comparison(pattern, seed)
+    every = np.ones(len(data.residual), dtype=bool)
+    columns = np.random.default_rng(seed).standard_normal((len(every), 2))
+    normal, load = normal_equations(data, columns, 2.0)
+    weighed = np.linalg.solve(covariance(data, 2.0, every), columns)
+    np.testing.assert_allclose(normal, columns.T @ weighed, rtol=1e-8, atol=1e-8)
+    np.testing.assert_allclose(load, weighed.T @ data.residual, rtol=1e-8, atol=1e-8)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    seed=st.integers(0, 2**31), rows=st.integers(1, 40), columns=st.integers(FEW, FEW + 20),
+    filled=st.sampled_from([0.0, 0.01, 0.05, 0.3, 1.0]),
+)  # fmt: skip
+def test_groups_share_no_row_and_no_nuisance_is_lost(
+    seed: int, rows: int, columns: int, filled: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    nuisance = rng.standard_normal((rows, columns)) * (rng.random((rows, columns)) < filled)
+    scaled = rng.random(rows) < 0.5
+    found = separate(nuisance, scaled)
+    grouped = found.columns[found.columns >= 0]
+    touching = np.flatnonzero(nuisance.any(axis=0))
+    assert sorted([*grouped.tolist(), *found.common.tolist()]) == touching.tolist()
+    assert len(np.unique(found.rows)) == len(found.rows)
+    assert found.columns.shape[1] <= MOST_TOGETHER
+    ends = [*found.starts.tolist(), len(found.rows)][1:]
+    for group, start, end, one in zip(found.columns, found.starts, ends, found.scaled, strict=True):
+        own = group[group >= 0]
+        assert set(np.flatnonzero(nuisance[:, own].any(axis=1))) == set(found.rows[start:end].tolist())
+        np.testing.assert_array_equal(
+            found.values[start:end, : len(own)], nuisance[found.rows[start:end]][:, own]
+        )
+        assert (scaled[found.rows[start:end]] == one).all()
+
+
+def test_of_a_roving_hammer_only_what_all_points_share_is_common() -> None:
+    """Sixty points in three directions: 180 places of hits are groups; gains and the sensor's place are common."""
+    data = comparison((60, 10, 3, 1), 0)
+    found = separate(data.nuisance, data.scaled)
+    assert len(found.common) == 3 + 3
+    assert (found.columns >= 0).sum() == 180 + 10
+
+
+def test_the_doubt_in_the_idealisation_is_summed_over_with_groups_as_without() -> None:
+    data = comparison((8, 3, 3, 1), 3)
+    data = replace(data, idealised=0.3 * data.variance)
+    few = replace(data, nuisance=data.nuisance[:, data.nuisance.any(axis=0)])
+    assert few.nuisance.shape[1] <= FEW < data.nuisance.shape[1]  # one large matrix, groups
+    assert marginal(data).log_likelihood == pytest.approx(marginal(few).log_likelihood, rel=1e-12)
+    assert marginal(data).share == marginal(few).share
