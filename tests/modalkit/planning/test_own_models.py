@@ -316,6 +316,10 @@ REFUSED = [
     ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is none of the model's, which reach from 1 to 6"),
     ({"test": 'points = ["2+X", "3+Y"]'}, "3.Y: the model does not move that way"),
     ({"test": 'points = ["2+X", [9.0, 0.0, 0.0, "x"]]'}, "off the imported structure"),
+    (
+        {"test": f'{POINTS}\nshape_sigma = "4 %"'},
+        "shape_sigma is of modes; a planned test takes none.*: leave it out",
+    ),
     ({"test": 'points = ["here"]'}, "'here' is no point; write a place along a beam"),
     ({"test": "points = [[0.1]]"}, "is no point; write a place along a beam"),
 ]
