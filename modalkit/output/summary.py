@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from itertools import combinations
 
 import numpy as np
@@ -15,7 +16,7 @@ from updating.diagnosis.answer.verdict import NAME
 from updating.diagnosis.answer.where import CHANNELS, acting_together
 from updating.effects import Lack, Twin, in_a_set, twin_of
 from updating.effects.regions import named_places
-from updating.thresholds import BELIEVED_DOUBT, BEYOND_NOTHING, REJECTED_FIT
+from updating.thresholds import BELIEVED_DOUBT, BEYOND_NOTHING, REJECTED_FIT, SEPARATED_SIGMA
 
 IN_THE_PLACE = frozenset({"x", "y", "z", "region"})
 """Parameters that the line on the place tells."""
@@ -303,8 +304,9 @@ def _next(diagnosis: Diagnosis) -> str:
         test = diagnosis.next_test[0]
         if diagnosis.verdict == "unknown":
             return test.measure
-        confirm = "to confirm it, " if diagnosis.verdict == "named" else ""
-        return f"{confirm}{test.measure}: {separated(test)}"
+        if diagnosis.verdict == "named":
+            return _confirming(diagnosis, test)
+        return f"{test.measure}: {separated(test)}"
     names = diagnosis.sets[0] if diagnosis.verdict == "named" else diagnosis.effects
     ways = "; ".join(dict.fromkeys(diagnosis.known[n].separated_by for n in names if n in diagnosis.known))
     if diagnosis.verdict == "named":
@@ -312,6 +314,22 @@ def _next(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unknown":
         return "look at the modes that miss most below; more points there, and a test of the bare specimen"
     return ways
+
+
+def _confirming(diagnosis: Diagnosis, test: NextTest) -> str:
+    """Say how a named cause is confirmed: told from the most probable other set, or why it is not told from that."""
+    if test.expected_sigma < SEPARATED_SIGMA:
+        return (
+            f"no test that was weighed would confirm it, by {SEPARATED_SIGMA:g} sigma; nearest to it comes this: "
+            f"{test.measure}: {separated(test)}"
+        )
+    said = f"to confirm it, {test.measure}: {separated(test)}"
+    named = diagnosis.sets[0]
+    behind = next((row.effects for row in diagnosis.ranking if row.effects not in diagnosis.sets), named)
+    if behind == named or not test.pairs or any(behind in pair for pair in test.pairs):
+        return said
+    why = ", which has all of it and more," if not Counter(named) - Counter(behind) else ""
+    return f"{said}; from {' + '.join(behind)}{why} it does not tell it"
 
 
 SIZES = {1: "single causes", 2: "pairs", 3: "sets of three", 4: "sets of four"}

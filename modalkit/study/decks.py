@@ -82,6 +82,18 @@ def deck_spec(model: ModelTable, deck: DeckModel, damping: Damping) -> Spec:
     return spec_of(model, deck.imported, _material(deck, tuple(names)), tuple(regions), damping)
 
 
+def known_values(deck: DeckModel) -> dict[str, float]:
+    """Return moduli [Pa] and densities [kg/m3] by the names of their parameters, 1 where no card says one of all."""
+    own = {f"{region.name}.": region.materials for region in deck.division.regions}
+    every = tuple(dict.fromkeys(name for names in own.values() for name in names))
+    made = {head: _material(deck, names) for head, names in {"": every, **own}.items()}
+    return {
+        f"{head}{key}": value
+        for head, one in made.items()
+        for key, value in (("E", one.E), ("density", one.density))
+    }
+
+
 def _material(deck: DeckModel, names: tuple[str, ...]) -> Material:
     """Return the one isotropic material of some elements [SI], else one whose modulus and density are factors."""
     length, force = UNITS[deck.units]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Self
@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 
 from acquisition.errors import StudyError
 from acquisition.si_units import si_value
+from modalkit.study.matrices import FACTORS_ALONE
 from modalkit.study.tables import Strict, rising
 from updating import LIBRARY
 from updating.models import Spec
@@ -24,6 +25,10 @@ SIGNS = frozenset(".#+(")
 """What stands between names, and between a name and its parameter, and so cannot stand in one."""
 
 UNITS = {"E": "Pa", "density": "kg/m^3"}
+
+FAR = 1e3
+"""A range of a modulus or density that lies wholly beyond so many times the model's value, or below one over it, is
+one of factors or in the deck's own units [-]. Doubled: units whose ratio is small pass for SI."""
 
 
 class HypothesisTable(Strict):
@@ -44,8 +49,9 @@ class HypothesisTable(Strict):
     the answer is ``NAME.value``.
     """
     range: Annotated[list[float | str], Field(min_length=2, max_length=2)] | None = None
-    """Range of the amount, 0 being the model as it stands. With ``parameter`` required, in its unit (factors without
-    ``[model.material]``)."""
+    """Range of the amount, 0 being the model as it stands. With ``parameter`` required, in the unit in which an update
+    gives it: factors where neither ``[model.material]`` nor the deck's cards say the value.
+    """
     why: str = ""
     """Reason, printed with the answer."""
 
@@ -187,17 +193,55 @@ def _of_parameter(spec: Spec, table: HypothesisTable) -> Hypothesis:
         raise StudyError(f"[[hypothesis]] {table.name!r}: {table.parameter}: {why}")
     own = getattr(spec.regions[names.index(region)], factor) if region else None
     nominal = float(getattr(spec.material, factor) if own is None else own)
-    unit = "-" if (spec.material.E, spec.material.density) == (1.0, 1.0) else UNITS[factor]
-    factors = f"; {table.parameter} is a factor where the study has no [model.material]"
-    low, high = _range(table, "", factors) if unit == "-" else _range(table, unit)
-    if not low > 0:
-        raise StudyError(
-            f"[[hypothesis]] {table.name!r}: {table.parameter} must be positive over its whole range"
-        )
+    unit, low, high = _factor_range(table, nominal, of_deck=deck is not None)
     index = names.index(region) if region else -1
     return Hypothesis(
         table.name, table.why, low, high, factor=factor, region=index, nominal=nominal, unit=unit
     )
+
+
+def check_ranges(tables: Sequence[HypothesisTable], known: Mapping[str, float]) -> None:
+    """See that ranges of moduli and densities of a deck can be, before CalculiX runs.
+
+    Parameters
+    ----------
+    tables : sequence of HypothesisTable
+        As the study has them.
+    known : mapping of str to float
+        Value of each modulus and density by the parameter's name, 1 where no card says it [Pa], [kg/m3].
+
+    Raises
+    ------
+    StudyError
+        If one is in another unit, or far from the value.
+    """
+    for table in tables:
+        if table.parameter in known:
+            _factor_range(table, known[table.parameter], of_deck=True)
+
+
+def _factor_range(table: HypothesisTable, nominal: float, *, of_deck: bool) -> tuple[str, float, float]:
+    """Return unit and range of a modulus or density: in SI where the model knows its value, as update has it."""
+    name = str(table.parameter)
+    what = f"[[hypothesis]] {table.name!r}"
+    if nominal == FACTORS_ALONE.E:
+        lacks = (
+            "no card of the deck says it of all its elements"
+            if of_deck
+            else "the study has no [model.material]"
+        )
+        unit, (low, high) = "-", _range(table, "", f"; {name} is a factor where {lacks}")
+    else:
+        unit = UNITS[name.rpartition(".")[2]]
+        low, high = _range(table, unit)
+        if high < nominal / FAR or low > nominal * FAR:
+            raise StudyError(
+                f"{what}: range = [{low:g}, {high:g}] {unit} is far from the model's value, {name} = {nominal:.4g} "
+                f"{unit}; give the range in {unit} or with a unit, as an update gives {name}, not as factors"
+            )
+    if not low > 0:
+        raise StudyError(f"{what}: {name} must be positive over its whole range")
+    return unit, low, high
 
 
 def _number(deck: DeckModel, table: HypothesisTable) -> Hypothesis | None:

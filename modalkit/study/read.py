@@ -11,9 +11,9 @@ from pydantic import ValidationError
 
 from acquisition.encoding import not_utf8
 from acquisition.errors import StudyError
-from modalkit.study.decks import deck_of, deck_spec
+from modalkit.study.decks import deck_of, deck_spec, known_values
 from modalkit.study.errors import explain, known_keys
-from modalkit.study.hypotheses import HypothesisTable, with_hypotheses
+from modalkit.study.hypotheses import HypothesisTable, check_ranges, with_hypotheses
 from modalkit.study.matrices import matrices_of, matrices_spec
 from modalkit.study.probable_units import check_units
 from modalkit.study.stated_effects import accepted_values, check_repeated
@@ -165,7 +165,9 @@ class Study(Strict):
     def _of_deck(self) -> Spec:
         """The model that a deck is, run once."""
         assert self.model is not None
-        spec = deck_spec(self.model, deck_of(self.model, self.file), _damping(self.model))
+        deck = deck_of(self.model, self.file)
+        check_ranges(self.hypothesis, known_values(deck))
+        spec = deck_spec(self.model, deck, _damping(self.model))
         return with_hypotheses(spec, self.hypothesis, self.file, self.model.units)
 
     def _elements(self, model: ModelTable) -> tuple[int, ...]:

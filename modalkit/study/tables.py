@@ -189,9 +189,12 @@ class MeasurementTable(Strict):
         rising("band", self.band)
         if self.modes is None:
             if self.shape_sigma is not None:
-                raise ValueError(
-                    "shape_sigma is of modes; of files the identification says how well shapes are known: leave it out"
+                instead = (
+                    "of files the identification says how well shapes are known"
+                    if self.files
+                    else "a planned test takes none, its forecast says how well it takes shapes to be known"
                 )
+                raise ValueError(f"shape_sigma is of modes; {instead}: leave it out")
             return self
         if self.files:
             raise ValueError("files and modes are both given; modes stand in place of files: leave one out")

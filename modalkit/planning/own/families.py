@@ -6,14 +6,13 @@ says, as in a diagnosis.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from acquisition.arrays import FloatArray
-from acquisition.quantities import severity
+from acquisition.quantities import UNSPOKEN, quantity, severity
 from modalkit.planning.family import Family
 from modalkit.planning.own.overall import OVERALL
 from modalkit.planning.own.parts import PARTS
-from modalkit.planning.own.sizes import in_unit
 from modalkit.planning.own.spots import SPOTS
 from updating.effects.base import Effect
 from updating.effects.hypothesis import Supposed
@@ -43,16 +42,24 @@ def families_of(effect: Effect, predictor: Predictor, points: FloatArray) -> lis
 def _supposed(effect: Supposed) -> Iterator[Family]:
     """How far it is as the study supposes, in full asked about; of a parameter its value."""
     own = effect.hypothesis
-    if not own.factor:
+    if not own.of_parameter:
         most = min(1.0, own.high)
         yield Family(
             effect.name, lambda q, _: {"amount": q}, min(own.low, 0.0), own.high, most, f"{effect.name}, by more than",
             lambda q: f"{severity(100 * abs(q))} %", both=False,
         )  # fmt: skip
         return
-    sign = -1.0 if own.high <= own.nominal else 1.0
-    ends = sorted(sign * (end - own.nominal) for end in (own.low, own.high))
+    stands = own.as_modelled
+    sign = -1.0 if own.high <= stands else 1.0
+    ends = sorted(sign * (end - stands) for end in (own.low, own.high))
     yield Family(
-        effect.name, lambda q, _: {"value": own.nominal + sign * q}, min(ends[0], 0.0), ends[1], ends[1],
-        f"{effect.name}: away from the model's value by more than", in_unit(own.unit.strip("-")), both=False,
+        effect.name, lambda q, _: {"value": stands + sign * q}, min(ends[0], 0.0), ends[1], ends[1],
+        f"{effect.name}: away from the model's value by more than", _in_its_unit(own.unit), both=False,
     )  # fmt: skip
+
+
+def _in_its_unit(unit: str) -> Callable[[float], str]:
+    """Return what writes how far a parameter is off: in its unit, that of a factor in per cent."""
+    if unit in UNSPOKEN:
+        return lambda q: f"{severity(100 * abs(q))} %"
+    return lambda q: quantity(float(severity(abs(q))), unit)

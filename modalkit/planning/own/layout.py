@@ -22,7 +22,8 @@ class Layout:
     Parameters
     ----------
     blank : Measured
-        Points and FRFs of all stations; its modes are not looked at.
+        Points and FRFs of all stations; its modes are not looked at, and modes without a partner in the model are
+        none of its: the data are the model's own.
     station : (n_frf,) int array
         Station of each FRF.
     own : tuple of int
@@ -76,7 +77,7 @@ def layout_of(test: Measured, spots: tuple[Spot, ...]) -> Layout:
         test, points=points, directions=directions, nodes=nodes, seen=seen, hit=hit, rows=None, signs=None,
         trusted=own if own.sum() > 1 else None, phase=None, phase_sigma=None, channel_group=None, slope=None,
         slope_sigma=None, trend=None, trend_sigma=None, noise=None, shared=None, partners=None, partner_constants=None,
-        written=(), warnings=(),
+        unpaired=None, written=(), warnings=(),
     )  # fmt: skip
     return Layout(blank, moves, tuple(mine.tolist()), spots, roving, drive)
 
@@ -90,6 +91,7 @@ def _of_spots(test: Measured, spots: tuple[Spot, ...]) -> Layout:
         test, points=np.vstack([test.points, *places]), directions=_directions(test, spots),
         nodes=tuple(range(1, count + 1)), seen=np.zeros(count, dtype=int), hit=hit,
         constants=np.zeros((count, 0)), constants_sigma=np.zeros((count, 0)), warnings=(), written=(), trusted=None,
+        unpaired=None,
     )  # fmt: skip
     return Layout(blank, hit, (), spots, roving=False)
 

@@ -179,6 +179,23 @@ def test_a_named_cause_says_its_size_its_place_and_its_test() -> None:
     assert LIBRARY["sensor_mass"].separated_by in message["Next"]
 
 
+def test_a_test_confirms_only_what_it_tells_from_the_most_probable_other_set() -> None:
+    own, next_set = ("sensor_mass",), ("E",)
+    sure = NextTest("weigh the sensor", ("sensor_mass", "E"), 8.4, ((own, next_set),))
+    assert lines(replace(NAMED, next_test=(sure,)))["Next"].startswith(
+        "Next:    to confirm it, weigh the sensor"
+    )
+    weak = lines(replace(NAMED, next_test=(replace(sure, expected_sigma=1.1),)))["Next"]
+    assert "to confirm it" not in weak
+    assert "no test that was weighed would confirm it, by 3 sigma" in weak
+    assert weak.endswith("separates sensor_mass from E by 1 sigma")
+    other = replace(sure, pairs=((own, ("density",)),))
+    assert lines(replace(NAMED, next_test=(other,)))["Next"].endswith("from E it does not tell it")
+    more = Ranked(("sensor_mass", "density"), 0.02, (), {}, True, 0.3)
+    larger = lines(replace(NAMED, ranking=(SENSOR, more), next_test=(sure,)))["Next"]
+    assert larger.endswith("from sensor_mass + density, which has all of it and more, it does not tell it")
+
+
 def test_a_pair_is_named_with_both() -> None:
     both = Ranked(("E", "sensor_mass"), 0.99, (), {**E.parameters, **SENSOR.parameters}, True, 0.5)
     message = lines(replace(NAMED, sets=(both.effects,), ranking=(both,)))

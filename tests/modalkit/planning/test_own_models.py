@@ -253,6 +253,22 @@ def test_where_frequencies_alone_are_known_shapes_are_proposed(tmp_path: Path) -
     assert np.isfinite(white).all()
 
 
+def test_a_mode_without_a_partner_in_the_model_does_not_stand_in_the_way(tmp_path: Path) -> None:
+    """A table of modes of which one is none of the model's is forecast by the others."""
+    rows = ["frequency,sigma,2+X,4+X,6+X"]
+    own = np.sin(np.outer((2, 4, 6), (2 * np.arange(1, 4) - 1) * np.pi / 13))
+    for f, shape in zip(closed_form({}), own.T, strict=False):
+        rows.append(f"{f:.6g},{1e-3 * f:.3g}," + ",".join(f"{v:.5g}" for v in shape))
+    rows.append("130,0.1,1,-1,0.02")
+    (tmp_path / "modes.csv").write_text("\n".join(rows) + "\n")
+    found = bench(tmp_path, test='modes = "modes.csv"')
+    assert found.design.modes == 3
+    family = next(f for f in found.families if f.name == "local_stiffness of middle")
+    change = found.change(family, float(np.log(1 / 0.7)), 0.0)
+    softer = np.log(closed_form({2: 0.7, 3: 0.7}) / closed_form({}))
+    assert change[:4] == pytest.approx(softer[:4], abs=1e-9)
+
+
 def test_points_are_proposed_by_node_direction_and_region(chained: Forecast) -> None:
     points = next(one for one in chained.advice if one.change.key == "points")
     assert "node" in points.change.measure
@@ -300,6 +316,10 @@ REFUSED = [
     ({"test": 'points = ["2+X", "9+X"]'}, "node 9 is none of the model's, which reach from 1 to 6"),
     ({"test": 'points = ["2+X", "3+Y"]'}, "3.Y: the model does not move that way"),
     ({"test": 'points = ["2+X", [9.0, 0.0, 0.0, "x"]]'}, "off the imported structure"),
+    (
+        {"test": f'{POINTS}\nshape_sigma = "4 %"'},
+        "shape_sigma is of modes; a planned test takes none.*: leave it out",
+    ),
     ({"test": 'points = ["here"]'}, "'here' is no point; write a place along a beam"),
     ({"test": "points = [[0.1]]"}, "is no point; write a place along a beam"),
 ]

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from acquisition import StudyError
+from modalkit.planning.own.families import families_of
 from modalkit.study.read import read_study
 from modalkit.workflow.case import open_study
 from updating.effects import hypotheses_of
@@ -110,3 +111,53 @@ def test_what_cannot_be_supposed_is_refused_in_one_line(shells: ModuleType, tmp_
         with pytest.raises(StudyError, match=message) as caught:
             read_study(studied(tmp_path, plate(shells), TABLE.format(parameter, *ends))).spec()
         assert "\n" not in str(caught.value)
+
+
+def test_a_region_s_modulus_is_supposed_in_the_unit_of_an_update(
+    shells: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two materials: no one modulus is the structure's, but each region has its own by its cards."""
+    deck = plate(shells)
+    at = next(i for i, line in enumerate(deck) if line.startswith("*ELASTIC"))
+    deck[at + 1] = "70e9, 0.3"
+    path = studied(tmp_path, deck, TABLE.format("ROOT.E", '"35 GPa"', '"70 GPa"'))
+    (stated,) = read_study(path).spec().hypotheses
+    assert (stated.low, stated.high, stated.nominal, stated.unit) == (35e9, 70e9, 70e9, "Pa")
+    path = studied(tmp_path, deck, TABLE.format("E", 0.5, 1.0))
+    (stated,) = read_study(path).spec().hypotheses
+    assert (stated.low, stated.high, stated.nominal, stated.unit) == (0.5, 1.0, 1.0, "-")
+    monkeypatch.setenv("PATH", "")  # what is refused is refused before CalculiX runs
+    for ends, parameter, message in (
+        ((0.5, 1.0), "ROOT.E", r"\[0.5, 1\] Pa is far from the model's value, ROOT.E = 7e\+10 Pa"),
+        (('"1 mm"', '"2 mm"'), "ROOT.E", "no quantity in Pa"),
+        (
+            ('"35 GPa"', '"70 GPa"'),
+            "E",
+            "E is a factor where no card of the deck says it of all its elements",
+        ),
+    ):
+        with pytest.raises(StudyError, match=message):
+            read_study(studied(tmp_path, deck, TABLE.format(parameter, *ends))).spec()
+
+
+def test_a_forecast_asks_about_a_number_of_the_deck(shells: ModuleType, tmp_path: Path) -> None:
+    """A shift of nodes stands at 0 and a spring at what the deck says; both are said in their unit."""
+    deck = plate(shells)
+    nodes = [
+        line
+        for line in deck
+        if line.count(",") == 3 and line[0].isdigit() and line.split(",")[1].strip() == "0.1"
+    ]
+    held = deck.index("*BOUNDARY")
+    sets = ["*NSET, NSET=EDGE", *[line.split(",")[0] for line in deck if line in nodes]]
+    deck = [*deck[:held], *sets, *deck[held:]]
+    edge = TABLE.format("EDGE.x", '"-2 mm"', '"0 mm"').replace('"it"', '"shorter"')
+    seat = TABLE.format("SEAT.stiffness", 1e4, 2e4).replace('"it"', '"softer"')
+    path = studied(tmp_path, deck, edge, seat)
+    predictor = predictor_of(open_study(path).case)
+    shorter, softer = (families_of(e, predictor, np.zeros((0, 3)))[0] for e in hypotheses_of(predictor.spec))
+    assert shorter.values(0.0, 0.0) == {"value": 0.0}
+    assert shorter.values(shorter.clear, 0.0) == {"value": pytest.approx(-0.002)}
+    assert shorter.amount(5e-4) == "0.5 mm"
+    assert softer.values(softer.clear, 0.0) == {"value": pytest.approx(1e4)}
+    assert softer.amount(5e3) == "5000 N/m"

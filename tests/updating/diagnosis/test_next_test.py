@@ -9,7 +9,7 @@ from acquisition import ModalData
 from updating.case import Case
 from updating.diagnosis.answer.verdict import decide
 from updating.diagnosis.diagnose import diagnose, diagnose_together, pose
-from updating.diagnosis.next_test import propose
+from updating.diagnosis.next_test import _Found, propose
 from updating.diagnosis.next_test.base import Rival, Site, separation
 from updating.diagnosis.next_test.changed import AddedMass
 from updating.diagnosis.next_test.free_free import FreeFree
@@ -25,7 +25,7 @@ from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
 from updating.test_data.axes import Axes
 from updating.test_data.taken import measured_from_modes
-from updating.thresholds import BALANCE_SIGMA
+from updating.thresholds import BALANCE_SIGMA, SEPARATED_SIGMA
 from updating.tolerances import Tolerances
 
 BEAM = Spec("beam", 0.4, 0.03, 0.005, (20,), ("x0",), "euler-bernoulli", Material(210e9, 7850.0, 0.3))
@@ -134,6 +134,33 @@ def test_two_explanations_are_told_apart_by_the_cheapest_way(problem: SpecimenPr
     tests = propose(problem, found, (("E",), ("density",)))
     assert "weigh" in tests[0].measure
     assert tests[0].separates == ("E", "density")
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_named_cause_is_told_from_its_most_probable_rival_first(problem: SpecimenProblem) -> None:
+    """Of E the length is the nearest rival here: what tells them apart stands before what tells others better."""
+    found = search(problem, [LIBRARY[n] for n in SCALED])
+    rivals = [
+        row.names for row in found.compared if row.names and row.names != ("E",) and "E" not in row.names
+    ]
+    tests = propose(problem, found, (("E",),), "named")
+    confirms = [
+        (("E",), rivals[0]) in test.pairs and test.expected_sigma >= SEPARATED_SIGMA for test in tests
+    ]
+    assert confirms == sorted(confirms, reverse=True)
+    assert all(
+        test.expected_sigma >= SEPARATED_SIGMA or test.pairs == ((("E",), rivals[0]),) for test in tests
+    )
+    assert {("E",)} == {pair[0] for test in tests for pair in test.pairs}
+
+
+def test_where_no_rival_is_separated_the_most_probable_one_is_spoken_of() -> None:
+    """Not the one that a test comes nearest to separating."""
+    sigmas = {(0, 1): 1.2, (0, 2): 2.9}
+    trial, site = Caliper(), Site(pose(case_of())[0], 0)
+    assert _Found(trial, site, sigmas).stated == ((0, 2),)
+    assert _Found(trial, site, sigmas, (0, 1)).stated == ((0, 1),)
+    assert not _Found(trial, site, {(0, 1): 1.2, (0, 2): 9.0}, (0, 1)).confirms
 
 
 def test_several_specimens_say_on_which_of_them() -> None:

@@ -2,7 +2,8 @@
 
 Each explanation predicts the outcome of each test. If one of them is right, another is off by the Mahalanobis distance
 that is left when its parameters and all nuisances have done their best, jointly with the data there are already; of the
-two directions the smaller counts. Tests that separate all that is left come first, the cheapest of them at the top.
+two directions the smaller counts. Tests that separate all that is left come first, the cheapest of them at the top; of
+a cause that is named those that separate it from its most probable rival, since nothing else confirms it.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ class _Found:
     trial: Trial
     site: Site
     sigmas: dict[tuple[int, int], float]
+    first: tuple[int, int] | None = None  # of a named cause: the pair of it and its most probable rival
 
     @property
     def separated(self) -> tuple[tuple[int, int], ...]:
@@ -40,8 +42,12 @@ class _Found:
 
     @property
     def stated(self) -> tuple[tuple[int, int], ...]:
-        """The pairs of which the proposal speaks: those separated, or the one that comes nearest to it."""
-        return self.separated or (max(self.sigmas, key=lambda pair: self.sigmas[pair]),)
+        """The pairs of which the proposal speaks: those separated; else the first, or the one that comes nearest."""
+        return self.separated or (self.first or max(self.sigmas, key=lambda pair: self.sigmas[pair]),)
+
+    @property
+    def confirms(self) -> bool:
+        return self.first is None or self.first in self.separated
 
     @property
     def sigma(self) -> float:
@@ -65,7 +71,8 @@ def propose(
     sets : tuple of tuple of str
         Sets of effects of the answer.
     verdict : str
-        What was decided. A cause that is named is told from its runners-up, to confirm it.
+        What was decided. A cause that is named is told from its runners-up, to confirm it, the most probable of them
+        first.
     """
     if verdict == "unknown":
         return tuple(advice for site in _sites(diagnosis_problem) for advice in advise(site, found))[
@@ -75,10 +82,11 @@ def propose(
     if len(rivals) < 2:
         return ()
     pairs = list(combinations(range(len(rivals)), 2))
-    if verdict == "named":
+    first = (0, 1) if verdict == "named" else None
+    if first:
         pairs = [pair for pair in pairs if pair[0] == 0]
     evaluations = [
-        _evaluated(trial, site, rivals, pairs)
+        _evaluated(trial, site, rivals, pairs, first)
         for site in _sites(diagnosis_problem)
         for trial in _trials(site, rivals)
     ]
@@ -88,12 +96,16 @@ def propose(
         if key not in best or _worth(evaluation) > _worth(best[key]):
             best[key] = evaluation
     kept = [evaluation for evaluation in best.values() if evaluation.sigma >= WORTHWHILE_SIGMA]
-    kept.sort(key=lambda evaluation: (-len(evaluation.separated), evaluation.trial.cost, -evaluation.sigma))
+    kept.sort(key=_order)
     return tuple(_proposal(evaluation, rivals) for evaluation in kept[:TESTS_PROPOSED])
 
 
-def _worth(evaluation: _Found) -> tuple[int, float]:
-    return len(evaluation.separated), evaluation.sigma
+def _worth(evaluation: _Found) -> tuple[bool, int, float]:
+    return evaluation.confirms, len(evaluation.separated), evaluation.sigma
+
+
+def _order(evaluation: _Found) -> tuple[bool, int, int, float]:
+    return not evaluation.confirms, -len(evaluation.separated), evaluation.trial.cost, -evaluation.sigma
 
 
 def _rivals(
@@ -120,7 +132,13 @@ def _trials(site: Site, rivals: tuple[Rival, ...]) -> Iterator[Trial]:
         yield from maker.trials(site, rivals)
 
 
-def _evaluated(trial: Trial, site: Site, rivals: tuple[Rival, ...], pairs: list[tuple[int, int]]) -> _Found:
+def _evaluated(
+    trial: Trial,
+    site: Site,
+    rivals: tuple[Rival, ...],
+    pairs: list[tuple[int, int]],
+    first: tuple[int, int] | None,
+) -> _Found:
     expected = trial.outcomes(site, rivals)
     sigmas = {
         (i, j): min(
@@ -128,7 +146,7 @@ def _evaluated(trial: Trial, site: Site, rivals: tuple[Rival, ...], pairs: list[
         )
         for i, j in pairs
     }
-    return _Found(trial, site, sigmas)
+    return _Found(trial, site, sigmas, first)
 
 
 def _proposal(evaluation: _Found, rivals: tuple[Rival, ...]) -> NextTest:

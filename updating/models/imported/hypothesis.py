@@ -66,6 +66,11 @@ class Hypothesis:
         return bool(self.factor) or self.of_deck is not None
 
     @property
+    def as_modelled(self) -> float:
+        """Value of the parameter where the model stands: none of how far nodes are moved [its unit]."""
+        return self.nominal * (1.0 if self.of_deck is None else self.of_deck.start)
+
+    @property
     def differences(self) -> tuple[Sparse, ...]:
         """Every matrix by which it differs from the model; none of a modulus or a density [SI]."""
         known = [matrix for matrix in (self.stiffness, self.mass) if matrix is not None]
