@@ -157,12 +157,13 @@ def test_a_title_that_is_a_script_stays_text(tmp_path, small_frfs: FrfSet):
     write_uff(path, frfs=small_frfs, title=title)
     study = tmp_path / "evil.toml"
     study.write_text(f'title = "{title}"\n[test]\nfiles = ["evil.uff"]\n', encoding="utf-8")
-    client = TestClient(application(opened(study), token=TOKEN, port=PORT), base_url=HOME)
-    state = client.get(f"/{TOKEN}/api/state")
-    assert state.headers["content-type"] == "application/json"
-    assert state.headers["x-content-type-options"] == "nosniff"
-    assert state.json()["title"] == title
-    assert "<script>alert" not in client.get(f"/{TOKEN}/").text
+    for opening, shown in ((study, title), (path, path.name)):
+        client = TestClient(application(opened(opening), token=TOKEN, port=PORT), base_url=HOME)
+        state = client.get(f"/{TOKEN}/api/state")
+        assert state.headers["content-type"] == "application/json"
+        assert state.headers["x-content-type-options"] == "nosniff"
+        assert state.json()["title"] == shown
+        assert "<script>alert" not in client.get(f"/{TOKEN}/").text
 
 
 MARKUP = (
