@@ -17,7 +17,7 @@ from modalkit.output.whole import write_json
 from modalkit.planning import DesignForecast, Forecast, KnownTest, RigBench, forecast
 from modalkit.planning.document import family_of, statement, to_json
 from modalkit.planning.from_study import bench_of, known_test_of
-from modalkit.planning.note import followed, note, separated, some
+from modalkit.planning.note import brings, followed, note, offered
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check, check
 from modalkit.planning.writing import noise_for, write_case
@@ -125,7 +125,11 @@ def show_tables(found: Forecast) -> None:
         show_table(
             _separations(found.now), "Sigma between each effect, clear, and the nearest that another can do"
         )
-    show_table(_changes(found), "What a change buys", digits={"times smaller": 2, "share told": 3})
+    if offered(found):
+        show_table(_changes(found), "What a change buys", digits={"times smaller": 2, "share told": 3})
+    if idle := [one.change.measure for one in found.advice if one.worth <= 0]:
+        out.print(f"Tried, without gain on the whole: {'; '.join(idle)}", markup=False)
+        out.print()
 
 
 def _thresholds(now: DesignForecast) -> pd.DataFrame:
@@ -176,11 +180,11 @@ def _changes(found: Forecast) -> pd.DataFrame:
         [
             {
                 "change": one.change.measure,
-                "newly separates": some(separated(one.separates)) or "-",
+                "newly separates": brings(one) or "-",
                 "times smaller": one.factor,
                 "share told": one.after.shown_share,
             }
-            for one in found.advice
+            for one in offered(found)
         ]
     )
 

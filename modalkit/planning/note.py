@@ -8,10 +8,24 @@ from modalkit.planning.separability import CLASS, NONE, SEEN, SURE
 
 _LINES = 4
 
+LARGER = 0.995
+"""Below it a change makes the severities told larger, by more than the digits shown [-]."""
+
 
 def followed(found: Forecast) -> bool:
     """Tell whether there is a change worth the trouble."""
     return bool(found.advice) and found.advice[0].worth > 0
+
+
+def offered(found: Forecast) -> list[Advice]:
+    """Return the changes that gain something, the most worth first; one that makes the test worse is no advice."""
+    return [one for one in found.advice if one.worth > 0]
+
+
+def brings(one: Advice) -> str:
+    """Return what a change newly separates, and that severities told grow where they do; empty for neither."""
+    larger = f"severities told become {1 / one.factor:.2f} times larger" if one.factor < LARGER else ""
+    return "; ".join(filter(None, (some(separated(one.separates)), larger)))
 
 
 def note(found: Forecast) -> list[str]:
@@ -85,4 +99,6 @@ def _from_when(now: DesignForecast) -> str:
 def _best(best: Advice) -> str:
     newly = some(separated(best.separates))
     first = f"separates {newly}" if newly else "separates no further pair"
-    return f"Advice:  {best.change.measure}: {first}; severities told become {best.factor:.1f} times smaller."
+    less = best.factor >= LARGER
+    times = f"{best.factor:.1f} times smaller" if less else f"{1 / best.factor:.1f} times larger"
+    return f"Advice:  {best.change.measure}: {first}; severities told become {times}."

@@ -10,7 +10,7 @@ import numpy as np
 from modalkit.output.schemas.plan import PlanDocument
 from modalkit.planning import Forecast
 from modalkit.planning.document import to_json
-from modalkit.planning.note import note, separated, some
+from modalkit.planning.note import brings, note, offered
 from modalkit.planning.separability import NONE, SEEN, SURE
 from modalkit.planning.trials import Check
 from modalkit.report.charts.matrix import matrix_chart
@@ -155,13 +155,15 @@ def changes_table(found: Forecast) -> Raw:
     rows: list[list[Cell | Raw]] = [
         [
             one.change.measure,
-            some(separated(one.separates)) or "nothing",
+            brings(one) or "nothing",
             one.factor,
             one.after.shown_share,
         ]
-        for one in found.advice
+        for one in offered(found)
     ]
-    return table("Changes of the test that were tried, the most worth first.", columns, rows)
+    idle = [one.change.measure for one in found.advice if one.worth <= 0]
+    more = f" Without gain on the whole: {'; '.join(idle)}." if idle else ""
+    return table(f"Changes of the test that were tried, the most worth first.{more}", columns, rows)
 
 
 def _trials(checked: Check | None) -> Raw:

@@ -13,6 +13,7 @@ from modalkit.planning.known import by_default
 from modalkit.planning.own.bench import OwnBench
 from modalkit.planning.own.candidates import candidates
 from modalkit.planning.own.layout import Known, Layout, imagined, layout_of
+from modalkit.planning.own.parts import where_supports_are
 from modalkit.planning.own.tracked import Tracked
 from modalkit.simulation.planned import spaced
 from modalkit.study.read import Study
@@ -89,7 +90,7 @@ def own_bench(study: Study) -> OwnBench:
         design,
         test.band,
         test.hits,
-        (*test.statement, *_on_damping(design)),
+        (*test.statement, *_on_damping(design), *where_supports_are(test.predictor)),
         tuple(_left_out(study)),
         without,
     )

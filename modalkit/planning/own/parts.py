@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from acquisition.quantities import severity
+from acquisition.quantities import place, severity
 from modalkit.planning.family import Family, Values, per_cent
 from modalkit.planning.own.sizes import FAINTEST, Maker, in_unit
 from updating.effects.base import Effect
 from updating.effects.regions import WAYS, heavy_regions, stiff_regions
 from updating.effects.structure.spring import own_stiffness
-from updating.models.imported.groups import Joint, Support
+from updating.models.imported.groups import NUMBERED, Joint, Support
 from updating.prediction.predict import Predictor
 
 SOFTER = float(np.log(1 / 0.8))
@@ -150,10 +150,22 @@ def _clamps(effect: Effect, predictor: Predictor) -> Iterator[Family]:
     for name, support, axis in ways:
         yield Family(
             name, _given(support, axis), 0.0, 1 / stiffness.low, 1 / (soft * stiffness.low),
-            "a clamp softer than" if support is None else f"a support {support.name} softer than",
+            "a clamp softer than" if support is None else f"{_spoken(support)} softer than",
             lambda q: f"{severity(1 / q)} {stiffness.unit}", effect=effect.name,
             at="" if support is None else support.name, finest=max(stiffness.low / stiffness.high, FAINTEST),
         )  # fmt: skip
+
+
+def _spoken(support: Support) -> str:
+    """Return what a support is called in a sentence: one without a node set bears its number already."""
+    return support.name if support.name.startswith(NUMBERED) else f"support {support.name}"
+
+
+def where_supports_are(predictor: Predictor) -> list[str]:
+    """Return the place of each support: names that a model numbers say nothing by themselves."""
+    imported = predictor.spec.imported
+    supports = () if imported is None else imported.supports
+    return [f"{_spoken(one)} is about {place(one.centre.tolist())}" for one in supports]
 
 
 def _given(support: Support | None, axis: int) -> Callable[[float, float], Values]:

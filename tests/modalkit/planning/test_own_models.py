@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,10 +21,15 @@ from modalkit.output.whole import plain
 from modalkit.planning import Forecast, forecast
 from modalkit.planning.document import to_json
 from modalkit.planning.from_study import bench_of
+from modalkit.planning.note import brings, note, offered
 from modalkit.planning.own import OwnBench
+from modalkit.planning.own.parts import PARTS as MAKERS
+from modalkit.planning.own.parts import where_supports_are
 from modalkit.planning.separability import SEEN, distances, nearest_in
 from modalkit.planning.trials import check
 from modalkit.study.read import read_study
+from updating.effects.base import Parameter
+from updating.models.imported.groups import Support
 
 MASSES, SPRINGS = 6, 6
 K, M = 1e6, 1.0
@@ -275,6 +282,39 @@ def test_points_are_proposed_by_node_direction_and_region(chained: Forecast) -> 
     assert "along x" in points.change.measure
     assert any(part in points.change.measure for part in PARTS)
     assert len(points.change.design.stations) == 5
+
+
+def test_a_support_is_called_by_one_name_and_said_where_it_is() -> None:
+    """One that is no node set bears a number, which says nothing by itself."""
+    supports = (support("support 1"), support("FOOT"))
+    predictor: Any = SimpleNamespace(spec=SimpleNamespace(imported=SimpleNamespace(supports=supports)))
+    assert where_supports_are(predictor) == [
+        "support 1 is about x = 20, y = 15, z = -5 mm",
+        "support FOOT is about x = 20, y = 15, z = -5 mm",
+    ]
+    effect: Any = SimpleNamespace(
+        name="clamp_translation", parameters=lambda _: (Parameter("stiffness", "N/m", 1e3, 1e9, ""),)
+    )
+    words = [family.words for family in MAKERS["clamp_translation"](effect, predictor)]
+    assert words == ["support 1 softer than"] * 3 + ["support FOOT softer than"] * 3
+
+
+def support(name: str) -> Support:
+    whole = np.eye(6)
+    return Support(
+        name, np.array([0.02, 0.015, -0.005]), np.zeros((6, 6)), whole, whole, whole, whole[0], whole[0]
+    )
+
+
+def test_a_change_that_makes_the_test_worse_is_not_offered(chained: Forecast) -> None:
+    best = chained.advice[0]
+    worse = replace(best, worth=-0.2, factor=0.85, separates=())
+    trade = replace(best, worth=0.1, factor=0.8, separates=(("E", "density"),))
+    found = replace(chained, advice=(best, trade, worse))
+    assert offered(found) == [best, trade]
+    assert brings(trade) == "E from density; severities told become 1.25 times larger"
+    assert not brings(replace(best, separates=(), factor=1.0))
+    assert note(replace(found, advice=(trade,)))[-1].endswith("severities told become 1.2 times larger.")
 
 
 PLATE = """

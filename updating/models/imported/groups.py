@@ -26,6 +26,9 @@ TOGETHER = 1e-6
 FELT = 1e-6
 """A support is held in a direction by more than this share of what holds it most [-]: the rest is rounding."""
 
+NUMBERED = "support "
+"""What a support without a node set of its own is called, before its number."""
+
 SEPARATORS = "_-. "
 """Marks between the words of a name."""
 
@@ -356,4 +359,4 @@ def _named(places: Places, sets: NodeSets, group: IntArray, number: int) -> str:
         for name, nodes in sets.items()
     }
     best = max(alike, key=lambda name: alike[name], default="")
-    return best if best and alike[best] > 0.5 else f"support {number + 1}"
+    return best if best and alike[best] > 0.5 else f"{NUMBERED}{number + 1}"
