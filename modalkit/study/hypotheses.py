@@ -216,7 +216,7 @@ def check_ranges(tables: Sequence[HypothesisTable], known: Mapping[str, float]) 
         If one is in another unit, or far from the value.
     """
     for table in tables:
-        if table.parameter in known:
+        if table.parameter is not None and table.parameter in known:
             _factor_range(table, known[table.parameter], of_deck=True)
 
 
