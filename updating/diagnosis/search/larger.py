@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
-from updating.diagnosis.search.together import join, once_more, score_tests
+from updating.diagnosis.search.together import join, once_more, same_place_twice, score_tests
 from updating.thresholds import LARGER_SETS, SETS_ENLARGED
 
 
@@ -71,12 +71,13 @@ def _unlike(bases: list[Explanation]) -> list[Explanation]:
 
 
 def _drafts(problem: DiagnosisProblem, base: Explanation, singles: list[Explanation]) -> Iterator[_Draft]:
-    """Yield what a set may be enlarged by: fewer parameters than data, an effect of its own a second time at most."""
+    """Yield what a set may be enlarged by: fewer parameters than data, one of its own once more at most, elsewhere."""
     data = len(base.best.comparison.residual)
     others = [
         once_more(e) if e.names[0] in base.names else e
         for e in singles
         if base.names.count(e.names[0]) < (2 if e.candidate.effects[0].repeats_on(problem.predictor) else 1)
+        and not same_place_twice(problem, base.candidate, e.candidate)
         and len(base.best.coordinates) + len(e.best.coordinates) < data - 1
     ]
     if not others:

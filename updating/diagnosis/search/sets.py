@@ -12,7 +12,15 @@ from updating.diagnosis.problem.face import DiagnosisProblem
 from updating.diagnosis.search.evidence import Explanation
 from updating.diagnosis.search.fit import Point, evaluate, highest, sensitivities
 from updating.diagnosis.search.prior import log_prior
-from updating.diagnosis.search.together import Part, join, joined, linear_step, once_more, score_tests
+from updating.diagnosis.search.together import (
+    Part,
+    join,
+    joined,
+    linear_step,
+    once_more,
+    same_place_twice,
+    score_tests,
+)
 from updating.effects import Effect
 from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
@@ -178,6 +186,7 @@ def _in_other_forms(
             for single in sorted(singles, key=lambda e: -e.log_evidence)
             if single.names == other.names
             and single.candidate.forms != other.forms
+            and not same_place_twice(problem, kept, single.candidate)
             and len(place) + len(single.best.coordinates) < data
         ]
         heights = [_after_few_steps(problem, (kept, place), rival, []) for rival in rivals[:FORMS_TRIED]]
@@ -197,9 +206,8 @@ def _allowed(problem: DiagnosisProblem, singles: list[Explanation]) -> list[tupl
     for i, j in combinations_with_replacement(range(len(singles)), 2):
         first, second = singles[i], singles[j]
         if first.names == second.names:
-            placed = any(name.endswith(".x") for name, _ in problem.parameters(first.candidate))
             repeats = first.candidate.effects[0].repeats_on(problem.predictor)
-            if not repeats or (i == j and not placed):
+            if not repeats or same_place_twice(problem, first.candidate, second.candidate):
                 continue
         if len(first.best.coordinates) + len(second.best.coordinates) < data:
             allowed.append((i, j))

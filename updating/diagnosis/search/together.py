@@ -53,6 +53,23 @@ def joined(one: Candidate, two: Candidate) -> Candidate:
     return Candidate(one.effects + two.effects, fuller=one.fuller or two.fuller, chosen=one.forms + two.forms)
 
 
+def same_place_twice(problem: DiagnosisProblem, one: Candidate, two: Candidate) -> bool:
+    """Tell whether an effect of one candidate is also in the other, at one and the same named place.
+
+    A region whose mass is multiplied twice is multiplied once by the product: the two are one cause, and their sizes
+    are not determined. What is searched for its place may be at two of them.
+    """
+    searched = {name for own in (one, two) for name, _ in problem.parameters(own)}
+    placed = {effect.name for own in (one, two) for effect in own.effects if f"{effect.key}.x" in searched}
+    pairs = [
+        (form.values, other.values)
+        for effect, form in zip(one.effects, one.forms, strict=True)
+        for again, other in zip(two.effects, two.forms, strict=True)
+        if effect.name == again.name and effect.name not in placed
+    ]
+    return any(dict(values) == dict(others) for values, others in pairs)
+
+
 def once_more(single: Explanation) -> Explanation:
     """Return a single effect as the second of its kind."""
     again = replace(single.candidate, effects=tuple(effect.again() for effect in single.candidate.effects))
