@@ -39,9 +39,9 @@ class Correlation(Displayed):
     unpaired_model : DataFrame
         Model modes in the range of the test without a partner: mode and frequency [Hz].
     frac : DataFrame
-        One row per FRF: nodes and directions of response and force, those of the force None where modes do not say it, and
-        FRAC [-]: of the FRFs where these were given, else of
-        the modal constants over the paired modes; empty where these have no level.
+        One row per FRF: nodes and directions of response and force, those of the force None where modes do not say
+        it, and FRAC [-]: of the FRFs where these were given, else of the modal constants over the paired modes; empty
+        where these have no level.
     warnings : tuple of str
         What the user ought to know.
     frfs : CorrelatedFrfs, optional

@@ -20,10 +20,9 @@ from modalkit import read
 from modalkit.app.acceptance import acceptable, accepted_entries
 from modalkit.app.model_page import Moved
 from modalkit.output.whole import plain
-from modalkit.views.hits import force_trace
 from modalkit.views.curves import POINTS, envelope
 from modalkit.views.faces import closed_faces
-from modalkit.views.hits import first_frf
+from modalkit.views.hits import first_frf, force_trace
 from modalkit.views.pairs import pairs_of
 from modalkit.views.shapes import Changed, shapes_page
 from updating.models.state import State
@@ -100,7 +99,9 @@ def test_a_short_pulse_in_a_long_record_is_drawn_as_it_is():
     time = np.arange(int(8 * rate)) / rate
     since = time - 0.4
     force = np.where((since >= 0) & (since <= length), 100 * np.sin(np.pi * since / length), 0.0)
-    force -= np.where(since > length, 2 * np.exp(-2000 * np.maximum(since, 0)) * np.sin(2 * np.pi * 5000 * since), 0.0)
+    force -= np.where(
+        since > length, 2 * np.exp(-2000 * np.maximum(since, 0)) * np.sin(2 * np.pi * 5000 * since), 0.0
+    )
     bounce = (since > 3.1) & (since < 3.1 + length)
     force[bounce] += 8.0
     drawn = force_trace(time, force)
@@ -113,7 +114,9 @@ def test_a_short_pulse_in_a_long_record_is_drawn_as_it_is():
     assert np.array_equal(x[shown], time[seen]) and np.array_equal(y[shown], force[seen])
     above = x[y > 50]
     assert y.max() == pytest.approx(100, rel=1e-3)
-    assert above[-1] - above[0] == pytest.approx(2 / 3 * length, abs=2 / rate)  # sin = 1/2 at 30 and 150 degrees
+    assert above[-1] - above[0] == pytest.approx(
+        2 / 3 * length, abs=2 / rate
+    )  # sin = 1/2 at 30 and 150 degrees
     assert y[x > 3.4].max() == 8.0
 
 

@@ -78,7 +78,7 @@ def test_a_mass_on_a_beam_is_at_a_number_or_at_a_point(tmp_path: Path, place: st
 
 
 def test_modes_that_cannot_be_dropped_say_what_leaves_them_out(tmp_path: Path) -> None:
-    with pytest.raises(StudyError, match="lines of the table.*or set `band`"):
+    with pytest.raises(StudyError, match=r"lines of the table.*or set `band`"):
         study(tmp_path, '[test]\nmodes = "m.csv"\ndrop = [30.0]\n')
 
 

@@ -31,7 +31,9 @@ def test_a_loose_storey_held_at_its_nominal_stiffness_is_held_by_its_tolerance()
     (said,) = [w for w in tight.warnings if "storey_3.E is held by its tolerance of 1 %" in w]
     found = re.search(r"\(factor (\S+)\)", said)
     assert found is not None
-    assert np.log(float(found[1]) / 0.06) == pytest.approx(0, abs=0.1)  # on a basis made for the nominal model
+    assert np.log(float(found[1]) / 0.06) == pytest.approx(
+        0, abs=0.1
+    )  # on a basis made for the nominal model
     assert "`bounds.storey_3.E` about that value or a tolerance of `storey_3.E = 1`" in said
     assert "HELD BY ITS TOLERANCE" in tight.report()
     assert "NOT DETERMINED" not in tight.report()
@@ -39,7 +41,8 @@ def test_a_loose_storey_held_at_its_nominal_stiffness_is_held_by_its_tolerance()
 
 
 @pytest.mark.parametrize(
-    "own", [Tolerances({"E": 0.01}, parts={"storey_3.E": 1.0}), Tolerances(bounds={"storey_3.E": (0.01, 2.0)})]
+    "own",
+    [Tolerances({"E": 0.01}, parts={"storey_3.E": 1.0}), Tolerances(bounds={"storey_3.E": (0.01, 2.0)})],
 )
 def test_what_is_advised_finds_the_loose_storey(own: Tolerances) -> None:
     free = update(storeys(SOFT, 4, own, sigma=SIGMA), parameters=["storey_3.E"])
