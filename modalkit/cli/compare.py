@@ -6,6 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
+import pandas as pd
 import typer
 
 from acquisition.display import counted
@@ -85,7 +86,7 @@ def correlate(
             show_table(table, f"{whose} modes without a partner")
     if len(result.frac):
         title = "FRAC per FRF (peaks that do not overlap make it near 0, however alike the shapes)"
-        show_table(result.frac, title, digits={"FRAC": 3})
+        show_table(_named_frac(result.frac), title, digits={"FRAC": 3})
     if result.frfs is not None:
         out.print(f"Model's FRFs: {result.frfs.damping}.")
     show_warnings([*result.warnings, *session.warnings])
@@ -93,6 +94,16 @@ def correlate(
         write_json(json, correlation_document(result, session.warnings))
         out.print(f"written: {json}", markup=False)
     show_figures(figures, lambda: _correlation_figures(session, result))
+
+
+def _named_frac(frac: pd.DataFrame) -> pd.DataFrame:
+    """Return FRAC by points as they are written, ``81+Z``; without a column for forces that modes do not say."""
+    ends = {
+        end: frac[end].astype("Int64").astype(str) + frac[f"{end} direction"].fillna("")
+        for end in ("response", "force")
+        if frac[end].notna().any()
+    }
+    return pd.DataFrame(ends | {"FRAC": frac["FRAC"]})
 
 
 def _correlate_tests(first: Path, second: Path, json: Path | None, figures: Path | None) -> None:

@@ -21,6 +21,8 @@ NAMES = {
     "MAC": "mac",
     "frequency [Hz]": "frequency_hz",
     "FRAC": "frac",
+    "response direction": "response_direction",
+    "force direction": "force_direction",
 }
 
 

@@ -53,6 +53,7 @@ def to_json(update: Update) -> UpdateDocument:
             for row in update.pairs.to_dict("records")
         ],
         "undetermined": list(update.undetermined),
+        "held": list(update.held),
         "iterations": update.iterations,
         "converged": update.converged,
         "correlations": [[_number(c) for c in row] for row in update.correlations],

@@ -97,6 +97,8 @@ def update_answer(result: Update) -> Raw:
     }
     if result.undetermined:
         stated["Careful"] = f"the data do not determine {', '.join(result.undetermined)}"
+    if result.held:
+        stated["Held"] = f"{', '.join(result.held)} by the tolerance, against the data: see the warnings"
     quiet = element("p", untested(result.data, len(result.parameters))) if result.dof <= 0 else Raw("")
     line = f"{before} → {after} r.m.s., {state}"
     return joined(element("p", line, class_="answer"), definitions(stated, class_="letter"), quiet)
@@ -170,6 +172,7 @@ def parameters_table(result: Update) -> Raw:
         careful = ["at the end of its range"] * p.at_bound + ["not determined by the data"] * (
             name in result.undetermined
         )
+        careful += ["held by its tolerance against the data"] * (name in result.held)
         sigma = p.sigma if np.isfinite(p.sigma) else None
         limits = f"{p.low:.4g} to {p.high:.4g}"
         whose = [p.study or "shared"] if _several(result) else []
@@ -197,5 +200,6 @@ def _correlations(result: Update) -> Chart | None:
 def _undetermined(result: Update) -> Raw:
     """Return the parameters that the data leave open."""
     if not result.undetermined:
-        return element("p", "Nothing: every parameter is known better than before.")
+        better = "Nothing: every parameter is known better than before."
+        return element("p", "None." if result.held else better)
     return bullets(list(result.undetermined))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, field_validator, model_validator
 
 from modalkit.study.planned_points import PlannedPoint
 from modalkit.study.units import (
@@ -207,9 +207,11 @@ class MeasurementTable(Strict):
         useless = [key for key in OF_RECORDS if not (of_mat and key == "layout")]
         stated = [key for key in useless if getattr(self, key) != type(self).model_fields[key].default]
         if stated:
+            rows = {"add", "drop"} & {*stated}
+            way = " (lines of the table), or set `band`, which leaves out the modes beyond it" if rows else ""
             raise ValueError(
                 f"{', '.join(stated)}: said of records or FRFs, but modes = {self.modes!r} are modes already; leave "
-                "it out, and change the modes themselves if they need it"
+                f"it out, and change the modes themselves if they need it{way}"
             )
         return self
 
@@ -255,11 +257,16 @@ class DampingTable(Strict):
     """Damping ratio of each mode [-]. Without any of the four, the damping is unknown."""
 
 
+def _listed(place: Any) -> Any:
+    """Take a single coordinate for a place: a beam's points are plain numbers."""
+    return [place] if isinstance(place, str | int | float) else place
+
+
 class MassTable(Strict):
     """``[[model.mass]]``."""
 
-    at: Annotated[list[Length], Field(min_length=1, max_length=3)]
-    """Its place [m]; on beams and plates uncertain by `position_sigma`."""
+    at: Annotated[list[Length], BeforeValidator(_listed), Field(min_length=1, max_length=3)]
+    """Its place [m], on beams x alone; on beams and plates uncertain by `position_sigma`."""
     mass: Mass
     """A known mass on the structure [kg]; on beams and plates uncertain by 2 %."""
     inertia: Inertia = 0.0

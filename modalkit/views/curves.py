@@ -16,21 +16,21 @@ POINTS = 3000
 that no peak is lost; twice as many double what a page loads and show nothing more [-]."""
 
 
-def envelope(x: FloatArray, y: AnyArray) -> tuple[list[float], list[float]]:
+def envelope(x: FloatArray, y: AnyArray, whole: tuple[int, int] = (0, 0)) -> tuple[list[float], list[float]]:
     """Return a curve in at most ``POINTS`` points, the lowest and the highest of every piece in their order.
 
     Parameters
     ----------
     x, y : (n,) arrays
         The curve; y is real.
+    whole : (int, int)
+        First sample, and that behind the last, of a part of which every sample is kept as well.
     """
     if len(x) <= POINTS:
         return x.tolist(), np.asarray(y, dtype=float).tolist()
     cuts = np.linspace(0, len(x), POINTS // 2 + 1).astype(int)
-    keep = []
-    for first, last in pairwise(cuts):
-        piece = y[first:last]
-        keep += sorted({first + int(piece.argmin()), first + int(piece.argmax())})
+    ends = [(a + int(y[a:b].argmin()), a + int(y[a:b].argmax())) for a, b in pairwise(cuts)]
+    keep = np.union1d(np.ravel(ends), np.arange(*whole))
     return x[keep].tolist(), np.asarray(y[keep], dtype=float).tolist()
 
 

@@ -7,12 +7,20 @@ from typing import Any
 import numpy as np
 
 from acquisition import FrfSet, HitVerdict, InputError, force_range
+from acquisition.arrays import FloatArray
 from acquisition.hits.checks import pulse_spectrum, upright
 from acquisition.quantities import hertz, number
 from modalkit.output.documents import hit_document
 from modalkit.study.read import Study
-from modalkit.views.curves import check_frf, decibels, envelope, lines
+from modalkit.views.curves import POINTS, check_frf, decibels, envelope, lines
 from modalkit.workflow.identification import Judged, Processed
+
+PULSE_EDGE = 0.1
+"""A pulse lasts as long as the force is above this share of its peak [-]. Halved: noise of a weak hit counts to it."""
+
+AROUND = (2, 4)
+"""So many lengths of the pulse are drawn before and behind it, sample by sample [-]: ringing and what a tip does when
+it leaves. Doubled: the pulse is half as wide in the picture."""
 
 
 def hits_page(processed: Processed | None, study: Study) -> dict[str, Any]:
@@ -73,7 +81,6 @@ def record_page(processed: Processed, point: str, hit: int) -> dict[str, Any]:
     level = decibels(size / max(float(size[0]), 1e-300))
     shown = frequency <= min(3 * max(verdict.band20, 1.0), frequency[-1])
     x, y = envelope(frequency[shown], np.maximum(level[shown], -80.0))
-    force = envelope(time, test.points[entry].force[row])
     responses = [
         {"dof": str(dof), "time": t, "value": v}
         for dof, motion in zip(test.points[entry].responses, test.points[entry].motion[row], strict=True)
@@ -81,11 +88,33 @@ def record_page(processed: Processed, point: str, hit: int) -> dict[str, Any]:
     ]
     return {
         "verdict": _verdict(verdict, decided=False),
-        "force": {"time": force[0], "value": force[1]},
+        "force": force_trace(time, test.points[entry].force[row]),
         "responses": responses,
         "unit": {"receptance": "m", "mobility": "m/s", "accelerance": "m/s²"}[test.form],
         "spectrum": {"frequency": x, "level": y, "band10": verdict.band10, "band20": verdict.band20},
     }
+
+
+def force_trace(time: FloatArray, force: FloatArray) -> dict[str, Any]:
+    """Return a force with every sample about its pulse, and the times between which that is drawn first."""
+    first, last = about_pulse(force)
+    x, y = envelope(time, force, (first, last))
+    return {"time": x, "value": y, "range": [float(time[first]), float(time[last - 1])]}
+
+
+def about_pulse(force: FloatArray) -> tuple[int, int]:
+    """Return the first sample about a pulse, and that behind the last; of several hits about all of them.
+
+    No more than ``curves.POINTS`` samples: about the highest of what lasts longer.
+    """
+    size = np.abs(force)
+    inside = np.flatnonzero(size >= PULSE_EDGE * size.max(initial=0.0))
+    length = int(inside[-1] - inside[0]) + 1
+    first, last = int(inside[0]) - AROUND[0] * length, int(inside[-1]) + 1 + AROUND[1] * length
+    if last - first > POINTS:
+        first = int(size.argmax()) - POINTS // 3
+        last = first + POINTS
+    return max(first, 0), min(last, len(force))
 
 
 def _found(processed: Processed, point: str, hit: int) -> tuple[Judged, HitVerdict, int, int]:

@@ -20,6 +20,7 @@ from updating.prediction.matching import mac_of_constants, pair_modes
 from updating.prediction.prediction import Prediction
 from updating.simulation.identified import partners
 from updating.test_data.measured import Measured
+from updating.test_data.same_places import ALIGNED
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +39,9 @@ class Correlation(Displayed):
     unpaired_model : DataFrame
         Model modes in the range of the test without a partner: mode and frequency [Hz].
     frac : DataFrame
-        One row per FRF: points of response and force, and FRAC [-]: of the FRFs where these were given, else of
-        the modal constants over the paired modes; empty where these have no level.
+        One row per FRF: nodes and directions of response and force, those of the force None where modes do not say
+        it, and FRAC [-]: of the FRFs where these were given, else of the modal constants over the paired modes; empty
+        where these have no level.
     warnings : tuple of str
         What the user ought to know.
     frfs : CorrelatedFrfs, optional
@@ -96,7 +98,7 @@ def correlate(case: Case, frfs: FrfSet | None = None) -> Correlation:
         _alone(prediction.frequency, partner, prediction.frequency[partner].max()),
         _frac_table(_ends(paired.measured), frac_of_constants(paired.measured, prediction.select(partner)))
         if both is None
-        else _frac_table([(r.node, f.node) for r, f in _dofs(both.measured)], both.frac),
+        else _frac_table([(*_end(r), *_end(f)) for r, f in _dofs(both.measured)], both.frac),
         (*case.measured.warnings, *paired.warnings),
         both,
     )
@@ -137,13 +139,30 @@ def _alone(frequency: FloatArray, paired: IntArray, top: float) -> pd.DataFrame:
     return pd.DataFrame({"mode": left + 1, "frequency [Hz]": frequency[left]})
 
 
-def _ends(measured: Measured) -> list[tuple[int, int | None]]:
-    """Return the nodes of response and force of every FRF; None for a mere shape."""
+def _end(dof: Dof) -> tuple[int, str]:
+    return dof.node, str(dof).removeprefix(str(dof.node))
+
+
+def _ends(measured: Measured) -> list[tuple[int, str, int | None, str | None]]:
+    """Return nodes and directions of response and force of every FRF; None for the force of a mere shape."""
+    every = [(n, _axis(measured, i)) for i, n in enumerate(measured.nodes)]
     pairs = zip(measured.seen.tolist(), measured.hit.tolist(), strict=True)
-    return [(measured.nodes[s], None if h < 0 else measured.nodes[h]) for s, h in pairs]
+    return [(*every[s], *((None, None) if h < 0 else every[h])) for s, h in pairs]
 
 
-def _frac_table(ends: Sequence[tuple[int, int | None]], values: FloatArray) -> pd.DataFrame:
+def _axis(measured: Measured, point: int) -> str:
+    """Return the model's axis along which a point is measured, ``+Z``; nothing of a skew one."""
+    if measured.directions is None:
+        return "+Z"
+    along = measured.directions[point]
+    axis = int(np.argmax(np.abs(along)))
+    if abs(along[axis]) < ALIGNED:
+        return ""
+    return f"{'+' if along[axis] > 0 else '-'}{'XYZ'[axis]}"
+
+
+def _frac_table(ends: Sequence[tuple[int, str, int | None, str | None]], values: FloatArray) -> pd.DataFrame:
     """Return one row per FRF; none where there are no values."""
     rows = [(*end, value) for end, value in zip(ends, values, strict=False)]
-    return pd.DataFrame(rows, columns=["response", "force", "FRAC"])
+    columns = ["response", "response direction", "force", "force direction", "FRAC"]
+    return pd.DataFrame(rows, columns=columns)

@@ -50,6 +50,8 @@ class Update(Shown):
         Number of data that weigh anything [-].
     weights, quantity : str
         What W_s is, and what is compared: ``frequency`` (relative) or ``eigenvalue``.
+    held : tuple of str
+        Parameters that their tolerances keep from where the data would take them; their sigmas are the tolerances'.
     """
 
     parameters: tuple[Estimate, ...]
@@ -70,6 +72,7 @@ class Update(Shown):
     data: int = 0
     weights: str = ""
     quantity: str = ""
+    held: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -90,6 +93,7 @@ class Update(Shown):
                     [
                         *["at bound"] * p.at_bound,
                         *["not determined by the data"] * (name in self.undetermined),
+                        *["held by its tolerance against the data"] * (name in self.held),
                     ]
                 ),
             }

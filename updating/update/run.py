@@ -22,6 +22,7 @@ from updating.update.result import Update
 from updating.update.solve import Solution, solve
 from updating.update.statistics.determined import Statistics, assess, correlations
 from updating.update.statistics.doubts import doubts
+from updating.update.statistics.held import Held, held, sentences
 from updating.update.statistics.mixture import Mixture
 from updating.update.statistics.solutions import Others, mixture, statement, within
 
@@ -208,6 +209,7 @@ def report(fitted: Fitted) -> Update:
     """Work out the statistics of an update."""
     system, solution, disagreement = fitted.system, fitted.solution, fitted.disagreement
     statistics, several = assess_all(fitted)
+    kept = held(system, solution) if statistics.inflation > 1 else ()
     jacobian = np.array([_slope(k, t) for k, t in zip(system.model_parameters, solution.theta, strict=True)])
     with_units = statistics.covariance * np.outer(jacobian, jacobian)
     sigma = np.sqrt(np.diag(with_units))
@@ -220,6 +222,7 @@ def report(fitted: Fitted) -> Update:
             within(p, system.model_parameters[i], several, i) for i, p in enumerate(parameters)
         )
     names = list(system.names)
+    against = {names[h.index] for h in kept}
     history = pd.DataFrame(
         [[k.value(t) for k, t in zip(system.model_parameters, row, strict=True)] for row in solution.history],
         columns=names,
@@ -230,7 +233,7 @@ def report(fitted: Fitted) -> Update:
         _pairs(system, solution),
         with_units,
         correlations(statistics.covariance),
-        tuple(n for n, bad in zip(names, statistics.undetermined, strict=True) if bad),
+        tuple(n for n, bad in zip(names, statistics.undetermined, strict=True) if bad and n not in against),
         solution.iterations,
         solution.converged,
         statistics.chi2,
@@ -238,8 +241,9 @@ def report(fitted: Fitted) -> Update:
         statistics.inflation,
         history,
         disagreement is not None and disagreement < AGREED,
-        (*_warnings(fitted, statistics), *statement(system, several)),
-        determinability=statistics.determinability,
+        (*_warnings(fitted, statistics, kept), *statement(system, several)),
+        determinability=statistics.determinability.without(against),
+        held=tuple(names[h.index] for h in kept),
         data=system.count,
         weights=fitted.weights,
         quantity=system.quantity,
@@ -347,7 +351,7 @@ def _at_bounds(system: System, solution: Solution) -> Iterator[str]:
         )
 
 
-def _warnings(fitted: Fitted, statistics: Statistics) -> list[str]:
+def _warnings(fitted: Fitted, statistics: Statistics, kept: tuple[Held, ...]) -> list[str]:
     system, solution, disagreement = fitted.system, fitted.solution, fitted.disagreement
     found = [*doubts(system, solution, statistics.dof), *(w for s in system.specimens for w in s.warnings)]
     found += _on_shapes(system, contradicted=fitted.contradicted)
@@ -358,7 +362,7 @@ def _warnings(fitted: Fitted, statistics: Statistics) -> list[str]:
             f"the updated model misses the frequencies by {statistics.inflation:.1f} times what the measurement "
             "explains; the standard deviations are raised by that factor"
         )
-    found += _at_bounds(system, solution)
+    found += [*sentences(system, kept), *_at_bounds(system, solution)]
     if statistics.strain > 1:
         away = (solution.theta - system.start) * np.sqrt(system.prior)
         worst = int(np.argmax(np.abs(away)))

@@ -58,10 +58,10 @@ def _parameters(update: Update) -> Iterator[str]:
     names = update.names
     width = max(len(name) for name in names)
     for name, parameter in zip(names, update.parameters, strict=True):
-        yield f"{name + ':':<{width + 1}} {_value(parameter, name in update.undetermined)}"
+        yield f"{name + ':':<{width + 1}} {_value(parameter, _notes(update, name, parameter))}"
 
 
-def _value(p: Estimate, undetermined: bool) -> str:
+def _value(p: Estimate, notes: list[str]) -> str:
     text = f"{p.value:.6g}"
     if np.isfinite(p.sigma):
         share = f" ({uncertainty(abs(p.sigma / p.value))})" if p.value else ""
@@ -72,13 +72,19 @@ def _value(p: Estimate, undetermined: bool) -> str:
         text += f", 95 % {p.interval[0]:.5g} ... {p.interval[1]:.5g}"
     if p.factor is not None:
         text += f", factor {p.factor:.4g}"
+    return f"{text} ({'; '.join(notes)})"
+
+
+def _notes(update: Update, name: str, p: Estimate) -> list[str]:
+    """Return where a parameter began, its bounds, and what there is to be careful about."""
     notes = [f"init {p.initial:.6g}", f"bounds {p.low:.3g} ... {p.high:.3g}"]
     notes += ["AT BOUND"] * p.at_bound
-    if undetermined:
-        notes.append(
-            "NOT DETERMINED by the data" + ("; held by its tolerance" if np.isfinite(p.sigma) else "")
-        )
-    return f"{text} ({'; '.join(notes)})"
+    if name in update.held:
+        notes.append("HELD BY ITS TOLERANCE against the data: see the warnings")
+    if name in update.undetermined:
+        held = "; held by its tolerance" if np.isfinite(p.sigma) else ""
+        notes.append(f"NOT DETERMINED by the data{held}")
+    return notes
 
 
 def _correlations(update: Update) -> Iterator[str]:

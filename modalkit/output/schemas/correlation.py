@@ -29,7 +29,9 @@ class FracEntry(TypedDict):
     """Agreement of one FRF."""
 
     response: Annotated[int, "node of the response [-]"]
+    response_direction: Annotated[str, "its direction, `+Z`; empty for a skew one"]
     force: Annotated[int | None, "node of the force; null where modes do not say it [-]"]
+    force_direction: Annotated[str | None, "its direction; null where modes do not say it"]
     frac: Annotated[float | None, "FRAC; null if undefined [-]"]
 
 

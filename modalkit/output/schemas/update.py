@@ -118,6 +118,10 @@ class UpdateDocument(TypedDict):
     undetermined: Annotated[
         Sequence[str], "parameters of which the data alone say less than was known before"
     ]
+    held: Annotated[
+        Sequence[str],
+        "parameters that their tolerances keep from where the data would take them; `sigma` is then the tolerance's",
+    ]
     iterations: Annotated[int, "number of steps [-]"]
     converged: Annotated[bool, "whether the steps died out"]
     correlations: Annotated[

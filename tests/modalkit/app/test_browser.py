@@ -338,6 +338,28 @@ def test_a_refused_change_says_why_and_changes_nothing(browser, shown):
     assert page.tab.locator("#undo").is_disabled()
 
 
+def test_a_typed_limit_outlasts_an_undo_and_enter_sets_it(browser, serve, beam):
+    """What was said of a mode ends with the state it was of; a study without a model says what to write."""
+    text = beam.read_text(encoding="utf-8")
+    beam.write_text(text[: text.index("[model]")], encoding="utf-8")
+    page = Page(browser, serve(beam))
+    page.open("modes")
+    page.tab.locator("#pick-hertz").fill("300")
+    page.tab.locator("#pick-hertz").press("Enter")
+    page.tab.locator("#readout", has_text="mode").wait_for()
+    page.settle()
+    page.tab.locator("#band-high").fill("480")
+    page.tab.locator("#undo").click()
+    page.settle()
+    assert page.tab.locator("#readout").inner_text() == ""
+    assert page.tab.locator("#band-high").input_value() == "480"
+    page.tab.locator("#band-high").press("Enter")
+    page.tab.locator("#undo[title*='band 5 to 480 Hz']").wait_for()
+    page.open("model")
+    assert 'type = "calculix"' in page.tab.locator("#no-model").inner_text()
+    assert page.faults == []
+
+
 def test_a_file_alone_whose_title_is_a_script(browser, serve, tmp_path):
     title = "<img src=x onerror=document.title='owned'><script>document.title='owned'</script>"
     name = "a<b>&amp;.uff"

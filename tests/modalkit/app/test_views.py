@@ -22,7 +22,7 @@ from modalkit.app.model_page import Moved
 from modalkit.output.whole import plain
 from modalkit.views.curves import POINTS, envelope
 from modalkit.views.faces import closed_faces
-from modalkit.views.hits import first_frf
+from modalkit.views.hits import first_frf, force_trace
 from modalkit.views.pairs import pairs_of
 from modalkit.views.shapes import Changed, shapes_page
 from updating.models.state import State
@@ -91,6 +91,45 @@ def test_no_peak_is_lost_where_a_curve_is_made_short(n):
     assert max(short) == 50.0
     assert min(short) == -40.0
     assert x == sorted(x)
+
+
+def test_a_short_pulse_in_a_long_record_is_drawn_as_it_is():
+    """A half-sine of 0.77 ms in 8 s, with ringing and a bounce behind it: peak, width and bounce of the data."""
+    rate, length = 51_200.0, 0.77e-3
+    time = np.arange(int(8 * rate)) / rate
+    since = time - 0.4
+    force = np.where((since >= 0) & (since <= length), 100 * np.sin(np.pi * since / length), 0.0)
+    force -= np.where(
+        since > length, 2 * np.exp(-2000 * np.maximum(since, 0)) * np.sin(2 * np.pi * 5000 * since), 0.0
+    )
+    bounce = (since > 3.1) & (since < 3.1 + length)
+    force[bounce] += 8.0
+    drawn = force_trace(time, force)
+    x, y = np.array(drawn["time"]), np.array(drawn["value"])
+    assert np.all(np.diff(x) > 0)
+    assert len(x) < 2 * POINTS
+    low, high = drawn["range"]
+    assert low < 0.4 and 0.4 + 4 * length < high < 0.4 + 8 * length
+    seen, shown = (time >= low) & (time <= high), (x >= low) & (x <= high)
+    assert np.array_equal(x[shown], time[seen]) and np.array_equal(y[shown], force[seen])
+    above = x[y > 50]
+    assert y.max() == pytest.approx(100, rel=1e-3)
+    assert above[-1] - above[0] == pytest.approx(
+        2 / 3 * length, abs=2 / rate
+    )  # sin = 1/2 at 30 and 150 degrees
+    assert y[x > 3.4].max() == 8.0
+
+
+def test_two_hits_far_apart_and_a_record_that_is_no_pulse_stay_short():
+    time = np.arange(400_000) / 51_200.0
+    force = np.zeros(400_000)
+    force[20_000], force[300_000] = 50.0, 60.0
+    drawn = force_trace(time, force)
+    assert len(drawn["time"]) <= 2 * POINTS
+    assert max(drawn["value"]) == 60.0
+    assert 50.0 in drawn["value"]
+    assert drawn["range"][0] < time[300_000] < drawn["range"][1]
+    assert force_trace(time, np.zeros(400_000))["range"][1] > 0
 
 
 def test_the_spectrum_in_the_picture_is_the_one_that_is_judged():

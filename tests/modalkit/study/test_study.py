@@ -72,6 +72,16 @@ def test_defaults_are_those_of_the_contract(tmp_path: Path) -> None:
     assert found.name == tmp_path.name
 
 
+@pytest.mark.parametrize("place", ['"350 mm"', "0.35", "[0.35]", '["350 mm"]'])
+def test_a_mass_on_a_beam_is_at_a_number_or_at_a_point(tmp_path: Path, place: str) -> None:
+    assert study(tmp_path, TEST + BEAM + MASS.format(place)).spec().masses[0].at == (0.35,)
+
+
+def test_modes_that_cannot_be_dropped_say_what_leaves_them_out(tmp_path: Path) -> None:
+    with pytest.raises(StudyError, match=r"lines of the table.*or set `band`"):
+        study(tmp_path, '[test]\nmodes = "m.csv"\ndrop = [30.0]\n')
+
+
 def test_a_beam_with_everything(tmp_path: Path) -> None:
     text = (
         'title = "T"\n[test]\nmodes = "m.csv"\nband = [5.0, 100.0]\ncalibration = 0.1\n'

@@ -36,6 +36,7 @@ def test_a_model_agrees_with_itself(model) -> None:
     assert found.table["model mode"].tolist() == [1, 2, 3, 4]
     assert found.frac["FRAC"].to_numpy() == pytest.approx(np.ones(6))
     assert found.frac["response"].tolist() == [16] * 6
+    assert found.frac["force direction"].tolist() == ["+Z"] * 6
     assert np.diag(found.mac) == pytest.approx(np.ones(4))
     assert found.unpaired_test.empty
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
@@ -97,6 +97,11 @@ class Determinability(Displayed):
     couplings: tuple[Coupling, ...]
     subset: tuple[str, ...]
     explained: tuple[float, ...]
+
+    def without(self, names: Collection[str]) -> Determinability:
+        """Return the same without the couplings of single parameters that are judged otherwise."""
+        kept = tuple(c for c in self.couplings if len(c.parameters) > 1 or c.parameters[0] not in names)
+        return replace(self, couplings=kept)
 
 
 def determinability(

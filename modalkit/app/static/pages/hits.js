@@ -128,7 +128,7 @@ export function open(root, app) {
       draw(charts.force, [line("force", found.force.time, found.force.value, mark)], {
         showlegend: false,
         height: 240,
-        xaxis: axis("time [s]", pulse(found.force)),
+        xaxis: axis("time [s]", { range: found.force.range }),
         yaxis: axis("force [N]"),
         annotations: [reason(v)],
       }),
@@ -261,16 +261,6 @@ export function open(root, app) {
   }
 
   return { update };
-}
-
-/** Show a force about its pulse: a hundred times its length at the most. */
-function pulse(force) {
-  const size = force.value.map(Math.abs);
-  const top = Math.max(...size);
-  const inside = force.time.filter((_, i) => size[i] > 0.1 * top);
-  const [first, last, end] = [inside[0], inside[inside.length - 1], force.time[force.time.length - 1]];
-  const reach = Math.max(6 * (last - first), end / 100);
-  return { range: [Math.max(0, first - reach / 2), Math.min(end, last + reach)] };
 }
 
 const titled = (text, chart) => h("figure", {}, h("figcaption", {}, text), chart);

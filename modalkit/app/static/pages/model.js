@@ -50,6 +50,7 @@ export function open(root, app) {
     fill(
       notes,
       page.correlation ? warnings(page.correlation.warnings) : h("p", {}, `No model beside the test: ${page.why}.`),
+      app.state.has_model ? null : howToWrite(),
     );
     text.value = page.text;
     fielded();
@@ -403,4 +404,16 @@ export function open(root, app) {
 
   const rms = (those) => Math.sqrt(those.reduce((sum, p) => sum + p.error_percent ** 2, 0) / those.length);
   return { update };
+}
+
+/** Return what to write into a study that has no model: an example, and where the keys are described. */
+function howToWrite() {
+  const example = '[model]\ntype = "calculix"      # or beam, plate, matrices\ndeck = "part.inp"\nunits = "mm-t-s"';
+  return h(
+    "section",
+    { class: "panel", id: "no-model" },
+    h("p", {}, "To compare one, write it under The whole study as text below and take the text; for instance:"),
+    h("pre", {}, example),
+    h("p", {}, "All keys: docs/reference/study.md; decks and matrices step by step: docs/tutorials/own_model.md."),
+  );
 }

@@ -23,9 +23,11 @@ export function open(root, app) {
     h("section", { class: "panel" }, h("h2", {}, "Modes"), rows),
     h("div", { class: "two wide-left" }, fitted, matrix),
   );
-  const view = { page: null, frf: null, over: "sum", curve: null };
+  // typed: limits of the band that are not set yet, which other changes leave in their fields
+  const view = { page: null, frf: null, over: "sum", curve: null, typed: {} };
 
   async function update() {
+    readout.textContent = ""; // what it said was of the state before
     view.page = await get("modes");
     const page = view.page;
     picking.hidden = fitted.hidden = !page.identified;
@@ -37,14 +39,26 @@ export function open(root, app) {
 
   function controlled() {
     const page = view.page;
+    const entered = (then) => (event) => event.key === "Enter" && then();
+    const banded = async (limits) => {
+      const typed = view.typed;
+      view.typed = {};
+      if (await app.act("band", limits)) return;
+      view.typed = typed; // refused: to be mended where it was typed
+      controlled();
+    };
+    const bandNow = () => banded({ low: number(low), high: number(high) });
+    const orderNow = () => app.act("order", { order: order.value ? Number(order.value) : null });
     const limit = (end, value) =>
       h("input", {
         type: "text",
         inputmode: "decimal",
-        value: String(value),
+        value: view.typed[end] ?? String(value),
         size: 7,
         "aria-label": `${end}est frequency of the band`,
         id: `band-${end}`,
+        keydown: entered(bandNow),
+        input: (event) => (view.typed[end] = event.target.value),
       });
     const [low, high] = [limit("low", page.band[0]), limit("high", page.band[1])];
     const order = h("input", {
@@ -56,6 +70,7 @@ export function open(root, app) {
       "aria-label": "highest model order",
       title: "poles sought at the most; of several references, over all of them",
       id: "order",
+      keydown: entered(orderNow),
     });
     const hertz = h("input", {
       type: "text",
@@ -67,9 +82,7 @@ export function open(root, app) {
     const pickNow = () => {
       if (Number(hertz.value) > 0) picked(Number(hertz.value));
     };
-    hertz.addEventListener("keydown", (event) => {
-      if (event.key === "Enter") pickNow();
-    });
+    hertz.addEventListener("keydown", entered(pickNow));
     const chips = [
       ...page.picked.map((f) => ["picked", f, "drop"]),
       ...page.dropped.map((f) => ["dropped", f, "pick"]),
@@ -80,12 +93,10 @@ export function open(root, app) {
         "div",
         { class: "row" },
         field("Band", h("span", {}, low, " to ", high), "Hz"),
-        button("Set", () => app.act("band", { low: number(low), high: number(high) }), { id: "band-set" }),
-        page.band_stated ? button("As the force reaches", () => app.act("band", {})) : null,
+        button("Set", bandNow, { id: "band-set" }),
+        page.band_stated ? button("As the force reaches", () => banded({})) : null,
         field("Order", order),
-        button("Set", () => app.act("order", { order: order.value ? Number(order.value) : null }), {
-          id: "order-set",
-        }),
+        button("Set", orderNow, { id: "order-set" }),
         field(
           "Behind it",
           select(

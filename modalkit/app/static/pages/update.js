@@ -92,6 +92,7 @@ export function open(root, app) {
         ]),
       ),
       d.undetermined.length ? h("p", {}, `Not determined by these data: ${d.undetermined.join(", ")}.`) : null,
+      d.held.length ? h("p", {}, `Held by the tolerance, against the data: ${d.held.join(", ")}; see the warnings.`) : null,
       table(
         "Pairs",
         ["test", "model", "test [Hz]", "before [Hz]", "after [Hz]", "MAC", "used"].map((name, i) => ({
