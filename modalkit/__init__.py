@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     from updating import Case, Diagnosis, diagnose, register
     from updating.correlation.correlate import correlate
 
-__version__ = "0.2.0"
+__version__ = "0.2.1"
 
 __all__ = [
     "Case",
