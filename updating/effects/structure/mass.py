@@ -19,13 +19,12 @@ from updating.effects.structure.attachment import attachment_of, with_body
 from updating.effects.structure.frequency_gap import frequency_gap
 from updating.effects.structure.nodes import (
     NAMED_SHARE,
-    TRIED,
     distinct,
     distinct_groups,
     free_nodes,
     group_centres,
-    promising_nodes,
 )
+from updating.effects.structure.screening import TRIED, promising_nodes
 from updating.models.absorbers import structural
 from updating.models.base import Structure
 from updating.models.fields import Sparse

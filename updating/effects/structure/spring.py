@@ -15,13 +15,12 @@ from updating.effects.regions import WAYS, centre_of, on_basis, one_of, way
 from updating.effects.structure.attachment import Attachment, attachment_of, with_spring
 from updating.effects.structure.nodes import (
     NAMED_SHARE,
-    TRIED,
     distinct,
     distinct_groups,
     free_nodes,
     group_centres,
-    promising_nodes,
 )
+from updating.effects.structure.screening import TRIED, promising_nodes
 from updating.models.fields import Sparse
 from updating.models.imported.matrices import Imported
 from updating.models.spec import Spec
