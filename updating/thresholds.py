@@ -71,6 +71,14 @@ UNPAIRED_SHAPE_NOISE = 0.05
 """Error of the shape of a measured mode that the model lacks beyond its noise, relative to its r.m.s. [-]: points are
 hit beside their places, and whatever makes it is more complicated. Doubled: its shape speaks a quarter as loudly."""
 
+MOST_TOGETHER = 6
+"""Nuisances of one group: a hit and a sensor in three directions each. Twice as many cost more small matrices and are
+never wrong; groups beyond it are taken as common to all."""
+
+FEW_NUISANCES = 64
+"""So many nuisances are taken as common to all: small matrices cost less than finding groups. Twice as many are four
+times slower at worst, half as many slow a beam of a dozen points down by a half; the answer is the same."""
+
 LEAST_CONSTANT_NOISE = 0.005
 """Error of a modal constant that no coherence shows (cross-talk, direction), relative to the mode's r.m.s. [-].
 Judged from transducers' data sheets: a cross sensitivity of some per cent, of motion across that is a tenth. Doubled:

@@ -323,13 +323,13 @@ def _confirming(diagnosis: Diagnosis, test: NextTest) -> str:
             f"no test that was weighed would confirm it, by {SEPARATED_SIGMA:g} sigma; nearest to it comes this: "
             f"{test.measure}: {separated(test)}"
         )
-    said = f"to confirm it, {test.measure}: {separated(test)}"
+    sentence = f"to confirm it, {test.measure}: {separated(test)}"
     named = diagnosis.sets[0]
     behind = next((row.effects for row in diagnosis.ranking if row.effects not in diagnosis.sets), named)
     if behind == named or not test.pairs or any(behind in pair for pair in test.pairs):
-        return said
+        return sentence
     why = ", which has all of it and more," if not Counter(named) - Counter(behind) else ""
-    return f"{said}; from {' + '.join(behind)}{why} it does not tell it"
+    return f"{sentence}; from {' + '.join(behind)}{why} it does not tell it"
 
 
 SIZES = {1: "single causes", 2: "pairs", 3: "sets of three", 4: "sets of four"}

@@ -188,8 +188,8 @@ def normal_equations(
     j, d, columns = comparison.nuisance[rows], comparison.noise(scale)[rows], columns[rows]
     groups = separate(j, comparison.scaled[rows])
     common = j[:, groups.common]
-    weighed = groups.precise(d, np.hstack([common, columns]))
-    own, free = weighed[:, : common.shape[1]], weighed[:, common.shape[1] :]
+    precise = groups.precise(d, np.hstack([common, columns]))
+    own, free = precise[:, : common.shape[1]], precise[:, common.shape[1] :]
     inner = cho_factor(np.eye(common.shape[1]) + common.T @ own)
     solved = free - own @ cho_solve(inner, common.T @ free)
     return columns.T @ solved, solved.T @ comparison.residual[rows]

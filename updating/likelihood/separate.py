@@ -17,14 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from acquisition.arrays import BoolArray, FloatArray, IntArray
-
-MOST_TOGETHER = 6
-"""Nuisances of one group: a hit and a sensor in three directions each. Twice as many cost more small matrices and are
-never wrong; groups beyond it are taken as common to all."""
-
-FEW = 64
-"""So many nuisances are taken as common to all: small matrices cost less than finding groups. Twice as many are four
-times slower at worst, half as many slow a beam of a dozen points down by a half; the answer is the same."""
+from updating.thresholds import FEW_NUISANCES, MOST_TOGETHER
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,17 +51,17 @@ class Separate:
         """Return the groups beside columns of data (n, c), with a noise of so much variance (n,) [-]."""
         if not len(self.starts):
             return Beside(self, np.zeros((0, 0)), np.zeros((0, 0, 0)), np.zeros((0, 0, data.shape[1])))
-        power, turn, weighed = self._rotated(variance)
-        return Beside(self, power, turn, self._products(weighed, data))
+        power, turn, rotated = self._rotated(variance)
+        return Beside(self, power, turn, self._products(rotated, data))
 
     def precise(self, variance: FloatArray, data: FloatArray) -> FloatArray:
         """Return ``(D + L L^T)^-1`` times columns (n, c): noise and groups integrated out [-]."""
         found = data / variance[:, None]
         if not len(self.starts):
             return found
-        power, _, weighed = self._rotated(variance)
-        shares = self._products(weighed, data) / (1.0 + power)[:, :, None]
-        found[self.rows] -= np.einsum("kq,kqc->kc", weighed, np.repeat(shares, self._lengths, axis=0))
+        power, _, rotated = self._rotated(variance)
+        shares = self._products(rotated, data) / (1.0 + power)[:, :, None]
+        found[self.rows] -= np.einsum("kq,kqc->kc", rotated, np.repeat(shares, self._lengths, axis=0))
         return found
 
     @property
@@ -84,16 +77,16 @@ class Separate:
             Their squares beside the noise, the eigenvalues of ``L^T D^-1 L`` [-].
         turn : (m, q, q) array
             The eigenvectors, in columns.
-        weighed : (k, q) array
+        rotated : (k, q) array
             ``D^-1 L`` turned.
         """
         over = self.values / variance[self.rows, None]
         power, turn = np.linalg.eigh(self._summed(over[:, :, None] * self.values[:, None, :]))
-        weighed = np.einsum("kq,kqr->kr", over, np.repeat(turn, self._lengths, axis=0))
-        return np.maximum(power, 0.0), turn, weighed
+        rotated = np.einsum("kq,kqr->kr", over, np.repeat(turn, self._lengths, axis=0))
+        return np.maximum(power, 0.0), turn, rotated
 
-    def _products(self, weighed: FloatArray, data: FloatArray) -> FloatArray:
-        return self._summed(weighed[:, :, None] * data[self.rows][:, None, :])
+    def _products(self, rotated: FloatArray, data: FloatArray) -> FloatArray:
+        return self._summed(rotated[:, :, None] * data[self.rows][:, None, :])
 
     def _summed(self, terms: FloatArray) -> FloatArray:
         """Add up what belongs to the rows of each group."""
@@ -121,7 +114,7 @@ class Beside:
     turn: FloatArray
     products: FloatArray
 
-    def _thinned(self, scale: float) -> FloatArray:
+    def _reduced(self, scale: float) -> FloatArray:
         """By how much the noise of each group takes from its squares, (m, 1) [-]."""
         return np.where(self.groups.scaled, scale**-2, 1.0)[:, None]
 
@@ -129,8 +122,8 @@ class Beside:
         """Return what the groups explain of the Gram matrix (c, c) of the columns [-]."""
         if not len(self.power):
             return np.zeros((self.products.shape[2],) * 2)
-        thinned, count = self._thinned(scale), self.products.shape[2]
-        weights = (thinned**2 / (1.0 + thinned * self.power)).reshape(-1, 1)
+        reduced, count = self._reduced(scale), self.products.shape[2]
+        weights = (reduced**2 / (1.0 + reduced * self.power)).reshape(-1, 1)
         flat = self.products.reshape(-1, count)
         return np.asarray(flat.T @ (weights * flat))
 
@@ -138,14 +131,14 @@ class Beside:
         """Return the logarithm of the determinant of what they add to the noise [-]."""
         if not len(self.power):
             return 0.0
-        return float(np.sum(np.log1p(self._thinned(scale) * self.power)))
+        return float(np.sum(np.log1p(self._reduced(scale) * self.power)))
 
     def fill(self, shift: FloatArray, scale: float, left: FloatArray) -> None:
         """Put the most probable values into their places of ``shift`` (p,), the columns adding up by ``left`` (c,)."""
         if not len(self.power):
             return
-        thinned, columns = self._thinned(scale), self.groups.columns
-        turned = thinned * (self.products @ left) / (1.0 + thinned * self.power)
+        reduced, columns = self._reduced(scale), self.groups.columns
+        turned = reduced * (self.products @ left) / (1.0 + reduced * self.power)
         values = np.einsum("mqr,mr->mq", self.turn, turned)
         shift[columns[columns >= 0]] = values[columns >= 0]
 
@@ -161,7 +154,7 @@ def separate(nuisance: FloatArray, scaled: BoolArray) -> Separate:
         Which data have noise of an unknown scale; a group has such data or others, not both.
     """
     touched = nuisance != 0
-    count = touched.sum(axis=0) if nuisance.shape[1] > FEW else np.zeros(0, dtype=np.int64)
+    count = touched.sum(axis=0) if nuisance.shape[1] > FEW_NUISANCES else np.zeros(0, dtype=np.int64)
     if not count.any():
         none = np.zeros(0, dtype=np.int64)
         empty = np.zeros((0, 0))

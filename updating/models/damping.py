@@ -145,9 +145,9 @@ def damping_matrices(reduced: Reduced, damping: Damping, state: State) -> tuple[
     if state.absorbers:
         viscous = bordered(viscous, state.absorbers, "damping")
         hysteretic = padded(padded(hysteretic, state.absorbers).T, state.absorbers).T
-        seats = own_flexibility(n, state.absorbers)  # damped as the structure is, whose regions make it up
-        viscous = viscous + np.mean(own["beta"]) * seats
-        hysteretic = hysteretic + np.mean(own["loss_factor"]) * seats
+        attached = own_flexibility(n, state.absorbers)  # damped as the structure is, whose regions make it up
+        viscous = viscous + np.mean(own["beta"]) * attached
+        hysteretic = hysteretic + np.mean(own["loss_factor"]) * attached
     return viscous, hysteretic
 
 

@@ -12,7 +12,7 @@ from updating.tolerances import Tolerances
 REGIONAL = ("E", "density", "thickness", "area", "inertia")
 """Properties of a region of which a doubt may be stated."""
 
-OF_MATRICES = REGIONAL[:2]
+OF_MATRICES = ("E", "density")
 """Those of a region that is nothing but matrices."""
 
 

@@ -227,8 +227,12 @@ def slide_and_pair(page: Page) -> None:
     tab.get_by_text(before, exact=True).wait_for()
     tab.locator("#effect").select_option("clamp_rotation")
     stiffness = tab.locator("#effect-stiffness")
+    tab.get_by_text(before, exact=True).wait_for(state="detached")  # the effect in its middle size
+    page.settle()
+    middle = tab.locator("#rms").inner_text()
     stiffness.fill(stiffness.get_attribute("min"))  # as soft as the effect may be ...
-    tab.get_by_text(before, exact=True).wait_for(state="detached")
+    tab.get_by_text(middle, exact=True).wait_for(state="detached")
+    page.settle()
     soft = tab.locator("#rms").inner_text()
     stiffness.fill(str((float(stiffness.get_attribute("min")) + float(stiffness.get_attribute("max"))) / 2))
     tab.get_by_text(soft, exact=True).wait_for(state="detached")  # ... is further off than half way

@@ -13,8 +13,8 @@ from scipy.stats import multivariate_normal
 from acquisition.arrays import BoolArray, FloatArray
 from updating.likelihood.comparison import CHANNELS, Comparison
 from updating.likelihood.gaussian import gaussian, marginal, normal_equations
-from updating.likelihood.separate import FEW, MOST_TOGETHER, separate
-from updating.thresholds import SHAPE_NOISE_SCALES
+from updating.likelihood.separate import separate
+from updating.thresholds import FEW_NUISANCES, MOST_TOGETHER, SHAPE_NOISE_SCALES
 
 Pattern = tuple[int, int, int, int]
 
@@ -30,7 +30,7 @@ def comparison(pattern: Pattern, seed: int) -> Comparison:
         for place in np.unique(ends):
             block = rng.standard_normal((frfs, modes, directions)) * (ends == place)[:, None, None]
             columns.append(np.vstack([np.zeros((modes, directions)), block.reshape(-1, directions)]))
-    columns.append(np.zeros((n, FEW)))  # of places that move nothing
+    columns.append(np.zeros((n, FEW_NUISANCES)))  # of places that move nothing
     nuisance = np.hstack(columns)
     channel = np.repeat([CHANNELS.index("frequency"), CHANNELS.index("frf")], [modes, frfs * modes])
     return Comparison(
@@ -77,7 +77,7 @@ def test_the_normal_equations_are_those_of_generalised_least_squares(pattern: Pa
 
 @settings(max_examples=30, deadline=None)
 @given(
-    seed=st.integers(0, 2**31), rows=st.integers(1, 40), columns=st.integers(FEW, FEW + 20),
+    seed=st.integers(0, 2**31), rows=st.integers(1, 40), columns=st.integers(FEW_NUISANCES, FEW_NUISANCES + 20),
     filled=st.sampled_from([0.0, 0.01, 0.05, 0.3, 1.0]),
 )  # fmt: skip
 def test_groups_share_no_row_and_no_nuisance_is_lost(
@@ -114,6 +114,6 @@ def test_the_doubt_in_the_idealisation_is_summed_over_with_groups_as_without() -
     data = comparison((8, 3, 3, 1), 3)
     data = replace(data, idealised=0.3 * data.variance)
     few = replace(data, nuisance=data.nuisance[:, data.nuisance.any(axis=0)])
-    assert few.nuisance.shape[1] <= FEW < data.nuisance.shape[1]  # one large matrix, groups
+    assert few.nuisance.shape[1] <= FEW_NUISANCES < data.nuisance.shape[1]  # one large matrix, groups
     assert marginal(data).log_likelihood == pytest.approx(marginal(few).log_likelihood, rel=1e-12)
     assert marginal(data).share == marginal(few).share

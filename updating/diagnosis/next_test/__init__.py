@@ -96,6 +96,7 @@ def propose(
         if key not in best or _worth(evaluation) > _worth(best[key]):
             best[key] = evaluation
     kept = [evaluation for evaluation in best.values() if evaluation.sigma >= WORTHWHILE_SIGMA]
+    kept = [evaluation for evaluation in kept if evaluation.confirms] or kept
     kept.sort(key=_order)
     return tuple(_proposal(evaluation, rivals) for evaluation in kept[:TESTS_PROPOSED])
 
