@@ -120,7 +120,7 @@ def test_a_short_pulse_in_a_long_record_is_drawn_as_it_is():
     assert y[x > 3.4].max() == 8.0
 
 
-def test_two_hits_far_apart_and_a_record_that_is_no_pulse_stay_short():
+def test_two_hits_far_apart_and_a_record_without_a_pulse_are_thinned():
     time = np.arange(400_000) / 51_200.0
     force = np.zeros(400_000)
     force[20_000], force[300_000] = 50.0, 60.0

@@ -284,7 +284,7 @@ def test_points_are_proposed_by_node_direction_and_region(chained: Forecast) -> 
     assert len(points.change.design.stations) == 5
 
 
-def test_a_support_is_called_by_one_name_and_said_where_it_is() -> None:
+def test_a_support_has_one_name_and_its_place_is_printed() -> None:
     """One that is no node set bears a number, which says nothing by itself."""
     supports = (support("support 1"), support("FOOT"))
     predictor: Any = SimpleNamespace(spec=SimpleNamespace(imported=SimpleNamespace(supports=supports)))

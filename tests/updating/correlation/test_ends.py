@@ -15,7 +15,7 @@ from test_doubts_by_part import storeys
 from updating import Tolerances
 
 
-def test_shapes_of_a_node_along_two_axes_are_told_from_each_other() -> None:
+def test_shapes_of_a_node_along_two_axes_are_distinguished() -> None:
     case = storeys(np.zeros(4), 3, Tolerances({"E": 0.01}), shapes=0.01)
     case = replace(case, measured=replace(case.measured, absolute=True))
     assert correlate(case).frac["response direction"].tolist() == ["+X"] * 4

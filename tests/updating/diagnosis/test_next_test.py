@@ -137,7 +137,7 @@ def test_two_explanations_are_told_apart_by_the_cheapest_way(problem: SpecimenPr
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_a_named_cause_is_told_from_its_most_probable_rival_first(problem: SpecimenProblem) -> None:
+def test_a_named_cause_is_separated_from_its_most_probable_rival_first(problem: SpecimenProblem) -> None:
     """Of E the length is the nearest rival here: what tells them apart stands before what tells others better."""
     found = search(problem, [LIBRARY[n] for n in SCALED])
     rivals = [

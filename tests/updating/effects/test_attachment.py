@@ -89,7 +89,7 @@ def test_the_effects_sit_on_it() -> None:
         assert predictor.predict(state, count=3).frequency == pytest.approx(exact, rel=5e-4)
 
 
-def test_a_body_on_a_seat_is_one_of_the_structure_and_no_mode_of_its_own() -> None:
+def test_an_attached_body_belongs_to_the_structure_and_adds_no_mode() -> None:
     predictor = specimen(clamped=True)
     state = with_body(predictor, attachment(predictor), HEAVY)
     assert len(state.absorbers) == 1

@@ -2,49 +2,33 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
-from imported_cases import seen_from, spec_of
+from imported_cases import bolted_frame, frame_matrices, seen_from, spec_of
 from scipy.linalg import eigh
 from updating_cases import observed
 
 from updating import LIBRARY, Case, Predictor, Tolerances, diagnose
-from updating.models.imported import Imported
-from updating.models.imported.nodes import read_table
 from updating.models.state import State
 
-EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
 EFFECT = LIBRARY["joint_nonlinearity"]
 LEVEL, COUNT = 50.0, 8
 
 
 @pytest.fixture(scope="module")
 def frame() -> Iterator[ModuleType]:
-    patch = pytest.MonkeyPatch()
-    patch.syspath_prepend(str(EXAMPLES))
-    import frame  # type: ignore[import-not-found]
-
-    yield frame
-    patch.undo()
-    for name in ("frame", "bars", "hits"):
-        sys.modules.pop(name, None)
+    with bolted_frame() as module:
+        yield module
 
 
 @pytest.fixture(scope="module")
 def predictor(frame: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Predictor:
     """The frame with the names of its joints' sides, hit at its points with hits of different levels."""
-    model, sets = frame.frame()
-    path = tmp_path_factory.mktemp("frame") / "nodes.csv"
-    path.write_text(model.table(sets))
-    stiffness = model.matrix("stiffness")
-    imported = Imported(stiffness, model.matrix("mass"), read_table(path, stiffness.shape[0]))
-    spec = spec_of(imported)
+    spec = spec_of(frame_matrices(frame, tmp_path_factory.mktemp("frame")))
     points = np.array([place for place, _ in frame.POINTS.values()])
     directions = np.eye(3)[[axis - 1 for _, axis in frame.POINTS.values()]]
     test = seen_from(points, directions, hertz(frame, {}))

@@ -2,61 +2,45 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-from imported_cases import seen_from, spec_of
+from imported_cases import bolted_frame, frame_matrices, seen_from, spec_of
 from updating_cases import observed
 
 from updating import LIBRARY, Case, Predictor, Tolerances
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.fit import evaluate
-from updating.models.imported import Imported
-from updating.models.imported.nodes import read_table
 from updating.problem.candidate import Candidate
 
-EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
 COUNT = 8
 OWN = {"ground_spring": ("stiffness", "damping"), "lumped_mass": ("mass", "bulk")}
 
 
 @pytest.fixture(scope="module")
-def frame(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Predictor]:
+def specimen(tmp_path_factory: pytest.TempPathFactory) -> Predictor:
     """The bolted frame of the examples, hit at its points."""
-    patch = pytest.MonkeyPatch()
-    patch.syspath_prepend(str(EXAMPLES))
-    import frame  # type: ignore[import-not-found]
-
-    model, _ = frame.frame()
-    path = tmp_path_factory.mktemp("frame") / "nodes.csv"
-    path.write_text(model.table({}))
-    stiffness = model.matrix("stiffness")
-    imported = Imported(stiffness, model.matrix("mass"), read_table(path, stiffness.shape[0]))
-    points = np.array([place for place, _ in frame.POINTS.values()])
-    along = np.eye(3)[[axis - 1 for _, axis in frame.POINTS.values()]]
-    yield Predictor(spec_of(imported), seen_from(points, along, np.geomspace(20, 2000, COUNT)))
-    patch.undo()
-    for name in ("frame", "bars", "hits"):
-        sys.modules.pop(name, None)
+    with bolted_frame() as frame:
+        spec = spec_of(frame_matrices(frame, tmp_path_factory.mktemp("frame"), named=False))
+        points = np.array([place for place, _ in frame.POINTS.values()])
+        along = np.eye(3)[[axis - 1 for _, axis in frame.POINTS.values()]]
+    return Predictor(spec, seen_from(points, along, np.geomspace(20, 2000, COUNT)))
 
 
 @pytest.mark.parametrize("place", [4, 7])
 @pytest.mark.parametrize("quantile", [0.02, 0.15, 0.2, 0.5, 0.9])
 @pytest.mark.parametrize("name", ["ground_spring", "lumped_mass"])
 def test_a_size_is_found_where_it_sits(
-    name: str, quantile: float, place: int, frame: Predictor, rng: np.random.Generator
+    name: str, quantile: float, place: int, specimen: Predictor, rng: np.random.Generator
 ) -> None:
     """No start of the search leads away from it to where modes have changed places."""
-    effect, measured = LIBRARY[name], frame.measured
-    size = next(p for p in effect.parameters(frame) if p.name in ("stiffness", "mass"))
+    effect, measured = LIBRARY[name], specimen.measured
+    size = next(p for p in effect.parameters(specimen) if p.name in ("stiffness", "mass"))
     at = dict(zip("xyz", measured.points[place].tolist(), strict=True))
-    state = effect.state(frame, {**at, size.name: size.value(quantile), "bulk": 1.0})
-    moved = frame.predict(state, count=20)
+    state = effect.state(specimen, {**at, size.name: size.value(quantile), "bulk": 1.0})
+    moved = specimen.predict(state, count=20)
     seen = (
         np.abs(moved.constants).max(axis=0) > 1e-6 * np.abs(moved.constants).max()
     )  # not those out of its plane
@@ -65,7 +49,7 @@ def test_a_size_is_found_where_it_sits(
         observed(there.frequency, np.full(COUNT, 0.01), there.constants, measured.points, rng),
         directions=measured.directions,
     )
-    problem, _ = pose(Case("frame", frame.spec, test, None, Tolerances()))
+    problem, _ = pose(Case("frame", specimen.spec, test, None, Tolerances()))
     form = next(
         f
         for f in problem.forms(effect)

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import itertools
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
+import pytest
 from scipy import sparse
 
 from updating import Axes, Material, Measured, Spec
 from updating.models import Damping, PointMass, Region
 from updating.models.fields import Sparse
 from updating.models.imported import Imported, NodeTable
+from updating.models.imported.nodes import read_table
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
 
 LENGTH, WIDTH, DEPTH, E, DENSITY = 0.5, 0.03, 0.005, 210e9, 7850.0
 STIFF, LINE = E * WIDTH * DEPTH**3 / 12, DENSITY * WIDTH * DEPTH
@@ -123,3 +131,24 @@ def write_rsa(path: Path, matrix: Sparse) -> None:
 
 
 AXES = Axes()
+
+
+@contextmanager
+def bolted_frame() -> Iterator[ModuleType]:
+    """Give the module of the example, and leave none of its neighbours behind."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(EXAMPLES))
+        import frame  # type: ignore[import-not-found]
+
+        yield frame
+    for name in ("frame", "bars", "hits"):
+        sys.modules.pop(name, None)
+
+
+def frame_matrices(frame: ModuleType, folder: Path, *, named: bool = True) -> Imported:
+    """Return the frame of the example, with the names of its joints' sides, or without any node set."""
+    model, sets = frame.frame()
+    path = folder / "nodes.csv"
+    path.write_text(model.table(sets if named else {}))
+    stiffness = model.matrix("stiffness")
+    return Imported(stiffness, model.matrix("mass"), read_table(path, stiffness.shape[0]))

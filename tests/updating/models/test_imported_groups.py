@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
-from imported_cases import seen_from
+from imported_cases import bolted_frame, frame_matrices, seen_from
 from scipy.linalg import eigh
 
 from acquisition.errors import StudyError
@@ -18,7 +16,6 @@ from updating import LIBRARY, Material, Predictor, Region, Spec
 from updating.models.imported import Imported
 from updating.models.imported.groups import common_name, joints_of
 from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends
-from updating.models.imported.nodes import read_table
 from updating.models.imported.sets import sets_of_table
 from updating.models.state import State, combine
 from updating.models.yielding import Yielding
@@ -26,28 +23,16 @@ from updating.models.yielding import Yielding
 TOLERATED = 5e-5
 """Of frequencies: what turning and shifting have in common of the mass of half an element; without it, 5e-3 [-]."""
 
-EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "matrices"
-
 
 @pytest.fixture(scope="module")
 def frame() -> Iterator[ModuleType]:
-    patch = pytest.MonkeyPatch()
-    patch.syspath_prepend(str(EXAMPLES))
-    import frame  # type: ignore[import-not-found]
-
-    yield frame
-    patch.undo()
-    for name in ("frame", "bars", "hits"):
-        sys.modules.pop(name, None)
+    with bolted_frame() as module:
+        yield module
 
 
 @pytest.fixture(scope="module")
 def imported(frame: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Imported:
-    model, sets = frame.frame()
-    path = tmp_path_factory.mktemp("frame") / "nodes.csv"
-    path.write_text(model.table(sets))
-    stiffness = model.matrix("stiffness")
-    return Imported(stiffness, model.matrix("mass"), read_table(path, stiffness.shape[0]))
+    return frame_matrices(frame, tmp_path_factory.mktemp("frame"))
 
 
 def hertz(stiffness: np.ndarray, mass: np.ndarray, count: int = 6) -> np.ndarray:

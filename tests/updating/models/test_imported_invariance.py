@@ -131,7 +131,7 @@ def test_structure_and_sensors_may_be_turned_together(bars: ModuleType, seed: in
 
 @settings(max_examples=8, deadline=None)
 @given(seed=seeds)
-def test_the_reduced_basis_is_off_by_what_is_said(bars: ModuleType, seed: int) -> None:
+def test_the_reduced_basis_is_off_by_its_stated_error(bars: ModuleType, seed: int) -> None:
     """Frequencies with other moduli and densities on the basis and on all degrees of freedom, by LAPACK."""
     imported, state = bent(bars, seed, elements=12), changed(seed, by=TWICE)
     regions = tuple(Region(f"part_{i}", (0.0, 1.0), (0.0, 1.0)) for i in range(PARTS))
