@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from acquisition.columns.blocks import Block, plain_blocks, read_text
+from acquisition.columns.blocks import plain_blocks, read_text
+from acquisition.columns.channels import SAME_RATE, Channels
 from acquisition.columns.layout import Column, Layout, dof_of, read_layout
 from acquisition.columns.lvm import is_lvm, lvm_blocks
 from acquisition.columns.units import QUANTITIES, factor_to_si
@@ -22,7 +23,6 @@ from acquisition.geometry import Geometry
 from acquisition.hits.hammer import HammerTest, Hits
 
 UNEVEN = 0.5  # of the usual step: times that miss their place by more are uneven
-SAME_RATE = 1e-4  # relative difference of rates that are the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ def read_columns(
     )
 
 
-def blocks_of(path: Path, layout: Layout) -> list[Block]:
+def blocks_of(path: Path, layout: Layout) -> Sequence[Channels]:
     """Return the blocks of numbers of a file.
 
     Raises
@@ -106,7 +106,18 @@ def blocks_of(path: Path, layout: Layout) -> list[Block]:
     return plain_blocks(path, lines, layout, least, [k for k in keys if isinstance(k, str)])
 
 
-def scaled(block: Block, columns: Sequence[Column], more: Sequence[int] = ()) -> FloatArray:
+def indices(block: Channels, columns: Sequence[Column]) -> list[int]:
+    """Return where the columns of a layout are in a block.
+
+    Raises
+    ------
+    InputError
+        If one is not there.
+    """
+    return [block.index_of(c.index if c.name is None else c.name, c.label) for c in columns]
+
+
+def scaled(block: Channels, columns: Sequence[Column], more: Sequence[int] = ()) -> FloatArray:
     """Return columns of a block in SI units, shape (n_columns + n_more, n_lines); ``more`` are left as they are.
 
     Raises
@@ -114,7 +125,7 @@ def scaled(block: Block, columns: Sequence[Column], more: Sequence[int] = ()) ->
     InputError
         If a column or unit is not there.
     """
-    index = [block.index_of(c.index if c.name is None else c.name, c.label) for c in columns]
+    index = indices(block, columns)
     factors = []
     for place, c in zip(index, columns, strict=True):
         unit = c.unit or block.units.get(place, "")
@@ -151,8 +162,9 @@ def _records(path: Path, layout: Layout) -> list[_Record]:
         timed = layout.rate is None and layout.time_column is not None
         more = [block.index_of(layout.time_column, f"time_column {layout.time_column!r}")] if timed else []
         values = scaled(block, [force, *responses], more)
-        rate = _even_rate(values[-1], block) if timed else _stated_rate(block, layout)
-        where = f"{path}, line {block.first}"
+        index = indices(block, columns)
+        rate = _even_rate(values[-1], block) if timed else _stated_rate(block, index, layout)
+        where = block.where
         if layout.samples is not None and values.shape[1] < layout.samples:
             raise InputError(f"{where}: {values.shape[1]} samples; the layout asks for {layout.samples}")
         values = values[:, : layout.samples]
@@ -194,8 +206,8 @@ def _in_file(column: Column, path: Path, layout: Layout) -> Column:
     return column
 
 
-def _stated_rate(block: Block, layout: Layout) -> float:
-    stated, given = block.rate, layout.rate
+def _stated_rate(block: Channels, index: Sequence[int], layout: Layout) -> float:
+    stated, given = block.rate_of(index), layout.rate
     if stated is None and given is None:
         raise InputError(
             f"{block.path}: no sampling rate; add rate = ... [Hz] or time_column = ... to {layout.source}"
@@ -208,16 +220,16 @@ def _stated_rate(block: Block, layout: Layout) -> float:
     return float(stated if given is None else given)  # type: ignore[arg-type]
 
 
-def _even_rate(time: FloatArray, block: Block) -> float:
+def _even_rate(time: FloatArray, block: Channels) -> float:
     """Return the rate of times that are even, as far as they are written out [Hz]."""
     steps = np.diff(time)
     usual = float(np.median(steps)) if len(steps) else 0.0
     if usual <= 0:
-        raise InputError(f"{block.path}, line {block.first}: the times do not increase; check time_column")
+        raise InputError(f"{block.where}: the times do not increase; check time_column")
     odd = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
     if len(odd):
         raise InputError(
-            f"{block.path}, line {block.first + int(odd[0]) + 1}: uneven time, a step of {steps[odd[0]]:g} s where "
+            f"{block.line(int(odd[0]) + 1)}: uneven time, a step of {steps[odd[0]]:g} s where "
             f"{usual:g} s is usual; samples are missing: resample the record or cut it before the gap"
         )
     return float((len(time) - 1) / (time[-1] - time[0]))

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.columns.blocks import Block
+from acquisition.columns.channels import Channels
 from acquisition.columns.layout import Column, Layout, read_layout
 from acquisition.columns.read import blocks_of, check_rules, scaled
 from acquisition.columns.units import QUANTITIES
@@ -61,7 +61,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
             axes[0], axes[-1], rtol=0, atol=SAME_AXIS * axes[0].max()
         )
         if not same:
-            raise InputError(f"{block.path}, line {block.first}: another frequency axis than {files[0]}")
+            raise InputError(f"{block.where}: another frequency axis than {files[0]}")
     return FrfSet(
         frequency=axes[0],
         values=np.stack(rows),
@@ -110,7 +110,7 @@ def _in_file(pair: tuple[Column, Column], path: Path, layout: Layout) -> tuple[C
 
 
 def _note(
-    found: dict[tuple[Dof, Dof], str], pairs: Sequence[tuple[Column, Column]], block: Block, layout: Layout
+    found: dict[tuple[Dof, Dof], str], pairs: Sequence[tuple[Column, Column]], block: Channels, layout: Layout
 ) -> None:
     """Note which FRFs a block holds.
 
@@ -119,7 +119,7 @@ def _note(
     InputError
         If another block holds one of them.
     """
-    where = f"{block.path}, line {block.first}"
+    where = block.where
     for key in ((pair[0].dof, pair[0].reference) for pair in pairs):
         if key in found:
             raise InputError(
