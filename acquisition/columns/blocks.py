@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from acquisition.columns.channels import Channels
 from acquisition.columns.layout import Layout
 from acquisition.errors import InputError
+from acquisition.recorders.channels import Channels
 
 SEPARATORS = {"tab": "\t", "space": None, "comma": ",", "semicolon": ";"}
 

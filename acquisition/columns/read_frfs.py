@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.columns.channels import Channels
 from acquisition.columns.layout import Column, Layout, read_layout
-from acquisition.columns.read import blocks_of, check_rules, scaled
+from acquisition.columns.read import blocks_of, scaled, with_unit
+from acquisition.columns.rules import FileRule, check_rules, rules_for
 from acquisition.columns.units import QUANTITIES
 from acquisition.display import named_files
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frfs.frf import FrfSet
+from acquisition.recorders import Channels
 
 SAME_AXIS = 1e-6  # of the highest frequency
 
@@ -47,7 +47,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
             f"{plan.source}: FRFs need frequency_column, and columns of one quantity: accelerance, mobility or "
             "receptance"
         )
-    check_rules(plan, files)
+    check_rules(plan.files, files, plan.source)
     axes, rows = [], []
     found: dict[tuple[Dof, Dof], str] = {}
     for block in (block for path in files for block in blocks_of(path, plan)):
@@ -98,15 +98,19 @@ def _pairs(layout: Layout) -> list[tuple[Column, Column]]:
 
 
 def _in_file(pair: tuple[Column, Column], path: Path, layout: Layout) -> tuple[Column, Column]:
-    """Return the columns of an FRF with the points that they have in this file: of the force, and of the response."""
-    first, second = pair
-    for rule in reversed([rule for rule in layout.files if fnmatch(path.name, rule.match)]):  # the first wins
-        if rule.column == "":
-            direction = rule.direction or first.reference_direction
-            first = replace(first, reference_node=rule.node, reference_direction=direction)
-        elif any(rule.column in (c.name, c.index) for c in pair):
-            first = replace(first, node=rule.node, direction=rule.direction or first.direction)
-    return first, second
+    """Return the columns of an FRF as they are in this file: points of force and response, units of what has one."""
+    for rule in reversed(rules_for(layout.files, path)):  # the first wins
+        if rule.column == "" or any(rule.column in (c.name, c.index) for c in pair):
+            first, second = (c if c.part == "phase" else with_unit(c, rule) for c in pair)
+            pair = _placed(first, rule), second
+    return pair
+
+
+def _placed(column: Column, rule: FileRule) -> Column:
+    """Return a column with the point that a rule gives the response, or the force where it names no column."""
+    of = "reference_" if rule.column == "" else ""
+    stated = {f"{of}node": rule.node, f"{of}direction": rule.direction}
+    return replace(column, **{key: value for key, value in stated.items() if value not in (None, "")})
 
 
 def _note(

@@ -14,7 +14,10 @@ HAMMER = {"name": "Hammer", "quantity": "force"}
 ACCELERATION = {"name": "Acc", "quantity": "acceleration"}
 LAYOUT = layout_from({"column": [HAMMER, ACCELERATION]})
 FORCE, MOTION = np.array([0.0, 2.5, 1.0, -0.5]), np.array([0.25, -1.0, 3.0, 0.5])
-HEAD = "LabVIEW Measurement\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\t{}\n***End_of_Header***\t\n"
+HEAD = (
+    "LabVIEW Measurement\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\t{}\n"
+    "***End_of_Header***\t\n"
+)
 
 
 def rows(*columns: np.ndarray | list[str]) -> str:

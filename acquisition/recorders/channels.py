@@ -47,9 +47,9 @@ class Channels(ABC):
         """How many channels there are."""
 
     @property
+    @abstractmethod
     def where(self) -> str:
         """The file, and the place in it where there is one, for messages."""
-        return str(self.path)
 
     @property
     def where_names(self) -> str:
@@ -59,6 +59,11 @@ class Channels(ABC):
     def line(self, sample: int) -> str:
         """Return the file and the place of a sample in it, for messages."""
         return f"{self.where}, sample {sample}"
+
+    @property
+    def needs_scale(self) -> bool:
+        """Whether the layout has to state what the numbers are multiplied by."""
+        return False
 
     @abstractmethod
     def numbers(self, index: Sequence[int]) -> FloatArray:
@@ -118,6 +123,17 @@ class Channels(ABC):
             If it is not the same for all of them, or 0.
         """
         counts = {i: self.counts[i] for i in index if i in self.counts}
+        self.of_one_length(counts)
+        return next(iter(counts.values()), None)
+
+    def of_one_length(self, counts: Mapping[int, int]) -> None:
+        """Refuse channels without samples, or with different numbers of them.
+
+        Raises
+        ------
+        InputError
+            If there are such.
+        """
         if counts and not min(counts.values()):
             empty = min(counts, key=counts.__getitem__)
             raise InputError(
@@ -130,7 +146,6 @@ class Channels(ABC):
                 f"{self.where}: {self.label(short)} has {counts[short]} samples and {self.label(long)} "
                 f"{counts[long]}; name channels of one length in the layout"
             )
-        return next(iter(counts.values()), None)
 
     def label(self, index: int) -> str:
         """Return how messages call a channel."""
