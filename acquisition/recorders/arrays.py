@@ -89,18 +89,23 @@ def records_of(path: Path, load: Loader, names: Sequence[str], rate_variable: st
 
 
 def all_records(path: Path, load: Loader, names: Sequence[str]) -> list[Recorded]:
-    """Return every array of numbers of a file as a channel, those of two dimensions as several of one record."""
+    """Return every array of numbers of a file as a channel of one record.
+
+    Of several arrays of one shape with two dimensions, each is a channel and its shorter dimension are hits; of one
+    alone, the shorter dimension are channels.
+    """
     held = load(path, list(names))
+    flat = {name: np.squeeze(values) for name, values in held.values.items()}
+    shapes = [values.shape for values in flat.values()]
     channels: dict[str, AnyArray] = {}
-    for name, values in held.values.items():
-        flat = np.squeeze(values)
-        if flat.ndim == 2:
-            channels |= {
-                f"{name}[{k}]": row for k, row in enumerate(flat if flat.shape[0] < flat.shape[1] else flat.T)
-            }
-        elif flat.ndim < 2:
-            channels[name] = np.atleast_1d(flat)
-    units = {i: held.units[n] for i, n in enumerate(channels) if n in held.units}
+    for name, values in flat.items():
+        if values.ndim == 2:
+            rows = values if values.shape[0] < values.shape[1] else values.T
+            hits = shapes.count(values.shape) > 1
+            channels |= {name: rows[0]} if hits else {f"{name}[{k}]": row for k, row in enumerate(rows)}
+        elif values.ndim < 2:
+            channels[name] = np.atleast_1d(values)
+    units = {i: unit for i, n in enumerate(channels) if (unit := held.units.get(n, ""))}
     return [Recorded(path=path, names=tuple(channels), units=units, values=tuple(channels.values()))]
 
 
