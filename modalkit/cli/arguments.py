@@ -7,6 +7,7 @@ wrong order or a key that a study does not have is refused without them.
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -102,20 +103,14 @@ def _check_there(path: Path) -> None:
 
 
 def _check_band(band: Sequence[str]) -> None:
-    """Refuse two numbers of which the first is not the lower one; what is no number is for the command to refuse."""
-    from acquisition.si_units import si_value
-
-    try:
-        low, high = (float(si_value(limit if not _plain(limit) else float(limit), "Hz")) for limit in band)
-    except ValueError:
+    """Refuse two limits of which the first is not the lower one; other words are for the command to read."""
+    found = [_LIMIT.fullmatch(limit) for limit in band]
+    if len(found) != 2 or not all(found):
         return
+    low, high = (float(one[1]) * (1e3 if one[2] == "kHz" else 1.0) for one in found if one is not None)
     if not low < high:
         raise InputError(f"Invalid band {low:g} to {high:g} Hz: the lower limit comes first")
 
 
-def _plain(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+_LIMIT = re.compile(r"(\d+\.?\d*(?:[eE][+-]?\d+)?)\s*(|Hz|kHz)")
+"""A limit of a band without the table of units, which takes a second to load."""

