@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import logging
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +14,9 @@ import numpy as np
 from acquisition.errors import InputError
 from acquisition.recorders.library import library
 from acquisition.recorders.recorded import Recorded
+
+_LEAD, _BIG_ENDIAN, _VERSIONS = 28, 1 << 6, (4712, 4713)
+"""Bytes before a segment [-], the bit in them for numbers with the high byte first, and versions of the format."""
 
 _UNITS = ("unit_string", "NI_UnitDescription")
 """Properties of a channel that state its unit."""
@@ -28,9 +34,13 @@ def records(path: Path) -> list[Recorded]:
         If the file is damaged, or nptdms is not installed.
     """
     nptdms = library("nptdms", path)
+    _check_whole(path)
     try:
-        file = nptdms.TdmsFile.read(path)
-        groups = [[_Channel(group.name, c) for c in group.channels() if len(c)] for group in file.groups()]
+        with _strict():
+            file = nptdms.TdmsFile.read(path)
+            groups = [
+                [_Channel(group.name, c) for c in group.channels() if len(c)] for group in file.groups()
+            ]
     except Exception as error:  # the library raises what a damaged file happens to lead to
         statement = " ".join(str(error).split())[:200]
         raise InputError(
@@ -47,6 +57,52 @@ def records(path: Path) -> list[Recorded]:
     every = [c for group in groups for c in group]
     plain = [c.name for c in every]
     return [_record(path, every, [c.name if plain.count(c.name) == 1 else c.full for c in every], None)]
+
+
+class _Strict(logging.Handler):
+    """Make an error of what the library only notes: that a segment is cut off, or words cannot be read."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Raise what would have been written to the log."""
+        raise ValueError(record.getMessage())
+
+
+@contextmanager
+def _strict() -> Iterator[None]:
+    """Refuse what the library reads as far as it can."""
+    logs = [
+        logging.getLogger(name) for name in list(logging.root.manager.loggerDict) if name.startswith("nptdms")
+    ]
+    handlers = [(log, log.handlers) for log in logs]
+    for log in logs:
+        log.handlers = [_Strict(logging.WARNING)]
+    try:
+        yield
+    finally:
+        for log, before in handlers:
+            log.handlers = before
+
+
+def _check_whole(path: Path) -> None:
+    """Refuse a file whose segments do not follow each other to its end: samples would be missing.
+
+    Raises
+    ------
+    InputError
+        If they do not.
+    """
+    content, at = path.read_bytes(), 0
+    while at + _LEAD <= len(content) and content[at : at + 4] == b"TDSm":
+        order = ">" if struct.unpack_from("<I", content, at + 4)[0] & _BIG_ENDIAN else "<"
+        version, following, raw = struct.unpack_from(f"{order}IQQ", content, at + 8)
+        if version not in _VERSIONS or raw > following:
+            break
+        at += _LEAD + following
+    if at != len(content) or not at:
+        raise InputError(
+            f"{path}: its segments do not end where the file ends; the recording was cut off or the file is damaged, "
+            "record or export it again"
+        )
 
 
 class _Channel:
