@@ -73,10 +73,21 @@ def _check_whole(path: Path) -> None:
     while at + 8 <= len(content):
         size = int(struct.unpack_from(f"{order}I", content, at + 4)[0])
         data += content[at : at + 4] == b"data"
+        if content[at : at + 4] == b"fmt " and at + 24 <= len(content):
+            _check_sizes(*struct.unpack_from(f"{order}2xHIIHH", content, at + 8), path)
         at += 8 + size + size % 2
     stated = 8 + int(struct.unpack_from(f"{order}I", content, 4)[0])
     if at not in (len(content), len(content) + 1) or stated not in (at, at - 1) or data != 1:
         raise InputError(
             f"{path}: {len(content)} bytes where its header states {max(at, stated)}, or not one part with samples; "
             "the file was cut off or damaged, record or export it again"
+        )
+
+
+def _check_sizes(channels: int, rate: int, per_second: int, together: int, bits: int, path: Path) -> None:
+    """Refuse a header whose bytes a sample, channels and bits do not belong together: samples would be cut in pieces."""
+    if not channels or together % channels or not 0 < bits <= 8 * together // channels:
+        raise InputError(
+            f"{path}: its header states {channels} channels of {bits} bits in {together} bytes; the file is damaged, "
+            "record or export it again"
         )

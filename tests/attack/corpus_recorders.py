@@ -130,7 +130,7 @@ def recorder_families() -> list[Family]:
         Family("numpy records", [_case("a.npz", npz, rated, 60, undetectable.archive)], _read),
         Family(
             "MATLAB records",
-            [_binary("a.mat", mat, rated, 192, [(0, 116), *_spans(mat, FORCE, MOTION)])],
+            [_binary("a.mat", mat, rated, 192, [(0, 116), *_spans(mat, FORCE, MOTION, scalar)])],
             _read,
         ),
         Family(

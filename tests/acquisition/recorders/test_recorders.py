@@ -151,6 +151,26 @@ def test_a_wav_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
         read_columns(tmp_path / "a.wav", wav_layout())
 
 
+def test_a_wav_header_that_cuts_samples_in_pieces_is_refused(tmp_path: Path) -> None:
+    """Six channels of one byte where there are two of three: sizes and rate still belong together."""
+    wav24(tmp_path / "a.wav", np.round(np.stack([FORCE[0], MOTION[0]], axis=1) * 2**23))
+    whole = bytearray((tmp_path / "a.wav").read_bytes())
+    whole[22] = 6
+    (tmp_path / "a.wav").write_bytes(whole)
+    with pytest.raises(InputError, match="6 channels of 24 bits in 6 bytes"):
+        read_columns(tmp_path / "a.wav", wav_layout())
+
+
+def test_a_cut_tdms_file_is_refused_in_one_line(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """nptdms reads what is left of it, and writes a note of its own to stderr."""
+    whole = tdms(tmp_path / "a.tdms").read_bytes()
+    for content in (whole[:-8], whole + b"TDSm", whole.replace(b"unit_string", b"unit_str\xff\xfeg")):
+        (tmp_path / "a.tdms").write_bytes(content)
+        with pytest.raises(InputError, match=r"a\.tdms: (its segments do not end|not a whole TDMS file)"):
+            read_columns(tmp_path / "a.tdms", layout())
+    assert capfd.readouterr().err == ""
+
+
 def test_channels_of_one_array_are_named_by_number_and_complex_ones_by_part(tmp_path: Path) -> None:
     np.savez(tmp_path / "a.npz", data=np.stack([FORCE[0], MOTION[0]], axis=1))
     test = read_columns(
