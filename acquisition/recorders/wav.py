@@ -85,7 +85,7 @@ def _check_whole(path: Path) -> None:
 
 
 def _check_sizes(channels: int, rate: int, per_second: int, together: int, bits: int, path: Path) -> None:
-    """Refuse a header whose bytes a sample, channels and bits do not belong together: samples would be cut in pieces."""
+    """Refuse a header whose bytes a sample, channels and bits do not belong together: samples would be cut."""
     if not channels or together % channels or not 0 < bits <= 8 * together // channels:
         raise InputError(
             f"{path}: its header states {channels} channels of {bits} bits in {together} bytes; the file is damaged, "
