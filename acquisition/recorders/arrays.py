@@ -59,9 +59,9 @@ def records_of(path: Path, load: Loader, names: Sequence[str], rate_variable: st
         If an array is not there, or its shape is not that of a channel.
     """
     wanted = list(dict.fromkeys(names))
-    bases = [_parts(name)["base"] for name in wanted] + ([rate_variable] if rate_variable else [])
+    bases = [_base(name) for name in wanted] + ([rate_variable] if rate_variable else [])
     held = load(path, list(dict.fromkeys(bases)))
-    rows = {name: _rows(held.values[_parts(name)["base"]], name, path) for name in wanted}
+    rows = {name: _rows(held.values[_base(name)], name, path) for name in wanted}
     rate = None if rate_variable is None else _rate(held.values[rate_variable], rate_variable, path)
     counts = {len(r) for r in rows.values()} - {1}
     if len(counts) > 1:
@@ -77,9 +77,7 @@ def records_of(path: Path, load: Loader, names: Sequence[str], rate_variable: st
             names=tuple(wanted),
             rates={} if rate is None else dict.fromkeys(range(len(wanted)), rate),
             units={
-                i: held.units[base]
-                for i, name in enumerate(wanted)
-                if (base := str(_parts(name)["base"])) in held.units
+                i: held.units[base] for i, name in enumerate(wanted) if (base := _base(name)) in held.units
             },
             values=tuple(r[k % len(r)] for r in rows.values()),
             record=None if hits == 1 else k + 1,
@@ -109,6 +107,11 @@ def all_records(path: Path, load: Loader, names: Sequence[str]) -> list[Recorded
     return [Recorded(path=path, names=tuple(channels), units=units, values=tuple(channels.values()))]
 
 
+def _base(name: str) -> str:
+    """Return the name of the array that a channel is in."""
+    return _parts(name)["base"] or name
+
+
 def _parts(name: str) -> dict[str, str | None]:
     found = _NAME.fullmatch(name)
     return {"base": name} if found is None else found.groupdict()
@@ -130,7 +133,7 @@ def _rows(values: AnyArray, name: str, path: Path) -> AnyArray:
         return np.atleast_2d(flat)
     if flat.ndim != 2 or int(channel) >= len(flat):
         raise InputError(f"{path}: {name!r} is not there, the array has shape {values.shape}; counted from 0")
-    return flat[int(channel)][None]
+    return np.atleast_2d(flat[int(channel)])
 
 
 def _part(values: AnyArray, part: str | None, name: str, path: Path) -> AnyArray:
