@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 import undetectable
 from family import Case, Family, written
@@ -39,13 +38,6 @@ def _tdms(path: Path) -> None:
         file.write_segment(
             [ChannelObject("hit", "force", FORCE, step), ChannelObject("hit", "acc", MOTION, step)]
         )
-
-
-def _hdf5(path: Path) -> None:
-    with h5py.File(path, "w", libver="latest") as file:
-        file["fs"] = 1000.0
-        for name, values in (("force", FORCE), ("acc", MOTION)):
-            file.create_dataset(name, data=values, fletcher32=True)
 
 
 def _wav(bits: int) -> bytes:
@@ -115,7 +107,7 @@ part = "imag"
 def recorder_families() -> list[Family]:
     """Return the families of recorders' files, named arrays, and text with words behind its numbers."""
     plain, rated = COLUMNS.format("force", "acc"), 'rate_variable = "fs"\n' + COLUMNS.format("force", "acc")
-    tdms, hdf5, mat = written("a.tdms", _tdms), written("a.h5", _hdf5), _mat()
+    tdms, mat = written("a.tdms", _tdms), _mat()
     step = np.array(1e-3)
     scalar = np.array(1000.0)
     npz = repacked(written("a.npz", functools.partial(np.savez, fs=1000.0, force=FORCE, acc=MOTION)))
@@ -126,7 +118,6 @@ def recorder_families() -> list[Family]:
     return [
         Family("TDMS", [_binary("a.tdms", tdms, plain, 28, _spans(tdms, FORCE, MOTION, step))], _read),
         Family("WAV", _wav_cases(), _read),
-        Family("HDF5", [_binary("a.h5", hdf5, rated, 48, _spans(hdf5, scalar))], _read),
         Family("numpy records", [_case("a.npz", npz, rated, 60, undetectable.archive)], _read),
         Family(
             "MATLAB records",
