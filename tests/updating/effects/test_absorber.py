@@ -292,6 +292,7 @@ def test_where_every_mode_is_the_models_it_is_not_searched() -> None:
     assert "every measured mode is one of the model's" in str(found.not_examined["absorber"])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("x", "share", "hertz"), [(0.25, 0.05, 160.0), (0.33, 0.03, 29.0)])
 def test_a_diagnosis_names_it_with_mass_frequency_and_place(x: float, share: float, hertz: float) -> None:
     rng = np.random.default_rng(6)
@@ -308,6 +309,7 @@ def test_a_diagnosis_names_it_with_mass_frequency_and_place(x: float, share: flo
         assert stated.low95 - room < value < stated.high95 + room, name
 
 
+@pytest.mark.long
 def test_a_mode_of_no_cause_is_not_taken_for_one() -> None:
     """A spurious mode whose shape is that of nothing near it: no absorber makes it, and nothing else is named."""
     rng = np.random.default_rng(8)
