@@ -32,9 +32,9 @@ class Located(str):
         text.place, text.finding = place, finding
         return text
 
-    def __getnewargs__(self) -> tuple[str, str]:
+    def __reduce__(self) -> tuple[type[Located], tuple[str, str]]:
         """Return what a copy is made from."""
-        return self.place, self.finding
+        return Located, (self.place, self.finding)
 
 
 def in_order(warnings: Iterable[str]) -> tuple[str, ...]:
