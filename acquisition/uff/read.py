@@ -20,6 +20,7 @@ from acquisition.uff.geometry.nodes import merge_nodes, turned
 from acquisition.uff.modes.read import describe, join_modes, solve_modes
 from acquisition.uff.text.blocks import split_blocks
 from acquisition.uff.text.source import opened
+from acquisition.warned import Located
 
 _SPOOL = 1 << 26  # bytes of numbers from text kept in memory before they go to a temporary file
 _FIRST_PASS = 0.6  # of the progress
@@ -174,4 +175,4 @@ def _stated(info: DatasetInfo, hit: str | None) -> str:
     """Say what is wrong with a data set, and which hit goes with it, in one line."""
     left_out = "it is left out" if hit is None else f"it is left out and {hit} with it"
     end = "" if info.ok else f"; {left_out}, export it again if it is needed"
-    return f"{info.fault}{end}"
+    return Located(info.place, f"{info.message}{end}")

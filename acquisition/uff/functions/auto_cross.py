@@ -11,6 +11,7 @@ from acquisition.arrays import AnyArray, ComplexArray, FloatArray
 from acquisition.uff.functions.measurements import Measurement
 from acquisition.uff.functions.quantities import MOTIONS
 from acquisition.uff.functions.stored import Held
+from acquisition.warned import Located
 
 AUTO, CROSS = (2, 9), 3
 
@@ -33,17 +34,17 @@ def combine_spectra(records: Sequence[Measurement]) -> tuple[list[Measurement], 
         )
     for cross in crosses:
         if cross.quantity not in MOTIONS:
-            warnings.append(
-                f"{cross.place}: a cross-spectrum that is not one of a motion with a force; left out"
-            )
+            finding = "a cross-spectrum that is not one of a motion with a force; left out"
+            warnings.append(Located(cross.place, finding))
             continue
         peers = [c for c in crosses if c.reference == cross.reference]
         force = _matching([a for a in forces if a.response == cross.reference], cross, peers)
         if force is None:
-            warnings.append(
-                f"{cross.place}: no single auto-spectrum of the force at {cross.reference} has its axis and "
+            finding = (
+                f"no single auto-spectrum of the force at {cross.reference} has its axis and "
                 "scaling; no FRF can be made of it, export the auto-spectrum or the FRF"
             )
+            warnings.append(Located(cross.place, finding))
             continue
         peers = [c for c in crosses if c.response == cross.response]
         same = [a for a in autos if a.response == cross.response and a.quantity == cross.quantity]
@@ -89,9 +90,8 @@ def _ratio(
     if motion is not None:
         coherence = _coherence(gxf, gff, _power(motion))
         if coherence is None:
-            warnings.append(
-                f"{cross.place}: with its auto-spectra the coherence exceeds 1, so their scalings differ; left out"
-            )
+            finding = "with its auto-spectra the coherence exceeds 1, so their scalings differ; left out"
+            warnings.append(Located(cross.place, finding))
             return []
         coherence_set = replace(
             cross, function_type=6, quantity="other", values=Held(coherence), factor=1.0, averages=averages

@@ -16,6 +16,7 @@ from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.uff.functions.measurements import Measurement
 from acquisition.uff.functions.pairing import Hit, pair_up
 from acquisition.uff.functions.quantities import MOTIONS
+from acquisition.warned import Located
 
 _Key = tuple[float, int, Form, float]
 _Forces = dict[Dof, list[Measurement]]
@@ -99,13 +100,13 @@ def _sorted_out(records: Sequence[Measurement], warnings: list[str]) -> tuple[_F
         reference = record.reference
         if reference not in forces and reference.node == 0 and len(forces) == 1:
             reference = next(iter(forces))
-            warnings.append(f"{record.place}: names no reference; the only force, at {reference}, is taken")
+            finding = f"names no reference; the only force, at {reference}, is taken"
+            warnings.append(Located(record.place, finding))
         if reference in forces:
             motions[record.response, reference].append(record)
         else:
-            warnings.append(
-                f"{record.place}: there is no force record at its reference {reference}; left out"
-            )
+            finding = f"there is no force record at its reference {reference}; left out"
+            warnings.append(Located(record.place, finding))
     return forces, motions
 
 

@@ -62,22 +62,60 @@ def _pulls(
 
     Also the squares of what it would if it were independent in each FRF, summed over these.
     """
-    n, k = len(fit.poles), columns.linear.shape[1]
-    both = np.hstack([columns.linear, columns.slopes])
-    real = np.concatenate([both.real, both.imag])
+    n = len(fit.poles)
     residues = fit.linear.residues[rows]
     turns = pole_turns(np.stack([residues.real, residues.imag], axis=2).reshape(len(rows), -1), n)
-    lines = weights.lines if len(weights.lines) == 1 else weights.lines[rows]
-    together = np.zeros((len(both), 2 * n), np.complex128)
-    alone = np.zeros((len(both), 2 * n))
-    slopes = np.zeros(0)
-    for j, h in enumerate(model):
-        if j < len(lines):
-            gram = normal_equations.products(real, lines[[j]])
-            follow = normal_equations.solve(gram[:, :k, :k], gram[:, :k, k:])[0]
-            slopes = lines[j][:, None] * (columns.slopes - columns.linear @ follow).conj()
-        pull = np.einsum("lni,nia->lna", slopes.reshape(-1, n, 2), turns[j]).reshape(-1, 2 * n)
-        pull = weights.level[rows[j]] * h[:, None] * pull
-        together += pull
-        alone += np.abs(pull) ** 2
+    size = weights.level[rows, None] * model
+    if len(weights.lines) == 1:
+        return _pull(_free_slopes(columns, weights.lines), turns, size)
+    together = np.zeros((model.shape[1], 2 * n), np.complex128)
+    alone = np.zeros((model.shape[1], 2 * n))
+    for j, row in enumerate(rows):
+        own = _pull(_free_slopes(columns, weights.lines[[row]]), turns[[j]], size[[j]])
+        together += own[0]
+        alone += own[1]
     return together, alone
+
+
+def _free_slopes(columns: basis.Basis, lines: FloatArray) -> ComplexArray:
+    """Return the conjugate slopes times weights, (n_lines, 2 n_modes), the linear columns projected out.
+
+    Parameters
+    ----------
+    columns : Basis
+        The columns.
+    lines : (1, n_lines) array
+        Weights [-].
+    """
+    k = columns.linear.shape[1]
+    both = np.hstack([columns.linear, columns.slopes])
+    gram = normal_equations.products(np.concatenate([both.real, both.imag]), lines)
+    follow = normal_equations.solve(gram[:, :k, :k], gram[:, :k, k:])[0]
+    return np.asarray(lines[0][:, None] * (columns.slopes - columns.linear @ follow).conj())
+
+
+def _pull(slopes: ComplexArray, turns: FloatArray, size: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+    """Return what FRFs that share their slopes pull together, and the sum of squares of what each does alone.
+
+    Parameters
+    ----------
+    slopes : (n_lines, 2 n_modes) complex array
+        As of :func:`_free_slopes`.
+    turns : (n_frf, n_modes, 2, 2) array
+        From (Re, Im) of a pole to weights of its two slopes.
+    size : (n_frf, n_lines) complex array
+        The FRFs times their level.
+
+    Returns
+    -------
+    (n_lines, 2 n_modes) complex array and (n_lines, 2 n_modes) array
+    """
+    n_lines, n = len(slopes), turns.shape[1]
+    pairs = slopes.reshape(n_lines, n, 2)
+    mean = (size.T @ turns.reshape(len(turns), -1)).reshape(n_lines, n, 2, 2)
+    products = np.einsum("jnia,jnka->jnika", turns, turns).reshape(len(turns), -1)
+    spread = ((np.abs(size) ** 2).T @ products).reshape(n_lines, n, 2, 2, 2)
+    crossed = (pairs[:, :, :, None] * pairs[:, :, None, :].conj()).real
+    together = np.einsum("lni,lnia->lna", pairs, mean)
+    alone = np.einsum("lnik,lnika->lna", crossed, spread)
+    return together.reshape(n_lines, 2 * n), alone.reshape(n_lines, 2 * n)

@@ -20,13 +20,13 @@ def paired(interleaved: FloatArray) -> ComplexArray:
 
 def times_blocks(matrix: FloatArray, blocks: FloatArray) -> FloatArray:
     """Return matrix times blockdiag(blocks), (j, k, 2 n) by (j, n, 2, 2)."""
-    parts = matrix.reshape(*matrix.shape[:2], -1, 2)
+    parts = matrix.reshape(*matrix.shape[:2], matrix.shape[2] // 2, 2)
     return np.asarray(np.einsum("jkna,jnab->jknb", parts, blocks, optimize=True).reshape(matrix.shape))
 
 
 def blocks_times(blocks: FloatArray, matrix: FloatArray) -> FloatArray:
     """Return blockdiag(blocks)^T times matrix, (j, n, 2, 2) by (j, 2 n, q)."""
-    parts = matrix.reshape(len(matrix), -1, 2, matrix.shape[-1])
+    parts = matrix.reshape(len(matrix), matrix.shape[1] // 2, 2, matrix.shape[2])
     return np.asarray(np.einsum("jnab,jnaq->jnbq", blocks, parts, optimize=True).reshape(matrix.shape))
 
 

@@ -156,12 +156,9 @@ def _shapes(
     problem: Problem, left: Projected, own: FloatArray, right: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the inverse of each row's normal matrix and its best shape components."""
-    row, level = problem.places.row, problem.weights.level
-    m = right.shape[-1]
-    normal = np.zeros((problem.places.shape[0], m, m))
-    np.add.at(normal, row, level[:, None, None] * blocks_times(own, right))
-    target = np.zeros((len(normal), m))
-    np.add.at(target, row, level[:, None] * blocks_times(own, left.cross[:, :m, None])[:, :, 0])
+    level, m = problem.weights.level, right.shape[-1]
+    normal = summed(problem.places, level[:, None, None] * blocks_times(own, right))
+    target = summed(problem.places, level[:, None] * blocks_times(own, left.cross[:, :m, None])[:, :, 0])
     held = inverses(normal)
     return held, np.einsum("imk,ik->im", held, target)
 
@@ -176,12 +173,13 @@ def _factors(
     return factors, max(left.power - float(each @ problem.weights.level), 0.0)
 
 
-def misfit(problem: Problem, left: Projected, share: ComplexArray) -> float:
-    """Return the misfit with other participations at the poles of a projection, shapes following [-]."""
-    m = 2 * share.shape[1]
-    own = rotations(share)[problem.places.column]
-    _, long = _shapes(problem, left, own, times_blocks(left.gram[:, :m, :m], own))
-    return _factors(problem, left, own, long[problem.places.row])[1]
+def summed(places: Sorted, values: FloatArray) -> FloatArray:
+    """Return sums over the FRFs of each row, (n_rows, ...): within a column no row occurs twice."""
+    total = np.zeros((places.shape[0], *values.shape[1:]))
+    for column in range(places.shape[1]):
+        mine = np.flatnonzero(places.column == column)
+        total[places.row[mine]] += values[mine]
+    return total
 
 
 def _local_slopes(factors: FloatArray, long: FloatArray, n_modes: int, n_held: int) -> FloatArray:
@@ -211,13 +209,13 @@ def _gathered(
     normal, gradient = np.zeros((total, total)), np.zeros(total)
     coupling = np.zeros((n_rows, total, m))
     normal[:q, :q], gradient[:q] = local[:, :q, :q].sum(axis=0), slope[:, :q].sum(axis=0)
-    np.add.at(coupling[:, :q], places.row, lean[:, :q])
+    coupling[:, :q] = summed(places, lean[:, :q])
     for column in range(n_columns):
         mine, part = places.column == column, slice(q + m * column, q + m * (column + 1))
         block = local[mine].sum(axis=0)
         normal[:q, part], normal[part, :q] = block[:q, q:], block[q:, :q]
         normal[part, part], gradient[part] = block[q:, q:], slope[mine, q:].sum(axis=0)
-        np.add.at(coupling[:, part], places.row[mine], lean[mine, q:])
+        coupling[places.row[mine], part] = lean[mine, q:]
     keep = np.concatenate([np.ones(q, bool), np.repeat(problem.free, 2, axis=1).ravel()])
     return normal[np.ix_(keep, keep)], gradient[keep], coupling[:, keep]
 

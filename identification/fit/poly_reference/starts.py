@@ -6,9 +6,10 @@ from itertools import combinations
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from identification.fit.equations import normal_equations
-from identification.fit.poly_reference.equations import Problem, misfit, project
+from identification.fit.poly_reference.equations import Problem, project
+from identification.fit.poly_reference.pairs import PairEquations
 from identification.fit.poly_reference.places import Sorted
 
 _CLOSE = 3.0  # poles nearer than this many half-power half-widths share their residues at will
@@ -62,18 +63,23 @@ def untangled(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Com
     ]
     if not near:
         return share
-    left = project(problem, poles, share.shape[1])
-    best, cost = share, misfit(problem, left, share)
+    left, best = project(problem, poles, share.shape[1]), share.copy()
     for a, b in near:
-        for first, second in _directions(best[:, [a, b]]):
-            trial = best.copy()
-            for mode, direction in ((a, first), (b, second)):
-                lead = direction[np.flatnonzero(~problem.free[:, mode])[0]]
-                trial[:, mode] = direction / lead if abs(lead) > _SMALL else best[:, mode]
-            found = misfit(problem, left, trial)
-            if found < cost:
-                best, cost = trial, found
+        trials = _trials(best[:, [a, b]], ~problem.free[:, [a, b]])
+        found = PairEquations.of(problem, left, best, (a, b)).misfits(trials)
+        best[:, [a, b]] = trials[int(found.argmin())]
     return best
+
+
+def _trials(pair: ComplexArray, lead: BoolArray) -> ComplexArray:
+    """Return participations of two modes to try, as they are first, 1 at the leads, (n_trials, n_columns, 2)."""
+    modes = np.arange(2)
+    tried = np.stack([pair.real, *(np.stack(both, axis=1) for both in _directions(pair))])
+    scale = tried[:, lead.argmax(axis=0), modes][:, None, :]
+    small = np.abs(scale) <= _SMALL
+    trials = np.where(small, pair, tried / np.where(small, 1.0, scale))
+    trials[0] = pair
+    return np.asarray(trials, dtype=np.complex128)
 
 
 def _directions(pair: ComplexArray) -> list[tuple[FloatArray, FloatArray]]:
