@@ -102,14 +102,33 @@ def _examined(
     dropped = np.zeros_like(grown.products) if grown.products.all() else grown.products
     products = _products(state, dropped, grown)
     state = state.without(dropped)
-    statement = _on_products(state, products)
+    statement: tuple[str, ...] = ()
     if follows_level(state.found).any():
         smeared = is_smeared(state.model, state.found)
         if smeared:
-            state = _at_one_level(state, tests, of, windows, products)
+            state, more = _further(state, _at_one_level(state, tests, of, windows, products), tests, windows)
+            products = replace(products, names=(*products.names, *more))
         state = replace(state, model=replace(state.model, levels=state.found))
         statement = (*statement, _statement(state.model, state.found, smeared))
+    statement = (*_on_products(state, products), *statement)
     return replace(state.model, warnings=(*state.model.warnings, *statement)) if statement else state.model
+
+
+def _further(
+    known: Examined, even: Examined, tests: Tests, windows: Windows | None
+) -> tuple[Examined, tuple[str, ...]]:
+    """Return modes of one level without products that only show there, and the names of these.
+
+    Modes that are known, as their constants do not grow at the poles of each hit, stay.
+    """
+    from identification import growth
+
+    grown = growth(even.model, tests, windows=windows)
+    assert grown is not None
+    reach = _reach(known, np.ones(len(known.model), np.bool_))
+    apart = np.abs(even.model.modal.frequency[:, None] - known.model.modal.frequency)
+    which = grown.products & (apart > reach).all(axis=1)
+    return even.without(which), _products(even, which, grown).names
 
 
 def _at_one_level(
@@ -145,14 +164,18 @@ def _products(state: Examined, which: BoolArray, grown: Growth) -> Products:
     """Return the modes that are products of the others, with the sums that they lie at."""
     from identification import combination
 
-    own, slope = state.model.modal.frequency, np.nan_to_num(state.found.slope)
-    moved = np.abs(slope).max(where=~which, initial=0.0) * (state.found.strongest - state.found.weakest)
-    reach = moved * own + np.abs(state.model.poles.real) / (2 * np.pi)
-    names = []
+    own, reach, names = state.model.modal.frequency, _reach(state, ~which), []
     for i in np.flatnonzero(which):
         of = combination(float(own[i]), own[~which], reach[~which])
         names.append(f"{hertz(own[i])} ({f'{of}, ' if of else ''}force to the power {grown.power[i]:.2g})")
     return Products(own[which], reach[which], tuple(names))
+
+
+def _reach(state: Examined, modes: BoolArray) -> FloatArray:
+    """Return how far a peak may lie from where it is at the mean level, by what moves the modes, (n_modes,) [Hz]."""
+    slope = np.abs(np.nan_to_num(state.found.slope)).max(where=modes, initial=0.0)
+    moved = slope * (state.found.strongest - state.found.weakest)
+    return np.asarray(moved * state.model.modal.frequency + np.abs(state.model.poles.real) / (2 * np.pi))
 
 
 def _on_products(state: Examined, products: Products) -> tuple[str, ...]:
