@@ -68,8 +68,9 @@ class Examined:
         """Return the same without some of the modes, (n_modes,)."""
         if not dropped.any():
             return self
-        model = self.select(self.model.modal.frequency[dropped].tolist())
-        return replace(self, model=model, found=self.found.modes(_nearest(model, self.model)))
+        select = _dropping(self.select, self.model.modal.frequency[dropped])
+        model = select(())
+        return replace(self, select=select, model=model, found=self.found.modes(_nearest(model, self.model)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +85,12 @@ class Products:
         """Return the frequencies of those modes of a model that are these peaks, (n,) [Hz]."""
         own = model.modal.frequency
         return np.asarray(own[(np.abs(own[:, None] - self.frequency) <= self.reach).any(axis=1)])
+
+
+def _dropping(select: Select, dropped: FloatArray) -> Select:
+    """Return a selection that always leaves out the modes at these frequencies [Hz]."""
+    always = dropped.tolist()
+    return lambda more: select([*always, *more])
 
 
 def _nearest(model: ModalModel, other: ModalModel) -> IntArray:
@@ -147,9 +154,8 @@ def _at_one_level(
 
     def selected(data: Data) -> tuple[Select, ModalModel]:
         select = of(data)
-        model = select(())
-        dropped = products.among(model)
-        return select, select(dropped.tolist()) if len(dropped) else model
+        select = _dropping(select, products.among(select(())))
+        return select, select(())
 
     try:
         select, even = selected(stretched.frfs)
