@@ -7,7 +7,10 @@ leave traces that no independent noise has. Three kinds of test are simulated fr
 * ``plate``: a roving hammer on a plate clamped along one edge, two accelerometers, pairs of modes now and then;
 * ``array``: the same plate or cantilever hit at one or two points, with accelerometers at all others;
 * ``roving``: 74 points and three references, two pairs of modes closer than 2 %, and frequencies that differ by
-  0.1 to 0.2 % (one standard deviation) from point to point as the set-up is moved.
+  0.1 to 0.2 % (one standard deviation) from point to point as the set-up is moved;
+* ``odd mounting``: ``beam``, one point of which is hit with another mounting, by which frequencies fall by 1 to 4 %;
+* ``softening``, ``hardening``: ``beam``, hit with forces that scatter by 60 %, whose frequencies follow the force
+  by up to 2 % at its median. Poles alone follow it: there are no products of modes.
 
     python benchmarks/bench_hammer.py --kinds beam plate roving --seeds 50
 
@@ -21,19 +24,22 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from acquisition import Dof, FrfSet, HammerTest, decide, estimate_frfs, judge_hits
+from acquisition import Dof, FrfSet, HammerTest, UffContent, decide, estimate_frfs, judge_hits
 from acquisition.errors import EstimationError
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
 from identification import ModalModel, identify
+from modalkit.workflow.identification import from_content
+from modalkit.workflow.processing_options import ProcessingOptions
 
 CLAMPED = np.array([1.8751041, 4.6940911, 7.8547574, 10.9955407, 14.1371684, 17.2787596, 20.4203522])
 FREE = np.array([4.7300407, 7.8532046, 10.9956078, 14.1371655])
-KINDS = ("beam", "plate", "array", "roving")
+KINDS = ("beam", "plate", "array", "roving", "odd mounting", "softening", "hardening")
 Array = NDArray[np.float64]
 
 
@@ -44,6 +50,7 @@ class Setup:
     system: ModalSystem
     plan: HammerPlan
     band: tuple[float, float]
+    at_hit: Callable[[int, int, float], ModalSystem] | None = None
 
 
 @dataclass(frozen=True)
@@ -153,6 +160,8 @@ def _slope(shape: Callable[[Array], Array], x: Array) -> Array:
 
 def drawn(kind: str, rng: np.random.Generator) -> Setup:
     """Draw a body, where it is hit and measured, and the equipment."""
+    if kind in CHANGED:
+        return CHANGED[kind](drawn("beam", rng), rng)
     body = {"beam": beam, "plate": plate, "roving": airframe}.get(
         kind, beam if rng.random() < 0.5 else plate
     )(rng)
@@ -168,6 +177,32 @@ def drawn(kind: str, rng: np.random.Generator) -> Setup:
         if kind == "roving"
         else setup
     )
+
+
+def _odd_mounting(setup: Setup, rng: np.random.Generator) -> Setup:
+    """Change the mounting while one point is hit."""
+    other = setup.system.with_frequencies(1 - rng.uniform(0.01, 0.04, len(setup.system.poles)))
+    odd = int(rng.integers(len(setup.system.points)))
+    return replace(setup, at_hit=lambda point, hit, level: other if point == odd else setup.system)
+
+
+def _following(setup: Setup, rng: np.random.Generator, sign: float) -> Setup:
+    """Make frequencies follow the force; ``system`` is the structure at the median force."""
+    change = sign * rng.uniform(0.002, 0.02, len(setup.system.poles)) / setup.plan.peak
+    plan = replace(setup.plan, level_scatter=0.6, drift=0.0)
+
+    def at_hit(point: int, hit: int, level: float) -> ModalSystem:
+        return setup.system.with_frequencies(np.exp(change * (level - plan.peak)))
+
+    return replace(setup, plan=plan, at_hit=at_hit)
+
+
+FOLLOWING = ("softening", "hardening")
+CHANGED: dict[str, Callable[[Setup, np.random.Generator], Setup]] = {
+    "odd mounting": _odd_mounting,
+    "softening": lambda setup, rng: _following(setup, rng, -1.0),
+    "hardening": lambda setup, rng: _following(setup, rng, 1.0),
+}
 
 
 def _setup(rng: np.random.Generator, body: Body, seats: NDArray[np.int64], hit: NDArray[np.int64]) -> Setup:
@@ -197,7 +232,7 @@ def _setup(rng: np.random.Generator, body: Body, seats: NDArray[np.int64], hit: 
 
 def measured(setup: Setup, rng: np.random.Generator) -> tuple[HammerTest, FrfSet]:
     """Hit it, judge the hits and estimate FRFs."""
-    test = hammer_test(setup.system, setup.plan, rng=rng)
+    test = hammer_test(setup.system, setup.plan, rng=rng, at_hit=setup.at_hit)
     return test, estimate_frfs(test, verdicts=decide(judge_hits(test)))
 
 
@@ -219,7 +254,7 @@ def judged(kind: str, seed: int) -> Outcome:
     """Simulate one test, identify it and count."""
     rng = np.random.default_rng([seed, KINDS.index(kind)])
     setup = drawn(kind, rng)
-    _, frfs = measured(setup, np.random.default_rng([seed, 1]))
+    test, frfs = measured(setup, np.random.default_rng([seed, 1]))
     quiet = replace(
         setup.plan, force_noise=0.0, response_noise=0.0, adc_bits=None, position_sigma=0.0, drift=0.0, hits=1
     )
@@ -227,12 +262,21 @@ def judged(kind: str, seed: int) -> Outcome:
     out = standing_out(setup, frfs, clean)
     began = time.process_time()
     try:
-        model = identify(frfs, band=setup.band)
+        model = _modes(test, setup) if kind in FOLLOWING else identify(frfs, band=setup.band)
     except EstimationError as error:
         hertz = np.abs(setup.system.poles[out]) / (2 * np.pi)
         print(f"  {kind} {seed}: {error}")
         return Outcome(kind, seed, int(out.sum()), 0, hertz.tolist(), [], 0, 0, [], 0.0)
-    return _counted(kind, seed, setup, out, model, time.process_time() - began)
+    cpu = time.process_time() - began
+    if model.levels is not None and setup.at_hit is not None:
+        setup = replace(setup, system=setup.at_hit(0, 0, model.levels.level))
+    return _counted(kind, seed, setup, out, model, cpu)
+
+
+def _modes(test: HammerTest, setup: Setup) -> ModalModel:
+    """Identify from the hits, with what their levels say."""
+    processed = from_content(UffContent(tests=(test,)), [Path("synthetic")], ProcessingOptions())
+    return processed.identify(band=setup.band)
 
 
 def _counted(

@@ -10,8 +10,10 @@ if TYPE_CHECKING:
     from identification.fit.equations.residues import Residues, fit_residues
     from identification.identify import Prepared, identify, prepare
     from identification.levels.one_level import at_one_level, follows_level, is_smeared
+    from identification.levels.products import Growth, growth
     from identification.levels.slopes import LevelDependence, level_dependence, why_no_level_dependence
     from identification.levels.stretched import Stretched, stretched_averages
+    from identification.levels.sums import coincidences, combination
     from identification.mac import (
         auto_mac,
         comac,
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ESTIMATORS",
     "Correlation",
+    "Growth",
     "LevelDependence",
     "ModalModel",
     "Origins",
@@ -61,7 +64,9 @@ __all__ = [
     "auto_mac",
     "beside",
     "cmif",
+    "coincidences",
     "comac",
+    "combination",
     "common_dofs",
     "coordinate_table",
     "correlate",
@@ -73,6 +78,7 @@ __all__ = [
     "frac_table",
     "frf_health",
     "from_sdypy",
+    "growth",
     "identify",
     "informed_band",
     "is_smeared",
@@ -108,6 +114,8 @@ load_on_demand(
         ".identify": "Prepared identify prepare",
         ".band.informed": "at_cut_edge informed_band",
         ".levels.one_level": "at_one_level follows_level is_smeared",
+        ".levels.products": "Growth growth",
+        ".levels.sums": "coincidences combination",
         ".levels.stretched": "Stretched stretched_averages",
         ".levels.slopes": "LevelDependence level_dependence why_no_level_dependence",
         ".mac": (

@@ -22,6 +22,7 @@ from identification.fit.equations import basis
 from identification.fit.equations.pruning import inside, located
 from identification.fit.equations.residues import Residues, synthesise
 from identification.fit.fit import Fitted, fit_candidates, provisional, with_named
+from identification.fit.foreign import Foreign, foreign_frfs
 from identification.fit.noise.disagreement import Disagreement
 from identification.fit.poly_reference import sorted_frfs
 from identification.fit.search.manual_selection import nearest_modes
@@ -110,6 +111,8 @@ class Prepared:
         Their fit.
     points_rejected : tuple of str
         Points whose FRFs were left out, with the reason.
+    warnings : tuple of str
+        What the user ought to know of these.
     """
 
     frfs: FrfSet
@@ -118,6 +121,7 @@ class Prepared:
     chart: StabilisationChart
     fitted: Fitted
     points_rejected: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
 
     def modes(self, *, add: Sequence[float] = (), drop: Sequence[float] = ()) -> ModalModel:
         """Return the modes with the user's word on them: what :func:`identify` returns, to the last digit.
@@ -218,8 +222,9 @@ def prepare(
 
 def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None, method: str) -> Prepared:
     data, points_rejected = _usable(frfs, band)
+    data, course, foreign = _of_one_structure(data)
     limits = band or (float(data.frequency[0]), float(data.frequency[-1]))
-    estimator, course = ESTIMATORS[method], course_of(data)
+    estimator = ESTIMATORS[method]
     even = data if course is None else resampled(data, course)
     sets = estimator(even, orders=order_list(data, order, poly_reference=estimator.poly_reference))
     chart = stabilise(sets, band=limits)
@@ -230,7 +235,17 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
             "order rises; widen the band, raise the order or check the FRFs"
         )
     fitted = fit_candidates(data, start, band=limits, course=course)
-    return Prepared(frfs, data, limits, chart, fitted, points_rejected)
+    return Prepared(frfs, data, limits, chart, fitted, (*points_rejected, *foreign.reasons), foreign.warnings)
+
+
+def _of_one_structure(data: FrfSet) -> tuple[FrfSet, FloatArray | None, Foreign]:
+    """Return the FRFs that do not contradict the others, their course over the test, and those set aside."""
+    course = course_of(data)
+    foreign = foreign_frfs(data if course is None else resampled(data, course))
+    if not foreign.rows.any():
+        return data, course, foreign
+    data = data.select(np.flatnonzero(~foreign.rows))
+    return data, course_of(data), foreign
 
 
 def _selected(prepared: Prepared, fitted: Fitted, add: Sequence[float], drop: Sequence[float]) -> ModalModel:
@@ -246,7 +261,11 @@ def _selected(prepared: Prepared, fitted: Fitted, add: Sequence[float], drop: Se
         why = "once the modes named are dropped" if drop else "in the band: what was found is a background"
         raise EstimationError(f"{data.source}: no mode is left {why}; widen the band")
     result = _assemble(data, fitted, errors, modes, prepared.chart, limits, prepared.points_rejected)
-    statement = (*_struck(struck), *uninformed_modes(prepared.frfs, result.modal.frequency))
+    statement = (
+        *prepared.warnings,
+        *_struck(struck),
+        *uninformed_modes(prepared.frfs, result.modal.frequency),
+    )
     return replace(result, warnings=result.warnings + statement) if statement else result
 
 

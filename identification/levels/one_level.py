@@ -81,7 +81,7 @@ def at_one_level(
     then exchanged for what the same residues add at the poles of the common level. Noise, and all that is no mode of
     the model, stays as it is.
     """
-    rows, weights, shifts = rows_of(model), weights_of(model), _shifts(found)
+    rows, weights, shifts = rows_of(model), weights_of(model), hit_shifts(found)
     first, moved = 0, []
     for entry in used_hits(tests):
         force, motion = _records(entry)
@@ -89,21 +89,21 @@ def at_one_level(
             singles = entry.single_frfs(windows=windows, band=band_of(model))
             for hit, frfs in enumerate(singles):
                 data, own, which = of_single(frfs, weights, rows)
-                here, there = (_poles(model, shift[first + hit]) for shift in shifts)
-                residues = _residues(model, data, here, own)
+                here, there = (hit_poles(model, shift[first + hit]) for shift in shifts)
+                residues = hit_residues(model, data, here, own)
                 motion[hit, which] += _exchanged(entry.test, force[hit], residues, here, there)
             first += len(force)
         moved.append((entry, force, motion))
     return _tests(moved)
 
 
-def _residues(model: ModalModel, data: FrfSet, poles: ComplexArray, weights: Weights) -> ComplexArray:
+def hit_residues(model: ModalModel, data: FrfSet, poles: ComplexArray, weights: Weights) -> ComplexArray:
     """Return the residues of a hit's modes at its own poles, beside the model's background, (n_frf, n_modes)."""
     every, powers = np.concatenate([poles, model.background_poles]), model.background.powers
     return fit_residues(data, every, powers=powers, weights=weights).residues[:, : len(poles)]
 
 
-def _shifts(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
+def hit_shifts(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
     """Return (ln f, zeta) of the hits less those of the model, at their levels and at the common one.
 
     What a point has of its own, a roving mass, stays. Modes that do not follow the level beyond doubt stay as well. No
@@ -128,7 +128,7 @@ def _shifts(found: LevelDependence) -> tuple[FloatArray, FloatArray]:
     return here, np.stack([offset, damping], axis=-1)
 
 
-def _poles(model: ModalModel, shift: FloatArray) -> ComplexArray:
+def hit_poles(model: ModalModel, shift: FloatArray) -> ComplexArray:
     """Return the poles of a model moved by (ln f, zeta), (n_modes, 2) [rad/s]."""
     size = np.abs(model.poles) * np.exp(shift[:, 0])
     ratio = np.clip(-model.poles.real / np.abs(model.poles) + shift[:, 1], 1e-6, 0.9)

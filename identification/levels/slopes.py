@@ -9,7 +9,7 @@ drift from point to point and what a roving transducer does; its slope is that a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
@@ -76,6 +76,13 @@ class LevelDependence(Displayed):
     shifts: FloatArray
     sigmas: FloatArray
     damping_shifts: FloatArray
+
+    def modes(self, which: IntArray) -> LevelDependence:
+        """Return the same of some of the modes, by their numbers ``which``, (n,)."""
+        each = ("slope", "slope_sigma", "damping_slope", "damping_slope_sigma")
+        changed = {name: getattr(self, name)[which] for name in each}
+        changed |= {name: getattr(self, name)[:, which] for name in ("shifts", "sigmas", "damping_shifts")}
+        return replace(self, **changed)
 
 
 def why_no_level_dependence(tests: Sequence[Judged]) -> str | None:

@@ -33,7 +33,7 @@ from modalkit.workflow.files import Progress, read_files
 from modalkit.workflow.frf_checks import identical, without_constant
 from modalkit.workflow.hit_warnings import on_coherence, on_hits, on_window
 from modalkit.workflow.joining import together
-from modalkit.workflow.levels import with_levels
+from modalkit.workflow.levels import Select, with_levels
 from modalkit.workflow.mixed import with_read
 from modalkit.workflow.processing_options import ProcessingOptions
 from modalkit.workflow.references import among_references, with_references
@@ -129,17 +129,16 @@ class Processed(Shown):
     def _modes(
         self, band: tuple[float, float] | None, order: int | None, add: Sequence[float], drop: Sequence[float]
     ) -> ModalModel:
-        """Identify, and say whether frequencies follow the level of the hits."""
-        model = self._identified(band, order, add, drop)
+        """Identify, and say whether frequencies and constants follow the level of the hits."""
+
+        def of(processed: Processed) -> Select:
+            return lambda products: processed._identified(band, order, add, [*drop, *products])
+
         if self.processing.sensor_masses:  # FRFs freed from a sensor's mass are not those of single hits
-            return model
+            return of(self)(())
         windows = Windows(decay=self.processing.window) if self.processing.window else None
-        return with_levels(
-            model,
-            [(j.test, j.verdicts) for j in self.judged],
-            lambda data: self._of(data)._identified(band, order, add, drop),
-            windows=windows,
-        )
+        tests = [(j.test, j.verdicts) for j in self.judged]
+        return with_levels(of(self), tests, lambda data: of(self._of(data)), windows=windows)
 
     def _of(self, data: FrfSet | Sequence[HammerTest]) -> Processed:
         """Return the same test with other FRFs, or those of other hits, all of which are used."""

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from acquisition import EstimationError, FrfSet, HammerTest, HitVerdict, Windows
+from acquisition.arrays import BoolArray, FloatArray, IntArray
 from acquisition.quantities import hertz
 
 if TYPE_CHECKING:
-    from identification import LevelDependence, ModalModel
+    from identification import Growth, LevelDependence, ModalModel
 
+Data = FrfSet | Sequence[HammerTest]
+Select = Callable[[Sequence[float]], "ModalModel"]
 Tests = Sequence[tuple[HammerTest, Sequence[HitVerdict]]]
 
 ROUNDS = 2
@@ -22,66 +25,190 @@ are faint, then by their own. Where levels moved modes by three half-widths, a t
 
 
 def with_levels(
-    model: ModalModel,
-    tests: Tests,
-    identify: Callable[[FrfSet | Sequence[HammerTest]], ModalModel],
-    *,
-    windows: Windows | None,
+    select: Select, tests: Tests, of: Callable[[Data], Select], *, windows: Windows | None
 ) -> ModalModel:
-    """Return a model that says how its modes follow the level of the hits, of one level where they smear.
+    """Return the modes of a test, with what its hits say of their level; of one level where they smear.
 
-    It is examined where frequencies differ from FRF to FRF, which a mode that follows the level cannot but do.
+    How frequencies follow the level is examined where they differ from FRF to FRF, which a mode that follows the level
+    cannot but do, or where constants follow it. Modes whose constants do are products of others, and dropped.
 
     Parameters
     ----------
-    model : ModalModel
-        Identified from the FRFs of these hits.
+    select : function
+        Returns the modes of the test without those that lie at frequencies [Hz].
     tests : sequence of (HammerTest, verdicts)
         The raw hits and what was decided on them.
-    identify : function
-        Identifies the same from other FRFs, or other hits of which all are used.
+    of : function
+        Returns such a function for other FRFs of the same test, or for other hits of which all are used.
     windows : Windows, optional
         As when the FRFs were estimated.
     """
-    from identification import follows_level, is_smeared, level_dependence
+    from identification import growth, level_dependence
 
-    if model.carried is None or not tests:
+    model = select(())
+    screened = growth(model, tests, windows=windows) if tests else None
+    if screened is None:
+        return _with_coincidences(model)
+    if model.carried is None and not screened.products.any():
         return model
     found = level_dependence(model, tests, windows=windows)
-    if found is None or not follows_level(found).any():
-        return model
-    smeared = is_smeared(model, found)
-    if smeared:
-        model, found = _at_one_level(model, found, tests, identify, windows)
-    statement = _statement(model, found, smeared)
-    return replace(model, levels=found, warnings=(*model.warnings, statement))
+    assert found is not None  # as growth
+    return _examined(Examined(select, model, found), tests, of, windows)
+
+
+@dataclass(frozen=True, eq=False)
+class Examined:
+    """Modes, how they follow the level, and the function that selects some of them."""
+
+    select: Select
+    model: ModalModel
+    found: LevelDependence
+
+    def without(self, dropped: BoolArray) -> Examined:
+        """Return the same without some of the modes, (n_modes,)."""
+        if not dropped.any():
+            return self
+        select = _dropping(self.select, self.model.modal.frequency[dropped])
+        model = select(())
+        return replace(self, select=select, model=model, found=self.found.modes(_nearest(model, self.model)))
+
+
+@dataclass(frozen=True, eq=False)
+class Products:
+    """Peaks that are products of modes: where they are and how far the level moves them [Hz], and what they are."""
+
+    frequency: FloatArray
+    reach: FloatArray
+    names: tuple[str, ...]
+
+    def among(self, model: ModalModel) -> FloatArray:
+        """Return the frequencies of those modes of a model that are these peaks, (n,) [Hz]."""
+        own = model.modal.frequency
+        return np.asarray(own[(np.abs(own[:, None] - self.frequency) <= self.reach).any(axis=1)])
+
+
+def _dropping(select: Select, dropped: FloatArray) -> Select:
+    """Return a selection that always leaves out the modes at these frequencies [Hz]."""
+    always = dropped.tolist()
+    return lambda more: select([*always, *more])
+
+
+def _nearest(model: ModalModel, other: ModalModel) -> IntArray:
+    """Return the mode of another model that is nearest to each mode, (n_modes,)."""
+    return np.asarray(np.abs(model.poles[:, None] - other.poles).argmin(axis=1))
+
+
+def _examined(
+    state: Examined, tests: Tests, of: Callable[[Data], Select], windows: Windows | None
+) -> ModalModel:
+    """Return the modes of one level that are no products of others, with what is to be said of both."""
+    from identification import follows_level, growth, is_smeared
+
+    grown = growth(state.model, tests, state.found, windows=windows)
+    assert grown is not None
+    dropped = np.zeros_like(grown.products) if grown.products.all() else grown.products
+    products = _products(state, dropped, grown)
+    state = state.without(dropped)
+    statement: tuple[str, ...] = ()
+    if follows_level(state.found).any():
+        smeared = is_smeared(state.model, state.found)
+        if smeared:
+            state, more = _further(state, _at_one_level(state, tests, of, windows, products), tests, windows)
+            products = replace(products, names=(*products.names, *more))
+        state = replace(state, model=replace(state.model, levels=state.found))
+        statement = (*statement, _statement(state.model, state.found, smeared))
+    statement = (*_on_products(state, products), *statement)
+    return replace(state.model, warnings=(*state.model.warnings, *statement)) if statement else state.model
+
+
+def _further(
+    known: Examined, even: Examined, tests: Tests, windows: Windows | None
+) -> tuple[Examined, tuple[str, ...]]:
+    """Return modes of one level without products that only show there, and the names of these.
+
+    Modes that are known, as their constants do not grow at the poles of each hit, stay.
+    """
+    from identification import growth
+
+    grown = growth(even.model, tests, windows=windows)
+    assert grown is not None
+    reach = _reach(known, np.ones(len(known.model), np.bool_))
+    apart = np.abs(even.model.modal.frequency[:, None] - known.model.modal.frequency)
+    which = grown.products & (apart > reach).all(axis=1)
+    return even.without(which), _products(even, which, grown).names
 
 
 def _at_one_level(
-    model: ModalModel,
-    found: LevelDependence,
-    tests: Tests,
-    identify: Callable[[FrfSet | Sequence[HammerTest]], ModalModel],
-    windows: Windows | None,
-) -> tuple[ModalModel, LevelDependence]:
+    state: Examined, tests: Tests, of: Callable[[Data], Select], windows: Windows | None, products: Products
+) -> Examined:
     """Return the modes of hits brought to one level, and how they follow it; those there are if none are found so."""
     from identification import at_one_level, level_dependence, stretched_averages
 
-    stretched = stretched_averages(model, tests, windows=windows)
+    stretched = stretched_averages(state.model, tests, windows=windows)
 
-    def followed(of: ModalModel) -> LevelDependence:
-        slope = stretched.slopes_at(of.modal.frequency)
-        answer = level_dependence(of, tests, windows=windows, slope=slope)
+    def followed(model: ModalModel) -> LevelDependence:
+        slope = stretched.slopes_at(model.modal.frequency)
+        answer = level_dependence(model, tests, windows=windows, slope=slope)
         assert answer is not None
         return answer
 
+    def selected(data: Data) -> tuple[Select, ModalModel]:
+        select = of(data)
+        select = _dropping(select, products.among(select(())))
+        return select, select(())
+
     try:
-        even = identify(stretched.frfs)
+        select, even = selected(stretched.frfs)
         for _ in range(ROUNDS):
-            even = identify(at_one_level(even, tests, followed(even), windows=windows))
+            select, even = selected(at_one_level(even, tests, followed(even), windows=windows))
     except EstimationError:
-        return model, found
-    return even, followed(even)
+        return state
+    return Examined(select, even, followed(even))
+
+
+def _products(state: Examined, which: BoolArray, grown: Growth) -> Products:
+    """Return the modes that are products of the others, with the sums that they lie at."""
+    from identification import combination
+
+    own, reach, names = state.model.modal.frequency, _reach(state, ~which), []
+    for i in np.flatnonzero(which):
+        of = combination(float(own[i]), own[~which], reach[~which])
+        names.append(f"{hertz(own[i])} ({f'{of}, ' if of else ''}force to the power {grown.power[i]:.2g})")
+    return Products(own[which], reach[which], tuple(names))
+
+
+def _reach(state: Examined, modes: BoolArray) -> FloatArray:
+    """Return how far a peak may lie from where it is at the mean level, by what moves the modes, (n_modes,) [Hz]."""
+    slope = np.abs(np.nan_to_num(state.found.slope)).max(where=modes, initial=0.0)
+    moved = slope * (state.found.strongest - state.found.weakest)
+    return np.asarray(moved * state.model.modal.frequency + np.abs(state.model.poles.real) / (2 * np.pi))
+
+
+def _on_products(state: Examined, products: Products) -> tuple[str, ...]:
+    """Return what is to be said of peaks whose constants grow with the force."""
+    if not products.names:
+        return ()
+    return (
+        f"peaks that are products of modes are left out: {', '.join(products.names)}. Their modal constants grow with "
+        f"the force of the hits, from {state.found.weakest:.3g} to {state.found.strongest:.3g} N; those of a mode do "
+        "not. A joint that slips or closes makes such peaks; hit more softly to have fewer",
+    )
+
+
+def _with_coincidences(model: ModalModel) -> ModalModel:
+    """Return a model that says which modes may be products of others, where no hits tell."""
+    from identification import coincidences
+
+    found = coincidences(model)
+    if not found:
+        return model
+    named = ", ".join(f"{hertz(model.modal.frequency[i])} ({of})" for i, of in found.items())
+    statement = (
+        f"{len(found)} of {len(model)} modes lie at sums or differences of stronger ones: {named}. They may be "
+        "products that a joint makes as it slips or closes. Hit softly and hard, and give the raw hits: constants of "
+        "products grow with the force"
+    )
+    return replace(model, warnings=(*model.warnings, statement))
 
 
 def _statement(model: ModalModel, found: LevelDependence, smeared: bool) -> str:

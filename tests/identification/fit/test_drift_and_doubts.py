@@ -68,8 +68,12 @@ def test_hum_and_a_foreign_frf_are_named():
     assert len(model) == 2
     assert any("tone at 100.0 Hz" in w and "mains" in w for w in model.warnings)
     other = structure((95.0, 160.0), (0.01, 0.008), 6, seed=3)
-    values = np.array(frfs.values)
-    values[2] = other.frfs(frfs.frequency, [(3, 4)]).values[0]
+    foreign, values = other.frfs(frfs.frequency, [(3, 4)]).values[0], np.array(frfs.values)
+    values[2] = foreign
+    model = identify(replace(frfs, values=values))
+    np.testing.assert_allclose(model.modal.frequency, truth.hertz, rtol=1e-3)
+    assert any("contradict the others and are set aside: 3+Z/4+Z" in w for w in model.warnings)
+    values[2] = frfs.values[2] + 0.05 * foreign  # modes of its own beside those of all others
     assert any("3+Z/4+Z alone" in w for w in identify(replace(frfs, values=values)).warnings)
 
 

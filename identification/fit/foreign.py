@@ -1,0 +1,230 @@
+"""FRFs of another mounting: a minority whose sharp peaks lie where no other FRF has any.
+
+A drift is a course over the measuring order, and what each point has for itself scatters about it. An FRF whose peaks
+lie far beside both was measured on another structure: with a heavy sensor, another clamp, in another file. As part of
+the fit it would pull the common poles, so it is found before any pole is, by where its peaks are.
+
+Only FRFs of the same directions are compared, as others may show other modes. Peaks that are no sharper than what is
+about them overlap, and are left to the random shifts of :mod:`identification.fit.drift`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import signal, stats
+from scipy.ndimage import uniform_filter1d
+
+from acquisition.arrays import BoolArray, FloatArray, IntArray
+from acquisition.frfs.frf import FrfSet
+from acquisition.quantities import hertz
+from acquisition.warned import Consequential
+from identification.arrangement import unsigned
+from identification.fit.drift import LARGEST, measuring_order
+
+FEWEST = 4
+"""Sets of FRFs under which none is set aside [-]: of three, two may be wrong."""
+
+ABOUT = 0.2
+"""Part of its frequency on both sides of a line over which its surroundings are taken [-]. Doubled: an octave counts as
+surroundings; halved: peaks of 0.6 % damping go unnoticed."""
+
+CLEAR = 5.0
+"""Magnitude of a peak over the geometric mean about it [-]: noise alone exceeds it at one line in a million."""
+
+ALIKE = 0.5
+"""Part of the peaks that an FRF shares with the others where it belongs to them, and of a peak's height on a
+logarithmic scale at which another FRF shows it too [-]: fewer, and it rather shows another structure."""
+
+CHANCE = 1e-4
+"""Chance by which the scatter of an even test sets an FRF aside [-]. Ten times as much finds contradictions a quarter
+smaller among five FRFs, no others among twenty."""
+
+
+@dataclass(frozen=True, eq=False)
+class Foreign:
+    """FRFs that contradict the others, and what both show.
+
+    Parameters
+    ----------
+    rows : (n_frf,) bool array
+        Which FRFs contradict the others.
+    names : tuple of str
+        Response and reference of each of these.
+    shown, common : tuple of float
+        Clear peaks of these, and of most of the others [Hz].
+    """
+
+    rows: BoolArray
+    names: tuple[str, ...] = ()
+    shown: tuple[float, ...] = ()
+    common: tuple[float, ...] = ()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The warning about them; empty where there are none."""
+        if not self.names:
+            return ()
+        text = (
+            f"{len(self.names)} of {len(self.rows)} FRFs contradict the others and are set aside: "
+            f"{', '.join(self.names)}. They peak at {_listed(self.shown)}, the others at {_listed(self.common)}: "
+            "another mounting or another structure. Measure them again, or identify them from a file of their own"
+        )
+        return (Consequential(text),)
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """One line per FRF that is set aside."""
+        why = f"the FRF contradicts the others; it peaks at {_listed(self.shown)}"
+        return tuple(f"{name}: {why}" for name in self.names)
+
+
+@dataclass(frozen=True, eq=False)
+class _Peaks:
+    """Peaks of one set of FRFs, or those of them that are clear.
+
+    Parameters
+    ----------
+    place : (n,) array
+        Where they are [ln Hz].
+    reach : (n,) array
+        How near another must lie to be the same: half-power width and a line [-].
+    above : (n,) array
+        Logarithm of their magnitude over what is about them [-].
+    """
+
+    place: FloatArray
+    reach: FloatArray
+    above: FloatArray
+
+    @cached_property
+    def clear(self) -> _Peaks:
+        """Those that no noise makes."""
+        kept = self.above >= np.log(CLEAR)
+        return _Peaks(self.place[kept], self.reach[kept], self.above[kept])
+
+    def shared(self, other: _Peaks) -> BoolArray:
+        """Return which of these peaks the other set has too, half as high on the logarithmic scale or more, (n,)."""
+        near = np.abs(self.place[:, None] - other.place) <= np.minimum(self.reach[:, None], other.reach)
+        return np.asarray((near & (other.above >= ALIKE * self.above[:, None])).any(axis=1))
+
+
+def foreign_frfs(frfs: FrfSet) -> Foreign:
+    """Return the minority of FRFs that contradicts the others.
+
+    Sets of FRFs that share half of their clear peaks belong together, and so do those that a third set links, as in a
+    drift. Outside the largest group of such sets, which must hold most of them, a set is foreign if fewer than half of
+    its peaks lie where a line over measuring order, through those of this group, and the scatter about it allow a
+    further one.
+
+    Parameters
+    ----------
+    frfs : FrfSet
+        The FRFs in the band; those that drift by more than the width of peaks brought together before.
+    """
+    order, kind = measuring_order(frfs), _directions(frfs)
+    foreign = np.zeros(len(frfs.values), dtype=np.bool_)
+    shown, common = [], []
+    for one in np.unique(kind):
+        sets = np.unique(order[kind == one])
+        peaks = [_peaks(frfs, np.flatnonzero((order == s) & (kind == one))) for s in sets]
+        known = np.flatnonzero([len(p.clear.place) for p in peaks])
+        main = known[_largest([peaks[k] for k in known])]
+        if len(known) < FEWEST or 2 * len(main) <= len(known):
+            continue
+        odd = [k for k in known if k not in main and _contradicts(k, peaks, main)]
+        foreign |= np.isin(order, sets[odd]) & (kind == one)
+        if odd:
+            shown += [peaks[k].clear for k in odd]
+            common += [peaks[k].clear for k in main]
+    names = tuple(f"{frfs.responses[i]}/{frfs.references[i]}" for i in np.flatnonzero(foreign))
+    return Foreign(foreign, names, _places(shown), _places(common))
+
+
+def _directions(frfs: FrfSet) -> IntArray:
+    """Return a number for the pair of directions of each FRF, signs left out, (n_frf,)."""
+    pairs = [
+        (unsigned(r).direction, unsigned(q).direction)
+        for r, q in zip(frfs.responses, frfs.references, strict=True)
+    ]
+    return np.asarray(np.unique(np.array(pairs), axis=0, return_inverse=True)[1]).ravel()
+
+
+def _peaks(frfs: FrfSet, rows: IntArray) -> _Peaks:
+    """Return the clear peaks of FRFs that were measured together."""
+    power = np.abs(frfs.values[rows]) ** 2
+    size = np.sqrt(np.mean(power / power.mean(axis=1, keepdims=True), axis=0))
+    log = np.log(frfs.frequency)
+    grid = np.arange(log[0], log[-1], frfs.df / float(frfs.frequency[-1]))
+    level = np.interp(grid, log, np.log(np.maximum(size, np.finfo(float).tiny)))
+    if len(grid) < 3:
+        return _Peaks(*np.zeros((3, 0)))
+    step = grid[1] - grid[0]
+    above = level - uniform_filter1d(level, 2 * round(ABOUT / step) + 1, mode="nearest")
+    at, _ = signal.find_peaks(above, height=0.0, prominence=ALIKE * np.log(CLEAR))
+    width = signal.peak_widths(np.exp(above), at, rel_height=1.0 - np.sqrt(0.5))[0] * step
+    return _Peaks(grid[at], width + frfs.df / np.exp(grid[at]), above[at])
+
+
+def _largest(peaks: list[_Peaks]) -> IntArray:
+    """Return which sets are in the largest group of those that belong together."""
+    left, best = set(range(len(peaks))), set[int]()
+    while len(left) > len(best):
+        group = frontier = {left.pop()}
+        while frontier:
+            frontier = {k for k in left if any(_alike(peaks[i], peaks[k]) for i in frontier)}
+            group, left = group | frontier, left - frontier
+        best = max(best, group, key=len)
+    return np.array(sorted(best), dtype=np.int64)
+
+
+def _alike(one: _Peaks, other: _Peaks) -> bool:
+    """Tell whether the set with fewer clear peaks shares half of them with the other."""
+    fewer, more = (one, other) if len(one.clear.place) <= len(other.clear.place) else (other, one)
+    return bool(fewer.clear.shared(more).mean() >= ALIKE)
+
+
+def _contradicts(own: int, peaks: list[_Peaks], main: IntArray) -> bool:
+    """Tell whether most peaks of a set lie beyond what the course and the scatter of the main group allow."""
+    here = peaks[own].clear
+    beside = [_beside(p, r, own, peaks, main) for p, r in zip(here.place, here.reach, strict=True)]
+    return bool(np.mean(beside) > ALIKE)
+
+
+def _beside(place: float, reach: float, own: int, peaks: list[_Peaks], main: IntArray) -> bool:
+    """Tell whether a peak lies beyond the places at which the main group has the nearest one.
+
+    The place is foretold by a line over measuring order; Student's t over all sets, plus the width of the peak. Where
+    too few sets have the mode, it is the largest shift that is believed.
+    """
+    clear = {k: peaks[k].clear.place for k in main}
+    nearest = [(k, p[np.abs(p - place).argmin()]) for k, p in clear.items()]
+    distance = np.array([abs(p - place) for _, p in nearest])
+    same = distance <= 2.0 * distance.min() + reach  # sets that lack this mode offer another one
+    at, there = (np.array(v)[same] for v in zip(*nearest, strict=True))
+    if len(at) < FEWEST:
+        return bool(distance.min() > reach + LARGEST)
+    mean, spread = at.mean(), np.sum((at - at.mean()) ** 2)
+    rate = np.sum((at - mean) * there) / spread
+    left = there - there.mean() - rate * (at - mean)
+    freedom = len(at) - 2
+    sigma = np.sqrt(np.sum(left**2) / freedom * (1.0 + 1.0 / len(at) + (own - mean) ** 2 / spread))
+    limit = reach + sigma * stats.t.isf(CHANCE / 2 / len(peaks), freedom)
+    return bool(abs(place - there.mean() - rate * (own - mean)) > limit)
+
+
+def _places(sets: list[_Peaks]) -> tuple[float, ...]:
+    """Return where most of these sets peak [Hz]."""
+    if not sets:
+        return ()
+    every, reach = (np.concatenate([getattr(p, name) for p in sets]) for name in ("place", "reach"))
+    order = np.argsort(every)
+    apart = np.diff(every[order]) > reach[order][1:]
+    runs = np.split(every[order], np.flatnonzero(apart) + 1)
+    return tuple(float(np.exp(np.median(run))) for run in runs if 2 * len(run) > len(sets))
+
+
+def _listed(frequency: tuple[float, ...]) -> str:
+    return ", ".join(hertz(f) for f in frequency) or "other frequencies"
