@@ -16,7 +16,7 @@ from modalkit.study.errors import explain, known_keys
 from modalkit.study.hypotheses import HypothesisTable, check_ranges, with_hypotheses
 from modalkit.study.matrices import matrices_of, matrices_spec
 from modalkit.study.probable_units import check_units
-from modalkit.study.stated_effects import accepted_values, check_repeated
+from modalkit.study.stated_effects import accepted_values, check_repeated, was_before
 from modalkit.study.tables import (
     MATRICES_ONLY,
     EnvironmentTable,
@@ -206,6 +206,20 @@ class Study(Strict):
             found = tuple(accepted_values(entry, kind_of(self.model)) for entry in self.model.effect)
             check_repeated([name for name, _ in found])
             return found
+        except StudyError as error:
+            raise StudyError(f"{self.path}: {error}") from error
+
+    def since_baseline(self) -> tuple[int, ...]:
+        """Return which of the effects put into the model, by rank, came after the baseline.
+
+        Raises
+        ------
+        StudyError
+            If ``before`` of one is neither true nor false.
+        """
+        entries = [] if self.model is None else self.model.effect
+        try:
+            return tuple(i for i, entry in enumerate(entries) if not was_before(entry))
         except StudyError as error:
             raise StudyError(f"{self.path}: {error}") from error
 

@@ -18,7 +18,7 @@ effect changes. A specimen on which nothing has changed has its baseline's modes
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -73,6 +73,8 @@ class Before:
         Rank of each baseline mode's partner, for data without shapes.
     factors : sequence of str
         Factors with a tolerance.
+    additions : sequence of callables
+        Effects put into the model beforehand that were there in the baseline, too.
     """
 
     predictor: Predictor
@@ -80,11 +82,14 @@ class Before:
     baseline: Measured
     order: IntArray
     factors: Sequence[str]
+    additions: tuple[Callable[[Predictor], State], ...] = ()
 
     @cached_property
     def prediction(self) -> Prediction:
         """The corrected model's modes at the baseline's points, in the order of the baseline."""
-        own_predictor = self.predictor.for_test(self.baseline, self.predictor.additions[-1:])
+        own_predictor = self.predictor.for_test(
+            self.baseline, (*self.additions, self.predictor.additions[-1])
+        )
         prediction = own_predictor.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
         return prediction.select(match(self.baseline, prediction, self.order))
 
@@ -92,7 +97,7 @@ class Before:
     def _correction(self) -> FloatArray:
         """What the baseline corrected ln f of its modes by, shape (n_baseline,) [-]."""
         base = self.baseline
-        plain = self.predictor.for_test(base, ())
+        plain = self.predictor.for_test(base, self.additions)
         prediction = plain.predict(at_least=int(self.order.max()) + 3)
         prediction = prediction.select(match(base, prediction, self.order))
         return np.asarray(np.log(base.frequency / prediction.frequency))
