@@ -56,6 +56,11 @@ def test_a_set_at_the_end_of_its_range_leaves_the_first_no_more_certain() -> Non
     assert answer(*rows) == ("class", (("E",), ("density",), ("taper",)))
 
 
+def test_what_setting_data_aside_explains_by_itself_has_no_share() -> None:
+    rows = row("E", 0.9, 100.0), row("density", 0.1, 90.0, without=84.0)
+    assert answer(*rows) == ("named", (("E",),))
+
+
 def test_a_set_at_the_end_of_its_range_that_holds_little_is_no_rival() -> None:
     rows = row("E", 0.96, 100.0), row("density", 0.04, 99.5, rejected=True)
     assert answer(*rows) == ("named", (("E",),))

@@ -136,7 +136,8 @@ def _credible(found: Search) -> tuple[tuple[str, ...], ...]:
     """Return the fewest sets that hold the certainty asked for, and those that fit as well as the first.
 
     All sets have a share: one whose parameter lies at the end of its range, or which fits badly, is no answer by
-    itself, and what it holds makes the others no more certain. Where none is better than no effect there are no sets.
+    itself, and what it holds makes the others no more certain. What setting data aside explains without it is no cause
+    and has none. Where no set is better than no effect there are no sets.
     A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
     widely they may range, and that is no measurement. A part of the first that fits by itself stays, too, unless the
     whole is better by as much as shows a gap: that there is something beside it is the more probable, and not sure.
@@ -145,7 +146,12 @@ def _credible(found: Search) -> tuple[tuple[str, ...], ...]:
     better = _better(found)
     if not better:
         return ()
-    first, rows = better[0], [row for row in found.compared if row.names]
+    first = better[0]
+    rows = [
+        row
+        for row in found.compared
+        if row.names and row.explanation.log_evidence > row.without + BEYOND_NOTHING
+    ]
     total = sum(row.probability for row in rows)
     faint = [row for row in rows if row is not first and _adds_nothing(first, row)]
     sets: list[tuple[str, ...]] = []
