@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
@@ -224,10 +225,16 @@ def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
             ),
             not row.extreme,
             row.p_value,
-            tuple(form.values for form in row.explanation.candidate.forms),
+            _fixed(row.explanation),
+            tuple(_fixed(one) for one, _ in row.forms[1:] if one.names == row.names),
         )
         for row in rows
     )
+
+
+def _fixed(explanation: Explanation) -> tuple[Mapping[str, Any], ...]:
+    """Return what the form of each effect fixes."""
+    return tuple(form.values for form in explanation.candidate.forms)
 
 
 def _samples_taken(row: Compared) -> int:
