@@ -25,7 +25,7 @@ from functools import cached_property
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.models.state import NOMINAL, State
+from updating.models.state import State
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
@@ -85,12 +85,14 @@ class Before:
     additions: tuple[Callable[[Predictor], State], ...] = ()
 
     @cached_property
+    def _corrected(self) -> Predictor:
+        """The corrected model, looked at from the points of the baseline."""
+        return self.predictor.for_test(self.baseline, (*self.additions, self.predictor.additions[-1]))
+
+    @cached_property
     def prediction(self) -> Prediction:
         """The corrected model's modes at the baseline's points, in the order of the baseline."""
-        own_predictor = self.predictor.for_test(
-            self.baseline, (*self.additions, self.predictor.additions[-1])
-        )
-        prediction = own_predictor.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
+        prediction = self._corrected.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
         return prediction.select(match(self.baseline, prediction, self.order))
 
     @cached_property
@@ -140,19 +142,24 @@ class Before:
         return np.asarray(overlap / np.maximum(overlap.sum(axis=1, keepdims=True), 1e-12))
 
     def _overlap(self, now: Prediction) -> FloatArray:
-        """Return the squares of the modal overlaps, (n_modes, n_baseline) [-]."""
+        """Return the squares of the modal overlaps, (n_modes, n_baseline) [-]: by the baseline's own mass."""
         kept, found = self._last
         if kept is now:
             return found
         before = self.prediction.vectors
         n = min(len(now.vectors), len(before))
-        mass = self.predictor.once("nominal mass", lambda: self.predictor.reduced.matrices(NOMINAL)[1])
+        mass = self._mass
         momenta = mass[:n, :n] @ before[:n]
         own = np.sum(now.vectors[:n] * (mass[:n, :n] @ now.vectors[:n]), axis=0)
         norm = np.outer(own, np.sum(before[:n] * momenta, axis=0))
         overlap = np.asarray((now.vectors[:n].T @ momenta) ** 2 / np.maximum(norm, 1e-300))
         self._remembered[:] = [(now, overlap)]
         return overlap
+
+    @cached_property
+    def _mass(self) -> FloatArray:
+        """Mass of the corrected model on its basis, by which the baseline's modes are orthogonal [kg]."""
+        return self._corrected.reduced.matrices(self._corrected.base)[1]
 
     @cached_property
     def _remembered(self) -> list[tuple[Prediction | None, FloatArray]]:
