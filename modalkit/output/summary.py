@@ -175,7 +175,9 @@ def _elsewhere(diagnosis: Diagnosis) -> str:
     row = _row(diagnosis, diagnosis.sets[0])
     places = [] if row is None else [_alike(row, i) for i in range(len(row.effects))]
     return " ".join(
-        f"{' or '.join(others)} in place of {first} fits, too." for first, *others in filter(None, places) if others
+        f"{' or '.join(others)} in place of {first} fits, too."
+        for first, *others in filter(None, places)
+        if others
     )
 
 

@@ -192,9 +192,7 @@ def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
     if case.baseline is not None:
         own_predictor = predictor.for_test(case.baseline, there)
         before = pair_modes(case.baseline, own_predictor.predict())
-        doubt = doubt_in_mass(
-            predictor.for_test(before.measured, there), before.measured, before.order
-        )
+        doubt = doubt_in_mass(predictor.for_test(before.measured, there), before.measured, before.order)
         tolerances = replace(tolerances, factors={**tolerances.factors, "section": doubt})
         statement = (*case.baseline.warnings, *before.warnings, *unmatched(case.measured, before.measured))
         warnings += [f"baseline: {w}" for w in statement]
@@ -226,8 +224,12 @@ def _on_accepted(case: Case) -> list[str]:
     """Say which of the effects put into the model were there in the baseline, too, and which came afterwards."""
     before = ", ".join(name for name, _ in case.accepted_before)
     since = ", ".join(case.accepted[i][0] for i in case.since_baseline)
-    notes = [f"{before} of [[model.effect]] was there in the baseline, too; if not, write before = false"] * bool(before)
-    return notes + [f"{since} of [[model.effect]] came after the baseline; if not, write before = true"] * bool(since)
+    notes = [
+        f"{before} of [[model.effect]] was there in the baseline, too; if not, write before = false"
+    ] * bool(before)
+    return notes + [
+        f"{since} of [[model.effect]] came after the baseline; if not, write before = true"
+    ] * bool(since)
 
 
 def _corrected(

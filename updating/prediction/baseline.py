@@ -89,7 +89,9 @@ def _damping(
     shares = np.stack([0.5 / omega, 0.5 * omega], axis=1) / baseline.damping[:, None]
     alpha, beta = nnls(shares * [1.0, 1 / omega.max()], np.ones(len(omega)))[0] * [1.0, 1 / omega.max()]
     modes = np.linalg.solve(mass, momenta)
-    there = sum((matrix[:count, :count] for matrix in predictor.base.damping), alpha * mass + beta * stiffness)
+    there = sum(
+        (matrix[:count, :count] for matrix in predictor.base.damping), alpha * mass + beta * stiffness
+    )
     now = np.sum(modes * (there @ modes), axis=0)
     lacking = (momenta * (2 * baseline.damping * omega - now)) @ momenta.T
     dampers = {(WHOLE, "alpha"): float(alpha), (WHOLE, "beta"): float(beta), (WHOLE, "loss_factor"): 0.0}

@@ -175,7 +175,14 @@ class SpecimenProblem:
         """What the baseline has already said."""
         if self.baseline is None or self.baseline_order is None:
             return None
-        return Before(self.predictor, self.measured, self.baseline, self.baseline_order, self.names, self.before_additions)
+        return Before(
+            self.predictor,
+            self.measured,
+            self.baseline,
+            self.baseline_order,
+            self.names,
+            self.before_additions,
+        )
 
     @cached_property
     def sigmas(self) -> FloatArray:
