@@ -349,8 +349,8 @@ class ModelTable(Strict):
     mass: list[MassTable] = []
     region: list[RegionTable] = []
     effect: list[dict[str, Any]] = []
-    """Accepted effects, each with ``name`` and its parameters: they become part of the model. Beside a baseline
-    ``before = true`` (was there in it, too: the default for effects of the structure) or ``false`` (came afterwards)."""
+    """Accepted effects, each with ``name`` and its parameters: they become part of the model. Beside a baseline also
+    ``before``: true (it was there, too; the default for effects of the structure) or false (it came afterwards)."""
 
 
 class TolerancesTable(Strict):

@@ -10,10 +10,11 @@ becomes heavier; what a mass does falls with its share of the modal mass, as the
 lies between the two is in doubt, of each mode as a whole.
 
 A baseline shows what the model misses of each mode, e_s = dK_ss / (2 K_ss), and not how that couples the modes. The
-coupling dK_st is of the size of its two ends. A mode that an effect mixes from those of the baseline, of which it has
-shares p_s, takes up sqrt(p_s p_t) dK_st of each pair (the cross term of the perturbation of second order). Summed over
-the pairs with dK_st^2 = (e_s^2 + e_t^2) / 2, its variance is sum of 2 p_s (1 - p_s) e_s^2. Both doubts grow with what the
-effect changes. A specimen on which nothing has changed has its baseline's modes, known to the noise of the two tests.
+coupling is taken to be as large: of the relative size 2 e_st, with e_st^2 = (e_s^2 + e_t^2) / 2. A mode that an effect
+mixes from those of the baseline, of which it has the shares p_s, takes up sqrt(p_s p_t) of it from each pair (the cross
+term of the perturbation of second order). Summed over the pairs the variance of ln f is the sum of
+2 p_s (1 - p_s) e_s^2. Both doubts grow with what the effect changes. A specimen on which nothing has changed has its
+baseline's modes, known to the noise of the two tests.
 """
 
 from __future__ import annotations

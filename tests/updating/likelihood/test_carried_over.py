@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.stats import chi2
-from updating_cases import BEAM, blank, case_of, exactly, observed, specimen, struck
+from updating_cases import BEAM, blank, case_of
 
-from updating import LIBRARY, Measured, Predictor
-from updating.diagnosis.diagnose import diagnose, pose
+from updating import Measured, Predictor
+from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.goodness import p_values
 from updating.problem.candidate import Candidate

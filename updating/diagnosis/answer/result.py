@@ -24,7 +24,7 @@ from acquisition.quantities import (
 from updating.diagnosis.search.search import Searched
 from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
-from updating.thresholds import LIKELY_ALL_THE_SAME
+from updating.thresholds import CLOSES_NEARLY_ALL, LIKELY_ALL_THE_SAME
 
 Verdict = Literal["named", "class", "unknown", "none"]
 
@@ -239,8 +239,8 @@ class Closed:
 
     @property
     def determined(self) -> bool:
-        """Whether the interval leaves out one of nothing and all: an interval that holds both says nothing."""
-        return self.low95 > 0.0 or self.high95 < 100.0
+        """Whether the interval leaves out nothing, or nearly all: one that holds both says nothing."""
+        return self.low95 > 0.0 or self.high95 < CLOSES_NEARLY_ALL
 
     def __str__(self) -> str:
         return closed(self.value, self.low95, self.high95)

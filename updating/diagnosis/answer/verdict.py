@@ -160,7 +160,7 @@ def _credible(found: Search) -> tuple[tuple[str, ...], ...]:
     for row in rows:
         if row in faint:
             continue
-        alike = row in better and (_close(first, row) and _as_good(first, row) or _part_left(first, row))
+        alike = row in better and ((_close(first, row) and _as_good(first, row)) or _part_left(first, row))
         if held < CREDIBLE_SHARE or alike:
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)

@@ -62,8 +62,8 @@ class Orthotropy(Effect):
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the ratio of stiffness, and those of shear and of Poisson's ratio to Huber's."""
         why = (
-            "from softwood and laminates of strong fibres along x (1/10 to 1/25) to the same along y; ribbed sheet 0.25 "
-            "to 4, rolled sheet 0.9 to 1.1"
+            "from softwood and laminates of strong fibres along x (1/10 to 1/25) to the same along y; ribbed sheet "
+            "0.25 to 4, rolled sheet 0.9 to 1.1"
         )
         shear = (
             "from woven carbon (0.15), open ribs and unidirectional laminates (0.3 to 0.5), wood (0.5 to 0.7) over "
