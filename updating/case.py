@@ -32,6 +32,8 @@ class Case(Displayed):
         What is said of the surroundings.
     accepted : tuple of (name, values)
         Effects put into the model beforehand.
+    since_baseline : tuple of int
+        Which of them, by rank, came after the baseline; the others were there in it, too.
     """
 
     title: str
@@ -41,6 +43,12 @@ class Case(Displayed):
     tolerances: Tolerances = field(default_factory=Tolerances)
     environment: Environment = field(default_factory=Environment)
     accepted: tuple[tuple[str, Mapping[str, float]], ...] = ()
+    since_baseline: tuple[int, ...] = ()
+
+    @property
+    def accepted_before(self) -> tuple[tuple[str, Mapping[str, float]], ...]:
+        """The effects put into the model beforehand that were there in the baseline, too."""
+        return tuple(one for i, one in enumerate(self.accepted) if i not in self.since_baseline)
 
     def _headline(self) -> str:
         baseline = "" if self.baseline is None else "; with a baseline"

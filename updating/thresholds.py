@@ -18,10 +18,6 @@ STATED_MASS_DOUBT = 0.02
 """By how much a body weighs more or less than stated, relative (1 sigma) [-]. Judged: a data sheet's rounding, wax and
 the cable's end. Doubled: a change of a sensor's mass must be twice as large to be seen."""
 
-CARRIED_DOUBT = 0.3
-"""How far what the model missed in the baseline may miss differently now, relative to what it missed [-]. Judged.
-Doubled: a baseline of a model that was far off says half as much."""
-
 UNREACHED_MODE_DOUBT = 0.01
 """Doubt in the frequency of a mode the baseline did not reach, beside the unevenness of the others, relative [-].
 Judged: what tolerances of one per cent leave. Doubled: such a mode counts a quarter as much."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from acquisition.errors import InputError
+from modalkit.study.stated_effects import BEFORE
 from updating import LIBRARY
 from updating.effects import names_of
 from updating.prediction.predict import Predictor
@@ -16,7 +17,9 @@ def acceptable(effects: Sequence[str]) -> bool:
     return bool(effects) and all(name in LIBRARY for name in effects)
 
 
-def accepted_entries(row: Mapping[str, Any], predictor: Predictor) -> list[dict[str, Any]]:
+def accepted_entries(
+    row: Mapping[str, Any], predictor: Predictor, *, since_baseline: bool = False
+) -> list[dict[str, Any]]:
     """Return the entries of ``[[model.effect]]`` that a row of the ranking is.
 
     Parameters
@@ -25,6 +28,8 @@ def accepted_entries(row: Mapping[str, Any], predictor: Predictor) -> list[dict[
         As the document of a diagnosis has it; what only follows from the parameters is left out.
     predictor : Predictor
         The model it was found on.
+    since_baseline : bool
+        Whether it was found beside a baseline, so that it came afterwards.
 
     Raises
     ------
@@ -51,5 +56,5 @@ def accepted_entries(row: Mapping[str, Any], predictor: Predictor) -> list[dict[
             for own, _, parameter in [whole.rpartition(".")]
             if own == key and parameter in takes
         }
-        entries.append({"name": name} | values)
+        entries.append({"name": name} | values | ({BEFORE: False} if since_baseline else {}))
     return entries

@@ -269,7 +269,8 @@ class Controller:
             ranking = [] if found is None else found["document"]["cause"]["ranking"]
             if not 0 <= row < len(ranking):
                 raise InputError(f"the diagnosis has no row {row + 1}; diagnose first")
-            entries = accepted_entries(ranking[row], self._workbench.predictor(self.study))
+            predictor, since_baseline = self._workbench.predictor(self.study), self.study.baseline is not None
+            entries = accepted_entries(ranking[row], predictor, since_baseline=since_baseline)
             return self.act("accept", {"effects": entries})
 
     def stop(self) -> dict[str, Any]:

@@ -100,6 +100,6 @@ def evidence(diagnosis: Diagnosis) -> str:
         return "  ·  ".join(parts)
     before, after, floor = map(shrink.size, (shrink.held_before, shrink.held_after, shrink.floor))
     parts.append(f"{METRICS[shrink.metric]} gap {before} → {after} on modes held out, noise floor {floor}")
-    if shrink.closed is not None:
+    if shrink.closed is not None and shrink.closed.determined:
         parts.append(f"closes {shrink.closed} of what can close")
     return "  ·  ".join(parts)

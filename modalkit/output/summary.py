@@ -59,7 +59,8 @@ def _cause(diagnosis: Diagnosis) -> str:
         library = diagnosis.known
         known = in_a_set([name for name in names if name in library], library)
         summary = " ".join(dict.fromkeys(effect.sentence(_stated(diagnosis, effect.key)) for effect in known))
-        return f"{' + '.join(names)}. {summary} {_values(diagnosis)}".strip()
+        parts = [f"{' + '.join(names)}.", summary, _elsewhere(diagnosis), _values(diagnosis)]
+        return " ".join(part for part in parts if part)
     statement = "these data cannot tell apart: " + ", ".join(_with_size(diagnosis, s) for s in diagnosis.sets)
     twin = _twin(diagnosis)
     return f"{statement}; {twin.why}" if twin else statement
@@ -159,9 +160,25 @@ def _with_size(diagnosis: Diagnosis, names: tuple[str, ...]) -> str:
 
 def _at(row: Ranked, index: int) -> str:
     """Return where the form of one effect of a set is, in the user's own names."""
-    values = row.forms[index] if index < len(row.forms) else {}
-    names = named_places(values)
-    return f" of {names[0]}" if names else ""
+    names = _alike(row, index)
+    return f" of {' or '.join(names)}" if names else ""
+
+
+def _alike(row: Ranked, index: int) -> tuple[str, ...]:
+    """Return the places by name where one effect of a set may be, the most probable first: mirrored ones are alike."""
+    every = [forms[index] for forms in (row.forms, *row.other_forms) if index < len(forms)]
+    return tuple(dict.fromkeys(name for values in every for name in named_places(values)[:1]))[:SHOWN]
+
+
+def _elsewhere(diagnosis: Diagnosis) -> str:
+    """Say where else an effect of a named set may be; nothing where it may be in one place only."""
+    row = _row(diagnosis, diagnosis.sets[0])
+    places = [] if row is None else [_alike(row, i) for i in range(len(row.effects))]
+    return " ".join(
+        f"{' or '.join(others)} in place of {first} fits, too."
+        for first, *others in filter(None, places)
+        if others
+    )
 
 
 def _where(diagnosis: Diagnosis) -> str:
@@ -230,7 +247,8 @@ def _closes(diagnosis: Diagnosis) -> str:
     if shrink.points is not None:
         text += f"; on points held out {percent(shrink.points.before)} -> {percent(shrink.points.after)}"
     if shrink.closed is not None and diagnosis.verdict != "unknown":
-        text += f"; closes {shrink.closed} of what can be closed"
+        share = f"closes {shrink.closed} of what can be closed"
+        text += f"; {share if shrink.closed.determined else UNDETERMINED}"
     return text + _left(diagnosis)
 
 
@@ -257,6 +275,9 @@ def _stretched(shrink: Shrink) -> str:
     needed = f"to explain it they would have to be {shrink.stretch:.0f} sigma off"
     return f" (kept within {BELIEVED_DOUBT:g} sigma; {needed})"
 
+
+UNDETERMINED = "the share that this closes is not determined (95 % interval from nothing to all)"
+"""In place of a share whose interval says nothing."""
 
 UNREMARKABLE = 0.05
 """Chance of a gap from which its size says nothing [-]: of one point, say, among many that agree. Doubled, hardly any

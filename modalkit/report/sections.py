@@ -294,7 +294,7 @@ def the_shrinkage(diagnosis: Diagnosis) -> Raw:
                 f"{percent(points.nuisance)} with the tolerances alone.",
             )
         )
-    if shrink.closed is not None and diagnosis.verdict in {"named", "class"}:
+    if shrink.closed is not None and shrink.closed.determined and diagnosis.verdict in {"named", "class"}:
         parts.append(element("p", f"Of what can be closed, {shrink.closed} closes, with 95 % in brackets."))
     return joined(*parts)
 

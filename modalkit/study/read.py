@@ -225,6 +225,24 @@ class Study(Strict):
         except StudyError as error:
             raise StudyError(f"{self.path}: {error}") from error
 
+    def since_baseline(self) -> tuple[int, ...]:
+        """Return which of the effects put into the model, by rank, came after the baseline.
+
+        Raises
+        ------
+        StudyError
+            If ``before`` of one is neither true nor false.
+        """
+        entries = [] if self.model is None else self.model.effect
+        if not entries:
+            return ()
+        from modalkit.study.stated_effects import was_before
+
+        try:
+            return tuple(i for i, entry in enumerate(entries) if not was_before(entry))
+        except StudyError as error:
+            raise StudyError(f"{self.path}: {error}") from error
+
     def surroundings(self) -> Environment:
         """Return the environment."""
         from updating.environment import Environment

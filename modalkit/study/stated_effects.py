@@ -17,6 +17,32 @@ from updating.models.spec import Kind
 SOME = "points"
 """The label that takes several node numbers; any other takes one."""
 
+BEFORE = "before"
+"""Key of an entry that says whether the effect was there in the baseline, too."""
+
+
+def was_before(entry: Mapping[str, Any]) -> bool:
+    """Tell whether the effect of one ``[[model.effect]]`` was there in the baseline, too.
+
+    Where the entry does not say, an effect of the structure was, and one of the measurement was not: that belongs to
+    one test.
+
+    Raises
+    ------
+    StudyError
+        If ``before`` is neither true nor false.
+    """
+    stated = entry.get(BEFORE)
+    if stated is None:
+        effect = LIBRARY.get(str(entry.get("name")))
+        return effect is None or effect.channel != "measurement"
+    if not isinstance(stated, bool):
+        raise StudyError(
+            f"[[model.effect]] {entry.get('name')}: before = {stated!r} must be true (the effect was there in the "
+            "baseline, too) or false (it came afterwards)"
+        )
+    return stated
+
 
 def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str, dict[str, Any]]:
     """Return name and values of one ``[[model.effect]]``.
@@ -24,7 +50,8 @@ def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str,
     Parameters
     ----------
     entry : mapping
-        ``name``, and a value for each parameter and each label of the effect: ``points = [3]``, ``point = 3``.
+        ``name``, and a value for each parameter and each label of the effect: ``points = [3]``, ``point = 3``;
+        ``before`` is for :func:`was_before`.
         A value may be a text with its unit, ``mass = "8.6 g"``.
     kind : {"beam", "plate", "matrices"}
         Kind of model, on which the unit of a spring along an edge depends.
@@ -34,7 +61,7 @@ def accepted_values(entry: Mapping[str, Any], kind: Kind = "beam") -> tuple[str,
     StudyError
         If the effect is unknown, or a value is not what it takes.
     """
-    values = {key: value for key, value in entry.items() if key != "name"}
+    values = {key: value for key, value in entry.items() if key not in ("name", BEFORE)}
     name = entry.get("name")
     if not isinstance(name, str) or name not in LIBRARY:
         meant = nearest(str(name), tuple(LIBRARY))

@@ -349,7 +349,8 @@ class ModelTable(Strict):
     mass: list[MassTable] = []
     region: list[RegionTable] = []
     effect: list[dict[str, Any]] = []
-    """Accepted effects, each with ``name`` and its parameters: they become part of the model."""
+    """Accepted effects, each with ``name`` and its parameters: they become part of the model. Beside a baseline also
+    ``before``: true (it was there, too; the default for effects of the structure) or false (it came afterwards)."""
 
 
 class TolerancesTable(Strict):

@@ -96,6 +96,7 @@ def open_study(
         study.doubts(),
         study.surroundings(),
         study.accepted(),
+        study.since_baseline(),
     )
     own = [w for part in (processed, identified) if part is not None for w in part.warnings]
     own += _health(processed, identified)

@@ -26,7 +26,7 @@ from updating.diagnosis.search.prior import holds
 from updating.diagnosis.search.search import Search, search
 from updating.effects import LIBRARY, Effect, hypotheses_of
 from updating.models.state import State
-from updating.nominal import predictor_of
+from updating.nominal import accepted_additions, predictor_of
 from updating.prediction.assignment import frac_of_constants
 from updating.prediction.baseline import correct, doubt_in_mass
 from updating.prediction.matching import Paired, mac_of_constants, pair_modes
@@ -185,17 +185,19 @@ def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
     """Pair the modes, put the baseline and accepted effects into the model, and pose the problem."""
     predictor = predictor_of(case)
     additions = list(predictor.additions)
+    there = accepted_additions(case.accepted_before) if case.baseline is not None else ()
     paired = pair_modes(case.measured, predictor.predict())
     warnings = [*case.measured.warnings, *paired.warnings, *of_updates_alone(case.tolerances, case.spec)]
     baseline, baseline_order, tolerances = None, None, case.tolerances
     if case.baseline is not None:
-        own_predictor = predictor.for_test(case.baseline, ())
+        own_predictor = predictor.for_test(case.baseline, there)
         before = pair_modes(case.baseline, own_predictor.predict())
-        doubt = doubt_in_mass(predictor.for_test(before.measured, ()), before.measured, before.order)
+        doubt = doubt_in_mass(predictor.for_test(before.measured, there), before.measured, before.order)
         tolerances = replace(tolerances, factors={**tolerances.factors, "section": doubt})
         statement = (*case.baseline.warnings, *before.warnings, *unmatched(case.measured, before.measured))
         warnings += [f"baseline: {w}" for w in statement]
-        additions.append(_corrected(before))
+        warnings += _on_accepted(case)
+        additions.append(_corrected(before, there))
         baseline, baseline_order = before.measured, before.order
         predictor = predictor.for_test(case.measured, tuple(additions))
         paired = pair_modes(case.measured, predictor.predict())
@@ -213,13 +215,28 @@ def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
         accepted,
         theory_error(predictor, paired.order),
         paired.mostly_alone,
+        there,
     )
     return problem, warnings
 
 
-def _corrected(before: Paired) -> Callable[[Predictor], State]:
+def _on_accepted(case: Case) -> list[str]:
+    """Say which of the effects put into the model were there in the baseline, too, and which came afterwards."""
+    before = ", ".join(name for name, _ in case.accepted_before)
+    since = ", ".join(case.accepted[i][0] for i in case.since_baseline)
+    notes = [
+        f"{before} of [[model.effect]] was there in the baseline, too; if not, write before = false"
+    ] * bool(before)
+    return notes + [
+        f"{since} of [[model.effect]] came after the baseline; if not, write before = true"
+    ] * bool(since)
+
+
+def _corrected(
+    before: Paired, there: tuple[Callable[[Predictor], State], ...]
+) -> Callable[[Predictor], State]:
     def build(predictor: Predictor) -> State:
-        own_predictor = predictor.for_test(before.measured, ())
+        own_predictor = predictor.for_test(before.measured, there)
         return correct(own_predictor, before.measured, before.order)
 
     return build

@@ -8,25 +8,32 @@ that mixes two of the baseline takes its share of each.
 How much of it is missed still depends on what misses it. What a stiffness does to a shape stays where all of a mode
 becomes heavier; what a mass does falls with its share of the modal mass, as the square of the frequency. So as much as
 lies between the two is in doubt, of each mode as a whole.
+
+A baseline shows what the model misses of each mode, e_s = dK_ss / (2 K_ss), and not how that couples the modes. The
+coupling is taken to be as large: of the relative size 2 e_st, with e_st^2 = (e_s^2 + e_t^2) / 2. A mode that an effect
+mixes from those of the baseline, of which it has the shares p_s, takes up sqrt(p_s p_t) of it from each pair (the cross
+term of the perturbation of second order). Summed over the pairs the variance of ln f is the sum of
+2 p_s (1 - p_s) e_s^2. Both doubts grow with what the effect changes. A specimen on which nothing has changed has its
+baseline's modes, known to the noise of the two tests.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from acquisition.arrays import FloatArray, IntArray
-from updating.models.state import NOMINAL, State
+from updating.models.state import State
 from updating.prediction.matching import match
 from updating.prediction.predict import Predictor
 from updating.prediction.prediction import Prediction
 from updating.test_data.chain import measurement_chain
 from updating.test_data.measured import Measured
 from updating.test_data.same_places import same_rows
-from updating.thresholds import CARRIED_DOUBT, UNREACHED_MODE_DOUBT
+from updating.thresholds import UNREACHED_MODE_DOUBT, UNSTATED_DAMPING_NOISE
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +74,8 @@ class Before:
         Rank of each baseline mode's partner, for data without shapes.
     factors : sequence of str
         Factors with a tolerance.
+    additions : sequence of callables
+        Effects put into the model beforehand that were there in the baseline, too.
     """
 
     predictor: Predictor
@@ -74,19 +83,24 @@ class Before:
     baseline: Measured
     order: IntArray
     factors: Sequence[str]
+    additions: tuple[Callable[[Predictor], State], ...] = ()
+
+    @cached_property
+    def _corrected(self) -> Predictor:
+        """The corrected model, looked at from the points of the baseline."""
+        return self.predictor.for_test(self.baseline, (*self.additions, self.predictor.additions[-1]))
 
     @cached_property
     def prediction(self) -> Prediction:
         """The corrected model's modes at the baseline's points, in the order of the baseline."""
-        own_predictor = self.predictor.for_test(self.baseline, self.predictor.additions[-1:])
-        prediction = own_predictor.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
+        prediction = self._corrected.predict(factors=self.factors, at_least=int(self.order.max()) + 3)
         return prediction.select(match(self.baseline, prediction, self.order))
 
     @cached_property
     def _correction(self) -> FloatArray:
         """What the baseline corrected ln f of its modes by, shape (n_baseline,) [-]."""
         base = self.baseline
-        plain = self.predictor.for_test(base, ())
+        plain = self.predictor.for_test(base, self.additions)
         prediction = plain.predict(at_least=int(self.order.max()) + 3)
         prediction = prediction.select(match(base, prediction, self.order))
         return np.asarray(np.log(base.frequency / prediction.frequency))
@@ -104,13 +118,20 @@ class Before:
     def _variance(self, now: Prediction) -> FloatArray:
         """Return the variance of what the baseline's modes say of ln f of the present ones, (n_modes, n_baseline) [-].
 
-        It holds identification, re-mounting, and a share of that part of the correction which is no common
-        factor: a model that missed some modes more than others has wrong shapes, too.
+        It holds identification, re-mounting, and of that part of the correction which is no common factor what the
+        change of the modes leaves in doubt.
         """
         base = self.baseline
         noise = (base.frequency_sigma / base.frequency) ** 2 + base.repeatability**2
-        doubt = np.hypot(CARRIED_DOUBT, 1 - self._least_carried(now))
-        return np.asarray(noise + (doubt * self._uneven) ** 2)
+        changed = (1 - self._least_carried(now)) ** 2 + self._coupling(now)
+        return np.asarray(noise + changed * self._uneven**2)
+
+    def _coupling(self, now: Prediction) -> FloatArray:
+        """Return the doubt in how modes are coupled by what the model misses: variance over its square.
+
+        Of each mode and each of the baseline's, (n_modes, n_baseline) [-].
+        """
+        return 2 * (1 - self.shares(now))
 
     def seen(self, now: Prediction) -> FloatArray:
         """Return how much of each present mode the baseline's modes make up together, (n_modes,) [-]."""
@@ -122,19 +143,24 @@ class Before:
         return np.asarray(overlap / np.maximum(overlap.sum(axis=1, keepdims=True), 1e-12))
 
     def _overlap(self, now: Prediction) -> FloatArray:
-        """Return the squares of the modal overlaps, (n_modes, n_baseline) [-]."""
+        """Return the squares of the modal overlaps, (n_modes, n_baseline) [-]: by the baseline's own mass."""
         kept, found = self._last
         if kept is now:
             return found
         before = self.prediction.vectors
         n = min(len(now.vectors), len(before))
-        mass = self.predictor.once("nominal mass", lambda: self.predictor.reduced.matrices(NOMINAL)[1])
+        mass = self._mass
         momenta = mass[:n, :n] @ before[:n]
         own = np.sum(now.vectors[:n] * (mass[:n, :n] @ now.vectors[:n]), axis=0)
         norm = np.outer(own, np.sum(before[:n] * momenta, axis=0))
         overlap = np.asarray((now.vectors[:n].T @ momenta) ** 2 / np.maximum(norm, 1e-300))
         self._remembered[:] = [(now, overlap)]
         return overlap
+
+    @cached_property
+    def _mass(self) -> FloatArray:
+        """Mass of the corrected model on its basis, by which the baseline's modes are orthogonal [kg]."""
+        return self._corrected.reduced.matrices(self._corrected.base)[1]
 
     @cached_property
     def _remembered(self) -> list[tuple[Prediction | None, FloatArray]]:
@@ -157,6 +183,12 @@ class Before:
         beyond = (1 - seen) * (np.var(self._uneven) + UNREACHED_MODE_DOUBT**2)
         known = seen[:, None] * (shares @ self.prediction.log_frequency_by)
         return np.sum(shares * self._variance(now), axis=1) + beyond, known
+
+    def damping(self, now: Prediction) -> FloatArray:
+        """Return the variance of what the baseline's modes say of ln zeta of the present ones, (n_modes,) [-]."""
+        base, stated = self.baseline, np.full(len(self.baseline.damping), np.nan)
+        np.divide(base.damping_sigma, base.damping, out=stated, where=base.damping > 0)
+        return np.asarray(self.shares(now) @ np.nan_to_num(stated, nan=UNSTATED_DAMPING_NOISE) ** 2)
 
     @cached_property
     def _rows(self) -> tuple[IntArray, IntArray]:
@@ -192,17 +224,18 @@ class Before:
         predicted = self.prediction.constants[there]
         error = self.baseline.constants[there] - predicted
         # of a mode that was not predicted to be seen, its sensor on a node, what was missed is all there is
-        unseen = np.sum(self.baseline.constants[there] ** 2, axis=0)
+        whole = np.sum(self.baseline.constants[there] ** 2, axis=0)
         level = np.sqrt(
-            (np.sum((now.constants[here] / gain) ** 2, axis=0)[:, None] + unseen)
-            / (np.sum(predicted**2, axis=0) + unseen)
+            (np.sum((now.constants[here] / gain) ** 2, axis=0)[:, None] + whole)
+            / (np.sum(predicted**2, axis=0) + whole)
         )
-        least = self._least_carried(now)
-        weights = self.shares(now) * level * (1 + least) / 2
+        least, shares = self._least_carried(now), self.shares(now)
+        weights = shares * level * (1 + least) / 2
+        unseen = (1 - self.seen(now))[:, None] * shares
         missed[here] = gain * (error @ weights.T)
-        variance[here] = (
-            gain**2 * (self.baseline.constants_sigma[there] ** 2 @ (weights**2).T)
-            + (CARRIED_DOUBT * missed[here]) ** 2
+        coupled = (self._coupling(now) * shares + unseen) * level**2
+        variance[here] = gain**2 * (
+            self.baseline.constants_sigma[there] ** 2 @ (weights**2).T + error**2 @ coupled.T
         )
         known[here] = gain[:, :, None] * np.einsum(
             "fkp,mk->fmp", self.prediction.constants_by[there], weights

@@ -52,7 +52,7 @@ class Dampings(Quantity):
         # ratios go up or down with frequency as the mechanism has it: viscous ones fall, those of stiffness rise
         moved = DAMPING_PER_SHIFT * np.log(now.frequency[rows] / self.setting.nominal.frequency[rows])
         doubt = view.doubt.damping
-        variance = relative**2 + tolerance**2 + doubt**2 + moved**2
+        variance = relative**2 + tolerance**2 + doubt**2 + moved**2 + self._of_baseline(now)[rows]
         level = np.stack([np.sqrt(COMMON_DAMPING) * tolerance, np.full(len(rows), doubt)], axis=1)[
             :, : 1 + (doubt > 0)
         ]
@@ -65,6 +65,11 @@ class Dampings(Quantity):
             np.zeros((len(rows), 0)),
             rows,
         )
+
+    def _of_baseline(self, now: Prediction) -> FloatArray:
+        """Return the variance of what a baseline measured of ln zeta, (n_modes,) [-]: nothing without one."""
+        before = self.setting.before
+        return np.zeros(len(now.frequency)) if before is None else before.damping(now)
 
     def _tolerance(self, now: Prediction) -> FloatArray:
         """Return the whole doubt in the expected damping of each mode: small where a baseline measured it [-]."""

@@ -34,7 +34,7 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     Parameters
     ----------
     predictor : Predictor
-        The model, bare, looked at from the points of the baseline.
+        The model as it was in the baseline, looked at from its points.
     baseline : Measured
         The baseline's modes, each with a partner.
     order : (n_modes,) int array
@@ -43,6 +43,7 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     Returns
     -------
     State
+        What comes on top of that model.
 
     Raises
     ------
@@ -61,7 +62,7 @@ def correct(predictor: Predictor, baseline: Measured, order: IntArray) -> State:
     scaled = State(factors={"E": factor, "section": heavier})
     prediction = predictor.predict(scaled, count=everything)
     partner = match(baseline, prediction, order)
-    _, mass = predictor.reduced.matrices(scaled)
+    _, mass = _matrices(predictor, scaled, len(prediction.vectors))
     momenta = mass @ prediction.vectors
     wanted, there = (2 * np.pi * baseline.frequency) ** 2, (2 * np.pi * prediction.frequency[partner]) ** 2
     size = predictor.reduced.basis.shape[1]
@@ -82,16 +83,25 @@ def _damping(
     The coefficients damp what was not measured as well, the motion of a clamp let loose included, and go with mass
     and stiffness where an effect changes these.
     """
-    reduced = predictor.reduced
-    stiffness, mass = reduced.matrices(scaled)
+    reduced, count = predictor.reduced, len(momenta)
+    stiffness, mass = _matrices(predictor, scaled, count)
     omega = 2 * np.pi * baseline.frequency
     shares = np.stack([0.5 / omega, 0.5 * omega], axis=1) / baseline.damping[:, None]
     alpha, beta = nnls(shares * [1.0, 1 / omega.max()], np.ones(len(omega)))[0] * [1.0, 1 / omega.max()]
     modes = np.linalg.solve(mass, momenta)
-    now = np.sum(modes * ((alpha * mass + beta * stiffness) @ modes), axis=0)
+    there = sum(
+        (matrix[:count, :count] for matrix in predictor.base.damping), alpha * mass + beta * stiffness
+    )
+    now = np.sum(modes * (there @ modes), axis=0)
     lacking = (momenta * (2 * baseline.damping * omega - now)) @ momenta.T
     dampers = {(WHOLE, "alpha"): float(alpha), (WHOLE, "beta"): float(beta), (WHOLE, "loss_factor"): 0.0}
     return dampers, _padded(lacking, reduced.basis.shape[1])
+
+
+def _matrices(predictor: Predictor, state: State, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return stiffness and mass of a state on the first columns of its basis, (count, count): no absorbers' [SI]."""
+    stiffness, mass = predictor.reduced.matrices(predictor.base.plus(state))
+    return stiffness[:count, :count], mass[:count, :count]
 
 
 def modal_mass(baseline: Measured, predicted: FloatArray) -> tuple[float, float]:

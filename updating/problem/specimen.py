@@ -9,7 +9,7 @@ own: see :mod:`updating.likelihood`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -77,6 +77,8 @@ class SpecimenProblem:
         How far the mesh, and the theory, leave each mode's frequency off.
     mostly_alone : bool
         Whether most of the measured modes have no partner, and are left out.
+    before_additions : tuple of callables
+        What puts those of the accepted effects into a model that were there in the baseline, too.
     """
 
     predictor: Predictor
@@ -88,6 +90,7 @@ class SpecimenProblem:
     accepted: tuple[Effect, ...] = ()
     theory_error: TheoryError | None = None
     mostly_alone: bool = False
+    before_additions: tuple[Callable[[Predictor], State], ...] = ()
 
     @property
     def specimens(self) -> tuple[SpecimenProblem, ...]:
@@ -172,7 +175,14 @@ class SpecimenProblem:
         """What the baseline has already said."""
         if self.baseline is None or self.baseline_order is None:
             return None
-        return Before(self.predictor, self.measured, self.baseline, self.baseline_order, self.names)
+        return Before(
+            self.predictor,
+            self.measured,
+            self.baseline,
+            self.baseline_order,
+            self.names,
+            self.before_additions,
+        )
 
     @cached_property
     def sigmas(self) -> FloatArray:
@@ -354,10 +364,14 @@ class SpecimenProblem:
         return np.stack(columns, axis=1), (MESH_UNEVENNESS * found.mesh) ** 2
 
     def _accepted_variance(self) -> FloatArray:
-        """Return how far the idealisations of the effects put into the model beforehand may be off, relative [-]."""
+        """Return how far the idealisations of the effects put into the model beforehand may be off, relative [-].
+
+        What was there in the baseline, too, shifted both tests alike.
+        """
         if not self.doubt_of_accepted:
             return np.zeros(len(self.measured.frequency))
-        without = self.predictor.for_test(self.measured, self.predictor.additions[len(self.accepted) :])
+        kept = self.before_additions, self.predictor.additions[len(self.accepted) :]
+        without = self.predictor.for_test(self.measured, (*kept[0], *kept[1]))
         plain = without.predict(at_least=self.reach)
         hung = swinging(self.predictor.base.absorbers)
         before = _undisturbed(self.nominal, plain, hung) if hung else plain.frequency[self._match(plain)]

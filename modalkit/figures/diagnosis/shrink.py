@@ -40,7 +40,7 @@ def _title(diagnosis: Diagnosis) -> str:
         return "Nothing to close"
     if diagnosis.verdict == "unknown":
         return "What the least bad explanation would close; it does not fit"
-    if shrink.closed is None:
+    if shrink.closed is None or not shrink.closed.determined:
         before, after = map(shrink.size, (shrink.held_before, shrink.held_after))
         return f"{before} becomes {after} on modes held out"
     return f"Closes {shrink.closed} of what can close"

@@ -339,6 +339,8 @@ def test_a_row_of_the_diagnosis_is_put_where_its_names_say(frame):
     }
     entries = accepted_entries(row("local_stiffness", **values), predictor)
     assert entries == [{"name": "local_stiffness", "region": "beam_2", "loss": 0.3}]
+    later = accepted_entries(row("local_stiffness", **values), predictor, since_baseline=True)
+    assert later == [entries[0] | {"before": False}]
     controller.act("accept", {"effects": entries})
     assert controller.study.model.effect[-1] == entries[0]
 

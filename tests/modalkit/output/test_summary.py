@@ -356,3 +356,31 @@ def test_how_many_sets_were_searched_is_stated() -> None:
     singles, pairs = Searched(causes=1, sets=26, possible=26), Searched(causes=2, sets=10, possible=331)
     assert numbers(searched_text(replace(NAMED, searched=(singles, pairs)))) == ["26", "10", "331"]
     assert numbers(searched_text(replace(NAMED, searched=(singles,)))) == ["26"]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "stated"), [(-17131.0, 100.0, False), (-20.0, 60.0, True), (5.0, 100.0, True)]
+)
+def test_a_share_from_nothing_to_all_is_not_stated(low: float, high: float, stated: bool) -> None:
+    open_share = replace(NAMED, shrink=replace(NAMED.shrink, closed=Closed(37.0, low, high)))
+    line = summary_text(open_share)[2]
+    assert ("closes 37 %" in line) is stated
+    assert ("not determined" in line) is not stated
+
+
+@pytest.mark.parametrize("verdict", ["named", "class"])
+def test_a_mirrored_region_stands_in_the_cause(verdict: str) -> None:
+    """Softer columns of the first storey and of the third shift the modes of a symmetric frame alike."""
+    soft = Ranked(
+        ("local_stiffness",),
+        0.9,
+        (),
+        {"local_stiffness.loss": ParameterEstimate(0.4, "-", 0.3, 0.5, False)},
+        True,
+        0.4,
+        ({"region": "storey_3"},),
+        (({"region": "storey_1"},),),
+    )
+    sets = (("local_stiffness",), ("E",))[: 1 + (verdict == "class")]
+    line = summary_text(replace(NAMED, verdict=verdict, sets=sets, ranking=(soft, E)))[0]  # type: ignore[arg-type]
+    assert "storey_1" in line

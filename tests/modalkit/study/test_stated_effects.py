@@ -7,7 +7,7 @@ import pytest
 from acquisition.errors import InputError, StudyError
 from modalkit.study.named_effects import parse_effect, statement
 from modalkit.study.read import read_study
-from modalkit.study.stated_effects import accepted_values
+from modalkit.study.stated_effects import accepted_values, was_before
 
 SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 
@@ -80,3 +80,25 @@ def test_several_of_one_name_stand_where_there_may_be_several(tmp_path: Path) ->
     path.write_text(text + modulus + modulus)
     with pytest.raises(StudyError, match=r"study.toml: \[\[model.effect\]\] E stands twice"):
         read_study(path).accepted()
+
+
+def test_an_accepted_effect_says_whether_the_baseline_had_it() -> None:
+    """Nothing stated: what a structure has it had before, what one measurement did wrong it did alone."""
+    assert was_before({"name": "lumped_mass", "mass": 0.02})
+    assert not was_before({"name": "lumped_mass", "mass": 0.02, "before": False})
+    assert not was_before({"name": "polarity", "points": [3]})
+    assert was_before({"name": "polarity", "points": [3], "before": True})
+    assert accepted_values({"name": "E", "factor": 1.1, "before": False}) == ("E", {"factor": 1.1})
+    with pytest.raises(StudyError, match="before = 1"):
+        was_before({"name": "E", "factor": 1.1, "before": 1})
+
+
+def test_a_study_knows_which_effects_came_after_its_baseline(tmp_path: Path) -> None:
+    text = (SAMPLES / "beam_dry" / "study.toml").read_text(encoding="utf-8")
+    entries = ("true", "false")
+    for before in entries:
+        text += f'\n[[model.effect]]\nname = "lumped_mass"\nmass = 0.02\nx = 0.2\nbefore = {before}\n'
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    study = read_study(tmp_path / "study.toml")
+    assert study.since_baseline() == (1,)
+    assert [values for _, values in study.accepted()] == [{"mass": 0.02, "x": 0.2}] * 2

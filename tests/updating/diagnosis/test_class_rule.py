@@ -10,7 +10,13 @@ from updating.diagnosis.answer.verdict import decide, is_significant
 
 
 def row(
-    names: str, probability: float, log_likelihood: float, *, fits: float = 0.5, without: float = -np.inf
+    names: str,
+    probability: float,
+    log_likelihood: float,
+    *,
+    fits: float = 0.5,
+    without: float = -np.inf,
+    rejected: bool = False,
 ) -> Any:
     """Return a set that was weighed, its parameters in the middle of their priors and determined."""
     marginal = SimpleNamespace(log_likelihood=log_likelihood)
@@ -23,7 +29,7 @@ def row(
         samples=np.full((2, size), 0.5),
         weights=np.array([0.5, 0.5]),
     )
-    share = {"probability": probability, "p_value": fits, "as_stated": fits, "rejected": False}
+    share = {"probability": probability, "p_value": fits, "as_stated": fits, "rejected": rejected}
     share |= {"without": without}
     return SimpleNamespace(names=explanation.names, explanation=explanation, **share)
 
@@ -43,6 +49,21 @@ def test_a_second_cause_that_no_datum_shows_is_no_rival(gain: float, verdict: st
 
 def test_another_cause_that_holds_the_rest_is_a_rival() -> None:
     assert answer(row("E", 0.9, 100.0), row("density", 0.1, 90.0))[0] == "class"
+
+
+def test_a_set_at_the_end_of_its_range_leaves_the_first_no_more_certain() -> None:
+    rows = row("E", 0.53, 100.0), row("density", 0.4, 99.5, rejected=True), row("taper", 0.07, 90.0)
+    assert answer(*rows) == ("class", (("E",), ("density",), ("taper",)))
+
+
+def test_what_setting_data_aside_explains_by_itself_has_no_share() -> None:
+    rows = row("E", 0.9, 100.0), row("density", 0.1, 90.0, without=84.0)
+    assert answer(*rows) == ("named", (("E",),))
+
+
+def test_a_set_at_the_end_of_its_range_that_holds_little_is_no_rival() -> None:
+    rows = row("E", 0.96, 100.0), row("density", 0.04, 99.5, rejected=True)
+    assert answer(*rows) == ("named", (("E",),))
 
 
 def test_a_faint_second_cause_beside_a_rival_does_not_make_the_rival_go() -> None:

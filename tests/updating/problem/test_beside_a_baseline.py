@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from updating_cases import BEAM, POINTS, blank, case_of, exactly, specimen, struck
@@ -10,6 +12,7 @@ from updating import LIBRARY, Case, Measured, Predictor, Tolerances
 from updating.diagnosis.answer.verdict import estimates
 from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
+from updating.effects import accepted_state
 from updating.models.state import NOMINAL, State
 from updating.problem.candidate import Candidate
 from updating.problem.specimen import SpecimenProblem
@@ -69,3 +72,38 @@ def test_what_the_model_misses_matters_less_or_as_much_once_all_is_heavier(misse
     assert size.low95 < HEAVIER < size.high95 < 1.1 * HEAVIER
     assert found.best.marginal.scale == 1
     assert found.p_value > 0.05
+
+
+BODY = ("lumped_mass", {"mass": 0.05, "x": 0.3008, "bulk": 0.0})
+
+
+def with_body(factors: dict[str, float]) -> Measured:
+    """A test of the beam with a body on it."""
+    name, values = BODY
+    predictor = Predictor(BEAM, blank(POINTS), additions=(lambda own: accepted_state(own, name, values),))
+    return exactly(predictor, predictor.predict(State(factors=factors), count=4))
+
+
+@pytest.mark.parametrize("stiffer", [1.0, 1.06])
+def test_what_was_there_before_is_in_the_model_of_the_baseline(stiffer: float) -> None:
+    """The body shifts both tests alike, so it is no part of the gap, and its idealisation leaves no doubt."""
+    after, before = with_body({"E": stiffer}), with_body({})
+    case = replace(case_of(after, baseline=before), accepted=(BODY,))
+    problem, warnings = pose(case)
+    assert problem.nominal.frequency == pytest.approx(before.frequency, rel=1e-5)
+    assert problem.before is not None
+    shift, known = problem.before.frequency(problem.nominal)
+    noise = (before.frequency_sigma / before.frequency) ** 2 + before.repeatability**2
+    assert shift == pytest.approx(noise, rel=1e-3)
+    assert known == pytest.approx(problem.nominal.log_frequency_by, abs=1e-6)
+    assert any("lumped_mass" in warning and "before = false" in warning for warning in warnings)
+    residual = problem.compare(NOMINAL).residual[:4]
+    assert residual == pytest.approx(np.full(4, 0.5 * np.log(stiffer)), abs=1e-4)
+
+
+def test_what_came_after_the_baseline_acts_on_the_corrected_model() -> None:
+    after, before = with_body(SPECIMEN), measured(SPECIMEN)
+    case = replace(case_of(after, baseline=before), accepted=(BODY,), since_baseline=(0,))
+    problem, warnings = pose(case)
+    assert problem.nominal.frequency == pytest.approx(after.frequency, rel=1e-3)
+    assert any("lumped_mass" in warning and "before = true" in warning for warning in warnings)

@@ -24,7 +24,7 @@ from acquisition.quantities import (
 from updating.diagnosis.search.search import Searched
 from updating.effects import LIBRARY, Effect
 from updating.effects.obstacles import Obstacle
-from updating.thresholds import LIKELY_ALL_THE_SAME
+from updating.thresholds import CLOSES_NEARLY_ALL, LIKELY_ALL_THE_SAME
 
 Verdict = Literal["named", "class", "unknown", "none"]
 
@@ -108,7 +108,27 @@ class ParameterEstimate:
 
 @dataclass(frozen=True, eq=False)
 class Ranked(Displayed):
-    """One set of effects with its probability, and what the form of each fixes: the points, which parameters act."""
+    """One set of effects with its probability.
+
+    Parameters
+    ----------
+    effects : tuple of str
+        Their names.
+    probability : float
+        Of the set, in all its forms [-].
+    equivalents : tuple of tuple of str
+        Other sets that fit as well.
+    parameters : dict of str to ParameterEstimate
+        Of its best form.
+    plausible : bool
+        Whether no parameter is at an end of its range that is a judgement.
+    p_value : float
+        How well it fits [-].
+    forms : tuple of mapping
+        What the best form fixes of each effect: the points, the region, which parameters act.
+    other_forms : tuple of tuple of mapping
+        The same of the other probable forms, a mirrored region for instance, the best first.
+    """
 
     effects: tuple[str, ...]
     probability: float
@@ -117,6 +137,7 @@ class Ranked(Displayed):
     plausible: bool
     p_value: float
     forms: tuple[Mapping[str, Any], ...] = ()
+    other_forms: tuple[tuple[Mapping[str, Any], ...], ...] = ()
 
     def of(self, effect: str) -> dict[str, ParameterEstimate]:
         """Return the parameters of one of the effects by their own names."""
@@ -215,6 +236,11 @@ class Closed:
     value: float
     low95: float
     high95: float
+
+    @property
+    def determined(self) -> bool:
+        """Whether the interval leaves out nothing, or nearly all: one that holds both says nothing."""
+        return self.low95 > 0.0 or self.high95 < CLOSES_NEARLY_ALL
 
     def __str__(self) -> str:
         return closed(self.value, self.low95, self.high95)

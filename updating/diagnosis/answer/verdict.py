@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
@@ -96,7 +97,7 @@ def decide(
         return "none", ()
     if lacks:
         return "unknown", ()
-    sets = _credible(_better(found))
+    sets = _credible(found)
     return ("class", sets) if len(sets) > 1 else ("named", sets)
 
 
@@ -121,10 +122,9 @@ def shortcoming(
         return "fit"
     if left and closed is not None and closed < CLOSES_NEARLY_ALL:
         return "closing"
-    better = _better(found)
-    if not better:
+    if not _better(found):
         return "evidence"
-    return None if comparable or len(_credible(better)) > 1 else "partners"
+    return None if comparable or len(_credible(found)) > 1 else "partners"
 
 
 def _better(found: Search) -> list[Compared]:
@@ -133,23 +133,35 @@ def _better(found: Search) -> list[Compared]:
     return [row for row in rows if row.explanation.log_evidence > _of_nothing(found, row) + BEYOND_NOTHING]
 
 
-def _credible(rows: list[Compared]) -> tuple[tuple[str, ...], ...]:
-    """Return the fewest rows that hold the certainty asked for, and those that fit as well as the first.
+def _credible(found: Search) -> tuple[tuple[str, ...], ...]:
+    """Return the fewest sets that hold the certainty asked for, and those that fit as well as the first.
 
+    All sets have a share: one whose parameter lies at the end of its range, or which fits badly, is no answer by
+    itself, and what it holds makes the others no more certain. What setting data aside explains without it is no cause
+    and has none. Where no set is better than no effect there are no sets.
     A rival whose best parameters fit as well is behind by its prior alone: by how many parameters it has, and how
     widely they may range, and that is no measurement. A part of the first that fits by itself stays, too, unless the
     whole is better by as much as shows a gap: that there is something beside it is the more probable, and not sure.
     What adds to the first a cause that shows in no datum says of the data what the first says, and counts for it.
     """
+    better = _better(found)
+    if not better:
+        return ()
+    first = better[0]
+    rows = [
+        row
+        for row in found.compared
+        if row.names and row.explanation.log_evidence > row.without + BEYOND_NOTHING
+    ]
     total = sum(row.probability for row in rows)
-    faint = [row for row in rows[1:] if _adds_nothing(rows[0], row)]
+    faint = [row for row in rows if row is not first and _adds_nothing(first, row)]
     sets: list[tuple[str, ...]] = []
     held = sum(row.probability for row in faint) / max(total, 1e-300)
     for row in rows:
         if row in faint:
             continue
-        alike = _close(rows[0], row) and _as_good(rows[0], row)
-        if held < CREDIBLE_SHARE or alike or _part_left(rows[0], row):
+        alike = row in better and ((_close(first, row) and _as_good(first, row)) or _part_left(first, row))
+        if held < CREDIBLE_SHARE or alike:
             sets.append(row.names)
         held += row.probability / max(total, 1e-300)
     return tuple(sets)
@@ -213,10 +225,16 @@ def rank(problem: DiagnosisProblem, found: Search) -> tuple[Ranked, ...]:
             ),
             not row.extreme,
             row.p_value,
-            tuple(form.values for form in row.explanation.candidate.forms),
+            _fixed(row.explanation),
+            tuple(_fixed(one) for one, _ in row.forms[1:] if one.names == row.names),
         )
         for row in rows
     )
+
+
+def _fixed(explanation: Explanation) -> tuple[Mapping[str, Any], ...]:
+    """Return what the form of each effect fixes."""
+    return tuple(form.values for form in explanation.candidate.forms)
 
 
 def _samples_taken(row: Compared) -> int:

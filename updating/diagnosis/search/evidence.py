@@ -261,36 +261,40 @@ def _draw(peaks: list[Peak], count: int) -> tuple[FloatArray, FloatArray]:
     cube = qmc.Sobol(k, seed=1).random(count)
     uniform = round(PRIOR_SHARE * count)
     each = (count - uniform) // len(peaks)
-    scales = [_scale(peak) for peak in peaks]
+    factors = [_factor(peak) for peak in peaks]
     drawn = [cube[:uniform]]
-    for i, (peak, scale) in enumerate(zip(peaks, scales, strict=True)):
+    for i, (peak, lower) in enumerate(zip(peaks, factors, strict=True)):
         part = cube[uniform + i * each : uniform + (i + 1) * each]
-        lower = np.linalg.cholesky(scale)
         normal = student.ppf(np.clip(part, 1e-6, 1 - 1e-6), SAMPLE_FREEDOM)
         drawn.append(peak.point.coordinates + normal @ lower.T)
     samples = np.concatenate(drawn)
     shares = [uniform / len(samples)] + [each / len(samples)] * len(peaks)
     inside = np.all((samples >= 0) & (samples <= 1), axis=1)
     parts = [np.full(int(inside.sum()), np.log(max(shares[0], 1e-12)))]
-    for peak, scale, share in zip(peaks, scales, shares[1:], strict=True):
-        parts.append(np.log(share) + _log_density(samples[inside], peak, scale))
+    for peak, lower, share in zip(peaks, factors, shares[1:], strict=True):
+        parts.append(np.log(share) + _log_density(samples[inside], peak, lower))
     density = logsumexp(np.stack(parts), axis=0) + np.log(len(samples) / inside.sum())
     return samples[inside], np.asarray(density)
 
 
-def _log_density(samples: FloatArray, peak: Peak, scale: FloatArray) -> FloatArray:
-    """Return the density of independent t-variates taken through the Cholesky factor of ``scale``."""
-    lower = np.linalg.cholesky(scale)
+def _log_density(samples: FloatArray, peak: Peak, lower: FloatArray) -> FloatArray:
+    """Return the density of independent t-variates taken through the factor ``lower`` (k, k)."""
     standard = np.linalg.solve(lower, (samples - peak.point.coordinates).T)
     return np.asarray(student.logpdf(standard, SAMPLE_FREEDOM).sum(axis=0) - np.log(np.diag(lower)).sum())
 
 
-def _scale(peak: Peak) -> FloatArray:
-    """Return the covariance to draw with: a little wider than the peak, no wider than its slope at an edge."""
+def _factor(peak: Peak) -> FloatArray:
+    """Return the lower Cholesky factor of the covariance to draw with, (k, k) [-].
+
+    It is a little wider than the peak, no wider than its slope at an edge. A slope that is steep beside a parameter
+    which the data do not see leaves variances further apart than the digits of a number hold. So the factor comes from
+    a square root by QR (Golub and Van Loan 2013, Matrix Computations, section 5.2), and the covariance is never formed.
+    """
     k = len(peak.gradient)
     precision = peak.normal + np.diag(_outward(peak) ** 2) + 4.0 * np.eye(k)
     values, vectors = np.linalg.eigh((precision + precision.T) / 2)
-    return np.asarray((vectors * (1.4 / np.maximum(values, 1.0))) @ vectors.T)
+    upper = np.linalg.qr((vectors * np.sqrt(1.4 / np.maximum(values, 1.0))).T, mode="r")
+    return np.asarray(upper.T * np.where(np.diag(upper) < 0, -1.0, 1.0))
 
 
 def _outward(peak: Peak) -> FloatArray:

@@ -28,6 +28,9 @@ COUPLING = frozenset({("wxx", "wyy"), ("rxx", "ryy")})
 HUBER = 1.0
 """Shear modulus and coupling where none is told, over those of Huber [-]."""
 
+STARTS_ALONG = 12
+"""Starts of the search along the ratio, a factor of 1.7 apart: at twice that modes change places in between."""
+
 FIRMEST = 0.95
 """Most that the coupling may be of what makes bending cost nothing, D_1 = sqrt(D_x D_y) [-]."""
 
@@ -58,7 +61,10 @@ class Orthotropy(Effect):
 
     def parameters(self, predictor: Predictor) -> tuple[Parameter, ...]:
         """Return the ratio of stiffness, and those of shear and of Poisson's ratio to Huber's."""
-        why = "from unidirectional laminates and ribbed sheet along x to the same along y; rolled sheet 0.9 to 1.1"
+        why = (
+            "from softwood and laminates of strong fibres along x (1/10 to 1/25) to the same along y; ribbed sheet "
+            "0.25 to 4, rolled sheet 0.9 to 1.1"
+        )
         shear = (
             "from woven carbon (0.15), open ribs and unidirectional laminates (0.3 to 0.5), wood (0.5 to 0.7) over "
             "rolled sheet (0.85 to 1.15) to layers at 45 degrees (2.4)"
@@ -68,7 +74,7 @@ class Orthotropy(Effect):
             "at 45 degrees (2.5), short of a sheet that bends into a saddle for nothing"
         )
         return (
-            Parameter("ratio", "-", 0.25, 4.0, why, log=True),
+            Parameter("ratio", "-", 1 / 25, 25.0, why, log=True),
             Parameter("shear_ratio", "-", 0.15, 2.5, shear, log=True, default=HUBER),
             Parameter("coupling", "-", 0.15, self._most(predictor), coupling, log=True, default=HUBER),
         )
@@ -77,9 +83,8 @@ class Orthotropy(Effect):
         """Start from a grid: where modes change places the likelihood has maxima of its own."""
         _, shear, coupling = self.parameters(predictor)
         middle, usual = shear.coordinate(HUBER), coupling.coordinate(HUBER)
-        return tuple(
-            (u, v, usual) for v in (middle - 0.25, middle, middle + 0.15) for u in (0.2, 0.4, 0.6, 0.8)
-        )
+        ratios = ((i + 0.5) / STARTS_ALONG for i in range(STARTS_ALONG))
+        return tuple((u, v, usual) for u in ratios for v in (middle - 0.25, middle, middle + 0.15))
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the plate with its terms across and in twist scaled."""
