@@ -24,6 +24,7 @@ from acquisition.hits.checks import (
     second_hits,
     upright,
     why_broken,
+    without_drift,
 )
 from acquisition.hits.faults import Fault
 from acquisition.hits.hammer import HammerTest, Hits
@@ -101,14 +102,20 @@ def _judge_sound(whole: HammerTest, points: list[Hits]) -> list[HitVerdict]:
 
 
 def _without_window(hits: Hits, decay: float, rate: float) -> Hits:
-    """Return the records as they were before a window of that decay [1/s], in forces as far as their pulses reach."""
+    """Return the records as they were before a window of that decay [1/s], in forces as far as their pulses reach.
+
+    They keep their offsets: those that end at a limit are told by it.
+    """
     if not decay:
         return hits
     growth = np.exp(decay * np.arange(hits.force.shape[-1]) / rate)
-    at_pulse = growth[np.abs(hits.force).argmax(axis=-1)][:, None]
-    return replace(
-        hits, force=hits.force * np.minimum(growth, REGROWTH * at_pulse), motion=hits.motion * growth
-    )
+    return replace(hits, force=hits.force * _regrowth(hits.force, growth), motion=hits.motion * growth)
+
+
+def _regrowth(force: FloatArray, growth: FloatArray) -> FloatArray:
+    """Return by how much forces are taken back, whatever offset they have."""
+    top = np.abs(without_drift(force)).argmax(axis=-1)
+    return np.minimum(growth, REGROWTH * growth[top][:, None])
 
 
 def _usual_peak(test: HammerTest) -> float:
@@ -141,9 +148,8 @@ def _judge_point(
     hits: Hits, test: HammerTest, usual: float, level: Hits, limits: tuple[BoolArray, BoolArray]
 ) -> list[HitVerdict]:
     """Judge the hits of one entry; ``level`` are their records without any window, stated or not."""
-    # whether the force was windowed too is not known: take back enough for a second hit, not so much that noise is one
-    force, motion = (level if test.decay else hits).force, (level if test.decay else hits).motion
-    waves = upright(force)
+    motion = (level if test.decay else hits).motion
+    waves = _waves(hits, test)
     widths = np.array([pulse_width(wave, test.rate) for wave in waves])
     faults = [_force_faults(wave, usual, test.rate) for wave in waves]
     over_force = clipped(level.force, least=2) | limits[0] | np.array([flat_pulse(wave) for wave in waves])
@@ -163,6 +169,19 @@ def _judge_point(
         )
         for number, (wave, fault) in enumerate(zip(waves, faults, strict=True))
     ]
+
+
+def _waves(hits: Hits, test: HammerTest) -> FloatArray:
+    """Return the forces as pulses are judged by: upwards, without drift, and without the window that is stated.
+
+    Whether the force was windowed too is not known: enough is taken back for a second hit, not so much that noise is
+    one.
+    """
+    if not test.decay:
+        return upright(hits.force)
+    growth = np.exp(test.decay * np.arange(hits.force.shape[-1]) / test.rate)
+    level = without_drift(hits.force, fade=test.decay / test.rate)
+    return upright(level * _regrowth(level, growth))
 
 
 def _verdict(

@@ -22,6 +22,7 @@ from acquisition import (
     hits_table,
     holds_several_hits,
     judge_hits,
+    pulses_alone,
     split_hits,
     state_window,
 )
@@ -400,9 +401,11 @@ def _judged(
     proposals = numbered([judge_hits(test) for test in split])
     every = tuple(v for verdicts in proposals for v in verdicts)
     decided = iter(decide(every, use=processing.use, leave=processing.leave) if every else ())
+    cleared = [pulses_alone(test) for test in split]
+    warnings += [text for _, statement in cleared for text in statement]
     return tuple(
         Judged(test, tuple(next(decided) for _ in verdicts))
-        for test, verdicts in zip(split, proposals, strict=True)
+        for (test, _), verdicts in zip(cleared, proposals, strict=True)
     )
 
 
