@@ -31,8 +31,8 @@ from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.hits.verdicts import HitVerdict
 from acquisition.hits.windows import unstated_window
 
-TOO_WEAK = 0.2  # of the median peak of the test
-TOO_STRONG = 4.0  # times the median peak of the test
+TOO_WEAK = 0.2  # of the median peak at the point
+TOO_STRONG = 4.0  # times the median peak at the point
 ODD_WIDTH = 1.5  # times the median width at the point, or a part of it as small
 BURIED = 10.0  # times the noise: a peak below it is too weak by itself
 UNDECAYED = 0.02  # of the largest stretch of the response
@@ -90,14 +90,14 @@ def _judge_sound(whole: HammerTest, points: list[Hits]) -> list[HitVerdict]:
     if not points:
         return []
     test = replace(whole, points=tuple(points))
-    usual = _usual_peak(test)
+    usual = _usual_peaks(test)
     window = test.decay or unstated_window(whole) or 0.0
     level = [_without_window(point, window, test.rate) for point in test.points]
     limits = _at_limits(level)
     return [
         verdict
         for point, flat, over in zip(test.points, level, limits, strict=True)
-        for verdict in _judge_point(point, test, usual, flat, over)
+        for verdict in _judge_point(point, test, usual[point.reference], flat, over)
     ]
 
 
@@ -118,12 +118,21 @@ def _regrowth(force: FloatArray, growth: FloatArray) -> FloatArray:
     return np.minimum(growth, REGROWTH * growth[top][:, None])
 
 
-def _usual_peak(test: HammerTest) -> float:
-    """Return the median peak of the forces that stand out of their noise, of all where none does [N]."""
-    waves = [wave for p in test.points for wave in upright(p.force)]
-    peaks = np.array([float(wave.max()) for wave in waves])
-    clear = peaks >= BURIED * np.array([noise_level(wave) for wave in waves])
-    return float(np.median(peaks[clear] if clear.any() else peaks))
+def _usual_peaks(test: HammerTest) -> dict[Dof, float]:
+    """Return for each point the median peak of its forces that stand out of their noise, of all if none does [N].
+
+    Points are not compared with each other: one that is hard to reach is hit softly, and its hits are sound.
+    """
+    waves: dict[Dof, list[FloatArray]] = {}
+    for p in test.points:
+        waves.setdefault(p.reference, []).extend(upright(p.force))
+    peaks = {point: np.array([wave.max() for wave in here]) for point, here in waves.items()}
+    noise = {point: np.array([noise_level(wave) for wave in here]) for point, here in waves.items()}
+    clear = {point: peaks[point] >= BURIED * noise[point] for point in waves}
+    return {
+        point: float(np.median(peaks[point][clear[point]] if clear[point].any() else peaks[point]))
+        for point in waves
+    }
 
 
 def _at_limits(points: list[Hits]) -> list[tuple[BoolArray, BoolArray]]:
@@ -216,11 +225,11 @@ def _force_faults(wave: FloatArray, usual: float, rate: float) -> list[Fault]:
         faults.append(Fault("double hit", f"{100 * height:.0f} % of the peak, {delay:+.1f} ms from it"))
     peak, noise = float(wave.max()), noise_level(wave)
     if peak < TOO_WEAK * usual:
-        faults.append(Fault("too weak", f"{peak:.3g} N, the usual peak is {usual:.3g} N"))
+        faults.append(Fault("too weak", f"{peak:.3g} N, the usual peak there is {usual:.3g} N"))
     elif peak < BURIED * noise:
         faults.append(Fault("too weak", f"{peak:.3g} N over noise of {noise:.2g} N"))
     elif peak > TOO_STRONG * usual:
-        faults.append(Fault("outlier in level", f"{peak:.3g} N, the usual peak is {usual:.3g} N"))
+        faults.append(Fault("outlier in level", f"{peak:.3g} N, the usual peak there is {usual:.3g} N"))
     return faults
 
 
