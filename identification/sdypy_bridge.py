@@ -156,8 +156,8 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     pairs = min(order // 2, _most_pairs(data))
     if pairs < 2:
         raise EstimationError(
-            f"{frfs.source}: sdypy-EMA finds no stable poles with an order of {order} on {len(data.frequency)} lines; it "
-            "needs an order of 4 and 7 lines from 0 Hz on: record longer, so that the lines are closer"
+            f"{frfs.source}: sdypy-EMA finds no stable poles with an order of {order} on {len(data.frequency)} lines; "
+            "it needs an order of 4 and 7 lines from 0 Hz on: record longer, so that the lines are closer"
         )
     model = _empty(data, order=pairs, lower=lower)
     try:
@@ -173,7 +173,9 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     damping = -100 * stable.real / np.abs(stable)
     table = pd.DataFrame({"frequency [Hz]": frequency[keep], "damping [%]": damping[keep]})
     table = table.set_index(pd.RangeIndex(1, len(table) + 1, name="pole"))
-    fewer = (f"sdypy-EMA is run up to order {2 * pairs}, not {order}: {len(data.frequency)} lines carry no more",)
+    fewer = (
+        f"sdypy-EMA is run up to order {2 * pairs}, not {order}: {len(data.frequency)} lines carry no more",
+    )
     table.attrs["warnings"] = (*opinion_warnings(frfs, band), *(fewer if pairs < order // 2 else ()))
     return table
 

@@ -16,7 +16,7 @@ COUNTS = 0.01
 by as much. Ten times as much, damping from records ten times as long as the ringing is a third too low [-]."""
 
 STANDS_OUT = 6.0
-"""Standard deviations of noise, over the width of a pulse, from which there is force: beyond any of a long record [-]."""
+"""Standard deviations of noise, over the width of a pulse, from which there is force, as no long record has [-]."""
 
 
 def pulses_alone(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:

@@ -64,6 +64,22 @@ def noise_decay(test: HammerTest, side: Side) -> NoiseDecay | None:
     return NoiseDecay(float(share @ rates), float(np.sqrt(share**2 @ squares)), int(freedom.sum()))
 
 
+def silent_behind(test: HammerTest) -> bool:
+    """Tell whether every force is constant behind its pulse though it has noise before: a force window did that.
+
+    Parameters
+    ----------
+    test : HammerTest
+        Records as they were stored.
+    """
+    waves = [np.asarray(force, dtype=np.float64) for point in test.points for force in point.force]
+    sizes = [np.abs(force - np.median(force)) for force in waves]
+    return all(
+        len(_noise(force, size, "before")) > 0 and len(_noise(force, size, "after")) == 0
+        for force, size in zip(waves, sizes, strict=True)
+    )
+
+
 def _rate(force: FloatArray, rate: float, side: Side) -> tuple[float, float, float, int] | None:
     """Return the decay of the noise of one force [1/s], its weight, squared error and degrees of freedom."""
     size = np.abs(force - np.median(force))

@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.hits.hammer import HammerTest
 from acquisition.hits.impulse import impulse_places
-from acquisition.hits.noise_decay import NoiseDecay, Side, noise_decay
+from acquisition.hits.noise_decay import NoiseDecay, Side, noise_decay, silent_behind
 from acquisition.warned import Consequential
 
 SIDES: tuple[Side, ...] = ("before", "after")
@@ -22,9 +22,9 @@ On = Literal["both", "responses"]
 def windowed_records(test: HammerTest, decay: float) -> tuple[On, tuple[str, ...]]:
     """Return which records were windowed, and what to say of it.
 
-    The noise of the force, before the pulse and after it, decays with the window or is steady. Noise after the pulse
-    that decays faster has a force window of its own, which leaves the pulse as it was, and shows neither; nor does a
-    force that was set to zero there. Where nothing is known the window is taken to have been on both.
+    The noise of the force, before the pulse and behind it, decays with the window or is steady. Behind the pulse it may
+    have a window of its own, by which it is zero or decays faster; analysers that have one put the exponential
+    window on the responses alone. Where nothing is known it is taken to have been on both.
 
     Parameters
     ----------
@@ -33,33 +33,47 @@ def windowed_records(test: HammerTest, decay: float) -> tuple[On, tuple[str, ...
     decay : float
         Decay rate of the window [1/s].
     """
-    evidence = sum(_for_both(noise, decay) for side in SIDES if (noise := noise_decay(test, side)) is not None)
+    sides = {side: noise for side in SIDES if (noise := noise_decay(test, side)) is not None}
+    own = silent_behind(test) or ("after" in sides and _faster(sides["after"], decay))
+    evidence = sum(_for_both(noise, decay) for noise in sides.values())
     if evidence >= CLEAR:
         return "both", ()
-    time = np.concatenate([impulse_places(p.force) for p in test.points if np.isfinite(p.force).all()] or [[0.0]])
-    gain = float(np.mean(np.exp(decay * time / test.rate)))
-    frfs, shapes = f"{gain:.3g}", f"{np.sqrt(gain):.3g}"
-    where = f"hits come {time.mean() / test.rate:.3g} s after the start of the records"
-    if evidence <= -CLEAR:
+    gain, where = _gain(test, decay)
+    change = f"{gain:.3g} times and mass-normalised shapes {np.sqrt(gain):.3g} times as large ({where})"
+    window = f"the window of {decay:g} 1/s"
+    if evidence <= -CLEAR or own:
+        steady = evidence <= -CLEAR
+        why = "the noise of the force does not decay" if steady else "the force has a window of its own"
         text = (
-            f"{test.source}: the noise of the force does not decay, so the window of {decay:g} 1/s was on the "
-            f"responses alone; the force was given the same window, counted from the start of the records. FRFs "
-            f"become {frfs} times and mass-normalised shapes {shapes} times as large ({where}); if the window was on "
-            "both, give --window-on both"
+            f"{test.source}: {why}, so {window} was on the responses alone; the force was given the same window, "
+            f"counted from the start of the records. FRFs become {change}; if the window was on both, give "
+            "--window-on both"
         )
         return "responses", (Consequential(text),)
-    if frfs == "1":
+    if f"{gain:.3g}" == "1":
         return "both", ()
     text = (
-        f"{test.source}: the noise of the force does not show whether the window of {decay:g} 1/s was on the force "
-        f"too; it is taken to have been on both. If it was on the responses alone, FRFs are {frfs} times and "
-        f"mass-normalised shapes {shapes} times as large ({where}): give --window-on responses, or both"
+        f"{test.source}: the noise of the force does not show whether {window} was on the force too; it is taken to "
+        f"have been on both. If it was on the responses alone, FRFs are {change}: give --window-on responses, or both"
     )
     return "both", (Consequential(text),)
 
 
+def _gain(test: HammerTest, decay: float) -> tuple[float, str]:
+    """Return by how much FRFs grow if the force was not windowed [-], and why."""
+    places = [impulse_places(p.force) for p in test.points if np.isfinite(p.force).all()]
+    time = np.concatenate(places or [np.zeros(1)]) / test.rate
+    gain = float(np.mean(np.exp(decay * time)))
+    return gain, f"hits come {time.mean():.3g} s after the start of the records"
+
+
+def _faster(noise: NoiseDecay, decay: float) -> bool:
+    """Tell whether noise decays faster than with the window."""
+    return noise.rate > 1.5 * decay + 3.0 * noise.error
+
+
 def _for_both(noise: NoiseDecay, decay: float) -> float:
     """Return by how much the squared misfit of steady noise exceeds that of noise that decays with the window [-]."""
-    if noise.rate > 1.5 * decay + 3.0 * noise.error:
+    if _faster(noise, decay):
         return 0.0
     return (noise.rate**2 - (noise.rate - decay) ** 2) / noise.error**2
