@@ -170,8 +170,9 @@ def _judge_point(
     ):
         faults[number] += _channel_faults(hits, bool(over_f), over_m, alive, still, dead[number])
     bands = [force_bands(w, test.rate) for w in waves]
-    _add_outliers(hits, faults, widths, max(band[1] for band in bands) / test.rate)
-    notes = _odd_pair(hits, faults, min(band[0] for band in bands) / test.rate)
+    still = replace(hits, force=without_drift(hits.force, fade=test.decay / test.rate))
+    _add_outliers(still, faults, widths, max(band[1] for band in bands) / test.rate)
+    notes = _odd_pair(still, faults, min(band[0] for band in bands) / test.rate)
     return [
         _verdict(
             hits, number, (wave, float(widths[number]), bands[number]), fault, notes.get(number, ()), test
