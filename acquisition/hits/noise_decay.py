@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from acquisition.hits.checks import pulse_ends
+from acquisition.hits.checks import noise_level, pulse_ends
 from acquisition.hits.hammer import HammerTest
 
 Side = Literal["before", "after"]
@@ -64,20 +64,39 @@ def noise_decay(test: HammerTest, side: Side) -> NoiseDecay | None:
     return NoiseDecay(float(share @ rates), float(np.sqrt(share**2 @ squares)), int(freedom.sum()))
 
 
-def silent_behind(test: HammerTest) -> bool:
-    """Tell whether every force is constant behind its pulse though it has noise before: a force window did that.
+def falls_faster(test: HammerTest, decay: float) -> bool:
+    """Tell whether behind every pulse the noise is gone sooner than with a window: the force has one of its own.
 
     Parameters
     ----------
     test : HammerTest
         Records as they were stored.
+    decay : float
+        Decay rate of the window [1/s].
     """
-    waves = [np.asarray(force, dtype=np.float64) for point in test.points for force in point.force]
-    sizes = [np.abs(force - np.median(force)) for force in waves]
     return all(
-        len(_noise(force, size, "before")) > 0 and len(_noise(force, size, "after")) == 0
-        for force, size in zip(waves, sizes, strict=True)
+        _falls_faster(np.asarray(force, dtype=np.float64), decay / test.rate)
+        for point in test.points
+        for force in point.force
     )
+
+
+def _falls_faster(force: FloatArray, fade: float) -> bool:
+    """Tell it of one force; steps of the converter are no noise, and their lack is no window."""
+    first, last = pulse_ends(np.abs(force - np.median(force)))
+    width = last - first + 1
+    before, start = force[: max(first - BEFORE * width, 0)], last + AFTER * width
+    length = (len(force) - start) // PARTS
+    if len(before) < FEWEST // PARTS or length < FEWEST // PARTS:
+        return False
+    parts = force[start : start + PARTS * length].reshape(PARTS, length)
+    level = noise_level(before - np.median(before))
+    left = np.array([noise_level(part - np.median(part)) for part in parts])
+    delay = start + (np.arange(PARTS) + 0.5) * length - len(before) / 2
+    expected = level * np.exp(-fade * delay)
+    steps = np.abs(np.diff(before))
+    step = float(steps[steps > 0].min(initial=np.inf))
+    return bool(np.any((expected > 3 * step) & (left < expected / 3)))
 
 
 def _rate(force: FloatArray, rate: float, side: Side) -> tuple[float, float, float, int] | None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from acquisition.hits.hammer import HammerTest
 from acquisition.hits.impulse import impulse_places
-from acquisition.hits.noise_decay import NoiseDecay, Side, noise_decay, silent_behind
+from acquisition.hits.noise_decay import NoiseDecay, Side, falls_faster, noise_decay
 from acquisition.warned import Consequential
 
 SIDES: tuple[Side, ...] = ("before", "after")
@@ -34,7 +34,7 @@ def windowed_records(test: HammerTest, decay: float) -> tuple[On, tuple[str, ...
         Decay rate of the window [1/s].
     """
     sides = {side: noise for side in SIDES if (noise := noise_decay(test, side)) is not None}
-    own = silent_behind(test) or ("after" in sides and _faster(sides["after"], decay))
+    own = falls_faster(test, decay)
     evidence = sum(_for_both(noise, decay) for noise in sides.values())
     if evidence >= CLEAR:
         return "both", ()
@@ -67,13 +67,8 @@ def _gain(test: HammerTest, decay: float) -> tuple[float, str]:
     return gain, f"hits come {time.mean():.3g} s after the start of the records"
 
 
-def _faster(noise: NoiseDecay, decay: float) -> bool:
-    """Tell whether noise decays faster than with the window."""
-    return noise.rate > 1.5 * decay + 3.0 * noise.error
-
-
 def _for_both(noise: NoiseDecay, decay: float) -> float:
     """Return by how much the squared misfit of steady noise exceeds that of noise that decays with the window [-]."""
-    if _faster(noise, decay):
+    if noise.rate > 1.5 * decay + 3.0 * noise.error:  # of a window of its own
         return 0.0
     return (noise.rate**2 - (noise.rate - decay) ** 2) / noise.error**2
