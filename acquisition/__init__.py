@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from acquisition.frfs.sensor_mass import remove_sensor_mass
     from acquisition.frfs.spectra import ESTIMATORS, Estimator
     from acquisition.geometry import Geometry
+    from acquisition.hits.force_noise import pulses_alone
     from acquisition.hits.hammer import HammerTest, Hits
     from acquisition.hits.quality import judge_hits
     from acquisition.hits.splitting import holds_several_hits, propose_trigger, split_hits
@@ -90,6 +91,7 @@ __all__ = [
     "modal_system",
     "propose_layout",
     "propose_trigger",
+    "pulses_alone",
     "random_error",
     "read_columns",
     "read_frf_columns",
@@ -123,6 +125,7 @@ load_on_demand(
         ".form": "FORMS",
         ".frfs.frf": "FrfSet",
         ".geometry": "Geometry",
+        ".hits.force_noise": "pulses_alone",
         ".hits.hammer": "HammerTest Hits",
         ".mat.read": "read_mat",
         ".modal_data": "ModalData",

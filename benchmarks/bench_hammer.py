@@ -1,20 +1,21 @@
 """Are the modes of realistic hammer tests all found, none invented, and do 95 % intervals hold the truth?
 
 Noise of the force and the place of a hit are common to all outputs of that hit, and filters, converters and drift
-leave traces that no independent noise has. Three kinds of test are simulated from poles and residues:
+leave traces that no independent noise has. These kinds of test are simulated from poles and residues:
 
 * ``beam``: a roving hammer along a cantilever, one accelerometer;
 * ``plate``: a roving hammer on a plate clamped along one edge, two accelerometers, pairs of modes now and then;
 * ``array``: the same plate or cantilever hit at one or two points, with accelerometers at all others;
 * ``roving``: 74 points and three references, two pairs of modes closer than 2 %, and frequencies that differ by
   0.1 to 0.2 % (one standard deviation) from point to point as the set-up is moved;
-* ``odd mounting``: ``beam``, one point of which is hit with another mounting, by which frequencies fall by 1 to 4 %;
-* ``softening``, ``hardening``: ``beam``, hit with forces that scatter by 60 %, whose frequencies follow the force
-  by up to 2 % at its median. Poles alone follow it: there are no products of modes.
+* ``long``: a beam hit once or more in records ten times as long as it rings, with no window;
+* ``force_window``: a beam whose analyser sets the force to zero behind the pulse and puts an exponential window on the
+  responses alone.
 
     python benchmarks/bench_hammer.py --kinds beam plate roving --seeds 50
 
 A mode *stands out* if the power of its own peak is ten times that of the noise, the middle one of all FRFs.
+*Level* is the median of identified over true modal constants: least, middle and largest of all tests.
 """
 
 from __future__ import annotations
@@ -24,22 +25,29 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from acquisition import Dof, FrfSet, HammerTest, UffContent, decide, estimate_frfs, judge_hits
+from acquisition import (
+    Dof,
+    FrfSet,
+    HammerTest,
+    Windows,
+    apply_windows,
+    decide,
+    estimate_frfs,
+    judge_hits,
+    pulses_alone,
+    state_window,
+)
 from acquisition.errors import EstimationError
 from acquisition.synthetic import HammerPlan, ModalSystem, hammer_test, modal_system
 from identification import ModalModel, identify
-from modalkit.workflow.identification import from_content
-from modalkit.workflow.processing_options import ProcessingOptions
 
 CLAMPED = np.array([1.8751041, 4.6940911, 7.8547574, 10.9955407, 14.1371684, 17.2787596, 20.4203522])
 FREE = np.array([4.7300407, 7.8532046, 10.9956078, 14.1371655])
-KINDS = ("beam", "plate", "array", "roving", "odd mounting", "softening", "hardening")
 Array = NDArray[np.float64]
 
 
@@ -50,7 +58,11 @@ class Setup:
     system: ModalSystem
     plan: HammerPlan
     band: tuple[float, float]
-    at_hit: Callable[[int, int, float], ModalSystem] | None = None
+    analyser: Callable[[HammerTest], HammerTest] = lambda test: test
+    """What is done to the records before they are stored."""
+
+    stated: float = 0.0
+    """Decay of a window of the analyser, which the user states [1/s]."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +78,7 @@ class Outcome:
     frequency_inside: int
     damping_inside: int
     frequency_z: list[float]
+    level: float
     cpu: float
 
 
@@ -158,51 +171,78 @@ def _slope(shape: Callable[[Array], Array], x: Array) -> Array:
     return (shape(x + step) - shape(x - step)) / (2 * step)
 
 
-def drawn(kind: str, rng: np.random.Generator) -> Setup:
-    """Draw a body, where it is hit and measured, and the equipment."""
-    if kind in CHANGED:
-        return CHANGED[kind](drawn("beam", rng), rng)
-    body = {"beam": beam, "plate": plate, "roving": airframe}.get(
-        kind, beam if rng.random() < 0.5 else plate
-    )(rng)
+def _roving_hammer(rng: np.random.Generator, body: Body, sensors: int) -> Setup:
+    later = np.arange(len(body.shapes) // 2, len(body.shapes))
+    return _setup(rng, body, rng.choice(later, sensors, replace=False), np.arange(len(body.shapes)))
+
+
+def beam_test(rng: np.random.Generator) -> Setup:
+    """Draw a cantilever hit at all points."""
+    return _roving_hammer(rng, beam(rng), 1)
+
+
+def plate_test(rng: np.random.Generator) -> Setup:
+    """Draw a plate hit at all points."""
+    return _roving_hammer(rng, plate(rng), 2)
+
+
+def array_test(rng: np.random.Generator) -> Setup:
+    """Draw a beam or a plate hit at a point or two."""
+    body = (beam if rng.random() < 0.5 else plate)(rng)
     every, later = np.arange(len(body.shapes)), np.arange(len(body.shapes) // 2, len(body.shapes))
-    if kind == "array":
-        setup = _setup(rng, body, every, rng.choice(later, int(rng.integers(1, 3)), replace=False))
-        return replace(setup, plan=replace(setup.plan, drift=0.0))  # one point hit tells nothing of drift
-    setup = _setup(
-        rng, body, rng.choice(later, {"beam": 1, "plate": 2, "roving": 3}[kind], replace=False), every
+    setup = _setup(rng, body, every, rng.choice(later, int(rng.integers(1, 3)), replace=False))
+    return replace(setup, plan=replace(setup.plan, drift=0.0))  # one point hit tells nothing of drift
+
+
+def roving_test(rng: np.random.Generator) -> Setup:
+    """Draw an airframe whose set-up is moved from point to point."""
+    setup = _roving_hammer(rng, airframe(rng), 3)
+    drift = float(rng.uniform(8e-4, 2e-3))
+    return replace(setup, plan=replace(setup.plan, drift=drift, hits=3))
+
+
+def long_test(rng: np.random.Generator) -> Setup:
+    """Draw a well damped beam whose records last ten times as long as it rings."""
+    body = beam(rng)
+    setup = _roving_hammer(
+        rng, replace(body, damping=0.008, shapes=body.shapes[-4:], slopes=_last(body, 4)), 1
     )
-    return (
-        replace(setup, plan=replace(setup.plan, drift=float(rng.uniform(8e-4, 2e-3)), hits=3))
-        if kind == "roving"
-        else setup
-    )
+    slowest = float(-setup.system.poles.real.max())
+    samples = int(min(10 * 4.6 / slowest, 40.0) * setup.plan.rate)
+    return replace(setup, plan=replace(setup.plan, samples=samples, decay=0.0, hits=int(rng.integers(1, 4))))
 
 
-def _odd_mounting(setup: Setup, rng: np.random.Generator) -> Setup:
-    """Change the mounting while one point is hit."""
-    other = setup.system.with_frequencies(1 - rng.uniform(0.01, 0.04, len(setup.system.poles)))
-    odd = int(rng.integers(len(setup.system.points)))
-    return replace(setup, at_hit=lambda point, hit, level: other if point == odd else setup.system)
+def force_window_test(rng: np.random.Generator) -> Setup:
+    """Draw a beam whose records have a force window, and an exponential one on the responses alone."""
+    setup = beam_test(rng)
+    decay = max(setup.plan.decay, 2.0)
+    plan = replace(setup.plan, decay=0.0, pre_trigger=float(rng.uniform(0.02, 0.1)))
+    length = plan.pre_trigger + plan.width + 0.02
+
+    def analyser(test: HammerTest) -> HammerTest:
+        time = np.arange(test.samples) / test.rate
+        points = tuple(
+            replace(p, force=p.force * (time < length), motion=p.motion * np.exp(-decay * time))
+            for p in test.points
+        )
+        return replace(test, points=points)
+
+    return replace(setup, plan=plan, analyser=analyser, stated=decay)
 
 
-def _following(setup: Setup, rng: np.random.Generator, sign: float) -> Setup:
-    """Make frequencies follow the force; ``system`` is the structure at the median force."""
-    change = sign * rng.uniform(0.002, 0.02, len(setup.system.poles)) / setup.plan.peak
-    plan = replace(setup.plan, level_scatter=0.6, drift=0.0)
-
-    def at_hit(point: int, hit: int, level: float) -> ModalSystem:
-        return setup.system.with_frequencies(np.exp(change * (level - plan.peak)))
-
-    return replace(setup, plan=plan, at_hit=at_hit)
+def _last(body: Body, count: int) -> tuple[Array, Array]:
+    return body.slopes[0][-count:], body.slopes[1][-count:]
 
 
-FOLLOWING = ("softening", "hardening")
-CHANGED: dict[str, Callable[[Setup, np.random.Generator], Setup]] = {
-    "odd mounting": _odd_mounting,
-    "softening": lambda setup, rng: _following(setup, rng, -1.0),
-    "hardening": lambda setup, rng: _following(setup, rng, 1.0),
+DRAWN: dict[str, Callable[[np.random.Generator], Setup]] = {
+    "beam": beam_test,
+    "plate": plate_test,
+    "array": array_test,
+    "roving": roving_test,
+    "long": long_test,
+    "force_window": force_window_test,
 }
+"""How tests of each kind are drawn. The place in the table is part of the seed: further kinds are added at its end."""
 
 
 def _setup(rng: np.random.Generator, body: Body, seats: NDArray[np.int64], hit: NDArray[np.int64]) -> Setup:
@@ -232,13 +272,15 @@ def _setup(rng: np.random.Generator, body: Body, seats: NDArray[np.int64], hit: 
 
 def measured(setup: Setup, rng: np.random.Generator) -> tuple[HammerTest, FrfSet]:
     """Hit it, judge the hits and estimate FRFs."""
-    test = hammer_test(setup.system, setup.plan, rng=rng, at_hit=setup.at_hit)
-    return test, estimate_frfs(test, verdicts=decide(judge_hits(test)))
+    test = setup.analyser(hammer_test(setup.system, setup.plan, rng=rng))
+    stated, _ = state_window(test, decay=setup.stated)
+    verdicts = decide(judge_hits(stated))
+    return test, estimate_frfs(pulses_alone(stated)[0], verdicts=verdicts)
 
 
 def standing_out(setup: Setup, frfs: FrfSet, clean: FrfSet) -> NDArray[np.bool_]:
     """Tell which modes stand ten times above the noise at their own peak, in the middle one of all FRFs."""
-    poles, decay = setup.system.poles, setup.plan.decay
+    poles, decay = setup.system.poles, setup.plan.decay + setup.stated
     hertz = np.abs(poles) / (2 * np.pi)
     lines = np.searchsorted(frfs.frequency, hertz).clip(0, len(frfs.frequency) - 1)
     residues = np.concatenate([setup.system.residues[:, j] for j in range(setup.system.residues.shape[1])])
@@ -252,31 +294,23 @@ def standing_out(setup: Setup, frfs: FrfSet, clean: FrfSet) -> NDArray[np.bool_]
 
 def judged(kind: str, seed: int) -> Outcome:
     """Simulate one test, identify it and count."""
-    rng = np.random.default_rng([seed, KINDS.index(kind)])
-    setup = drawn(kind, rng)
-    test, frfs = measured(setup, np.random.default_rng([seed, 1]))
+    rng = np.random.default_rng([seed, list(DRAWN).index(kind)])
+    setup = DRAWN[kind](rng)
+    _, frfs = measured(setup, np.random.default_rng([seed, 1]))
     quiet = replace(
         setup.plan, force_noise=0.0, response_noise=0.0, adc_bits=None, position_sigma=0.0, drift=0.0, hits=1
     )
-    clean = estimate_frfs(hammer_test(setup.system, quiet, rng=np.random.default_rng([seed, 1])))
+    still = hammer_test(setup.system, quiet, rng=np.random.default_rng([seed, 1]))
+    clean = estimate_frfs(apply_windows(still, Windows(decay=setup.stated)))
     out = standing_out(setup, frfs, clean)
     began = time.process_time()
     try:
-        model = _modes(test, setup) if kind in FOLLOWING else identify(frfs, band=setup.band)
+        model = identify(frfs, band=setup.band)
     except EstimationError as error:
         hertz = np.abs(setup.system.poles[out]) / (2 * np.pi)
         print(f"  {kind} {seed}: {error}")
-        return Outcome(kind, seed, int(out.sum()), 0, hertz.tolist(), [], 0, 0, [], 0.0)
-    cpu = time.process_time() - began
-    if model.levels is not None and setup.at_hit is not None:
-        setup = replace(setup, system=setup.at_hit(0, 0, model.levels.level))
-    return _counted(kind, seed, setup, out, model, cpu)
-
-
-def _modes(test: HammerTest, setup: Setup) -> ModalModel:
-    """Identify from the hits, with what their levels say."""
-    processed = from_content(UffContent(tests=(test,)), [Path("synthetic")], ProcessingOptions())
-    return processed.identify(band=setup.band)
+        return Outcome(kind, seed, int(out.sum()), 0, hertz.tolist(), [], 0, 0, [], np.nan, 0.0)
+    return _counted(kind, seed, setup, out, model, time.process_time() - began)
 
 
 def _counted(
@@ -302,9 +336,23 @@ def _counted(
     ]  # fmt: skip
     missed = [float(hertz[r]) for r in np.flatnonzero(out) if r not in mine]
     inside = int(np.sum(np.abs(f_z) < 1.96)), int(np.sum(np.abs(d_z) < 1.96))
-    return Outcome(
-        kind, seed, int(out.sum()), len(pairs), missed, names, *inside, [round(float(z), 2) for z in f_z], cpu
-    )
+    level = _level(setup, model, mine, theirs) if pairs else np.nan
+    z = [round(float(z), 2) for z in f_z]
+    return Outcome(kind, seed, int(out.sum()), len(pairs), missed, names, *inside, z, level, cpu)
+
+
+def _level(setup: Setup, model: ModalModel, mine: list[int], theirs: list[int]) -> float:
+    """Return the median of identified over true modal constants [-]."""
+    rows = [str(d) for d in setup.system.responses], [str(d) for d in setup.system.points]
+    true = np.array(
+        [
+            setup.system.residues[rows[0].index(str(r)), rows[1].index(str(f))] * 2j * setup.system.poles.imag
+            for r, f in zip(model.responses, model.references, strict=True)
+        ]
+    )[:, mine]
+    found = model.constants[:, theirs]
+    strong = np.abs(true) > 0.3 * np.abs(true).max(axis=0)
+    return float(np.median(np.abs(found[strong] / true[strong])))
 
 
 def share(good: int, total: int) -> str:
@@ -313,10 +361,16 @@ def share(good: int, total: int) -> str:
     return f"{good}/{total} = {100 * good / max(total, 1):.1f} % [{100 * low:.1f}, {100 * high:.1f}]"
 
 
+def _spread(levels: list[float]) -> str:
+    """Return the least, middle and largest level."""
+    known = np.array([level for level in levels if np.isfinite(level)])
+    return " ".join(f"{x:.3f}" for x in np.quantile(known, [0, 0.5, 1])) if len(known) else "unknown"
+
+
 def main() -> None:
     """Run from the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--kinds", nargs="+", default=list(KINDS), choices=KINDS)
+    parser.add_argument("--kinds", nargs="+", default=list(DRAWN), choices=DRAWN)
     parser.add_argument("--seeds", type=int, default=50)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--json")
@@ -334,7 +388,8 @@ def main() -> None:
             f"{kind}: {len(here)} tests, {modes} modes stand out, {missed} missed, {invented} invented in "
             f"{sum(bool(o.invented) for o in here)} tests; 95 % intervals hold frequency "
             f"{share(sum(o.frequency_inside for o in here), found)}, damping "
-            f"{share(sum(o.damping_inside for o in here), found)}; {np.mean([o.cpu for o in here]):.2f} s of CPU each",
+            f"{share(sum(o.damping_inside for o in here), found)}; level "
+            f"{_spread([o.level for o in here])}; {np.mean([o.cpu for o in here]):.2f} s of CPU each",
             flush=True,
         )
     if arguments.json:

@@ -138,7 +138,7 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     band : tuple of float
         Lowest and highest frequency [Hz].
     order : int
-        Highest polynomial order of its chart [-].
+        Highest polynomial order of its chart; less where the lines carry less [-].
 
     Returns
     -------
@@ -149,11 +149,17 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     Raises
     ------
     EstimationError
-        If its linear algebra fails.
+        If its linear algebra fails, or order or lines are too few for two orders of its chart.
     """
     lower = _lower(frfs, band)
     data = frfs.band(min(max(float(frfs.frequency[0]), frfs.df), max(band[0], frfs.df)), band[1])
-    model = _empty(data, order=max(1, order // 2), lower=lower)
+    pairs = min(order // 2, _most_pairs(data))
+    if pairs < 2:
+        raise EstimationError(
+            f"{frfs.source}: sdypy-EMA finds no stable poles with an order of {order} on {len(data.frequency)} lines; "
+            "it needs an order of 4 and 7 lines from 0 Hz on: record longer, so that the lines are closer"
+        )
+    model = _empty(data, order=pairs, lower=lower)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -167,7 +173,10 @@ def second_opinion(frfs: FrfSet, *, band: tuple[float, float], order: int = 60) 
     damping = -100 * stable.real / np.abs(stable)
     table = pd.DataFrame({"frequency [Hz]": frequency[keep], "damping [%]": damping[keep]})
     table = table.set_index(pd.RangeIndex(1, len(table) + 1, name="pole"))
-    table.attrs["warnings"] = opinion_warnings(frfs, band)
+    fewer = (
+        f"sdypy-EMA is run up to order {2 * pairs}, not {order}: {len(data.frequency)} lines carry no more",
+    )
+    table.attrs["warnings"] = (*opinion_warnings(frfs, band), *(fewer if pairs < order // 2 else ()))
     return table
 
 
@@ -224,6 +233,16 @@ def opinion_warnings(frfs: FrfSet, band: tuple[float, float]) -> tuple[str, ...]
     if lower <= 0:
         stated.append("sdypy-EMA is given the line at 0 Hz: there it loses modes; start above 0 Hz")
     return tuple(stated)
+
+
+def _most_pairs(frfs: FrfSet) -> int:
+    """Return up to how many pairs of poles its LSCF can go.
+
+    It takes impulse responses of 2 (lines - 1) samples, of lines from 0 Hz to the last but one, at twice as many delays
+    to either side as there are pairs.
+    """
+    lines = round(frfs.frequency[-1] / frfs.df)
+    return (2 * (lines - 1) - 1) // 4
 
 
 def _lower(frfs: FrfSet, band: tuple[float, float]) -> float:

@@ -24,14 +24,15 @@ from acquisition.hits.checks import (
     second_hits,
     upright,
     why_broken,
+    without_drift,
 )
 from acquisition.hits.faults import Fault
 from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.hits.verdicts import HitVerdict
 from acquisition.hits.windows import unstated_window
 
-TOO_WEAK = 0.2  # of the median peak of the test
-TOO_STRONG = 4.0  # times the median peak of the test
+TOO_WEAK = 0.2  # of the median peak at the point
+TOO_STRONG = 4.0  # times the median peak at the point
 ODD_WIDTH = 1.5  # times the median width at the point, or a part of it as small
 BURIED = 10.0  # times the noise: a peak below it is too weak by itself
 UNDECAYED = 0.02  # of the largest stretch of the response
@@ -89,34 +90,49 @@ def _judge_sound(whole: HammerTest, points: list[Hits]) -> list[HitVerdict]:
     if not points:
         return []
     test = replace(whole, points=tuple(points))
-    usual = _usual_peak(test)
+    usual = _usual_peaks(test)
     window = test.decay or unstated_window(whole) or 0.0
     level = [_without_window(point, window, test.rate) for point in test.points]
     limits = _at_limits(level)
     return [
         verdict
         for point, flat, over in zip(test.points, level, limits, strict=True)
-        for verdict in _judge_point(point, test, usual, flat, over)
+        for verdict in _judge_point(point, test, usual[point.reference], flat, over)
     ]
 
 
 def _without_window(hits: Hits, decay: float, rate: float) -> Hits:
-    """Return the records as they were before a window of that decay [1/s], in forces as far as their pulses reach."""
+    """Return the records as they were before a window of that decay [1/s], in forces as far as their pulses reach.
+
+    They keep their offsets: those that end at a limit are told by it.
+    """
     if not decay:
         return hits
     growth = np.exp(decay * np.arange(hits.force.shape[-1]) / rate)
-    at_pulse = growth[np.abs(hits.force).argmax(axis=-1)][:, None]
-    return replace(
-        hits, force=hits.force * np.minimum(growth, REGROWTH * at_pulse), motion=hits.motion * growth
-    )
+    return replace(hits, force=hits.force * _regrowth(hits.force, growth), motion=hits.motion * growth)
 
 
-def _usual_peak(test: HammerTest) -> float:
-    """Return the median peak of the forces that stand out of their noise, of all where none does [N]."""
-    waves = [wave for p in test.points for wave in upright(p.force)]
-    peaks = np.array([float(wave.max()) for wave in waves])
-    clear = peaks >= BURIED * np.array([noise_level(wave) for wave in waves])
-    return float(np.median(peaks[clear] if clear.any() else peaks))
+def _regrowth(force: FloatArray, growth: FloatArray) -> FloatArray:
+    """Return by how much forces are taken back, whatever offset they have."""
+    top = np.abs(without_drift(force)).argmax(axis=-1)
+    return np.minimum(growth, REGROWTH * growth[top][:, None])
+
+
+def _usual_peaks(test: HammerTest) -> dict[Dof, float]:
+    """Return for each point the median peak of its forces that stand out of their noise, of all if none does [N].
+
+    Points are not compared with each other: one that is hard to reach is hit softly, and its hits are sound.
+    """
+    waves: dict[Dof, list[FloatArray]] = {}
+    for p in test.points:
+        waves.setdefault(p.reference, []).extend(upright(p.force))
+    peaks = {point: np.array([wave.max() for wave in here]) for point, here in waves.items()}
+    noise = {point: np.array([noise_level(wave) for wave in here]) for point, here in waves.items()}
+    clear = {point: peaks[point] >= BURIED * noise[point] for point in waves}
+    return {
+        point: float(np.median(peaks[point][clear[point]] if clear[point].any() else peaks[point]))
+        for point in waves
+    }
 
 
 def _at_limits(points: list[Hits]) -> list[tuple[BoolArray, BoolArray]]:
@@ -141,9 +157,8 @@ def _judge_point(
     hits: Hits, test: HammerTest, usual: float, level: Hits, limits: tuple[BoolArray, BoolArray]
 ) -> list[HitVerdict]:
     """Judge the hits of one entry; ``level`` are their records without any window, stated or not."""
-    # whether the force was windowed too is not known: take back enough for a second hit, not so much that noise is one
-    force, motion = (level if test.decay else hits).force, (level if test.decay else hits).motion
-    waves = upright(force)
+    motion = (level if test.decay else hits).motion
+    waves = _waves(hits, test)
     widths = np.array([pulse_width(wave, test.rate) for wave in waves])
     faults = [_force_faults(wave, usual, test.rate) for wave in waves]
     over_force = clipped(level.force, least=2) | limits[0] | np.array([flat_pulse(wave) for wave in waves])
@@ -155,14 +170,28 @@ def _judge_point(
     ):
         faults[number] += _channel_faults(hits, bool(over_f), over_m, alive, still, dead[number])
     bands = [force_bands(w, test.rate) for w in waves]
-    _add_outliers(hits, faults, widths, max(band[1] for band in bands) / test.rate)
-    notes = _odd_pair(hits, faults, min(band[0] for band in bands) / test.rate)
+    still = replace(hits, force=without_drift(hits.force, fade=test.decay / test.rate))
+    _add_outliers(still, faults, widths, max(band[1] for band in bands) / test.rate)
+    notes = _odd_pair(still, faults, min(band[0] for band in bands) / test.rate)
     return [
         _verdict(
             hits, number, (wave, float(widths[number]), bands[number]), fault, notes.get(number, ()), test
         )
         for number, (wave, fault) in enumerate(zip(waves, faults, strict=True))
     ]
+
+
+def _waves(hits: Hits, test: HammerTest) -> FloatArray:
+    """Return the forces as pulses are judged by: upwards, without drift, and without the window that is stated.
+
+    Whether the force was windowed too is not known: enough is taken back for a second hit, not so much that noise is
+    one.
+    """
+    if not test.decay:
+        return upright(hits.force)
+    growth = np.exp(test.decay * np.arange(hits.force.shape[-1]) / test.rate)
+    level = without_drift(hits.force, fade=test.decay / test.rate)
+    return upright(level * _regrowth(level, growth))
 
 
 def _verdict(
@@ -197,11 +226,11 @@ def _force_faults(wave: FloatArray, usual: float, rate: float) -> list[Fault]:
         faults.append(Fault("double hit", f"{100 * height:.0f} % of the peak, {delay:+.1f} ms from it"))
     peak, noise = float(wave.max()), noise_level(wave)
     if peak < TOO_WEAK * usual:
-        faults.append(Fault("too weak", f"{peak:.3g} N, the usual peak is {usual:.3g} N"))
+        faults.append(Fault("too weak", f"{peak:.3g} N, the usual peak there is {usual:.3g} N"))
     elif peak < BURIED * noise:
         faults.append(Fault("too weak", f"{peak:.3g} N over noise of {noise:.2g} N"))
     elif peak > TOO_STRONG * usual:
-        faults.append(Fault("outlier in level", f"{peak:.3g} N, the usual peak is {usual:.3g} N"))
+        faults.append(Fault("outlier in level", f"{peak:.3g} N, the usual peak there is {usual:.3g} N"))
     return faults
 
 

@@ -10,8 +10,10 @@ from scipy import special
 
 from acquisition.arrays import FloatArray
 from acquisition.errors import InputError
-from acquisition.hits.checks import pulse_ends, top_decay, upright
+from acquisition.hits.checks import pulse_ends, top_decay, upright, without_drift
 from acquisition.hits.hammer import HammerTest, Hits
+from acquisition.hits.noise_decay import noise_decay
+from acquisition.hits.window_on import windowed_records
 
 QUIET = 16  # samples before a hit that tell the offset of a response
 
@@ -51,8 +53,8 @@ def apply_windows(test: HammerTest, windows: Windows) -> HammerTest:
     """Return the test with windows applied and its ``decay`` raised accordingly.
 
     Windows act about the offset of the records, which is taken off first: cut off behind the pulse, an offset
-    would become a step, and windowed, a pulse of its own. The offset of a force is its median, that of a
-    response its mean before the hit, where there are 16 samples of it and it stands out of their noise.
+    would become a step, and windowed, a pulse of its own. That of a force goes with its drift; that of a
+    response is its mean before the hit, where there are 16 samples of it and it stands out of their noise.
 
     Parameters
     ----------
@@ -80,11 +82,11 @@ def windowed(hits: Hits, windows: Windows | None, rate: float) -> Hits:
     if windows is None:
         return hits
     time = np.arange(hits.force.shape[-1]) / rate
-    offset = np.median(hits.force, axis=-1, keepdims=True)
-    after = time - time[np.abs(hits.force - offset).argmax(axis=-1)][:, None]
+    level = without_drift(hits.force)
+    after = time - time[np.abs(level).argmax(axis=-1)][:, None]
     decay = np.exp(-windows.decay * after)
     plain = windows.decay == 0
-    force = hits.force if plain and windows.force_length is None else hits.force - offset
+    force = hits.force if plain and windows.force_length is None else level
     motion = hits.motion if plain else hits.motion - _offset_before(hits)
     return replace(
         hits,
@@ -128,8 +130,7 @@ def state_window(
     decay : float
         Decay rate of the window [1/s].
     on : {"both", "responses"}, optional
-        Which records were windowed; left out: told from whether the noise of the force decays, and both where
-        the noise does not tell.
+        Which records were windowed; left out: by the noise of the force, see `windowed_records`.
     origin : float
         Time after the start of the record at which a window on the responses alone was 1 [s].
 
@@ -153,40 +154,24 @@ def state_window(
         return test, ()
     messages: tuple[str, ...] = ()
     if on is None:
-        on, messages = _above_noise(test, decay)
+        on, messages = windowed_records(test, decay)
     if on == "both":
         return replace(test, decay=decay), messages
     window = np.exp(-decay * (np.arange(test.samples) / test.rate - origin))
-    points = tuple(
-        replace(p, force=(p.force - np.median(p.force, axis=-1, keepdims=True)) * window) for p in test.points
-    )
+    points = tuple(replace(p, force=without_drift(p.force) * window) for p in test.points)
     return replace(test, points=points, decay=decay), messages
 
 
-def _above_noise(test: HammerTest, decay: float) -> tuple[Literal["both", "responses"], tuple[str, ...]]:
-    """Return which records were windowed, as the noise of the force tells, and what to say of it."""
-    seen = force_noise_decay(test)
-    if seen is None or seen >= 0.5 * decay:
-        return "both", ()
-    message = (
-        f"{test.source}: the noise of the force does not decay, so the window of {decay:g} 1/s was on "
-        "the responses alone; the force was given the same window, counted from the start of the records"
-    )
-    return "responses", (message,)
-
-
 def force_noise_decay(test: HammerTest) -> float | None:
-    """Return the rate at which the noise of the force decays after the pulse [1/s]; None if it does not tell.
-
-    It tells if the noise is there, a millionth of the peak and a few steps of the converter, over 200 samples.
+    """Return the rate at which the noise of the force decays after the pulse [1/s]; None if there is too little noise.
 
     Parameters
     ----------
     test : HammerTest
         Records as they were stored.
     """
-    above_noise = _rates(test)
-    return None if above_noise is None else above_noise[0]
+    found = noise_decay(test, "after")
+    return None if found is None else found.rate
 
 
 def unstated_window(test: HammerTest) -> float | None:
@@ -203,55 +188,16 @@ def unstated_window(test: HammerTest) -> float | None:
     """
     if test.decay:
         return None
-    noise = _rates(test)
+    noise = noise_decay(test, "after")
     forces = [force for point in test.points for force in point.force if np.isfinite(force).all()]
     if noise is None:
         return top_decay(forces, test.rate)
-    rate, error, freedom = noise
-    limit = max(3.0, -float(special.stdtrit(freedom, 1e-5))) * error
+    rate = noise.rate
+    limit = max(3.0, -float(special.stdtrit(noise.freedom, 1e-5))) * noise.error
     if rate > max(0.5, limit):
         return top_decay(forces, test.rate, about=(rate - limit, rate + limit)) or rate
     slanted = top_decay(forces, test.rate)
     return slanted if slanted is not None and abs(slanted - rate) < limit else None
-
-
-def _rates(test: HammerTest) -> tuple[float, float, int] | None:
-    """Return the mean decay of the noise of all forces [1/s], its standard error, and degrees of freedom."""
-    found = [
-        one
-        for point in test.points
-        for wave in upright(point.force)
-        if (one := _rate(wave, test.rate)) is not None
-    ]
-    if not found:
-        return None
-    rates, spans, squares, freedom = (np.array(column) for column in zip(*found, strict=True))
-    share = spans / spans.sum()
-    return float(share @ rates), float(np.sqrt(share**2 @ squares)), int(freedom.sum())
-
-
-def _rate(wave: FloatArray, rate: float) -> tuple[float, float, float, int] | None:
-    """Return the decay of the noise of one force [1/s], its weight, squared error and degrees of freedom."""
-    first, last = pulse_ends(wave)
-    rest = wave[last + 12 * (last - first + 1) :]
-    if len(rest) < 200 or not np.isfinite(rest).all():
-        return None
-    parts = rest[: len(rest) // 10 * 10].reshape(10, -1)
-    level = np.sqrt(np.mean((parts - parts.mean(axis=1, keepdims=True)) ** 2, axis=1))
-    steps = np.abs(np.diff(rest))
-    step = float(steps[steps > 0].min(initial=np.inf))
-    if level[0] < 3 * step and level[0] < 1e-3 * wave.max():
-        return None
-    above_noise = level > max(step, 1e-6 * float(wave.max())) if step < level[0] / 30 else level > 3 * step
-    count = int(above_noise.sum())
-    if count < 3:
-        return None
-    time = (np.arange(10) * parts.shape[1] / rate)[above_noise]
-    line = np.polyfit(time, np.log(level[above_noise]), 1)
-    left = np.log(level[above_noise]) - np.polyval(line, time)
-    scatter = max(float(left @ left) / (count - 2), 0.5 / parts.shape[1])
-    spread = float(((time - time.mean()) ** 2).sum())
-    return -float(line[0]), float(np.ptp(time)) ** 2, scatter / spread, count - 2
 
 
 def force_window(after: FloatArray, length: float | None) -> FloatArray:

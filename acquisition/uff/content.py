@@ -82,6 +82,8 @@ class UffContent(Displayed):
         What had to be assumed or left out.
     title : str
         Title of the test.
+    unused : tuple of str
+        What could be read but not be used, and why; among the warnings too.
     """
 
     tests: tuple[HammerTest, ...] = ()
@@ -91,6 +93,12 @@ class UffContent(Displayed):
     datasets: tuple[DatasetInfo, ...] = ()
     warnings: tuple[str, ...] = ()
     title: str = ""
+    unused: tuple[str, ...] = ()
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why something in the files is not used: faults of data sets, then what does not fit together."""
+        return (*(info.fault for info in self.datasets if not info.ok), *self.unused)
 
     def table(self) -> pd.DataFrame:
         """Return one row per data set."""

@@ -168,7 +168,8 @@ def _content(finds: Finds, source: str, report: _Report) -> UffContent:
     warnings = dict.fromkeys(
         [*reported, *finds.warnings, *copies, *nodes.notes, *notes, *lost, *odd, *doubts]
     )
-    return UffContent(tests, frfs, modal, nodes.geometry, infos, tuple(warnings), finds.title)
+    unused = (*lost, *odd)
+    return UffContent(tests, frfs, modal, nodes.geometry, infos, tuple(warnings), finds.title, unused)
 
 
 def _stated(info: DatasetInfo, hit: str | None) -> str:

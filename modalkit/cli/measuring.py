@@ -120,7 +120,7 @@ def inspect(
     all_bad = bool(content.datasets) and len(bad) == len(content.datasets)
     show_warnings([w for w in (*content.warnings, *warnings) if not all_bad or w != bad[0].warning])
     if all_bad:
-        raise InputError(bad[0].fault)
+        raise InputError(content.reasons[0])
 
 
 def _written_layout(files: Sequence[Path], layout: Path | None, place: Path) -> Path:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from acquisition import HitVerdict, force_range, hits_table
+from acquisition import EstimationError, HitVerdict, force_range, hits_table
 from acquisition.display import counted
 from modalkit.cli.common import out, show_table, show_warnings, working
 from modalkit.output.whole import write_json
@@ -82,11 +82,15 @@ def show_hits(hits: Sequence[HitVerdict]) -> None:
 
 
 def show_second_opinion(processed: Processed, model: ModalModel) -> None:
-    """Print the poles of sdypy-EMA beside the modes."""
+    """Print the poles of sdypy-EMA beside the modes, or why it has none."""
     from identification import beside, second_opinion
 
-    with working("asking sdypy-EMA"):
-        table = second_opinion(processed.frfs, band=model.band)
+    try:
+        with working("asking sdypy-EMA"):
+            table = second_opinion(processed.frfs, band=model.band)
+    except EstimationError as error:
+        show_warnings([f"no second opinion: {error}"])
+        return
     both = beside(model.modal, table)
     title = "Second opinion, beside ours: sdypy-EMA (LSCF)"
     show_table(both, title, digits=dict.fromkeys(both.columns, 4))

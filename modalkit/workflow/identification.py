@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from acquisition import (
     Dof,
+    EstimationError,
     FrfSet,
     HammerTest,
     HitVerdict,
@@ -22,6 +24,7 @@ from acquisition import (
     hits_table,
     holds_several_hits,
     judge_hits,
+    pulses_alone,
     split_hits,
     state_window,
 )
@@ -155,11 +158,12 @@ class Processed(Shown):
             return self._informed(band, order, add, drop)
         if reach is None:
             return self.prepared(band, order).modes(add=add, drop=drop)
-        model = self.prepared(reach, order).modes(add=add, drop=drop)
         statement = Consequential(
             f"the force is 20 dB down at {hertz(reach[1])}: modes are looked for below that; give a band to go "
             "further"
         )
+        with _naming_band(self.frfs, None, statement):
+            model = self.prepared(reach, order).modes(add=add, drop=drop)
         return replace(model, warnings=(*model.warnings, statement))
 
     def _informed(
@@ -169,10 +173,11 @@ class Processed(Shown):
         from identification import at_cut_edge
 
         within, statement = self._informed_part(band, [*add, *drop])
-        prepared = self.prepared(within, order)
-        model = prepared.modes(add=add, drop=drop)
-        if beyond := at_cut_edge(model.modal.frequency, within, band, self.frfs.df):
-            model = prepared.modes(add=add, drop=[*drop, *beyond])
+        with _naming_band(self.frfs, band, statement):
+            prepared = self.prepared(within, order)
+            model = prepared.modes(add=add, drop=drop)
+            if beyond := at_cut_edge(model.modal.frequency, within, band, self.frfs.df):
+                model = prepared.modes(add=add, drop=[*drop, *beyond])
         return model if statement is None else replace(model, warnings=(*model.warnings, statement))
 
     def _informed_part(
@@ -231,6 +236,24 @@ class Processed(Shown):
 
     def _frame(self) -> pd.DataFrame:
         return self.frfs.table()
+
+
+@contextmanager
+def _naming_band(frfs: FrfSet, asked: tuple[float, float] | None, statement: str | None) -> Iterator[None]:
+    """Name the band that was asked for where nothing is found in the part of it that was used.
+
+    Raises
+    ------
+    EstimationError
+        If one is raised inside; with why only a part was used, if so.
+    """
+    try:
+        yield
+    except EstimationError as error:
+        if statement is None:
+            raise
+        where = "" if asked is None else f" between {asked[0]:g} and {asked[1]:g} Hz"
+        raise EstimationError(f"{frfs.source}: no mode is found{where}; {statement}") from error
 
 
 def read(
@@ -347,12 +370,20 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
     elif content.frfs is not None:
         frfs = _as_read(content.frfs, processing, warnings)
     else:
-        names = named_files(paths)
-        raise InputError(f"{names}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is")
+        raise InputError(_nothing_usable(content, paths))
     frfs = without_constant(frfs, warnings)
     warnings += [*identical(frfs), *on_coherence(frfs, [(j.test, j.verdicts) for j in judged])]
     frfs = without_sensors(frfs, processing.sensor_masses, warnings)
     return Processed(content, frfs, judged, processing, in_order(warnings))
+
+
+def _nothing_usable(content: UffContent, paths: Sequence[Path]) -> str:
+    """Say why there is nothing to work on: the first reason why something was left out, or that nothing is there."""
+    if not content.reasons:
+        return f"{named_files(paths)}: neither raw hits nor FRFs in it; `modalkit inspect` lists what is"
+    first, *others = content.reasons
+    more = f"; `modalkit inspect` lists what else is not used ({len(others)})" if others else ""
+    return f"{first}; there are neither raw hits nor FRFs to work on{more}"
 
 
 def _as_read(frfs: FrfSet, processing: ProcessingOptions, warnings: list[str]) -> FrfSet:
@@ -399,9 +430,11 @@ def _judged(
     proposals = numbered([judge_hits(test) for test in split])
     every = tuple(v for verdicts in proposals for v in verdicts)
     decided = iter(decide(every, use=processing.use, leave=processing.leave) if every else ())
+    cleared = [pulses_alone(test) for test in split]
+    warnings += [text for _, statement in cleared for text in statement]
     return tuple(
         Judged(test, tuple(next(decided) for _ in verdicts))
-        for test, verdicts in zip(split, proposals, strict=True)
+        for (test, _), verdicts in zip(cleared, proposals, strict=True)
     )
 
 

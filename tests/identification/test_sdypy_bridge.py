@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from identification_cases import bench, column, lines, structure
 
-from acquisition.errors import InputError
+from acquisition import Dof, EstimationError, FrfSet, InputError
 from identification import beside, from_sdypy, identify, mac, second_opinion, to_sdypy
 from identification.sdypy_bridge import opinion_warnings
 
@@ -120,3 +120,25 @@ def test_both_opinions_stand_side_by_side_and_neither_is_lost(rng):
     np.testing.assert_allclose(theirs, [60.1, 109.9, np.nan, 200.0])
     ours = table["frequency [Hz]"].to_numpy()
     np.testing.assert_allclose(ours, [60.0, 110.0, 170.0, np.nan], rtol=1e-3)
+
+
+@pytest.mark.parametrize("lines", [8, 31, 62])
+def test_few_lines_are_asked_for_no_higher_order_than_they_carry(lines):
+    """Its LSCF reads impulse responses at more delays than so few lines give."""
+    table = second_opinion(few_lines(lines), band=(1.0, float(lines)))
+    (note,) = [text for text in table.attrs["warnings"] if "up to order" in text] if lines < 62 else [""]
+    assert (f"{lines} lines carry no more" in note) == (lines < 62)
+
+
+def test_too_few_lines_for_a_second_opinion_are_refused():
+    with pytest.raises(EstimationError, match=r"order of 60 on 4 lines; it needs an order of 4 and 7 lines"):
+        second_opinion(few_lines(4), band=(1.0, 4.0))
+
+
+def few_lines(lines):
+    """Return one FRF of a mode at 5 Hz on lines 1 Hz apart from 1 Hz on, with noise."""
+    frequency = np.arange(1.0, lines + 1)
+    s, omega = 2j * np.pi * frequency, 2 * np.pi * 5.0
+    noise = 0.01 * np.random.default_rng(0).standard_normal(lines)
+    values = s**2 / (s**2 + 0.04 * omega * s + omega**2) + noise
+    return FrfSet(frequency, values[None], (Dof(1, 3),), (Dof(1, 3),))

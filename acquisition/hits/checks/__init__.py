@@ -1,6 +1,7 @@
 """What the records of a hit show: its pulse, a second hit, overload, a channel gone dead, an outlier."""
 
 from acquisition.hits.checks.broken import why_broken
+from acquisition.hits.checks.drift import without_drift
 from acquisition.hits.checks.dropout import dead_from, dropouts, left_at_end
 from acquisition.hits.checks.outliers import agreement, odd_responses, unexplained
 from acquisition.hits.checks.overload import at_common_limit, clipped, flat_pulse, flat_waves
@@ -37,4 +38,5 @@ __all__ = [
     "unexplained",
     "upright",
     "why_broken",
+    "without_drift",
 ]

@@ -6,11 +6,12 @@ import numpy as np
 import scipy.fft
 
 from acquisition.arrays import FloatArray
+from acquisition.hits.checks.drift import without_drift
 
 
 def upright(force: FloatArray) -> FloatArray:
-    """Return force records (n_hits, n_samples) without offset and with the pulse upwards [N]."""
-    centred = force - np.median(force, axis=-1, keepdims=True)
+    """Return force records (n_hits, n_samples) without offset and drift and with the pulse upwards [N]."""
+    centred = without_drift(force)
     peak = np.take_along_axis(centred, np.abs(centred).argmax(axis=-1)[:, None], axis=-1)
     return np.asarray(centred * np.where(peak < 0, -1.0, 1.0), dtype=np.float64)
 

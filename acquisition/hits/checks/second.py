@@ -16,6 +16,7 @@ NEAREST = 0.6  # pulse widths from the peak: what comes sooner is the contact's 
 SHOULDER = 0.12  # of peak / width: how much the slope must relax and steepen again
 SHOULDER_LEVEL = 0.06  # of the peak: what lies lower is no shoulder
 OWN_RINGING = 0.6  # a lobe beside a negative one of this part of its height is left-over ringing
+SLOPE = 3  # samples that have a slope which can bend
 ENOUGH = 12  # samples per pulse from which shoulders can be told
 
 
@@ -78,7 +79,12 @@ def _shoulders(wave: FloatArray, width: float) -> list[tuple[int, float]]:
 
 
 def _shoulder(flank: FloatArray, peak: float, least: float) -> int | None:
-    """Return where a falling flank bulges: its slope relaxes and then steepens by ``least`` or more."""
+    """Return where a falling flank bulges: its slope relaxes and then steepens by ``least`` or more.
+
+    At an end of the record there may be no flank.
+    """
+    if len(flank) < SLOPE:
+        return None
     slope = np.gradient(flank)
     steepest = int(slope.argmin())
     dips = find_peaks(-slope[steepest:], prominence=least)

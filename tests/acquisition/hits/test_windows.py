@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -82,13 +83,63 @@ def test_the_noise_of_the_force_tells_what_was_windowed(rng, on):
     assert len(messages) == 0 or "responses alone" in messages[0]
 
 
-def test_noise_that_does_not_tell_leaves_the_records_alone(rng):
-    raw = windowed(rng, on="both", origin=0.0)
-    force = np.where(np.abs(raw.points[0].force) > 1e-3, raw.points[0].force, 0.0)
-    silent = replace(raw, points=(replace(raw.points[0], force=force),))
-    stated, messages = state_window(silent, decay=DECAY)
-    assert force_noise_decay(silent) is None and messages == ()
+def without_noise(test):
+    """Return a test whose force is zero beside its pulses."""
+    (point,) = test.points
+    return replace(
+        test, points=(replace(point, force=np.where(np.abs(point.force) > 1e-3, point.force, 0.0)),)
+    )
+
+
+def test_where_the_force_has_no_noise_the_assumption_is_stated_with_what_it_changes(rng):
+    silent = without_noise(windowed(rng, on="both", origin=0.0))
+    stated, (message,) = state_window(silent, decay=DECAY)
+    assert force_noise_decay(silent) is None
     assert stated.points[0].force is silent.points[0].force
+    gain = np.exp(DECAY * silent.points[0].force.argmax(axis=1) / silent.rate).mean()
+    assert "taken to have been on both" in message and "--window-on responses" in message
+    times = [float(x) for x in re.findall(r"([0-9.]+) times", message)]
+    assert times == pytest.approx([gain, np.sqrt(gain)], rel=0.01)
+    other, _ = state_window(silent, decay=DECAY, on="responses")
+    ratio = np.abs(estimate_frfs(other).values / estimate_frfs(stated).values)[0, 100:400]
+    assert ratio == pytest.approx(gain, rel=0.1)
+
+
+def test_hits_at_the_start_of_the_records_leave_nothing_to_state(rng):
+    plan = replace(PLAN, pre_trigger=0.0, jitter=0.0, width=1e-3)
+    test = without_noise(hammer_test(SDOF, plan, rng=rng))
+    assert state_window(test, decay=0.5)[1] == ()
+
+
+@pytest.mark.parametrize("behind", ["zero", "fast"])
+@pytest.mark.parametrize("force_noise", [0.002, 0.1])
+def test_a_force_window_leaves_the_exponential_one_to_the_responses(rng, behind, force_noise):
+    """The usual setting of an analyser: the force is cut off, or falls fast, behind the pulse."""
+    raw = windowed(rng, on="responses", origin=0.0, force_noise=force_noise)
+    time = np.arange(raw.samples) / raw.rate
+    after = np.maximum(time - 0.12, 0.0)
+    weight = time < 0.12 if behind == "zero" else np.exp(-60.0 * after)
+    (point,) = raw.points
+    stated, (message,) = state_window(
+        replace(raw, points=(replace(point, force=point.force * weight),)), decay=DECAY
+    )
+    assert "on the responses alone" in message and "--window-on both" in message
+    assert miss(stated) < 0.02
+
+
+@pytest.mark.parametrize("on", ["both", "responses"])
+def test_noise_before_the_pulse_shows_what_was_windowed_where_none_is_left_behind_it(rng, on):
+    plan = replace(PLAN, pre_trigger=0.3, jitter=0.0, force_noise=0.1, hits=8)
+    test = hammer_test(SDOF, plan, rng=rng)
+    time = np.arange(test.samples) / test.rate
+    (point,) = test.points
+    window = np.exp(-DECAY * time)
+    force = point.force * (window if on == "both" else 1.0) * (time < 0.33)
+    stored = replace(test, points=(replace(point, force=force, motion=point.motion * window),))
+    stated, messages = state_window(stored, decay=DECAY)
+    assert len(messages) == (on == "responses")
+    known, _ = state_window(stored, decay=DECAY, on=on)
+    np.testing.assert_array_equal(stated.points[0].force, known.points[0].force)
 
 
 def test_coarse_steps_are_not_taken_for_steady_noise(rng):
