@@ -31,6 +31,10 @@ ROTATION, TRANSLATION = frozenset({"rotation"}), frozenset({"translation"})
 ROUNDING = 1e-10
 """What is left of a vector below this share is rounding [-]."""
 
+HALF = float(np.finfo(float).eps) ** 0.5
+"""Half of all digits [-]: modes whose eigenvalue is more times the first one's would take these from the first in a
+reduced stiffness; what they do is static."""
+
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
 
@@ -330,8 +334,11 @@ def reduce_structure(
     unknowns = structure.unknowns
     count = unknowns if unknowns <= SMALL else min(modes + structure.rigid_modes, unknowns)
     values, vectors = structure.eigen(count)
+    first = min(structure.rigid_modes, count - 1)
+    low = values <= values[first] / HALF
+    values, vectors = values[low], vectors[:, low]
     clamped = vectors
-    if count < unknowns:
+    if len(values) < unknowns:
         loads = structure.rows(points, directions)["w"].toarray().T
         clamped = extend_basis(vectors, _static_answers(structure, mass, values, vectors, loads), mass)
     ranks = {frozenset[str](): clamped.shape[1]}
@@ -371,6 +378,8 @@ def _static_answers(
     answer = structure.static_answers(loads, values, vectors, shift)
     lengths = np.sqrt(np.einsum("ij,ij->j", answer, mass @ answer))
     moves = lengths > 0  # a force on a clamped edge moves nothing
+    if not moves.any():
+        return answer[:, moves]
     answer, lengths = answer[:, moves], lengths[moves]
     left, size, _ = np.linalg.svd(_remove(answer / lengths, vectors, mass), full_matrices=False)
     return np.asarray(left[:, (size > 1e-8 * size.max()).nonzero()[0]])

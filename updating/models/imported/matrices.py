@@ -19,10 +19,14 @@ from updating.models.imported.groups import (
     Support,
     groups_of,
     joints_of,
+    rigid_motions,
     supports_of,
 )
+from updating.models.imported.hollow import hold_hollow_rows
 from updating.models.imported.nodes import NodeTable
 from updating.models.imported.placing import Places
+from updating.models.imported.rigid import free_motions, rank, without_forces
+from updating.models.imported.rounding import decimal_rounding, relative_rounding
 
 if TYPE_CHECKING:
     from updating.models.decks.model import DeckModel
@@ -45,9 +49,14 @@ class Imported:
         For messages.
     deck : DeckModel, optional
         The deck that CalculiX made them of.
+    decimal : float, optional
+        Half a unit of the last digit of the stiffness's file, relative to the entry, 0 where it was not rounded; left
+        out, that of the digits that the entries need [-].
 
     Attributes
     ----------
+    placed : bool
+        Whether the motions of a rigid body follow from the places of the rows, and the stiffness from them.
     unassigned : tuple of str
         ``E`` where the stiffness, ``density`` where the mass has something beyond the sum of its parts.
 
@@ -64,6 +73,8 @@ class Imported:
     mass_parts: tuple[Sparse, ...] = ()
     source: str = "model"
     deck: DeckModel | None = None
+    decimal: float = -1.0
+    placed: bool = field(init=False, default=False)
     massless: bool = field(init=False, default=False)
     unassigned: tuple[str, ...] = field(init=False, default=())
     rest: dict[str, Sparse | None] = field(init=False, default_factory=dict)
@@ -98,6 +109,9 @@ class Imported:
         ]
         object.__setattr__(self, "unassigned", tuple(beyond))
         object.__setattr__(self, "massless", bool((self.mass.diagonal() == 0).any()))
+        if self.decimal < 0:
+            object.__setattr__(self, "decimal", decimal_rounding(self.stiffness))
+        self._settle_stiffness()
         bare = self.mass
         object.__setattr__(self, "mass", with_mass_everywhere(self.stiffness, bare, self.source))
         self.rest["given mass"] = bare
@@ -106,6 +120,33 @@ class Imported:
             self.rest["mass"] = Sparse(self.mass - bare if left is None else left + self.mass - bare)
         if self.deck is None:  # a deck's is a sum of elements', each of positive mass
             check_mass(self.mass, self.source, self.row_places)
+
+    def _settle_stiffness(self) -> None:
+        """Take from the stiffness what rounding did to motions of a rigid body, and hold what has nothing at all."""
+        given, relative = self.stiffness, relative_rounding(self.stiffness, self.decimal)
+        settled = self._without_rounding(relative) if self.decimal else given
+        empty = np.flatnonzero(abs(self.mass).sum(axis=1) == 0)
+        if len(empty) and (settled.diagonal()[empty] > 0).all():
+            settled = hold_hollow_rows(settled, empty, relative)
+        if settled is not given:
+            object.__setattr__(self, "stiffness", settled)
+            left = self.rest["stiffness"]
+            self.rest["stiffness"] = Sparse(settled - given if left is None else left + settled - given)
+
+    def _without_rounding(self, relative: float) -> Sparse:
+        """Return the stiffness without forces in the motions of a rigid body that nothing holds.
+
+        A body that nothing holds along any axis can turn as well; where the places deny that, they are rounded.
+        """
+        motions = rigid_motions(self.places, self.order)
+        if motions is None:
+            return self.stiffness
+        free = free_motions(self.stiffness, motions, relative)
+        shifts = rank(motions[:, :3], self.stiffness)
+        loose = free_motions(self.stiffness, motions[:, :3], relative).shape[1] == shifts
+        placed = not (loose and free.shape[1] == shifts < rank(motions, self.stiffness))
+        object.__setattr__(self, "placed", placed)
+        return without_forces(self.stiffness, free) if free.size else self.stiffness
 
     @property
     def order(self) -> int:
