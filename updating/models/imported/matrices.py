@@ -55,8 +55,9 @@ class Imported:
 
     Attributes
     ----------
-    placed : bool
-        Whether the motions of a rigid body follow from the places of the rows, and the stiffness from them.
+    left : float
+        Relative error of the stiffness's entries in motions of a rigid body: ``decimal`` where these do not follow from
+        the places of the rows, else what is left after rounding has been taken from them [-].
     unassigned : tuple of str
         ``E`` where the stiffness, ``density`` where the mass has something beyond the sum of its parts.
 
@@ -74,7 +75,7 @@ class Imported:
     source: str = "model"
     deck: DeckModel | None = None
     decimal: float = -1.0
-    placed: bool = field(init=False, default=False)
+    left: float = field(init=False, default=0.0)
     massless: bool = field(init=False, default=False)
     unassigned: tuple[str, ...] = field(init=False, default=())
     rest: dict[str, Sparse | None] = field(init=False, default_factory=dict)
@@ -124,29 +125,32 @@ class Imported:
     def _settle_stiffness(self) -> None:
         """Take from the stiffness what rounding did to motions of a rigid body, and hold what has nothing at all."""
         given, relative = self.stiffness, relative_rounding(self.stiffness, self.decimal)
-        settled = self._without_rounding(relative) if self.decimal else given
+        settled, left = self._without_rounding(relative) if self.decimal else (given, 0.0)
+        object.__setattr__(self, "left", left)
         empty = np.flatnonzero(abs(self.mass).sum(axis=1) == 0)
         if len(empty) and (settled.diagonal()[empty] > 0).all():
             settled = hold_hollow_rows(settled, empty, relative)
         if settled is not given:
             object.__setattr__(self, "stiffness", settled)
-            left = self.rest["stiffness"]
-            self.rest["stiffness"] = Sparse(settled - given if left is None else left + settled - given)
+            rest = self.rest["stiffness"]
+            self.rest["stiffness"] = Sparse(settled - given if rest is None else rest + settled - given)
 
-    def _without_rounding(self, relative: float) -> Sparse:
-        """Return the stiffness without forces in the motions of a rigid body that nothing holds.
+    def _without_rounding(self, relative: float) -> tuple[Sparse, float]:
+        """Return the stiffness without forces in the motions of a rigid body that nothing holds, and what is left.
 
         A body that nothing holds along any axis can turn as well; where the places deny that, they are rounded.
         """
         motions = rigid_motions(self.places, self.order)
         if motions is None:
-            return self.stiffness
+            return self.stiffness, self.decimal
         free = free_motions(self.stiffness, motions, relative)
+        if not free.size:
+            return self.stiffness, 0.0
+        settled, left = without_forces(self.stiffness, free)
         shifts = rank(motions[:, :3], self.stiffness)
         loose = free_motions(self.stiffness, motions[:, :3], relative).shape[1] == shifts
-        placed = not (loose and free.shape[1] == shifts < rank(motions, self.stiffness))
-        object.__setattr__(self, "placed", placed)
-        return without_forces(self.stiffness, free) if free.size else self.stiffness
+        denied = loose and free.shape[1] == shifts < rank(motions, self.stiffness)
+        return settled, self.decimal if denied else left
 
     @property
     def order(self) -> int:

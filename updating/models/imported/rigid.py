@@ -2,11 +2,16 @@
 
 The digits of a file hold rigid motions by springs of a size that stiff members give them: of ten digits a stiff
 offset, 10^5 times as stiff as its neighbours, moves a first frequency by a per cent. What rounding did to the rigid
-motions is known, since the forces in them are zero; the least change of the entries, each in proportion to its size, that makes
-them zero is taken back (Kabe, AIAA J. 23 (1985) 1431-1436, who adjusts a stiffness so to measured modes).
+motions is known, since the forces in them are zero. The least change of the entries that makes these forces zero is
+made, each entry in proportion to its size (Kabe, AIAA J. 23 (1985) 1431-1436, who adjusts a stiffness to measured modes
+so).
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -15,6 +20,9 @@ from scipy.sparse.linalg import LinearOperator, cg
 from acquisition.arrays import FloatArray
 from updating.models.fields import Sparse
 from updating.models.imported.rounding import EPS, relative_rounding
+
+HALF = EPS**0.5
+"""Directions of a row that are less of its block are not corrected by themselves [-]: half of all digits."""
 
 
 def free_motions(stiffness: Sparse, motions: FloatArray, relative: float) -> FloatArray:
@@ -37,8 +45,9 @@ def free_motions(stiffness: Sparse, motions: FloatArray, relative: float) -> Flo
     basis = _basis(motions * scale[:, None])
     _, mixed = np.linalg.eigh(basis.T @ (scaled @ basis))
     basis = basis @ mixed
-    sums = Sparse(abs(scaled) * relative + abs(scaled).sign() * relative_rounding(scaled))
-    within = np.abs(scaled @ basis) <= sums @ np.abs(basis)
+    size = abs(scaled)
+    own = relative_rounding(scaled) * size.sum(axis=1)  # of the unit vectors of the basis
+    within = np.abs(scaled @ basis) <= relative * (size @ np.abs(basis)) + own[:, None]
     return np.asarray(basis[:, within.all(axis=0)] / scale[:, None])
 
 
@@ -47,44 +56,68 @@ def rank(motions: FloatArray, stiffness: Sparse) -> int:
     return _basis(motions * _scale(stiffness)[:, None]).shape[1]
 
 
-def without_forces(stiffness: Sparse, motions: FloatArray) -> Sparse:
-    """Return a stiffness that resists none of some motions (n, k), its entries changed as little as may be.
+def without_forces(stiffness: Sparse, motions: FloatArray) -> tuple[Sparse, float]:
+    """Return a stiffness that resists none of some motions (n, k), and the relative forces that are left [-].
+
+    Its entries are changed as little as may be.
 
     The change is E with E_ij = w_ij (l_i q_j + q_i l_j), w the squares of the scaled entries, q the motions and l the
-    multipliers of the conditions E Q = K Q, which conjugate gradients find.
+    multipliers of the conditions E Q = K Q. Conjugate gradients find them in steps, each from the forces that are left,
+    as long as these grow smaller.
     """
     scale = _scale(stiffness)
-    entries = _scaled(stiffness, scale).tocoo()
-    basis, (row, column), weight = _basis(motions * scale[:, None]), entries.coords, entries.data**2
-    size = basis.shape
+    scaled = _scaled(stiffness, scale)
+    basis = _basis(motions * scale[:, None])
+    correction = _Correction(scaled.tocoo(), basis)
+    left, rounding = np.linalg.norm(scaled @ basis), EPS * np.linalg.norm(abs(scaled) @ np.abs(basis))
+    while left > rounding:
+        better = Sparse(scaled - correction.of(scaled @ basis))
+        if not (force := np.linalg.norm(better @ basis)) < left:
+            break
+        scaled, left = better, force
+    return _scaled(scaled, 1 / scale), float(left)
 
-    def change(flat: FloatArray) -> Sparse:
-        given = flat.reshape(size)
-        products = np.einsum("ij,ij->i", given[row], basis[column]) + np.einsum(
-            "ij,ij->i", basis[row], given[column]
-        )
-        return Sparse(sparse.coo_array((weight * products, (row, column)), entries.shape).tocsr())
 
-    blocks = np.zeros((size[0], size[1], size[1]))
-    np.add.at(blocks, row, weight[:, None, None] * basis[column][:, :, None] * basis[column][:, None, :])
-    inverse = np.linalg.pinv(blocks, rcond=EPS**0.5, hermitian=True)
-    forces = np.asarray(entries.tocsr() @ basis)
-    rounding = EPS * float(np.linalg.norm(abs(entries.tocsr()) @ np.abs(basis)))
-    flat, left = cg(
-        LinearOperator((basis.size,) * 2, matvec=lambda x: (change(x) @ basis).ravel(), dtype=float),
-        forces.ravel(),
-        rtol=0.0,
-        atol=rounding,
-        maxiter=basis.size,
-        M=LinearOperator(
-            (basis.size,) * 2,
-            matvec=lambda x: np.einsum("nij,nj->ni", inverse, x.reshape(size)).ravel(),
-            dtype=float,
-        ),
-    )
-    if left:
-        return stiffness
-    return Sparse(stiffness - _scaled(change(flat), 1 / scale))
+@dataclass(frozen=True, eq=False)
+class _Correction:
+    """The least change of a matrix by the forces in some motions.
+
+    Parameters
+    ----------
+    entries : (n, n) sparse array in coordinates
+        The matrix; every entry may change in proportion to its size.
+    basis : (n, k) array
+        The motions, orthonormal.
+    """
+
+    entries: Any
+    basis: FloatArray
+
+    def of(self, forces: FloatArray) -> Sparse:
+        """Return the change E with E Q = forces (n, k), to a hundredth."""
+        size = self.basis.size, self.basis.size
+        system = LinearOperator(size, matvec=lambda x: (self._change(x) @ self.basis).ravel(), dtype=float)
+        alone = LinearOperator(size, matvec=self._alone, dtype=float)
+        with np.errstate(all="ignore"):  # what has no forces left divides by them
+            return self._change(cg(system, forces.ravel(), rtol=1e-2, M=alone, maxiter=size[0])[0])
+
+    def _change(self, flat: FloatArray) -> Sparse:
+        given, basis, (row, column) = flat.reshape(self.basis.shape), self.basis, self.entries.coords
+        there = np.einsum("ij,ij->i", given[row], basis[column])
+        back = np.einsum("ij,ij->i", basis[row], given[column])
+        change = self.entries.data**2 * (there + back)
+        return Sparse(sparse.coo_array((change, (row, column)), self.entries.shape).tocsr())
+
+    def _alone(self, flat: FloatArray) -> FloatArray:
+        """Solve row by row, as if no other row changed."""
+        return np.einsum("nij,nj->ni", self._inverse, flat.reshape(self.basis.shape)).ravel()
+
+    @cached_property
+    def _inverse(self) -> FloatArray:
+        (row, column), (n, k) = self.entries.coords, self.basis.shape
+        blocks, near = np.zeros((n, k, k)), self.basis[column]
+        np.add.at(blocks, row, (self.entries.data**2)[:, None, None] * near[:, :, None] * near[:, None, :])
+        return np.asarray(np.linalg.pinv(blocks, rcond=HALF, hermitian=True))
 
 
 def _scale(stiffness: Sparse) -> FloatArray:

@@ -120,7 +120,9 @@ class Shifted:
         else:
             values, vectors = self._sparse(count)
         if count > len(values):
-            raise StudyError(f"{self.source}: {len(values)} degrees of freedom with mass are too few for {count} modes")
+            raise StudyError(
+                f"{self.source}: {len(values)} degrees of freedom with mass are too few for {count} modes"
+            )
         self._check_definite(values[0], vectors[:, :1])
         return values, vectors
 
@@ -147,7 +149,7 @@ class Shifted:
         count : int
             Number of modes to count among.
         decimal : float
-            As the class's, 0 where rounding has been taken from the rigid motions [-].
+            As the class's, of rigid motions: what is left where rounding has been taken from them [-].
         """
         _, vectors = self.lowest(count)
         found = without_stiffness(self.stiffness, vectors, relative_rounding(self.stiffness, decimal))
@@ -179,8 +181,12 @@ class Shifted:
         shift = self._settled[0]
         values, vectors = self._inverse(shift, min(2 * BODY + 1, len(self.mass.diagonal())))
         loose = without_stiffness(self.stiffness, vectors, relative_rounding(self.stiffness, self.decimal))
-        elastic = values[~loose]
-        return self._inverse(float(elastic[0]) if len(elastic) else shift, self.stiffness.shape[0])
+        self._check_definite(values[0], vectors[:, :1])
+        elastic = values[~loose & (values > 0)]
+        _, vectors = self._inverse(float(elastic[0]) if len(elastic) else shift, self.stiffness.shape[0])
+        values = energies(self.stiffness, vectors, 0.0)[0]
+        order = np.argsort(values, kind="stable")
+        return values[order], vectors[:, order]
 
     def _inverse(self, shift: float, count: int) -> tuple[FloatArray, FloatArray]:
         """Solve M v = v (K + s M) / (lambda + s) for the largest of 1 / (lambda + s)."""
@@ -188,7 +194,11 @@ class Shifted:
         held = self.stiffness + shift * self.mass
         try:
             inverse, vectors = eigh(self.mass.toarray(), held.toarray(), subset_by_index=(n - count, n - 1))
-        except LinAlgError:
+        except LinAlgError as error:
+            if shift * SMALL_SHIFT > self._ratio:
+                raise StudyError(
+                    f"{self.source}: stiffness and mass are indefinite together ({error})"
+                ) from error
             return self._inverse(STEP * shift, count)
         heavy = inverse > n * EPS * inverse[-1]
         inverse, vectors = inverse[heavy][::-1], vectors[:, heavy][:, ::-1]

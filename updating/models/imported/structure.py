@@ -20,6 +20,7 @@ from updating.models.solve import DENSE
 from updating.models.spec import Spec
 from updating.models.state import State
 
+
 @dataclass(frozen=True, eq=False)
 class MatrixTerm:
     """The stiffness or the mass, which grow with the modulus or the density.
@@ -97,7 +98,7 @@ class ImportedStructure(Structure):
         """
         known = self.imported
         count = min(BODY + 1, self.unknowns)
-        found = self._nominal.rigid(count, 0.0 if known.placed else known.decimal)
+        found = self._nominal.rigid(count, known.left)
         if found > BODY:
             row = int(np.argmax(np.abs(self._nominal.lowest(count)[1][:, BODY]))) + 1
             raise StudyError(
