@@ -372,10 +372,8 @@ def _static_answers(
     answer = structure.static_answers(loads, values, vectors, shift)
     lengths = np.sqrt(np.einsum("ij,ij->j", answer, mass @ answer))
     answer, lengths = answer[:, lengths > 0], lengths[lengths > 0]  # a force on a clamped edge moves nothing
-    if not len(lengths):
-        return answer
     left, size, _ = np.linalg.svd(_remove(answer / lengths, vectors, mass), full_matrices=False)
-    return np.asarray(left[:, (size > 1e-8 * size.max()).nonzero()[0]])
+    return np.asarray(left[:, (size > 1e-8 * size.max(initial=0.0)).nonzero()[0]])
 
 
 def _remove(answer: FloatArray, vectors: FloatArray, mass: Sparse) -> FloatArray:
