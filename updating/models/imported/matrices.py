@@ -112,7 +112,9 @@ class Imported:
         object.__setattr__(self, "massless", bool((self.mass.diagonal() == 0).any()))
         if self.decimal < 0:
             object.__setattr__(self, "decimal", decimal_rounding(self.stiffness))
-        self._settle_stiffness()
+        settled, left = self._settled_stiffness()
+        object.__setattr__(self, "left", left)
+        object.__setattr__(self, "stiffness", settled)
         bare = self.mass
         object.__setattr__(self, "mass", with_mass_everywhere(self.stiffness, bare, self.source))
         self.rest["given mass"] = bare
@@ -122,18 +124,20 @@ class Imported:
         if self.deck is None:  # a deck's is a sum of elements', each of positive mass
             check_mass(self.mass, self.source, self.row_places)
 
-    def _settle_stiffness(self) -> None:
-        """Take from the stiffness what rounding did to motions of a rigid body, and hold what has nothing at all."""
+    def _settled_stiffness(self) -> tuple[Sparse, float]:
+        """Return the stiffness without rounding in motions of a rigid body, and what is left of it.
+
+        What has neither stiffness nor mass is held.
+        """
         given, relative = self.stiffness, relative_rounding(self.stiffness, self.decimal)
         settled, left = self._without_rounding(relative) if self.decimal else (given, 0.0)
-        object.__setattr__(self, "left", left)
         empty = np.flatnonzero(abs(self.mass).sum(axis=1) == 0)
         if len(empty) and (settled.diagonal()[empty] > 0).all():
             settled = hold_hollow_rows(settled, empty, relative)
         if settled is not given:
-            object.__setattr__(self, "stiffness", settled)
             rest = self.rest["stiffness"]
             self.rest["stiffness"] = Sparse(settled - given if rest is None else rest + settled - given)
+        return settled, left
 
     def _without_rounding(self, relative: float) -> tuple[Sparse, float]:
         """Return the stiffness without forces in the motions of a rigid body that nothing holds, and what is left.
