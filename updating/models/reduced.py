@@ -31,6 +31,9 @@ ROTATION, TRANSLATION = frozenset({"rotation"}), frozenset({"translation"})
 ROUNDING = 1e-10
 """What is left of a vector below this share is rounding [-]."""
 
+HALF = float(np.finfo(float).eps) ** 0.5
+"""Half of all digits [-]: modes with a first eigenvalue over their own below this are static beside the first."""
+
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
 
@@ -325,17 +328,15 @@ def reduce_structure(
     -------
     Reduced
     """
-    mass = structure.matrix("mass")
-    stiffness = structure.matrix("stiffness")
-    unknowns = structure.unknowns
+    mass, stiffness, unknowns = structure.matrix("mass"), structure.matrix("stiffness"), structure.unknowns
     count = unknowns if unknowns <= SMALL else min(modes + structure.rigid_modes, unknowns)
     values, vectors = structure.eigen(count)
-    clamped = vectors
-    if count < unknowns:
+    low = values <= values[min(structure.rigid_modes, count - 1)] / HALF
+    values, basis = values[low], vectors[:, low]
+    if len(values) < unknowns:
         loads = structure.rows(points, directions)["w"].toarray().T
-        clamped = extend_basis(vectors, _static_answers(structure, mass, values, vectors, loads), mass)
-    ranks = {frozenset[str](): clamped.shape[1]}
-    basis = clamped
+        basis = extend_basis(basis, _static_answers(structure, mass, values, basis, loads), mass)
+    ranks = {frozenset[str](): basis.shape[1]}
     if structure.fixed:
         for released in (ROTATION, TRANSLATION, ROTATION | TRANSLATION):
             basis = extend_basis(basis, _released_shapes(structure, stiffness, mass, released, modes), mass)
@@ -370,10 +371,9 @@ def _static_answers(
     shift = 1e-3 * float(values[structure.rigid_modes]) if structure.rigid_modes else 0.0
     answer = structure.static_answers(loads, values, vectors, shift)
     lengths = np.sqrt(np.einsum("ij,ij->j", answer, mass @ answer))
-    moves = lengths > 0  # a force on a clamped edge moves nothing
-    answer, lengths = answer[:, moves], lengths[moves]
+    answer, lengths = answer[:, lengths > 0], lengths[lengths > 0]  # a force on a clamped edge moves nothing
     left, size, _ = np.linalg.svd(_remove(answer / lengths, vectors, mass), full_matrices=False)
-    return np.asarray(left[:, (size > 1e-8 * size.max()).nonzero()[0]])
+    return np.asarray(left[:, (size > 1e-8 * size.max(initial=0.0)).nonzero()[0]])
 
 
 def _remove(answer: FloatArray, vectors: FloatArray, mass: Sparse) -> FloatArray:

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from acquisition.arrays import FloatArray
+from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
 from updating.models.imported.ordering import factored
+from updating.models.imported.rounding import without_stiffness
 
 LOST = 1e-10
 """A pivot below this share of its diagonal entry has lost all its digits [-]."""
@@ -45,6 +46,33 @@ def check_hollow(
         f"{source}: singular: {count} motion(s) have neither stiffness nor mass, one shows at row {row}; "
         "elements of reduced integration (C3D20R), one across, leave such: take C3D20, or two across"
     )
+
+
+def hold_hollow_rows(stiffness: Sparse, massless: IntArray, relative: float) -> Sparse:
+    """Return a stiffness with a spring at one row of every motion of massless rows that has no stiffness either.
+
+    A pinned bar without rotary inertia may spin so. Neither matrix couples such a motion with any other, so that a
+    spring at one of its rows changes nothing but its own frequency, which could be anything.
+
+    Parameters
+    ----------
+    stiffness : (n, n) sparse array
+        The stiffness [SI].
+    massless : (m,) int array
+        Rows without mass.
+    relative : float
+        Relative error of the stiffness's entries [-].
+    """
+    block = _ones_on_diagonal(Sparse(stiffness[massless][:, massless]))
+    held = Sparse(block + relative * sparse.eye_array(len(massless)))
+    factor = factored(held)
+    bound = relative * (1 + int(np.diff(block.indptr).max())) * len(massless)
+    added = np.zeros(stiffness.shape[0])
+    for row in np.flatnonzero(factor.U.diagonal()[factor.perm_c] <= bound):
+        motion = factor.solve(np.eye(1, len(massless), row).ravel())[:, None]
+        if without_stiffness(block, motion, relative)[0]:
+            added[massless[row]] = stiffness.diagonal()[massless[row]]
+    return Sparse(stiffness + sparse.diags_array(added)) if added.any() else stiffness
 
 
 def _level(matrix: Sparse) -> Sparse:

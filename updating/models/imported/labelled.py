@@ -118,15 +118,7 @@ def _of_abaqus(path: Path) -> Labelled:
 
 def _punched(path: Path, kind: str) -> Labelled:
     lines = path.read_bytes().decode("latin-1").splitlines()
-    names = [line[8:16].strip() for line in lines if line.startswith("DMIG ")]
-    wanted = [name for name in dict.fromkeys(names) if name[:1].upper() == kind[0].upper().replace("S", "K")]
-    if len(wanted) != 1:
-        found = ", ".join(dict.fromkeys(names)) or "none"
-        letter = "K" if kind == "stiffness" else "M"
-        raise StudyError(
-            f"{path}: one matrix whose name begins with {letter} is needed as {kind}; the file has {found} (as PARAM, "
-            "EXTOUT, DMIGPCH or EXTSEOUT with DMIGPCH punch them)"
-        )
+    wanted = [_named(lines, kind, path)]
     entries: list[tuple[int, int, int, int, float]] = []
     at: tuple[int, int] | None = None
     for number, line in enumerate(lines, start=1):
@@ -140,6 +132,24 @@ def _punched(path: Path, kind: str) -> Labelled:
         raise StudyError(f"{path}: {wanted[0]} has no entries in large fields of 16 columns; punch it anew")
     table = np.array([entry[:4] for entry in entries], dtype=np.int64)
     return Labelled(table[:, 2:], table[:, :2], np.array([entry[4] for entry in entries]), str(path))
+
+
+def _named(lines: Sequence[str], kind: str, path: Path) -> str:
+    """Return the name of the only stiffness or mass: by its letter, and of several the square one.
+
+    A rectangular matrix beside it (MUG1T, of displacements to element forces) is neither.
+    """
+    forms = {line[8:16].strip(): line[24:32].strip() for line in lines if line.startswith("DMIG ")}
+    letter = "K" if kind == "stiffness" else "M"
+    begun = [name for name in forms if name[:1].upper() == letter]
+    square = [name for name in begun if forms[name] in (SYMMETRIC, SQUARE)]
+    found = square or begun
+    if len(found) != 1:
+        raise StudyError(
+            f"{path}: one matrix whose name begins with {letter} is needed as {kind}; the file has "
+            f"{', '.join(forms) or 'none'} (as PARAM, EXTOUT, DMIGPCH or EXTSEOUT with DMIGPCH punch them)"
+        )
+    return found[0]
 
 
 def _column(line: str, where: str) -> tuple[int, int] | None:

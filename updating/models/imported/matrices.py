@@ -19,10 +19,14 @@ from updating.models.imported.groups import (
     Support,
     groups_of,
     joints_of,
+    rigid_motions,
     supports_of,
 )
+from updating.models.imported.hollow import hold_hollow_rows
 from updating.models.imported.nodes import NodeTable
 from updating.models.imported.placing import Places
+from updating.models.imported.rigid import free_motions, rank, without_forces
+from updating.models.imported.rounding import decimal_rounding, relative_rounding
 
 if TYPE_CHECKING:
     from updating.models.decks.model import DeckModel
@@ -45,9 +49,15 @@ class Imported:
         For messages.
     deck : DeckModel, optional
         The deck that CalculiX made them of.
+    decimal : float, optional
+        Half a unit of the last digit of the stiffness's file, relative to the entry, 0 where it was not rounded; left
+        out, that of the digits that the entries need [-].
 
     Attributes
     ----------
+    left : float
+        Relative error of the stiffness's entries in motions of a rigid body: ``decimal`` where these do not follow from
+        the places of the rows, else what is left after rounding has been taken from them [-].
     unassigned : tuple of str
         ``E`` where the stiffness, ``density`` where the mass has something beyond the sum of its parts.
 
@@ -64,6 +74,8 @@ class Imported:
     mass_parts: tuple[Sparse, ...] = ()
     source: str = "model"
     deck: DeckModel | None = None
+    decimal: float = -1.0
+    left: float = field(init=False, default=0.0)
     massless: bool = field(init=False, default=False)
     unassigned: tuple[str, ...] = field(init=False, default=())
     rest: dict[str, Sparse | None] = field(init=False, default_factory=dict)
@@ -98,6 +110,11 @@ class Imported:
         ]
         object.__setattr__(self, "unassigned", tuple(beyond))
         object.__setattr__(self, "massless", bool((self.mass.diagonal() == 0).any()))
+        if self.decimal < 0:
+            object.__setattr__(self, "decimal", decimal_rounding(self.stiffness))
+        settled, left = self._settled_stiffness()
+        object.__setattr__(self, "left", left)
+        object.__setattr__(self, "stiffness", settled)
         bare = self.mass
         object.__setattr__(self, "mass", with_mass_everywhere(self.stiffness, bare, self.source))
         self.rest["given mass"] = bare
@@ -106,6 +123,38 @@ class Imported:
             self.rest["mass"] = Sparse(self.mass - bare if left is None else left + self.mass - bare)
         if self.deck is None:  # a deck's is a sum of elements', each of positive mass
             check_mass(self.mass, self.source, self.row_places)
+
+    def _settled_stiffness(self) -> tuple[Sparse, float]:
+        """Return the stiffness without rounding in motions of a rigid body, and what is left of it.
+
+        What has neither stiffness nor mass is held.
+        """
+        given, relative = self.stiffness, relative_rounding(self.stiffness, self.decimal)
+        settled, left = self._without_rounding(relative) if self.decimal else (given, 0.0)
+        empty = np.flatnonzero(abs(self.mass).sum(axis=1) == 0)
+        if len(empty) and (settled.diagonal()[empty] > 0).all():
+            settled = hold_hollow_rows(settled, empty, relative)
+        if settled is not given:
+            rest = self.rest["stiffness"]
+            self.rest["stiffness"] = Sparse(settled - given if rest is None else rest + settled - given)
+        return settled, left
+
+    def _without_rounding(self, relative: float) -> tuple[Sparse, float]:
+        """Return the stiffness without forces in the motions of a rigid body that nothing holds, and what is left.
+
+        A body that nothing holds along any axis can turn as well; where the places deny that, they are rounded.
+        """
+        motions = rigid_motions(self.places, self.order)
+        if motions is None:
+            return self.stiffness, self.decimal
+        free = free_motions(self.stiffness, motions, relative)
+        if not free.size:
+            return self.stiffness, 0.0
+        settled, left = without_forces(self.stiffness, free)
+        shifts = rank(motions[:, :3], self.stiffness)
+        loose = free_motions(self.stiffness, motions[:, :3], relative).shape[1] == shifts
+        denied = loose and free.shape[1] == shifts < rank(motions, self.stiffness)
+        return settled, self.decimal if denied else left
 
     @property
     def order(self) -> int:

@@ -22,6 +22,7 @@ from updating.models.imported.nodes import (
     read_places,
     read_table,
 )
+from updating.models.imported.rounding import decimal_rounding
 from updating.models.imported.units import SI, matrix_in_si, places_in_si
 
 READERS: dict[str, Callable[[Path], Sparse]] = {
@@ -118,6 +119,7 @@ def read_imported(
         in_si[0],
         in_si[1],
         f"{stiffness.name}, {mass.name}",
+        decimal=decimal_rounding(whole),
     )
 
 

@@ -15,13 +15,10 @@ from updating.models.base import Structure, scale_of
 from updating.models.fields import Sparse
 from updating.models.imported.answers import part_answers
 from updating.models.imported.matrices import Imported
-from updating.models.imported.shifted import Shifted
+from updating.models.imported.shifted import BODY, Shifted
 from updating.models.solve import DENSE
 from updating.models.spec import Spec
 from updating.models.state import State
-
-RIGID = 1e-6
-"""An eigenvalue below this share of the first that cannot be of a rigid body is zero [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,15 +77,11 @@ class ImportedStructure(Structure):
     @cached_property
     def unknowns(self) -> int:
         """Number of motions with mass, where the model is small enough to count them."""
-        mass = self.imported.mass
-        if self.n_dofs > DENSE:
-            return self.n_dofs
-        scale = np.sqrt(mass.diagonal())
-        return int(np.linalg.matrix_rank(mass.toarray() / np.outer(scale, scale), tol=1e-10, hermitian=True))
+        return self.n_dofs if self.n_dofs > DENSE else self._nominal.motions
 
     def _shifted(self, stiffness: Sparse, mass: Sparse) -> Shifted:
-        massless = self.imported.massless or self.unknowns < self.n_dofs
-        return Shifted(stiffness, mass, self.imported.source, massless, self.imported.row_places)
+        known = self.imported
+        return Shifted(stiffness, mass, known.source, known.decimal, known.row_places)
 
     @cached_property
     def _nominal(self) -> Shifted:
@@ -96,23 +89,23 @@ class ImportedStructure(Structure):
 
     @cached_property
     def rigid_modes(self) -> int:
-        """Number of motions that nothing holds: eigenvalues that are nothing beside the seventh.
+        """Number of motions that nothing holds: their strain energy is within rounding of zero.
 
         Raises
         ------
         StudyError
             If there are more than the six of one body.
         """
-        count = min(12, self.n_dofs)
-        values, vectors = self._nominal.lowest(count)
-        scale = float(values[min(6, count - 1)])
-        if count > 7 and scale <= RIGID * float(values[-1]):
-            row = int(np.argmax(np.abs(vectors[:, 6]))) + 1
+        known = self.imported
+        count = min(BODY + 1, self.unknowns)
+        found = self._nominal.rigid(count, known.left)
+        if found > BODY:
+            row = int(np.argmax(np.abs(self._nominal.lowest(count)[1][:, BODY]))) + 1
             raise StudyError(
-                f"{self.imported.source}: stiffness matrix singular: more than six motions have no stiffness, one with "
+                f"{known.source}: stiffness matrix singular: more than six motions have no stiffness, one with "
                 f"most at row {row}; parts that are not joined, or a mechanism"
             )
-        return int(np.sum(np.abs(values[:6]) <= RIGID * scale))
+        return found
 
     def parts(self, kind: str) -> tuple[Sparse, ...]:
         """Return the matrices of the regions, and of what lies in none [SI]."""
