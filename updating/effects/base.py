@@ -218,6 +218,9 @@ class Effect(ABC):
     """An effect that makes one and the same change; one of the two says so."""
     competes_with: ClassVar[str] = ""
     """The modeller's doubt of which it is more than that: a factor with a tolerance, or ``calibration``."""
+    screened: ClassVar[Mapping[str, tuple[float, ...]]] = MappingProxyType({})
+    """What is tried at every place before a search: prior quantiles of the parameters that are neither place nor size.
+    Where it is empty, a search begins at :meth:`starts`."""
     repeats: ClassVar[bool] = False
     """Whether it may occur twice in a set of causes, at two places."""
     occurrence: int = 1

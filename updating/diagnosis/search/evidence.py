@@ -22,6 +22,7 @@ from updating.diagnosis.search.fit import Peak, Point, evaluate, highest, maximi
 from updating.diagnosis.search.goodness import p_value
 from updating.diagnosis.search.ridges import along_ridge
 from updating.problem.candidate import Candidate
+from updating.problem.screening import basins
 from updating.thresholds import (
     AT_REST,
     CLIMBS,
@@ -122,7 +123,7 @@ def explain(
     -------
     Explanation
     """
-    places = problem.starts(candidate) if starts is None else starts
+    places = _beginnings(problem, candidate) if starts is None else starts
     if len(places[0]) == 0:
         point = evaluate(problem, candidate, np.zeros(0))
         evidence = point.marginal.log_likelihood + candidate.log_weight
@@ -135,6 +136,12 @@ def explain(
         log_weight = _parabolas(peaks, samples) - proposal
         return _compared(candidate, peaks[0].point, samples, log_weight, peaks, laplace_only=True)
     return _sampled(problem, candidate, peaks, density)
+
+
+def _beginnings(problem: DiagnosisProblem, candidate: Candidate) -> list[FloatArray]:
+    """Return where a search begins: of a local effect at the best places of a grid, else at the effects' own starts."""
+    placed = basins(candidate, problem.predictor) if len(problem.specimens) == 1 else []
+    return placed or problem.starts(candidate)
 
 
 def finish(problem: DiagnosisProblem, explanation: Explanation, *, density: int = 32) -> Explanation:

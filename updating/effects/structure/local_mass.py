@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
+from types import MappingProxyType
 
 import numpy as np
 
@@ -16,13 +16,11 @@ from updating.effects.box import (
     mirror_images,
     outline,
     place,
-    shares,
     spread,
     starting_places,
 )
 from updating.effects.obstacles import Lack, Obstacle
 from updating.effects.regions import heavy_regions, region_centre, regions_meant
-from updating.effects.structure.frequency_gap import frequency_gap
 from updating.models.state import State
 from updating.models.structure import regions_at
 from updating.models.terms import modelled_mass
@@ -49,12 +47,6 @@ SCREENED = (0.05, 0.4, 0.75)
 """Quantiles of the extents at which places are screened [-]. What is long is found from what is short, what is short
 hardly from what is long: the first stands at all of them."""
 
-ALONG = {"beam": (16,), "plate": (8, 5)}
-"""Places that are screened along each side."""
-
-PROMISING = 6
-"""From how many of them, those that suit the frequencies best, a form is searched."""
-
 SHARE_HEAVIER = 0.8
 """Prior of the heavier form [-]: what is stuck on and not modelled is far commoner than what is missing and took no
 stiffness with it. Judged; the lighter one's share doubled, it gains ln 2."""
@@ -77,6 +69,7 @@ class LocalMass(Effect):
     models = ("beam", "plate", "matrices")
     equivalent_to = ("lumped_mass", "density", "damping_patch")
     named = ("region",)
+    screened = MappingProxyType({"extent": SCREENED})
     repeats = True
     separated_by = "look for what sticks there and weigh it, or the part; or more points on it"
     fidelity = 0.03
@@ -128,7 +121,7 @@ class LocalMass(Effect):
         return found
 
     def starts(self, predictor: Predictor) -> tuple[tuple[float, ...], ...]:
-        """Start from places and sizes that suit the frequencies and from a row of short places either way.
+        """Start from a row of short places either way.
 
         Of imported matrices from regions little and much lighter and heavier: from little, modes keep their order.
         """
@@ -136,11 +129,7 @@ class LocalMass(Effect):
             return ((0.3,), (0.45,), (0.55,), (0.7,))
         short = (SCREENED[0],) * predictor.spec.dim
         row = [(*at, *short) for at in starting_places(predictor.spec)]
-        either = tuple((*at, 0.5 + side * LARGE / 2) for side in (1, -1) for at in row)
-        return (
-            *map(tuple, predictor.once("places of another mass", lambda: _promising(self, predictor))),
-            *either,
-        )
+        return tuple((*at, 0.5 + side * LARGE / 2) for side in (1, -1) for at in row)
 
     def state(self, predictor: Predictor, values: Values) -> State:
         """Return the structure with its mass changed there."""
@@ -181,34 +170,6 @@ class LocalMass(Effect):
         if predictor.spec.kind == "matrices":
             return {}
         return {"mass": (self.weight(predictor, values), "kg")}
-
-
-def _promising(effect: LocalMass, predictor: Predictor) -> FloatArray:
-    """Return prior quantiles of the heavier and lighter places that suit the frequencies best, one extent at each.
-
-    Shape (n, n_parameters) [-].
-    """
-    spec, names = predictor.spec, [p.name for p in effect.parameters(predictor)]
-    gap = frequency_gap(predictor)
-    vectors = gap.prediction.vectors
-    waves = (predictor.reduced.sampled["w"][:, : len(vectors)] @ vectors) ** 2
-    moving, found = predictor.reduced.fielded.fields, []
-    own = modelled_mass(spec, predictor.reduced.fielded.region_of) * moving.weights
-    for at in product(*((np.arange(n) + 0.5) / n for n in ALONG[spec.kind])):
-        boxes = [np.array([*at, *(size,) * spec.dim, 0.5]) for size in SCREENED]
-        values = [effect.values(predictor, box.tolist()) for box in boxes]
-        inside = np.array([shares(predictor, one) for one in values]) * own
-        sizes, gained = gap.sizes(-0.5 * inside @ waves)
-        best = int(np.argmax(gained))
-        quantiles = effect.quantiles(predictor, {**values[best], "factor": 1 + float(sizes[best])})
-        found.append((float(gained[best]), sizes[best] > 0, dict(zip(names, quantiles, strict=True))))
-    found.sort(key=lambda one: -one[0])
-    kept = [
-        [*quantiles.values()]
-        for side in (True, False)
-        for quantiles in [own for _, heavier, own in found if heavier == side][:PROMISING]
-    ]
-    return np.array(kept)
 
 
 def _changes(predictor: Predictor, values: Values, *, heavier: bool) -> tuple[float, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -67,6 +68,7 @@ class LocalStiffness(Effect):
     models = ("beam", "plate", "matrices")
     equivalent_to = ("clamp_rotation", "joint")
     named = ("region",)
+    screened = MappingProxyType({"extent": (SHORT, 0.75)})
     repeats = True
     separated_by = "more points around the place, or a visual and dye check there"
     phrase = "a soft or stiff spot"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -202,6 +203,7 @@ class LumpedMass(Effect):
     phrase = "a mass left out of the model"
     models = ("beam", "plate", "matrices")
     equivalent_to = ("sensor_mass", "local_mass")
+    screened = MappingProxyType({"bulk": (0.1, 0.6)})
     named = ("at",)
     repeats = True
     separated_by = "look for the body and take it off; or more points around the place"

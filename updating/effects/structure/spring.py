@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -70,6 +71,7 @@ class GroundSpring(Effect):
     models = ("beam", "plate", "matrices")
     equivalent_to = ("axial_load", "suspension")
     named = ("at", "along")
+    screened = MappingProxyType({"extent": (0.1, 0.6), "damping": (0.5,)})
     repeats = True
     separated_by = (
         "look for what touches the structure there and take it off; or more points around the place"
