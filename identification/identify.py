@@ -25,6 +25,7 @@ from identification.fit.fit import Fitted, fit_candidates, provisional, with_nam
 from identification.fit.noise.disagreement import Disagreement
 from identification.fit.poly_reference import sorted_frfs
 from identification.fit.search.manual_selection import nearest_modes
+from identification.line_shapes import with_line_shape
 from identification.model import ModalModel
 from identification.poles import ESTIMATORS
 from identification.poles.selection import candidates
@@ -229,6 +230,9 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
             f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
             "order rises; widen the band, raise the order or check the FRFs"
         )
+    if course is None:
+        shaped = with_line_shape(data, start)
+        data, start = shaped.frfs, shaped.start
     fitted = fit_candidates(data, start, band=limits, course=course)
     return Prepared(frfs, data, limits, chart, fitted, points_rejected)
 
@@ -284,7 +288,7 @@ def order_list(frfs: FrfSet, order: int | None, *, poly_reference: bool) -> list
         raise InputError(f"order {wanted} leaves no room for a mode; use 2 or more")
     if wanted > _HIGHEST:
         raise InputError(f"order {wanted} is beyond {_HIGHEST}; rather cut the band into pieces")
-    carried = max(2, len(frfs.frequency) // 3)
+    carried = max(2, len(frfs.frequency) // 2)
     top = min(max(wanted // columns, min(wanted, 16)), carried)
     bottom = max(1, min(top - 1, max(top // 6, 2)))
     return sorted({int(n) for n in np.linspace(bottom, top, _LEVELS).round()})

@@ -135,7 +135,7 @@ class ModalModel(Shown, Animated):
         linear = replace(self.background, residues=np.hstack([residues, self.background.residues]))
         poles = np.concatenate([self.poles, self.background_poles])
         values = synthesise(
-            basis.Axis(laplace, self.frfs.form, self.frfs.decay, self.frfs.record), poles, linear
+            replace(basis.Axis.of(self.frfs), laplace=laplace), poles, linear
         )
         return replace(
             self.frfs, frequency=lines, values=values, coherence=None, variance=None, averages=None
