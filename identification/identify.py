@@ -21,11 +21,11 @@ from identification.fit.course import course_of, resampled
 from identification.fit.equations import basis
 from identification.fit.equations.pruning import inside, located
 from identification.fit.equations.residues import Residues, synthesise
-from identification.fit.fit import Fitted, fit_candidates, provisional, with_named
+from identification.fit.fit import Fitted, provisional, with_named
 from identification.fit.noise.disagreement import Disagreement
 from identification.fit.poly_reference import sorted_frfs
 from identification.fit.search.manual_selection import nearest_modes
-from identification.line_shapes import with_line_shape
+from identification.line_shapes import fit_shaped
 from identification.model import ModalModel
 from identification.poles import ESTIMATORS
 from identification.poles.selection import candidates
@@ -230,10 +230,9 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
             f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
             "order rises; widen the band, raise the order or check the FRFs"
         )
-    if course is None:
-        shaped = with_line_shape(data, start)
-        data, start = shaped.frfs, shaped.start
-    fitted = fit_candidates(data, start, band=limits, course=course)
+    fitted = fit_shaped(data, start, band=limits, course=course)
+    if fitted.frfs.line_shape is not None:
+        data = replace(data, line_shape=fitted.frfs.line_shape)
     return Prepared(frfs, data, limits, chart, fitted, points_rejected)
 
 
@@ -360,7 +359,7 @@ def _assemble(
         chart=chart,
         warnings=shapes.warnings + _warnings(fitted, poles, trend) + statement,
         points_rejected=points_rejected,
-        carried=None if fitted.frfs is data else fitted.frfs,
+        carried=None if np.shares_memory(fitted.frfs.values, data.values) else fitted.frfs,
         trend=trend,
     )
 
@@ -421,6 +420,8 @@ def _warnings(fitted: Fitted, poles: ComplexArray, trend: Trend | None) -> tuple
                 f"file, by {100 * trend.rate:+.2g} % (sigma {percent(100 * trend.rate_sigma)}); what is identified "
                 "is the structure in the middle of the test"
             )
+    if fitted.frfs.line_shape is not None:
+        notes.append(fitted.frfs.line_shape.statement(stated=fitted.frfs.window is not None))
     if not fitted.fit.converged:
         notes.append("the refinement of the poles did not converge; standard deviations may be too small")
     left = fitted.excess()

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from acquisition.arrays import ComplexArray
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.errors import EstimationError
 from acquisition.frfs.frf import FrfSet
 from acquisition.frfs.line_shape import KINDS, Kind, LineShape
-from identification.fit.equations.normal_equations import Weights
-from identification.fit.equations.refine import Fit, refine
+from identification.fit.equations.refine import refine
 from identification.fit.equations.residues import uniform_weights
-from identification.fit.noise.weights import absorbed_by, left_over, noise_weights
+from identification.fit.fit import Fitted, fit_candidates
 from identification.fit.search.completion import COARSE, SHORT
 
 RESOLVED = 1.5
@@ -20,10 +20,9 @@ RESOLVED = 1.5
 count as one until the completion of the fit adds the second again; halved, the two poles that imitate the line shape
 stay."""
 
-HALVED = 2.0
-"""By how much a line shape must lower the misfit of the same poles to be taken for that of a window [-]. One that is in
-the FRFs lowers it ten times and more where it matters; drift, leakage or modes that are not linear, by a fifth.
-Doubled: windows pass unnoticed where noise is a third of what they change."""
+LOWER = 0.9
+"""Misfit with a line shape over that of the same poles without, under which both are fitted in full [-]. Modes that are
+still missing are in both. Nearer to 1: fits without effect where noise decides; at half, windows pass unnoticed."""
 
 BROAD = 100.0
 """Decay of a pole over a block beyond which its line shape is left as it is, to 0.1 % [-]. Doubled: work without effect."""
@@ -32,85 +31,75 @@ BROAD = 100.0
 FEWEST = 16
 """Lines of which two are left out at the most [-]. Doubled: the ends of short sets, smoothed otherwise, move modes."""
 
-WEIGHINGS = 2
-"""Fits that are compared: the second is weighted by the noise that the first leaves. A third changes little [-]."""
 
+def fit_shaped(
+    frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float], course: FloatArray | None = None
+) -> Fitted:
+    """Fit candidates with the line shape that explains the FRFs best, no window included unless one is stated.
 
-@dataclass(frozen=True, eq=False)
-class Shaped:
-    """FRFs with their line shape, and candidate poles for it.
-
-    Parameters
-    ----------
-    frfs : FrfSet
-        The FRFs, ``line_shape`` set where there is one.
-    start : (n,) complex array
-        Candidate poles [rad/s].
-    """
-
-    frfs: FrfSet
-    start: ComplexArray
-
-
-def with_line_shape(frfs: FrfSet, start: ComplexArray) -> Shaped:
-    """Return FRFs with the line shape that explains them best, no window included unless one is stated.
-
-    A window that nobody states counts if it halves the misfit that the same poles leave without it, and if it explains
-    the FRFs better than all candidates do without one, each further pole at its price (Schwarz, Ann. Stat. 6 (1978)
-    461-464): two poles under a half-power width apart imitate the line shape.
+    A shape that nobody states counts if the fit with it explains more than the one without, each pole and term at its
+    price (Schwarz, Ann. Stat. 6 (1978) 461-464): two poles under a half-power width apart imitate the line shape.
 
     Parameters
     ----------
-    frfs : FrfSet
-        The FRFs in the band.
-    start : (n,) complex array
-        Candidate poles found as if there were no window [rad/s].
+    frfs, start, band, course
+        As of :func:`identification.fit.fit.fit_candidates`.
+
+    Raises
+    ------
+    EstimationError
+        If no candidate is a mode of the band.
     """
+    kinds = _worth_a_fit(frfs, start) if course is None else []
+    fits: list[Fitted] = []
+    failure: EstimationError | None = None
+    for shaped, poles in [(_with(frfs, kind), _merged(start, frfs.df)) for kind in kinds] or [(frfs, start)]:
+        try:
+            fits.append(fit_candidates(shaped, poles, band=band, course=course))
+        except EstimationError as error:
+            failure = error
+    if kinds and frfs.window is None:
+        try:
+            fits.append(fit_candidates(frfs, start, band=band))
+        except EstimationError as error:
+            failure = error
+    if not fits:
+        raise failure or EstimationError(f"{frfs.source}: no candidate is a mode of the band")
+    return min(fits, key=_price)
+
+
+def _worth_a_fit(frfs: FrfSet, start: ComplexArray) -> list[Kind]:
+    """Return the line shapes to fit: both where a window is stated, else the best if it lowers the misfit."""
     known = frfs.window == "none" or frfs.record is not None or frfs.line_shape is not None
     if known or not np.any(-start.real < BROAD * frfs.df):
-        return Shaped(frfs, start)
-    few = merged(start, RESOLVED * 2 * np.pi * frfs.df)
-    kinds = [Shaped(_with(frfs, kind), few) for kind in KINDS]
-    misfits = [_misfit(shaped) / shaped.frfs.values.size for shaped in kinds]
-    best = int(np.argmin(misfits))
+        return []
     if frfs.window == "hann":
-        return kinds[best]
-    if HALVED * misfits[best] > _misfit(Shaped(frfs, few)) / frfs.values.size:
-        return Shaped(frfs, start)
-    plain = Shaped(frfs.band(*kinds[best].frfs.frequency[[0, -1]]), start)
-    return kinds[best] if _price(kinds[best]) < _price(plain) else Shaped(frfs, start)
+        return list(KINDS)
+    few = _merged(start, frfs.df)
+    misfits = [_misfit(_with(frfs, kind), few) for kind in KINDS]
+    best = int(np.argmin(misfits))
+    return [KINDS[best]] if misfits[best] < LOWER * _misfit(frfs, few) else []
 
 
 def _with(frfs: FrfSet, kind: Kind) -> FrfSet:
-    """Return FRFs with a line shape; the first and last of smoothed lines, which lack a neighbour, are left out."""
-    inner = frfs.band(*frfs.frequency[[1, -2]]) if kind == "smoothed" and len(frfs.frequency) > FEWEST else frfs
-    return replace(inner, line_shape=LineShape(kind, 1.0 / frfs.df))
+    return replace(frfs, line_shape=LineShape(kind, 1.0 / frfs.df))
 
 
-def merged(poles: ComplexArray, distance: float) -> ComplexArray:
-    """Return poles with those nearer to one another than a distance [rad/s] replaced by their mean, rising."""
+def _merged(poles: ComplexArray, df: float) -> ComplexArray:
+    """Return poles with those that a window shows as one replaced by their mean, rising."""
     poles = poles[np.argsort(poles.imag)]
-    cuts = np.flatnonzero(np.diff(poles.imag) > distance) + 1
+    cuts = np.flatnonzero(np.diff(poles.imag) > RESOLVED * 2 * np.pi * df) + 1
     return np.array([part.mean() for part in np.split(poles, cuts)], dtype=np.complex128)
 
 
-def _misfit(shaped: Shaped) -> float:
-    """Return the misfit of the refined poles over the power of each FRF [-]."""
-    return _refined(shaped, uniform_weights(shaped.frfs)).cost
+def _misfit(frfs: FrfSet, poles: ComplexArray) -> float:
+    """Return the misfit of poles once they are refined, over the power of each FRF [-]."""
+    return refine(frfs, poles, uniform_weights(frfs), iterations=SHORT, tolerance=COARSE).cost
 
 
-def _refined(shaped: Shaped, weights: Weights) -> Fit:
-    return refine(shaped.frfs, shaped.start, weights, iterations=SHORT, tolerance=COARSE)
-
-
-def _price(shaped: Shaped) -> float:
-    """Return Schwarz's criterion with the noise that the fit leaves: the less, the better the FRFs are explained [-]."""
-    frfs, weights = shaped.frfs, uniform_weights(shaped.frfs)
-    variance = np.ones(frfs.values.shape)
-    for _ in range(WEIGHINGS):
-        fit = _refined(shaped, weights)
-        residual = left_over(frfs, fit)
-        weights, variance, _ = noise_weights(frfs, residual, absorbed_by(frfs, fit, weights))
-    unknowns = len(shaped.start) * (2 * len(frfs.values) + 2)
-    lack = float(np.sum(np.log(variance) + np.abs(residual) ** 2 / variance))
-    return 2.0 * lack + unknowns * np.log(2 * residual.size)
+def _price(fitted: Fitted) -> float:
+    """Return Schwarz's criterion with the noise that the fit leaves: less is better [-]."""
+    residual, n_frf = fitted.residual, len(fitted.residual)
+    lack = float(np.sum(np.log(fitted.variance) + np.abs(residual) ** 2 / fitted.variance))
+    unknowns = len(fitted.fit.poles) * (2 * n_frf + 2) + n_frf * len(fitted.fit.linear.powers)
+    return float(2.0 * lack + unknowns * np.log(2 * residual.size))

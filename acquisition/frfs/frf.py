@@ -119,7 +119,9 @@ class FrfSet(Displayed):
         if self.form not in FORMS:
             raise InputError(f"{self.source}: unknown FRF form {self.form!r}; use one of {', '.join(FORMS)}")
         if self.window is not None and self.window not in FRF_WINDOWS:
-            raise InputError(f"{self.source}: unknown window {self.window!r}; use one of {', '.join(FRF_WINDOWS)}")
+            raise InputError(
+                f"{self.source}: unknown window {self.window!r}; use one of {', '.join(FRF_WINDOWS)}"
+            )
         if n_frf == 0 or n_lines < 2:
             raise InputError(f"{self.source}: {n_frf} FRFs of {n_lines} lines; nothing to work on")
         if len(self.references) != n_frf or self.values.shape != (n_frf, n_lines):

@@ -43,6 +43,22 @@ class LineShape:
     kind: Kind
     duration: float
 
+    def statement(self, *, stated: bool) -> str:
+        """Return what to say of FRFs that have it.
+
+        Parameters
+        ----------
+        stated : bool
+            Whether the window was stated, and not found from the FRFs.
+        """
+        law = (
+            f"averages over blocks of {self.duration:.3g} s with a Hann window and a random force"
+            if self.kind == "averaged"
+            else "lines smoothed by a quarter, a half and a quarter, as a Hann window in the lag does"
+        )
+        how = "" if stated else '; state frf_window = "none" if there was no window'
+        return f"the FRFs are fitted as {law}: each pole has that line shape{how}"
+
     def pole(self, distance: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Return what stands for 1 / (s - p), and its derivative by p, shapes as ``distance`` [s, s^2].
 

@@ -1,8 +1,8 @@
 """What the residual at each line says of the variance of the poles, where errors go together over lines and FRFs.
 
 Averages over windowed blocks err at a line and its neighbours, and in all outputs of a force, by the same: what rings
-into a block and out of it is of the mode, not of the output. The sum over the lines of what each pulls the poles by, its
-neighbours' products included, is the covariance of the fit (Newey and West, Econometrica 55 (1987) 703-708, over lines;
+into a block and out of it is of the mode, not of the output. The sum over the lines of what each pulls the poles by,
+its neighbours' products included, is the covariance of the fit (Newey and West, Econometrica 55 (1987) 703-708, over lines;
 Liang and Zeger, Biometrika 73 (1986) 13-22, over outputs).
 """
 
@@ -18,8 +18,8 @@ from identification.fit.noise.common import hit_groups
 from identification.fit.noise.common_spread import pulls
 
 LAGS = 4
-"""Lines over which errors go together at the most: a Hann window ties two on either side. Doubled, few lines of a narrow
-peak tell less of its scatter."""
+"""Lines over which errors go together at the most: a Hann window ties two on either side. Doubled, few lines of a
+narrow peak tell less of its scatter."""
 
 
 def line_factors(fitted: Fitted) -> FloatArray:

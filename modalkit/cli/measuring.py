@@ -39,6 +39,7 @@ from modalkit.cli.options import (
     Estimate,
     Figures,
     Files,
+    FrfWindowOption,
     Layout,
     Leave,
     Report,
@@ -204,6 +205,7 @@ def identify(
     decay: Decay = 0.0,
     window_on: WindowOn = None,
     window: Window = 0.0,
+    frf_window: FrfWindowOption = None,
     estimator: Estimate = "H1",
     use: Use = None,
     leave: Leave = None,
@@ -234,6 +236,7 @@ def identify(
         leave=leave,
         layout=layout,
         sensors=sensor_mass,
+        frf_window=frf_window,
     )
     with reading("identifying") as progress:
         processed, model = _identified(files, statement, band, order, (add or (), drop or ()), progress)

@@ -159,7 +159,9 @@ def _smeared(
     q = FORMS.index(axis.form)
     value, slope = shape.pole(axis.laplace[:, None] - poles[None, :])
     changed = value - inverse
-    return column + poles**q * changed, column * inverse + poles**q * (slope - inverse**2 + q / poles * changed)
+    return column + poles**q * changed, column * inverse + poles**q * (
+        slope - inverse**2 + q / poles * changed
+    )
 
 
 def _tail(axis: Axis, poles: ComplexArray, inverse: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

@@ -137,6 +137,7 @@ def grown_locally(
     window = window_length(residual.shape[1])
     power = np.abs(residual) ** 2 / free
     variance = np.maximum(_levelled(power, np.abs(model) ** 2, lambda m: local_mean(m, window)), floor)
+    variance = np.maximum(variance * np.mean(power / variance, axis=1, keepdims=True), floor)
     level = 1.0 / np.exp(np.mean(np.log(variance), axis=1))
     return Weights(level, 1.0 / (variance * level[:, None])), variance
 

@@ -14,7 +14,6 @@ from identification.fit.equations.refine import Fit
 from identification.fit.equations.residues import synthesise
 from identification.fit.noise import levels, window_shaped
 
-
 _LEAST_FREE = 0.02  # part of the values that a fit leaves free at the least
 
 
