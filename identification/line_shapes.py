@@ -16,16 +16,17 @@ from identification.fit.fit import Fitted, fit_candidates
 from identification.fit.search.completion import COARSE, SHORT
 
 RESOLVED = 1.5
-"""Distance of poles that a Hann window shows as one [lines]: the half-power width of |W|^2 is 1.44. Doubled, close modes
-count as one until the completion of the fit adds the second again; halved, the two poles that imitate the line shape
-stay."""
+"""Distance of poles that a Hann window shows as one [lines]: the half-power width of |W|^2 is 1.44. Doubled, close
+modes count as one until the completion of the fit adds the second again; halved, the two poles that imitate the line
+shape stay."""
 
 LOWER = 0.9
 """Misfit with a line shape over that of the same poles without, under which both are fitted in full [-]. Modes that are
 still missing are in both. Nearer to 1: fits without effect where noise decides; at half, windows pass unnoticed."""
 
 BROAD = 100.0
-"""Decay of a pole over a block beyond which its line shape is left as it is, to 0.1 % [-]. Doubled: work without effect."""
+"""Decay of a pole over a block beyond which its line shape is left as it is, to 0.1 % [-]. Doubled: work without
+effect."""
 
 
 FEWEST = 16

@@ -1,11 +1,11 @@
 """The line shape that a Hann window leaves in FRFs: what each pole of an averaged FRF looks like.
 
-FRFs averaged over blocks of length T with a window w(t) are not samples of H. Where the force is random and about white,
-the expected cross spectrum at a line is the integral of H times the power |W|^2 of the window about that line, and that
-of the force is the same without H. So E[H1] = E[G_xf] / E[G_ff] is H smeared by |W|^2 (Bendat and Piersol, Random Data,
-4th ed., Sec. 8.5 and 11.5): the transform of the impulse response h(t) times the window's autocorrelation at the lag t.
-Analysers also smooth FRFs by a quarter, a half and a quarter of three lines, which is the lag window (1 + cos) / 2.
-"""
+FRFs averaged over blocks of length T with a window w(t) are not samples of H. Where the force is random and about
+white, the expected cross spectrum at a line is the integral of H times the power |W|^2 of the window about that line,
+and that of the force is the same without H. So E[H1] = E[G_xf] / E[G_ff] is H smeared by |W|^2 (Bendat and Piersol,
+Random Data, 4th ed., Sec. 8.5 and 11.5): the transform of the impulse response h(t) times the window's
+autocorrelation at the lag t. Analysers also smooth FRFs by a quarter, a half and a quarter of three lines, which is
+the lag window (1 + cos) / 2."""
 
 from __future__ import annotations
 

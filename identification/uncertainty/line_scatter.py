@@ -2,9 +2,8 @@
 
 Averages over windowed blocks err at a line and its neighbours, and in all outputs of a force, by the same: what rings
 into a block and out of it is of the mode, not of the output. The sum over the lines of what each pulls the poles by,
-its neighbours' products included, is the covariance of the fit (Newey and West, Econometrica 55 (1987) 703-708, over lines;
-Liang and Zeger, Biometrika 73 (1986) 13-22, over outputs).
-"""
+its neighbours' products included, is the covariance of the fit (Newey and West, Econometrica 55 (1987) 703-708, over
+lines; Liang and Zeger, Biometrika 73 (1986) 13-22, over outputs)."""
 
 from __future__ import annotations
 
