@@ -118,6 +118,7 @@ def test_the_joint_test_is_made_anew_alike(maker: ModuleType, tmp_path: Path) ->
     assert np.abs(made.values - kept.values).max() < 1e-3 * np.abs(kept.values).max()
 
 
+@pytest.mark.long
 def test_frequencies_follow_the_hits_in_the_joint_test_and_in_no_other() -> None:
     found = open_study(read_study(SAMPLES / "beam_joint" / "study.toml")).case.measured
     assert found.slope is not None
@@ -201,6 +202,7 @@ def test_the_shapes_are_as_complex_as_the_tape_makes_them(maker: ModuleType, tap
     assert np.abs((spread + 90) % 180 - 90)[clear].max() > 1.0
 
 
+@pytest.mark.long
 def test_the_structure_behind_is_near_the_published_frequencies_before_its_poles_are_moved(
     maker: ModuleType,
 ) -> None:

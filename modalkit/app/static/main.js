@@ -26,16 +26,16 @@ const app = {
   state: null,
   shown: null,
   page: "",
-  async act(name, args = {}) {
-    return changed(() => post("act", { name, arguments: args }));
+  act(name, args = {}) {
+    return counted(changed(() => post("act", { name, arguments: args })));
   },
-  async change(name, body = {}) {
-    return changed(() => post(name, body));
+  change(name, body = {}) {
+    return counted(changed(() => post(name, body)));
   },
   async working(text, work) {
     notice(text, "busy");
     try {
-      const found = await work();
+      const found = await counted(work());
       if (byId("notice").className === "busy") notice("");
       return found;
     } catch (error) {
@@ -45,9 +45,23 @@ const app = {
   },
   notice,
   quiet(promise) {
-    promise.catch(() => {});
+    counted(promise).catch(() => {});
   },
 };
+
+let pending = 0;
+
+/** Mark the page as busy until the promise, and every other one that is counted, is settled. */
+async function counted(promise) {
+  pending += 1;
+  byId("page").setAttribute("aria-busy", "true");
+  try {
+    return await promise;
+  } finally {
+    pending -= 1;
+    if (!pending) byId("page").setAttribute("aria-busy", "false");
+  }
+}
 
 function notice(text, kind = "") {
   const place = byId("notice");

@@ -36,10 +36,10 @@ def test_short_and_flat_curves_have_the_peaks_they_have(wave: list[float]) -> No
 @pytest.mark.usefixtures("no_hang")
 def test_the_peaks_of_a_long_tone_take_no_square_of_their_number() -> None:
     """A sweep of a shaker, read as a force, is looked at too: by each peak's whole record it took minutes."""
-    wave = np.sin(0.5 * np.arange(2_000_000)) * np.linspace(1.0, 2.0, 2_000_000)
+    wave = np.sin(0.5 * np.arange(1_000_000)) * np.linspace(1.0, 2.0, 1_000_000)
     found = find_peaks(wave, height=0.1, prominence=0.1)
     expected, _ = scipy.signal.find_peaks(wave, height=0.1, prominence=0.1)
-    assert found.tolist() == expected.tolist() and len(found) > 100_000
+    assert found.tolist() == expected.tolist() and len(found) > 50_000
 
 
 def test_looking_into_a_file_loads_no_statistics() -> None:

@@ -272,6 +272,7 @@ def drawn(rng) -> bytes:
     return header + grid + trace + b"".join(normal)
 
 
+@pytest.mark.long
 def test_damage_to_tables_of_nodes_lines_and_modes(drawn, reread):
     before = reread(drawn)
     assert before.warnings == () and len(before.modal) == 2 and len(before.geometry.nodes) == 4
@@ -402,6 +403,7 @@ def chained(count: int, first: int = 0) -> bytes:
     return table(18, *lines) + table(15, *nodes)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("no_hang")  # each system is placed once; through all others it was minutes
 def test_chain_of_3000_coordinate_systems(reread):
     content = reread(chained(3000))

@@ -35,7 +35,9 @@ def session_of(folder: Path, *effects: str, seed: int, as_frfs: bool = False) ->
     return open_study(path)
 
 
-@pytest.mark.parametrize(("rate", "as_frfs"), [(0.006, False), (-0.004, True)])
+@pytest.mark.parametrize(
+    ("rate", "as_frfs"), [(0.006, False), pytest.param(-0.004, True, marks=pytest.mark.long)]
+)
 def test_a_drift_that_is_put_in_is_named_with_its_rate(tmp_path: Path, rate: float, as_frfs: bool) -> None:
     session = session_of(tmp_path, f"drift:rate={rate}", seed=2, as_frfs=as_frfs)
     assert session.identified is not None
@@ -50,6 +52,7 @@ def test_a_drift_that_is_put_in_is_named_with_its_rate(tmp_path: Path, rate: flo
     assert stated.low95 < rate < stated.high95
 
 
+@pytest.mark.long
 def test_nothing_hidden_raises_no_alarm(tmp_path: Path) -> None:
     session = session_of(tmp_path, seed=1)
     found = diagnose(session.case, library=OFFERED)
@@ -57,6 +60,7 @@ def test_nothing_hidden_raises_no_alarm(tmp_path: Path) -> None:
     assert "drift" not in found.not_examined
 
 
+@pytest.mark.long
 def test_modes_without_an_order_do_not_tell(tmp_path: Path) -> None:
     rows = "\n".join(f"{f},{1e-4 * f}" for f in (27.0, 170.0, 476.0))
     (tmp_path / "modes.csv").write_text(f"frequency [Hz],sigma [Hz]\n{rows}\n")

@@ -116,6 +116,7 @@ def test_what_is_hidden_is_what_the_library_says_at_its_values(kind: str, tmp_pa
         assert len(hidden.places(setup, values)) == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("kind", "effect"), [("ribbed", "clamp_translation"), ("bracket", "joint")])
 def test_a_trial_is_drawn_written_and_diagnosed(kind: str, effect: str, tmp_path: Path) -> None:
     drawn = trial(kind, effect)

@@ -21,6 +21,7 @@ def place(node: int) -> np.ndarray:
     return np.array(frame().made.places[node])
 
 
+@pytest.mark.long
 def test_a_spring_between_the_points_is_found_along_its_axis() -> None:
     assert all(node != ON_ARM for node, _ in POINTS)
     found = diagnosed(Hidden(springs=((ON_ARM, 2, 3e4),)), POINTS)
@@ -30,6 +31,7 @@ def test_a_spring_between_the_points_is_found_along_its_axis() -> None:
     assert found.ranking[0].parameters["ground_spring.stiffness"].value == pytest.approx(3e4, rel=0.02)
 
 
+@pytest.mark.long
 def test_a_spring_at_a_point_across_what_is_measured_there_is_found() -> None:
     assert [axis for node, axis in POINTS if node == ON_BEAM] == [1, 2]
     found = diagnosed(Hidden(springs=((ON_BEAM, 0, 2e6),)), POINTS)
@@ -38,6 +40,7 @@ def test_a_spring_at_a_point_across_what_is_measured_there_is_found() -> None:
     assert found.ranking[0].forms[0]["along"] == "x"
 
 
+@pytest.mark.long
 def test_a_body_between_the_points_is_found() -> None:
     node = nearest((0.05, 0.35 / 3, 0.45))
     found = diagnosed(Hidden(masses=((node, 0.05),)), POINTS)
@@ -46,6 +49,7 @@ def test_a_body_between_the_points_is_found() -> None:
     assert found.ranking[0].parameters["lumped_mass.mass"].value == pytest.approx(0.05, rel=0.03)
 
 
+@pytest.mark.long
 def test_neighbours_that_the_data_do_not_separate_are_all_places() -> None:
     """Four frequencies do not say where a light body sits."""
     node = nearest((0.05, 0.35 / 3, 0.45))

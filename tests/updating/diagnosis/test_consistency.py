@@ -47,6 +47,7 @@ def test_a_size_that_differs_from_the_low_to_the_high_modes_is_found() -> None:
     assert found[0].sigma > 3
 
 
+@pytest.mark.long
 def test_few_data_are_a_warning() -> None:
     test = softer(3)
     few = replace(test.modes(np.arange(2)), seen=test.seen[:1], hit=test.hit[:1])

@@ -31,6 +31,7 @@ def diagnosed(hidden: Hidden) -> Diagnosis:
     return diagnose(case(hidden, POINTS), library=[LIBRARY[name] for name in RIVALS])
 
 
+@pytest.mark.long
 def test_a_foot_that_shifts_in_all_directions_is_named_with_its_stiffness() -> None:
     found = diagnosed(Hidden(feet={1: (3e6, 3e6, 3e6, HELD, HELD, HELD)}))
     assert (found.verdict, found.sets) == ("named", (("clamp_translation",),))
@@ -57,6 +58,7 @@ def test_a_foot_that_gives_way_in_all_six_is_named_as_both(recwarn: pytest.Warni
     assert own["clamp_rotation.stiffness"].value == pytest.approx(8e3, rel=0.1)
 
 
+@pytest.mark.long
 def test_a_bolt_that_shifts_in_all_directions_is_named_with_its_stiffness() -> None:
     found = diagnosed(Hidden(joint=(0.01, 0.01, 0.01, 1.0, 1.0, 1.0)))
     assert (found.verdict, found.sets) == ("named", (("joint",),))

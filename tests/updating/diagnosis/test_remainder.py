@@ -31,12 +31,14 @@ def answer(what: str) -> Diagnosis:
     return diagnose(case_of(test, BEAM), library=SOME)
 
 
+@pytest.mark.long
 def test_where_there_is_no_gap_nothing_is_left() -> None:
     found = answer("nothing")
     assert found.verdict == "none"
     assert found.remainder is None
 
 
+@pytest.mark.long
 def test_a_true_cause_leaves_nothing_beyond_noise() -> None:
     left = answer("softer").remainder
     assert left is not None
@@ -45,6 +47,7 @@ def test_a_true_cause_leaves_nothing_beyond_noise() -> None:
     assert left.sigma < 4
 
 
+@pytest.mark.long
 def test_the_remainder_names_mode_and_kind() -> None:
     found = answer("a mode misread")
     left = found.remainder
@@ -55,6 +58,7 @@ def test_the_remainder_names_mode_and_kind() -> None:
     assert "mode 2 frequency" in str(left)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("what", ["softer", "a mode misread"])
 def test_an_effect_is_included_as_often_as_the_sets_that_hold_it(what: str) -> None:
     found = answer(what)

@@ -13,6 +13,7 @@ from modalkit.figures.diagnosis.fitted import fitted
 from updating import LIBRARY, diagnose
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("names", [("polarity",), ("polarity", "E")])
 def test_a_sensor_upside_down_is_put_back_as_that_sensor(names: tuple[str, ...]) -> None:
     case = case_of(two_sensors(upside_down=4), replace(FREE, masses=()))

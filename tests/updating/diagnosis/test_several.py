@@ -126,6 +126,7 @@ def test_the_data_of_all_specimens_stand_side_by_side_and_share_no_nuisance() ->
     assert len(np.unique(whole.mode)) == 5 + 7
 
 
+@pytest.mark.long
 def test_one_value_for_both_explains_as_well_as_one_for_each_and_is_more_probable() -> None:
     candidate = Candidate((LENGTH, SENSOR))
     cases = (
@@ -139,6 +140,7 @@ def test_one_value_for_both_explains_as_well_as_one_for_each_and_is_more_probabl
     assert apart.best.marginal.log_likelihood >= joint.best.marginal.log_likelihood - 0.5
 
 
+@pytest.mark.long
 def test_without_anything_shared_the_evidence_is_that_of_each_alone() -> None:
     problem = several(specimen_of("beam", "strip"), specimen_of("plate", "sheet"))
     candidate = Candidate((LENGTH,))
@@ -149,6 +151,7 @@ def test_without_anything_shared_the_evidence_is_that_of_each_alone() -> None:
     assert whole.log_evidence == pytest.approx(sum(alone), abs=2 * once + 0.1)
 
 
+@pytest.mark.long
 def test_a_cause_of_one_specimen_alone_is_found_beside_those_of_both() -> None:
     problem = sharing("length", "sensor_mass")
     found = explain(problem, Candidate((LENGTH, SENSOR, STIFF)))
@@ -159,6 +162,7 @@ def test_a_cause_of_one_specimen_alone_is_found_beside_those_of_both() -> None:
     assert values["E.factor (sheet)"] == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.long
 def test_length_and_sensor_of_two_specimens_are_named() -> None:
     found = together("length", "sensor_mass")
     assert found.significant
@@ -176,6 +180,7 @@ def test_titles_alike_and_unknown_shared_effects_are_refused() -> None:
         diagnose_together([one, other], shared=("lenght",))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("order", [("beam", "plate"), ("plate", "beam")])
 @pytest.mark.parametrize("shared", [(), ("orthotropy",)])
 def test_an_effect_that_cannot_be_on_one_specimen_is_sought_on_the_other(

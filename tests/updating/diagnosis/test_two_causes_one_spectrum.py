@@ -50,6 +50,7 @@ def test_the_two_beams_have_the_same_frequencies() -> None:
     assert np.abs(tipped().frequencies(8) / plain().frequencies(8) - 1).min() > 0.02
 
 
+@pytest.mark.long
 def test_frequencies_alone_name_neither_of_them() -> None:
     """Both are listed as what the data cannot tell apart, though one has the wider prior, and less probability."""
     case = case_of(frequencies_alone(), replace(BEAM, theory="euler-bernoulli"))

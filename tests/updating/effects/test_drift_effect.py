@@ -53,7 +53,7 @@ def test_it_moves_no_mode_of_the_test_as_a_whole_and_adds_up() -> None:
     assert state.plus(accepted_state(predictor, "drift", {"rate": 0.005})).drift == pytest.approx(0.015)
 
 
-@pytest.mark.parametrize("rate", [-0.004, 0.01])
+@pytest.mark.parametrize("rate", [-0.004, pytest.param(0.01, marks=pytest.mark.long)])
 def test_a_diagnosis_names_it_with_its_rate(rate: float) -> None:
     rng = np.random.default_rng(8)
     test = with_trend(struck(specimen(rng), rng), rate, 1e-4, rng)
@@ -67,7 +67,7 @@ def test_a_diagnosis_names_it_with_its_rate(rate: float) -> None:
     assert stated.value == pytest.approx(rate, rel=0.25)
 
 
-@pytest.mark.parametrize("rate", [0.0, 4e-4])
+@pytest.mark.parametrize("rate", [4e-4, pytest.param(0.0, marks=pytest.mark.long)])
 def test_what_a_laboratory_does_in_an_hour_is_no_gap(rate: float) -> None:
     rng = np.random.default_rng(8)
     test = with_trend(struck(specimen(rng), rng), rate, 2e-5, rng)
@@ -83,6 +83,7 @@ def test_no_drift_acquits_it_and_does_not_keep_another_from_being_named() -> Non
     assert found.sets == (("E",),)
 
 
+@pytest.mark.long
 def test_it_is_named_beside_another() -> None:
     rng = np.random.default_rng(9)
     test = with_trend(struck(specimen(rng, E=0.9), rng), -0.006, 1e-4, rng)

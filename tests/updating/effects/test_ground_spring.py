@@ -162,7 +162,7 @@ def test_on_matrices_it_acts_along_what_is_measured() -> None:
     assert sideways.stiffness[0] != pytest.approx(unit, rel=1e-3)
 
 
-@pytest.mark.parametrize(("x", "ratio"), [(0.21, 20.0), (0.376, 4.0)])
+@pytest.mark.parametrize(("x", "ratio"), [(0.21, 20.0), pytest.param(0.376, 4.0, marks=pytest.mark.long)])
 def test_a_diagnosis_names_it(x: float, ratio: float) -> None:
     rng = np.random.default_rng(5)
     bench = specimen(rng)

@@ -57,7 +57,7 @@ def test_frequencies_follow_slope_and_level() -> None:
     assert ratio == pytest.approx(np.full(4, 1 - 2e-4 * LEVEL))
 
 
-@pytest.mark.parametrize("slope", [-1e-4, 1e-4])
+@pytest.mark.parametrize("slope", [-1e-4, pytest.param(1e-4, marks=pytest.mark.long)])
 def test_a_diagnosis_names_it(slope: float) -> None:
     rng = np.random.default_rng(8)
     test = with_slopes(struck(specimen(rng), rng), slope, 4e-6, rng)

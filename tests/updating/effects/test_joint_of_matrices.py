@@ -80,6 +80,7 @@ def test_forms_name_every_joint_in_turning_and_shifting(predictor: Predictor) ->
     assert sum(form.weight for form in forms) == pytest.approx(1.0)
 
 
+@pytest.mark.long
 def test_a_diagnosis_names_the_joint_that_slips(predictor: Predictor) -> None:
     rng = np.random.default_rng(3)
     state = EFFECT.state(predictor, {"slope": -1e-4, "joint": 1.0, "at": "joint_3"})

@@ -11,7 +11,7 @@ from updating_cases import BEAM, case_of, specimen, struck
 from updating import LIBRARY, diagnose
 
 
-@pytest.mark.parametrize("doubt", [0.3, 0.1])
+@pytest.mark.parametrize("doubt", [0.3, pytest.param(0.1, marks=pytest.mark.long)])
 def test_without_a_baseline_less_damping_shows_as_early_as_more(doubt: float) -> None:
     """Half and twice are as far from what is expected; whether that is a gap is the modeller's doubt of it alone."""
     rng = np.random.default_rng(8)

@@ -145,7 +145,9 @@ def test_heavier_and_lighter_are_two_forms_each_uniform_in_log_mass(place: str) 
         assert np.diff(np.log(masses)) == pytest.approx(np.diff(np.log(masses))[0])
 
 
-@pytest.mark.parametrize(("low", "high", "factor"), [(0.1, 0.2, 1.4), (0.2, 0.3, 0.6)])
+@pytest.mark.parametrize(
+    ("low", "high", "factor"), [(0.1, 0.2, 1.4), pytest.param(0.2, 0.3, 0.6, marks=pytest.mark.long)]
+)
 def test_a_diagnosis_names_it_on_a_beam(low: float, high: float, factor: float) -> None:
     rng = np.random.default_rng(5)
     made = replace(specimen(rng), heavy=(low, high, factor))

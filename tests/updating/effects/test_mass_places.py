@@ -69,6 +69,7 @@ def test_how_far_a_sensor_sits_beside_its_place_is_normal_about_it() -> None:
     assert [p.name for p in SENSOR.parameters(exact)] == ["mass", "bulk"]
 
 
+@pytest.mark.long
 def test_a_body_beside_the_sensor_is_the_sensors_mass_by_its_prior() -> None:
     """1.4 mm from a place that is known to 1 mm: the sensor leads, the body is not named over it."""
     rng = np.random.default_rng(11)

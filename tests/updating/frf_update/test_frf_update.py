@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conforming import departures
+from stage_cases import slopes_and_differences, stage_of
 
 from acquisition.errors import StudyError
 from modalkit.output.schemas import UpdateDocument
@@ -12,18 +13,10 @@ from modalkit.output.update import to_json
 from modalkit.output.whole import plain
 from updating import Case, Material, Measured, Predictor, Region, Spec
 from updating.frf_update import FrfUpdate, bootstrap_frf_update, update_frfs
-from updating.frf_update.columns import columns
-from updating.frf_update.evaluation import changes, evaluate, sensitivity
-from updating.frf_update.expansion import expand
 from updating.frf_update.lines import choose_lines
-from updating.frf_update.run import _stage
 from updating.frf_update.solve import increment
-from updating.frf_update.stage import nominal, whitened
-from updating.models.state import NOMINAL
+from updating.frf_update.stage import nominal
 from updating.test_data.measured_frfs import MeasuredFrfs
-from updating.tolerances import Tolerances
-from updating.update.building import build_specimen
-from updating.update.parameters.parameters import build_parameter_set
 
 STEEL = Material(210e9, 7860.0, 0.3)
 START = {
@@ -172,22 +165,13 @@ def test_sensitivities_against_differences(name: str, decay: float) -> None:
     if name in ("length", "alpha"):
         own = replace(spec, clamped=("x0",) if name == "length" else ())
         spec = replace(own, regions=tuple(replace(r, alpha=None) for r in spec.regions))
-    measured, frfs = taken(spec, decay=decay, roving=name == "sensor_mass")
-    predictor, ends = Predictor(spec, measured), columns(frfs)
-    parameter_set = build_parameter_set([name], predictor, Tolerances(), {})
-    model_parameter = parameter_set.model_parameters[0]
-    value = {"sensor_mass": 0.01, "length": 0.004}.get(name, model_parameter.start or 0.01)
-    here = model_parameter.coordinate(value)
-    at = evaluate(predictor, parameter_set.state(predictor, [value]), ends, frfs.laplace[::40])
-    by = sensitivity(at, changes(predictor, parameter_set, [value], ends, NOMINAL)[0], ends)
-    step = 1e-4 * min(model_parameter.doubt, model_parameter.span() / 10)
-    sides = [
-        evaluate(
-            predictor, parameter_set.state(predictor, [model_parameter.value(here + d)]), ends, at.laplace
-        ).receptance
-        for d in (-step, step)
-    ]
-    assert by == pytest.approx((sides[1] - sides[0]) / (2 * step), abs=1e-4 * np.abs(by).max())
+    stage = stage_of(spec, *taken(spec, decay=decay, roving=name == "sensor_mass"), [name])
+    stage = stage.lines(np.arange(0, len(stage.frfs.laplace), 40))
+    (parameter,) = stage.model_parameters
+    value = {"sensor_mass": 0.01, "length": 0.004}.get(name, parameter.start or 0.01)
+    step = 1e-4 * min(parameter.doubt, parameter.span() / 10)
+    by, difference = slopes_and_differences(stage, np.array([parameter.coordinate(value)]), step)
+    assert by == pytest.approx(difference, abs=1e-4 * np.abs(by).max())
 
 
 def test_equation_9_is_exact_where_every_degree_of_freedom_is_measured() -> None:
@@ -208,27 +192,27 @@ def test_equation_9_is_exact_where_every_degree_of_freedom_is_measured() -> None
     s = 2j * np.pi * np.linspace(30, 300, 9)
     h = Predictor(truth, blank).receptance(s)
     frfs = MeasuredFrfs(s, h, 1e-30 * np.abs(h) ** 2, blank.seen, blank.hit)
-    predictor, ends = Predictor(start, blank), columns(frfs)
-    parameter_set = build_parameter_set(["all.area"], predictor, Tolerances(), {})
-    at = evaluate(predictor, NOMINAL, ends, s)
-    excited = expand(at, ends, h)
-    by = sensitivity(at, changes(predictor, parameter_set, [1.0], ends, NOMINAL)[0], ends, excited)
+    stage = stage_of(start, blank, frfs, ["all.area"])
+    theta = nominal(stage.model_parameters)
+    at = stage.evaluate(theta)
+    by = stage.slopes(theta, at, measured=True)[0]
     # Z is linear in the area itself; C = alpha M follows it
-    factor = float((np.vdot(by, h - at.receptance) / np.vdot(by, by)).real)
+    factor = float((np.vdot(by, stage.residual(at)) / np.vdot(by, by)).real)
     assert 1 + factor == pytest.approx(TRUTH["area"][0] / START["area"][0], rel=2e-3)
 
 
 def test_lines_are_chosen_for_what_they_tell() -> None:
     measured, frfs = taken(beam(TRUTH))
-    specimen = build_specimen(Case("tape", beam(START), measured), STRUCTURE)
-    stage = _stage(specimen, frfs, specimen.parameter_set, NOMINAL)
+    stage = stage_of(beam(START), measured, frfs, STRUCTURE)
     theta = nominal(stage.model_parameters)
 
     def volume(chosen: np.ndarray) -> float:
+        """Return the logarithm of the determinant of the information on the parameters, in their doubts."""
         few = stage.lines(chosen)
         at = few.evaluate(theta)
-        rows, _ = whitened(few, few.slopes(theta, at, measured=False), at, few.variance(at, 0.05))
-        return float(np.linalg.slogdet((rows * stage.doubt).T @ (rows * stage.doubt))[1])
+        slopes = few.slopes(theta, at, measured=False) * stage.doubt[:, None, None]
+        information = np.einsum("pfl,qfl,fl->pq", slopes, slopes.conj(), 1 / few.variance(at, 0.05))
+        return float(np.linalg.slogdet(information.real)[1])
 
     best = volume(choose_lines(stage, theta, 0.05, 20))
     rng = np.random.default_rng(1)
@@ -281,9 +265,7 @@ def test_without_any_damping_the_identified_ratios_stand_in() -> None:
 
 
 def test_a_step_never_leaves_the_bounds() -> None:
-    measured, frfs = taken(beam(START))
-    specimen = build_specimen(Case("tape", beam(START), measured), ["bare.beta"])
-    stage = _stage(specimen, frfs, specimen.parameter_set, NOMINAL)
+    stage = stage_of(beam(START), *taken(beam(START)), ["bare.beta"])
     down = increment(stage, stage.low, np.array([[1.0]]) / stage.doubt, np.array([-3.0]))
     up = increment(stage, stage.low, 10 * np.array([[1.0]]) / stage.doubt, np.array([3.0]))
     assert down == pytest.approx([0.0])

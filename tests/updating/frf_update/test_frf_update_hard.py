@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from stage_cases import slopes_and_differences, stage_of
 from test_frf_update import DAMPING, START, STRUCTURE, TRUTH, beam, taken, wanted
 
 from updating import Case, Damping, Material, Measured, Predictor, Region, Spec
 from updating.effects import accepted_state
 from updating.frf_update import FrfUpdate, update_frfs
 from updating.frf_update.columns import columns
-from updating.frf_update.evaluation import changes, evaluate, sensitivity
+from updating.frf_update.evaluation import evaluate
 from updating.frf_update.mounting import resonances, shifted
 from updating.models.response import receptance
 from updating.models.state import NOMINAL, State
@@ -107,22 +108,11 @@ def test_an_accepted_window_is_in_the_model_s_frfs() -> None:
 
 def test_the_derivative_by_a_window_s_decay_against_differences() -> None:
     measured, frfs = hit_beam(CANTILEVER, "exponential_window", order=2, decay=6.0)
-    predictor, ends = Predictor(CANTILEVER, measured), columns(frfs)
-    parameter_set = build_parameter_set(["exponential_window"], predictor, Tolerances(), {})
-    model_parameter, s = parameter_set.model_parameters[0], frfs.laplace[::20]
-    here = evaluate(predictor, parameter_set.state(predictor, [6.0]), ends, s, order=2)
-    by = sensitivity(here, changes(predictor, parameter_set, [6.0], ends, NOMINAL)[0], ends)
-    sides = [
-        evaluate(
-            predictor,
-            State(decay=model_parameter.value(model_parameter.coordinate(6.0) + d)),
-            ends,
-            s,
-            order=2,
-        ).receptance
-        for d in (-1e-4, 1e-4)
-    ]
-    assert by == pytest.approx((sides[1] - sides[0]) / 2e-4, abs=1e-5 * np.abs(by).max())
+    stage = stage_of(CANTILEVER, measured, frfs, ["exponential_window"])
+    stage = stage.lines(np.arange(0, len(frfs.laplace), 20))
+    (parameter,) = stage.model_parameters
+    by, difference = slopes_and_differences(stage, np.array([parameter.coordinate(6.0)]), 1e-4)
+    assert by == pytest.approx(difference, abs=1e-5 * np.abs(by).max())
 
 
 @pytest.mark.parametrize(

@@ -140,6 +140,7 @@ def test_a_state_that_has_the_mode_by_another_cause_knows_it_too() -> None:
     assert not off.stated.all()
 
 
+@pytest.mark.long
 def test_what_explains_all_modes_needs_nothing_that_hangs_beside_it() -> None:
     spring = LIBRARY["ground_spring"]
     test = exactly(LOOK, LOOK.predict(spring.state(LOOK, PROPPED), count=6))

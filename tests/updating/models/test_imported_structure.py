@@ -427,7 +427,9 @@ def test_regions_of_a_lumped_beam_against_guyan(elements: int) -> None:
     )
     mass = np.diag(shares[0] + 1.3 * shares[1])
     expected = linalg.eigh(condensed, mass, eigvals_only=True, subset_by_index=(0, 4))
-    assert reduced(imported).eigen(state)[0][:5] == pytest.approx(expected, rel=1e-5)
+    # of 230 elements the basis errs by 5e-6 of a frequency, rounding by 2e-6: eps times largest over lowest eigenvalue
+    found = reduced(imported).eigen(state)[0][:5]
+    assert np.sqrt(found) == pytest.approx(np.sqrt(expected), rel=1e-5)
 
 
 def test_a_body_is_factored_by_its_places(rng: np.random.Generator) -> None:
@@ -450,8 +452,11 @@ def test_a_body_is_factored_by_its_places(rng: np.random.Generator) -> None:
     assert negative_pivots(factored(Sparse(held.tocsr()), places)) == (1, row + 1)
 
 
-def test_a_reduced_basis_knows_regions_that_change(rng: np.random.Generator) -> None:
-    """Ten modes of a beam in four parts, two of them changed: within 0.02 % of the full model."""
+def test_a_reduced_basis_knows_regions_that_change() -> None:
+    """A basis of ten modes of a beam in four parts, two of them changed: within 0.02 % of the full model.
+
+    The tenth mode errs most, by 6e-6 to 2e-5; rounding is far less, 1e-10 (eps times largest over tenth eigenvalue).
+    """
     ends = [0, 20, 40, 60, 80]
     parts = [beam_matrices(80, a, b) for a, b in itertools.pairwise(ends)]
     held = np.arange(2, 162)
@@ -464,13 +469,13 @@ def test_a_reduced_basis_knows_regions_that_change(rng: np.random.Generator) -> 
     regions = tuple(Region(f"r{i}", (0.0, 1.0)) for i in range(4))
     spec = Spec("matrices", LENGTH, 0.1, 0.1, (), (), "imported", Material(1, 1), regions, imported=imported)
     structure = build_structure(spec)
-    reduced = reduce_structure(structure, table.places[[20, 79]], modes=14)
+    reduced = reduce_structure(structure, table.places[[20, 79]], modes=10)
     assert reduced.basis.shape[1] < 80
     for state in (State(regional={(1, "E"): 0.7, (2, "E"): 1.2}), State(regional={(3, "density"): 1.3})):
         stiffness, mass = structure.matrices(state)
         exact = np.sqrt(structure.eigen(10, stiffness=stiffness, mass=mass)[0])
         found = np.sqrt(reduced.eigen(state)[0][:10])
         assert found == pytest.approx(exact, rel=2e-4)
-        worst = int(np.argmax(found / exact))
-        off = reduction_error(reduced, state, 10)
-        assert off[worst] == pytest.approx(found[worst] / exact[worst] - 1, rel=0.5)
+        error = found / exact - 1
+        assert int(np.argmax(error)) == 9
+        assert reduction_error(reduced, state, 10)[9] == pytest.approx(error[9], rel=0.5)

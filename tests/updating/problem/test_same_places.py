@@ -40,6 +40,7 @@ def test_rows_are_found_by_place() -> None:
     assert same_points(test, renumbered(baseline, order)).tolist() == np.argsort(order).tolist()
 
 
+@pytest.mark.long
 def test_a_baseline_under_other_numbers_gives_the_same_answer() -> None:
     """No gap, whatever the points are called: what the model's shapes miss the baseline has shown."""
     test, baseline = pair()

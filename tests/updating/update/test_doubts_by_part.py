@@ -199,6 +199,7 @@ def test_a_diagnosis_doubts_regions_by_their_own_tolerances_and_bounds() -> None
         assert here.constants_by[:, :, k] == pytest.approx(slopes, abs=1e-6 * np.abs(slopes).max() + 1e-12)
 
 
+@pytest.mark.long
 def test_a_change_within_the_doubt_of_its_region_is_no_gap() -> None:
     logs = np.array([0.0, 0.12, 0.0, 0.0, 0.0])
     sharp = diagnose(storeys(logs, 5, Tolerances({"E": 0.001}), shapes=0.01))

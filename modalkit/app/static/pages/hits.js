@@ -82,7 +82,7 @@ export function open(root, app) {
       checked: v.used,
       "aria-label": `use hit ${v.hit} at ${v.point}`,
       "data-hit": `${v.point}:${v.hit}`,
-      change: () => judged(v, box.checked),
+      change: () => app.quiet(judged(v, box.checked)),
     });
     return h(
       "div",

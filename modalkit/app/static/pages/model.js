@@ -69,7 +69,7 @@ export function open(root, app) {
               view.frf,
               (v) => {
                 view.frf = Number(v);
-                moved();
+                app.quiet(moved());
               },
             ),
           )
@@ -212,7 +212,7 @@ export function open(root, app) {
           },
           { disabled: !anything, id: "slide-reset" },
         ),
-        effect ? button("Put the effect into the model", () => put(effect), { id: "slide-put" }) : null,
+        effect ? button("Put the effect into the model", () => app.quiet(put(effect)), { id: "slide-put" }) : null,
       ),
     );
   }

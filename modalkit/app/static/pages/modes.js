@@ -80,7 +80,7 @@ export function open(root, app) {
       id: "pick-hertz",
     });
     const pickNow = () => {
-      if (Number(hertz.value) > 0) picked(Number(hertz.value));
+      if (Number(hertz.value) > 0) app.quiet(picked(Number(hertz.value)));
     };
     hertz.addEventListener("keydown", entered(pickNow));
     const chips = [
@@ -208,7 +208,7 @@ export function open(root, app) {
         chosenRow(mode);
         return;
       }
-      picked(point.x);
+      app.quiet(picked(point.x));
     });
   }
 
