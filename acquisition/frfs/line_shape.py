@@ -89,10 +89,10 @@ def _averaged(z: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
 def _quotients(z: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """Return (e^z - 1) / z, (e^z - 1 - z) / z^2 and (e^z - 1 - z - z^2 / 2) / z^3."""
     near = np.abs(z) < _SMALL
-    away = np.where(near, 1.0, z)
-    one = np.expm1(away) / away
-    two = (one - 1.0) / away
-    three = (two - 0.5) / away
+    away: ComplexArray = np.asarray(np.where(near, 1.0, z), complex)
+    one: ComplexArray = np.asarray(np.expm1(away) / away, complex)
+    two: ComplexArray = np.asarray((one - 1.0) / away, complex)
+    three: ComplexArray = np.asarray((two - 0.5) / away, complex)
     if near.any():
         factor = [np.cumprod(1.0 / np.arange(first, first + _TERMS)) for first in (1, 2, 3)]
         small = z[near][:, None] ** np.arange(_TERMS)
