@@ -45,7 +45,7 @@ def search_weights(frfs: FrfSet, fit: Fit) -> Weights:
 def _unknowns(fit: Fit) -> float:
     """Return how many real numbers a fit takes from each FRF, its share of the poles included."""
     n_frf, n_modes = fit.linear.residues.shape
-    return 2.0 * n_modes * (1.0 + 1.0 / n_frf) + len(fit.linear.powers)
+    return float(2.0 * n_modes * (1.0 + 1.0 / n_frf) + len(fit.linear.powers))
 
 
 def decay_over_record(frfs: FrfSet, poles: ComplexArray) -> FloatArray:
