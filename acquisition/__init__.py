@@ -5,7 +5,14 @@ from typing import TYPE_CHECKING
 from acquisition.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from acquisition.columns import Layout, layout_from, read_columns, read_frf_columns, read_layout
+    from acquisition.columns import (
+        Layout,
+        layout_from,
+        propose_layout,
+        read_columns,
+        read_frf_columns,
+        read_layout,
+    )
     from acquisition.dof import Dof
     from acquisition.errors import EstimationError, InputError, ModalkitError, StudyError
     from acquisition.form import FORMS
@@ -85,6 +92,7 @@ __all__ = [
     "judge_hits",
     "layout_from",
     "modal_system",
+    "propose_layout",
     "propose_trigger",
     "random_error",
     "read_columns",
@@ -112,7 +120,7 @@ load_on_demand(
     __name__,
     {
         ".frfs.bootstrap": "bootstrap_frfs",
-        ".columns": "Layout layout_from read_columns read_frf_columns read_layout",
+        ".columns": "Layout layout_from propose_layout read_columns read_frf_columns read_layout",
         ".dof": "Dof",
         ".errors": "EstimationError InputError ModalkitError StudyError",
         ".frfs.estimators": "estimate_frfs random_error",

@@ -11,12 +11,14 @@ from acquisition.frfs.frf import FrfSet
 from acquisition.mat.read import read_mat
 from acquisition.modal_data import ModalData
 from acquisition.own_readers import Found, Reader, installed_readers, read_by, with_dot
+from acquisition.recorders import ENDINGS, is_recorded
 from acquisition.uff import UffContent, read_uff
 
 UFF = frozenset({".uff", ".unv", ".uf", ".bunv"})
 """Endings of universal files."""
 COLUMNS = frozenset({".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm"})
 """Endings of column text."""
+LAYOUT = "`modalkit inspect FILES --write-layout layout.toml` writes one to correct"
 
 
 def read_test(
@@ -110,8 +112,15 @@ def written_as_uff(path: Path | str) -> bool:
 
 def _advice(path: Path, own: Mapping[str, Reader]) -> str:
     if path.suffix.lower() == ".mat":
-        return "a MATLAB file needs a layout file with a table [mat] that names its variables; see docs/howto/matlab.md"
+        return (
+            "a MATLAB file needs a layout file: a table [mat] names FRFs or modes, [[column]] names time records; see "
+            "docs/howto/matlab.md"
+        )
     if path.suffix.lower() in COLUMNS:
-        return "column text needs a layout file with rate, units and points; see docs/howto/column_text.md"
-    known = ", ".join(sorted({*UFF, *COLUMNS, ".mat", *own}))
+        return f"column text needs a layout file with rate, units and points; {LAYOUT} (docs/howto/column_text.md)"
+    if is_recorded(path):
+        return (
+            f"needs a layout file with units and points of its channels; {LAYOUT} (docs/howto/recorders.md)"
+        )
+    known = ", ".join(sorted({*UFF, *COLUMNS, *ENDINGS, *own}))
     return f"no reader for {path.suffix or 'files without ending'}; known are {known}; see docs/howto/own_reader.md"

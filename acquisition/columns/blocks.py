@@ -12,6 +12,7 @@ import numpy as np
 from acquisition.arrays import FloatArray
 from acquisition.columns.layout import Layout
 from acquisition.errors import InputError
+from acquisition.recorders.channels import Channels
 
 SEPARATORS = {"tab": "\t", "space": None, "comma": ",", "semicolon": ";"}
 
@@ -45,63 +46,45 @@ def _unquoted(field: str) -> str:
     return field[1:-1] if len(field) > 1 and field[0] == field[-1] == '"' else field
 
 
-@dataclass(frozen=True, eq=False)
-class Block:
-    """Lines of numbers under one heading: one hit, or one table of FRFs.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Block(Channels):
+    """Lines of numbers under one heading.
 
     Parameters
     ----------
-    path : Path
-        The file.
-    names : tuple of str
-        Headings of the columns; empty where there are none.
     lines : tuple of str
         The lines of numbers.
     first : int
         Number of the first of them in the file, from 1.
     style : Style
         How they are written.
-    rate : float or None
-        Sampling rate that the file states [Hz].
-    units : mapping of int to str
-        Units that the file states, by column.
     strict : bool
         Whether every line must have as many fields as the first.
     """
 
-    path: Path
-    names: tuple[str, ...]
     lines: tuple[str, ...]
     first: int
     style: Style
-    rate: float | None
-    units: dict[int, str]
     strict: bool = True
 
-    def index_of(self, column: int | str | None, label: str) -> int:
-        """Return the number of a column given by number or heading.
+    @property
+    def width(self) -> int:
+        """How many columns the first line has."""
+        return len(self.style.split(self.lines[0]))
 
-        Raises
-        ------
-        InputError
-            If there is no such column, or several.
-        """
-        width = len(self.style.split(self.lines[0]))
-        if isinstance(column, int):
-            if not 0 <= column < width:
-                raise InputError(
-                    f"{self.path}, line {self.first}: {label} is not there; "
-                    f"the line has {width} columns, counted from 0"
-                )
-            return column
-        places = [i for i, name in enumerate(self.names) if name == column]
-        if len(places) != 1:
-            found = "twice there" if places else "not there"
-            heads = ", ".join(repr(n) for n in self.names if n) or "none"
-            raise InputError(
-                f"{self.path}, line {self.first - 1}: {label} is {found}; the headings are {heads}"
-            )
-        return places[0]
+    @property
+    def where(self) -> str:
+        """The file and the first line of numbers."""
+        return f"{self.path}, line {self.first}"
+
+    @property
+    def where_names(self) -> str:
+        """The file and the line of the headings."""
+        return f"{self.path}, line {self.first - 1}"
+
+    def line(self, sample: int) -> str:
+        """Return the file and the line of a sample, from 0."""
+        return f"{self.path}, line {self.first + sample}"
 
     def numbers(self, index: Sequence[int]) -> FloatArray:
         """Return columns as numbers, shape (n_lines, len(index)).
@@ -112,7 +95,8 @@ class Block:
             If a line is short, a field is no number, or a number is not finite.
         """
         between = self.style.separator or " "
-        lines = [between.join(self.style.split(line)) if '"' in line else line for line in self.lines]
+        rows = self.lines[: self.count_of(index)]
+        lines = [between.join(self.style.split(line)) if '"' in line else line for line in rows]
         if self.style.decimal != ".":
             lines = [line.replace(self.style.decimal, ".") for line in lines]
         try:
@@ -133,8 +117,8 @@ class Block:
 
     def _first_fault(self, index: Sequence[int]) -> InputError:
         """Return the error for the first line that cannot be used."""
-        width = len(self.style.split(self.lines[0]))
-        for number, line in enumerate(self.lines, start=self.first):
+        width = self.width
+        for number, line in enumerate(self.lines[: self.count_of(index)], start=self.first):
             fields = self.style.split(line)
             if len(fields) <= max(index) or (self.strict and len(fields) != width):
                 return InputError(
@@ -179,7 +163,8 @@ def read_text(path: Path) -> list[str]:
             raise InputError(
                 f"{path}: marked as UTF-16 and is not ({error.reason}); export it again"
             ) from error
-    if len(raw.rstrip(b"\x1a").translate(None, _CONTROL)) < len(raw.rstrip(b"\x1a")):
+    raw = raw.rstrip(b"\x1a")
+    if len(raw.translate(None, _CONTROL)) < len(raw):
         raise InputError(
             f"{path}: damaged, or binary, no column text; export it as text, or write a reader "
             "(docs/howto/own_reader.md)"
@@ -225,7 +210,8 @@ def plain_blocks(
         elif body and style is not None:
             _check_above(above, first - 1, style, least, path)
             names = _heading(above, style, wanted) or (blocks[-1].names if blocks else ())
-            blocks.append(Block(path, names, tuple(body), first, style, layout.rate, {}))
+            rows = _without_trailer(body, style)
+            blocks.append(Block(path=path, names=names, lines=rows, first=first, style=style))
             body, above = [], []
         elif not blank:
             found = _style(line, layout, least) if style is None else _same(line, style, least)
@@ -239,6 +225,25 @@ def plain_blocks(
         )
     _check_below(above, len(lines), blocks[-1].style, path)
     return blocks
+
+
+def _without_trailer(body: Sequence[str], style: Style) -> tuple[str, ...]:
+    """Return the lines of numbers without the lines of words that some programs write right behind them."""
+    stop = len(body)
+    while stop > 1 and _is_of_words(body[stop - 1], style):
+        stop -= 1
+    return tuple(body[:stop])
+
+
+def _is_of_words(line: str, style: Style) -> bool:
+    """Tell whether a line begins with a word and has one number at most: a row with a fault has more, or begins so."""
+    fields = [entry for entry in style.split(line) if entry]
+    numbers = sum(style.is_number(entry) for entry in fields)
+    return _WORD.match(line) is not None and not style.is_number(fields[0]) and numbers < 2
+
+
+_WORD = re.compile(r"[^\w+-.]*[^\W\d_]{2}")
+"""How a line of words begins."""
 
 
 def _check_below(below: Sequence[str], number: int, style: Style, path: Path) -> None:

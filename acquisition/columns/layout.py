@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from acquisition.columns.mat_layout import MatLayout, mat_layout
+from acquisition.columns.rules import FileRule, check_rule
 from acquisition.columns.units import QUANTITIES
 from acquisition.dof import Dof
 from acquisition.encoding import not_utf8
@@ -45,8 +46,8 @@ class Column:
         Heading of the column; instead of ``index``.
     unit : str
         Unit of the numbers; "" for SI, or for what a LabVIEW header says.
-    scale : float
-        Factor by which the numbers are multiplied first [-].
+    scale : float or None
+        Factor by which the numbers are multiplied first [-]; None is 1, where the file states units.
     part : str
         Of FRFs: "real", "imag", "magnitude" or "phase" (in degrees).
     reference_node : int
@@ -61,7 +62,7 @@ class Column:
     index: int | None = None
     name: str | None = None
     unit: str = ""
-    scale: float = 1.0
+    scale: float | None = None
     part: str = "real"
     reference_node: int = 1
     reference_direction: str = "+z"
@@ -88,29 +89,6 @@ few more misprints for windows [1/s]."""
 
 
 @dataclass(frozen=True)
-class FileRule:
-    """Another point for a column in some of the files: the hammer that roves from file to file.
-
-    Parameters
-    ----------
-    match : str
-        Pattern of file names, as ``point_07_*.csv``.
-    node : int
-        Node in these files.
-    direction : str
-        Direction in these files; "" for that of the column.
-    column : str or int
-        Heading or number of the column; "" for the force. Of FRFs either column of the two, whose response it
-        places.
-    """
-
-    match: str
-    node: int
-    direction: str = ""
-    column: str | int = ""
-
-
-@dataclass(frozen=True)
 class Layout:
     """How to read column text.
 
@@ -121,7 +99,9 @@ class Layout:
     files : tuple of FileRule
         Points that differ from file to file.
     rate : float or None
-        Sampling rate [Hz]; None to take it from a time column or a LabVIEW header.
+        Sampling rate [Hz]; None to take it from a time column or from the file.
+    rate_variable : str or None
+        Which array of a file of named arrays is the sampling rate [Hz].
     time_column, frequency_column : int, str or None
         Number or heading of the column of times [s], or frequencies of FRFs [Hz].
     separator : str
@@ -145,6 +125,7 @@ class Layout:
     columns: tuple[Column, ...]
     files: tuple[FileRule, ...] = ()
     rate: float | None = None
+    rate_variable: str | None = None
     time_column: int | str | None = None
     frequency_column: int | str | None = None
     separator: str = "auto"
@@ -222,6 +203,8 @@ def layout_from(table: Mapping[str, Any], *, source: str = "layout") -> Layout:
         _check_column(column, f"{source}: [[column]] {n + 1}")
     for n, rule in enumerate(files):
         _check_rule(rule, columns, f"{source}: [[file]] {n + 1}")
+    if layout.rate is not None and layout.rate_variable is not None:
+        raise InputError(f"{source}: rate and rate_variable are both given; leave one out")
     if layout.rate is not None and layout.rate <= 0:
         raise InputError(f"{source}: rate = {layout.rate:g}; give the sampling rate in Hz")
     if not 0 <= layout.decay <= FASTEST:
@@ -290,8 +273,9 @@ def _check_rule(rule: FileRule, columns: tuple[Column, ...], where: str) -> None
             f"{where}: no [[column]] is {rule.column!r}; they are {', '.join(map(repr, known))}, or leave it out for "
             "the force"
         )
+    check_rule(rule, where)
     try:
-        dof_of(rule.node, rule.direction or "+z")
+        dof_of(rule.node or 0, rule.direction or "+z")
     except InputError as error:
         raise InputError(f"{where}: {error}") from error
 

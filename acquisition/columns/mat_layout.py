@@ -21,6 +21,9 @@ class MatLayout:
     ----------
     frequency : str
         Variable with the lines, or the modes' frequencies [Hz]; a field of a structure with a dot, ``"test.f"``.
+    rate : str
+        Of FRFs without a variable of lines: variable with the sampling rate [Hz]; ``samples`` of the layout is then the
+        number of samples that were transformed.
     frfs : str
         Variable with the FRFs; "" for modes.
     axes : tuple of str
@@ -40,7 +43,8 @@ class MatLayout:
         Whether the shapes are mass-normalised.
     """
 
-    frequency: str
+    frequency: str = ""
+    rate: str = ""
     frfs: str = ""
     axes: tuple[str, ...] = AXES
     quantity: str = "accelerance"
@@ -70,8 +74,12 @@ def mat_layout(table: Any, source: str) -> MatLayout:
         if key not in known:
             raise InputError(f"{source}: [mat] has unknown key {key!r}; keys are {', '.join(known)}")
         values[key] = _value(value, known[key].default, f"{source}: [mat] {key}")
-    if not values.get("frequency"):
-        raise InputError(f"{source}: [mat] names no frequency; give the variable of lines or of modes")
+    if bool(values.get("frequency")) == bool(values.get("rate")) or (
+        values.get("rate") and not values.get("frfs")
+    ):
+        raise InputError(
+            f"{source}: [mat] needs the frequency of lines or of modes; of FRFs without it, rate in its place"
+        )
     layout = MatLayout(**values)
     _check(layout, source)
     return layout

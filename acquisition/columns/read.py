@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
 
 from acquisition.arrays import FloatArray
-from acquisition.columns.blocks import Block, plain_blocks, read_text
+from acquisition.columns.blocks import plain_blocks, read_text
 from acquisition.columns.layout import Column, Layout, dof_of, read_layout
 from acquisition.columns.lvm import is_lvm, lvm_blocks
+from acquisition.columns.rules import FileRule, check_rules, rules_for
 from acquisition.columns.units import QUANTITIES, factor_to_si
 from acquisition.display import named_files
 from acquisition.dof import Dof
@@ -20,9 +20,9 @@ from acquisition.errors import InputError
 from acquisition.form import Form
 from acquisition.geometry import Geometry
 from acquisition.hits.hammer import HammerTest, Hits
+from acquisition.recorders import SAME_RATE, Channels, is_recorded, recorded
 
 UNEVEN = 0.5  # of the usual step: times that miss their place by more are uneven
-SAME_RATE = 1e-4  # relative difference of rates that are the same
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ def read_columns(
     files = [Path(p) for p in ([paths] if isinstance(paths, str | Path) else paths)]
     if not files:
         raise InputError(f"{plan.source}: no files to read")
-    check_rules(plan, files)
+    check_rules(plan.files, files, plan.source)
     form = _form(plan)
     records = [record for path in files for record in _records(path, plan)]
     rates = np.array([r.rate for r in records])
@@ -88,25 +88,42 @@ def read_columns(
     )
 
 
-def blocks_of(path: Path, layout: Layout) -> list[Block]:
-    """Return the blocks of numbers of a file.
+def blocks_of(path: Path, layout: Layout) -> Sequence[Channels]:
+    """Return the records of a file, or the blocks of numbers of a text.
 
     Raises
     ------
     InputError
         If there are none.
     """
+    axes = [c for c in (layout.time_column, layout.frequency_column) if c is not None]
+    keys = [c.index if c.name is None else c.name for c in layout.columns] + axes
+    if is_recorded(path):
+        return recorded(path, keys, rate_variable=layout.rate_variable)
+    if layout.rate_variable is not None:
+        raise InputError(
+            f"{path}: rate_variable in {layout.source} is for files of named arrays; give rate or time_column for text"
+        )
     lines = read_text(path)
     if is_lvm(lines):
         return lvm_blocks(path, lines)
-    axes = [c for c in (layout.time_column, layout.frequency_column) if c is not None]
-    keys = [c.index if c.name is None else c.name for c in layout.columns] + axes
     numbers = [k for k in keys if isinstance(k, int)]
     least = max(len(set(keys)), max(numbers, default=0) + 1 if not layout.skip else 1)
     return plain_blocks(path, lines, layout, least, [k for k in keys if isinstance(k, str)])
 
 
-def scaled(block: Block, columns: Sequence[Column], more: Sequence[int] = ()) -> FloatArray:
+def indices(block: Channels, columns: Sequence[Column]) -> list[int]:
+    """Return where the columns of a layout are in a block.
+
+    Raises
+    ------
+    InputError
+        If one is not there.
+    """
+    return [block.index_of(c.index if c.name is None else c.name, c.label) for c in columns]
+
+
+def scaled(block: Channels, columns: Sequence[Column], more: Sequence[int] = ()) -> FloatArray:
     """Return columns of a block in SI units, shape (n_columns + n_more, n_lines); ``more`` are left as they are.
 
     Raises
@@ -114,11 +131,17 @@ def scaled(block: Block, columns: Sequence[Column], more: Sequence[int] = ()) ->
     InputError
         If a column or unit is not there.
     """
-    index = [block.index_of(c.index if c.name is None else c.name, c.label) for c in columns]
+    index = indices(block, columns)
     factors = []
     for place, c in zip(index, columns, strict=True):
         unit = c.unit or block.units.get(place, "")
-        factors.append(c.scale * factor_to_si(unit, c.quantity, f"{block.path}: {c.label}"))
+        if block.needs_scale and c.scale is None:
+            raise InputError(
+                f"{block.path}: {c.label} holds parts of the full scale; give scale = ..., the value at full scale in "
+                "the unit of the column"
+            )
+        scale = 1.0 if c.scale is None else c.scale
+        factors.append(scale * factor_to_si(unit, c.quantity, f"{block.path}: {c.label}"))
     values = block.numbers([*index, *more]).T
     values[: len(index)] *= np.array(factors)[:, None]
     return values
@@ -151,8 +174,9 @@ def _records(path: Path, layout: Layout) -> list[_Record]:
         timed = layout.rate is None and layout.time_column is not None
         more = [block.index_of(layout.time_column, f"time_column {layout.time_column!r}")] if timed else []
         values = scaled(block, [force, *responses], more)
-        rate = _even_rate(values[-1], block) if timed else _stated_rate(block, layout)
-        where = f"{path}, line {block.first}"
+        index = indices(block, columns)
+        rate = _even_rate(values[-1], block) if timed else _stated_rate(block, index, layout)
+        where = block.where
         if layout.samples is not None and values.shape[1] < layout.samples:
             raise InputError(f"{where}: {values.shape[1]} samples; the layout asks for {layout.samples}")
         values = values[:, : layout.samples]
@@ -164,38 +188,27 @@ def _records(path: Path, layout: Layout) -> list[_Record]:
     return records
 
 
-def check_rules(layout: Layout, files: Sequence[Path]) -> None:
-    """Refuse files that no rule of the layout places while a rule places no file: one of them is misspelt.
-
-    Raises
-    ------
-    InputError
-        If there are such.
-    """
-    lost = [f for f in files if not any(fnmatch(f.name, rule.match) for rule in layout.files)]
-    idle = [rule.match for rule in layout.files if not any(fnmatch(f.name, rule.match) for f in files)]
-    if lost and idle:
-        raise InputError(
-            f"{lost[0]}: no [[file]] rule of {layout.source} matches it, and the rule {idle[0]!r} matches no file; "
-            "correct the one or the other, or where it was hit is a guess"
-        )
-
-
 def _in_file(column: Column, path: Path, layout: Layout) -> Column:
-    """Return the column with the point that it has in this file."""
-    for rule in layout.files:
-        named = (
-            column.quantity == "force" if rule.column == "" else rule.column in (column.name, column.index)
-        )
-        if named and fnmatch(path.name, rule.match):
+    """Return the column as it is in this file: of point, unit and scale, what the first rule states."""
+    for rule in reversed(rules_for(layout.files, path)):
+        if column.quantity == "force" if rule.column == "" else rule.column in (column.name, column.index):
+            column = with_unit(column, rule)
             direction = rule.direction or column.direction
-            dof_of(rule.node, direction)
-            return replace(column, node=rule.node, direction=direction)
+            column = replace(
+                column, node=column.node if rule.node is None else rule.node, direction=direction
+            )
+    dof_of(column.node, column.direction)
     return column
 
 
-def _stated_rate(block: Block, layout: Layout) -> float:
-    stated, given = block.rate, layout.rate
+def with_unit(column: Column, rule: FileRule) -> Column:
+    """Return a column with the unit and scale that a rule states."""
+    scale = column.scale if rule.scale is None else rule.scale
+    return replace(column, unit=rule.unit or column.unit, scale=scale)
+
+
+def _stated_rate(block: Channels, index: Sequence[int], layout: Layout) -> float:
+    stated, given = block.rate_of(index), layout.rate
     if stated is None and given is None:
         raise InputError(
             f"{block.path}: no sampling rate; add rate = ... [Hz] or time_column = ... to {layout.source}"
@@ -208,16 +221,16 @@ def _stated_rate(block: Block, layout: Layout) -> float:
     return float(stated if given is None else given)  # type: ignore[arg-type]
 
 
-def _even_rate(time: FloatArray, block: Block) -> float:
+def _even_rate(time: FloatArray, block: Channels) -> float:
     """Return the rate of times that are even, as far as they are written out [Hz]."""
     steps = np.diff(time)
     usual = float(np.median(steps)) if len(steps) else 0.0
     if usual <= 0:
-        raise InputError(f"{block.path}, line {block.first}: the times do not increase; check time_column")
+        raise InputError(f"{block.where}: the times do not increase; check time_column")
     odd = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
     if len(odd):
         raise InputError(
-            f"{block.path}, line {block.first + int(odd[0]) + 1}: uneven time, a step of {steps[odd[0]]:g} s where "
+            f"{block.line(int(odd[0]) + 1)}: uneven time, a step of {steps[odd[0]]:g} s where "
             f"{usual:g} s is usual; samples are missing: resample the record or cut it before the gap"
         )
     return float((len(time) - 1) / (time[-1] - time[0]))

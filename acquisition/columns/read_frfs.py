@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
 
 from acquisition.arrays import ComplexArray, FloatArray
-from acquisition.columns.blocks import Block
 from acquisition.columns.layout import Column, Layout, read_layout
-from acquisition.columns.read import blocks_of, check_rules, scaled
+from acquisition.columns.read import blocks_of, scaled, with_unit
+from acquisition.columns.rules import FileRule, check_rules, rules_for
 from acquisition.columns.units import QUANTITIES
 from acquisition.display import named_files
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frfs.frf import FrfSet
+from acquisition.recorders import Channels
 
 SAME_AXIS = 1e-6  # of the highest frequency
 
@@ -47,7 +47,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
             f"{plan.source}: FRFs need frequency_column, and columns of one quantity: accelerance, mobility or "
             "receptance"
         )
-    check_rules(plan, files)
+    check_rules(plan.files, files, plan.source)
     axes, rows = [], []
     found: dict[tuple[Dof, Dof], str] = {}
     for block in (block for path in files for block in blocks_of(path, plan)):
@@ -61,7 +61,7 @@ def read_frf_columns(paths: Path | str | Sequence[Path | str], layout: Layout | 
             axes[0], axes[-1], rtol=0, atol=SAME_AXIS * axes[0].max()
         )
         if not same:
-            raise InputError(f"{block.path}, line {block.first}: another frequency axis than {files[0]}")
+            raise InputError(f"{block.where}: another frequency axis than {files[0]}")
     return FrfSet(
         frequency=axes[0],
         values=np.stack(rows),
@@ -98,19 +98,23 @@ def _pairs(layout: Layout) -> list[tuple[Column, Column]]:
 
 
 def _in_file(pair: tuple[Column, Column], path: Path, layout: Layout) -> tuple[Column, Column]:
-    """Return the columns of an FRF with the points that they have in this file: of the force, and of the response."""
-    first, second = pair
-    for rule in reversed([rule for rule in layout.files if fnmatch(path.name, rule.match)]):  # the first wins
-        if rule.column == "":
-            direction = rule.direction or first.reference_direction
-            first = replace(first, reference_node=rule.node, reference_direction=direction)
-        elif any(rule.column in (c.name, c.index) for c in pair):
-            first = replace(first, node=rule.node, direction=rule.direction or first.direction)
-    return first, second
+    """Return the columns of an FRF as they are in this file: points of force and response, units of what has one."""
+    for rule in reversed(rules_for(layout.files, path)):  # the first wins
+        if rule.column == "" or any(rule.column in (c.name, c.index) for c in pair):
+            first, second = (c if c.part == "phase" else with_unit(c, rule) for c in pair)
+            pair = _placed(first, rule), second
+    return pair
+
+
+def _placed(column: Column, rule: FileRule) -> Column:
+    """Return a column with the point that a rule gives the response, or the force where it names no column."""
+    of = "reference_" if rule.column == "" else ""
+    stated = {f"{of}node": rule.node, f"{of}direction": rule.direction}
+    return replace(column, **{key: value for key, value in stated.items() if value not in (None, "")})
 
 
 def _note(
-    found: dict[tuple[Dof, Dof], str], pairs: Sequence[tuple[Column, Column]], block: Block, layout: Layout
+    found: dict[tuple[Dof, Dof], str], pairs: Sequence[tuple[Column, Column]], block: Channels, layout: Layout
 ) -> None:
     """Note which FRFs a block holds.
 
@@ -119,7 +123,7 @@ def _note(
     InputError
         If another block holds one of them.
     """
-    where = f"{block.path}, line {block.first}"
+    where = block.where
     for key in ((pair[0].dof, pair[0].reference) for pair in pairs):
         if key in found:
             raise InputError(

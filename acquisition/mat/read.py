@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from fnmatch import fnmatch
 from pathlib import Path
 
 import numpy as np
@@ -11,14 +10,15 @@ import numpy as np
 from acquisition.arrays import AnyArray, FloatArray
 from acquisition.columns.layout import Layout, dof_of, read_layout
 from acquisition.columns.mat_layout import AXES, MatLayout
+from acquisition.columns.rules import rules_for
 from acquisition.columns.units import QUANTITIES, factor_to_si
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.frfs.frf import FrfSet
 from acquisition.geometry import Geometry
-from acquisition.mat.file import variables
 from acquisition.modal_data import ModalData
 from acquisition.modes.checks import check_frequencies, checked
+from acquisition.recorders.matlab.file import variables
 
 
 def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalData:
@@ -43,7 +43,8 @@ def read_mat(path: Path | str, layout: Layout | Path | str) -> FrfSet | ModalDat
             f"{path}: {plan.source} has no table [mat] that names the variables; see docs/howto/matlab.md"
         )
     if plan.mat.frfs:
-        return read_mat_frfs(path, _placed(plan, Path(path)), geometry=plan.nodes, decay=plan.decay)
+        placed = _placed(plan, Path(path))
+        return read_mat_frfs(path, placed, geometry=plan.nodes, decay=plan.decay, samples=plan.samples)
     if plan.files:
         raise InputError(
             f"{plan.source}: [[file]] places the FRFs of a file, and [mat] names modes, whose points are dofs; leave "
@@ -63,11 +64,13 @@ def _placed(plan: Layout, path: Path) -> MatLayout:
     assert plan.mat is not None
     if not plan.files:
         return plan.mat
-    rule = next((rule for rule in plan.files if fnmatch(path.name, rule.match)), None)
-    if rule is None or len(plan.mat.references) != 1:
+    rule = next(iter(rules_for(plan.files, path)), None)
+    if rule is None or rule.node is None or len(plan.mat.references) != 1:
         why = (
             f"no [[file]] rule of {plan.source} matches it"
             if rule is None
+            else f"a [[file]] rule of {plan.source} gives no node; unit and scale of FRFs are said in [mat]"
+            if rule.node is None
             else f"a [[file]] rule of {plan.source} places one reference, and [mat] has {len(plan.mat.references)}"
         )
         raise InputError(f"{path}: {why}; correct the rules, or leave them out")
@@ -77,10 +80,20 @@ def _placed(plan: Layout, path: Path) -> MatLayout:
     )
 
 
-def read_mat_frfs(path: Path | str, layout: MatLayout, *, geometry: Geometry, decay: float = 0.0) -> FrfSet:
-    """Read FRFs; see `read_mat`."""
-    held = variables(Path(path), [layout.frequency, layout.frfs])
-    lines = _vector(held[layout.frequency], layout.frequency, path)
+def read_mat_frfs(
+    path: Path | str,
+    layout: MatLayout,
+    *,
+    geometry: Geometry,
+    decay: float = 0.0,
+    samples: int | None = None,
+) -> FrfSet:
+    """Read FRFs; see `read_mat`. ``samples`` is the number that were transformed, where the file states no lines."""
+    held = variables(Path(path), [layout.frequency or layout.rate, layout.frfs])
+    if layout.frequency:
+        lines = _vector(held[layout.frequency], layout.frequency, path)
+    else:
+        held[layout.frfs], lines = _one_sided(held[layout.frfs], held[layout.rate], layout, samples, path)
     responses, references = ([Dof.of(d) for d in dofs] for dofs in (layout.responses, layout.references))
     sizes = {"line": len(lines), "response": len(responses), "reference": len(references)}
     values = held[layout.frfs]
@@ -111,6 +124,32 @@ def read_mat_frfs(path: Path | str, layout: MatLayout, *, geometry: Geometry, de
         geometry=geometry,
         source=str(path),
     )
+
+
+def _one_sided(
+    values: AnyArray, rate: AnyArray, layout: MatLayout, samples: int | None, path: Path | str
+) -> tuple[AnyArray, FloatArray]:
+    """Return FRFs up to half the sampling rate, and their lines [Hz], which the transformed samples make.
+
+    Raises
+    ------
+    InputError
+        If rate or samples are not stated, or do not belong to so many lines.
+    """
+    axis = layout.axes.index("line")
+    count = values.shape[axis] if axis < values.ndim else 1
+    if rate.size != 1 or np.iscomplexobj(rate) or not 0 < float(rate.ravel()[0]) < np.inf:
+        raise InputError(f"{path}: {layout.rate!r} is not one positive number; name the sampling rate in Hz")
+    half = None if samples is None else samples // 2 + 1
+    if half is None or count not in (half, samples):
+        stated = "is not stated" if half is None else f"= {samples} has {half} lines up to half the rate"
+        raise InputError(
+            f"{path}: {layout.frfs!r} has {count} lines and no frequency, and samples {stated}; give samples = ... in "
+            f"the layout, the number that were transformed: {2 * count - 2} or {2 * count - 1} if the lines end at "
+            f"half the rate, {count} if they go on to the rate; or name a frequency"
+        )
+    assert samples is not None
+    return np.take(values, np.arange(half), axis=axis), np.arange(half) * float(rate.ravel()[0]) / samples
 
 
 def read_mat_modes(path: Path | str, layout: MatLayout, *, geometry: Geometry) -> ModalData:

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Annotated
 
 import typer
 
@@ -17,7 +18,7 @@ app = typer.Typer(
     cls=CommandsOnDemand,
     help="From hammer hits to modes, to an updated model, to the cause of the gap between test and model.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
 
@@ -27,8 +28,20 @@ _Usage: type[Exception] = typer.BadParameter.__mro__[1]
 _BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
 
+def _version(asked: bool) -> None:
+    if asked:
+        from modalkit import __version__
+
+        sys.stdout.write(f"modalkit {__version__}\n")
+        raise typer.Exit
+
+
 @app.callback()
-def _program() -> None:
+def _program(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="show the version and exit")
+    ] = False,
+) -> None:
     """Stand for the program, which is a group even where it holds one command."""
 
 

@@ -15,9 +15,12 @@ from acquisition import (
     UffContent,
     holds_several_hits,
     judge_hits,
+    propose_layout,
     reciprocity,
     write_uff,
+    written_as_uff,
 )
+from acquisition.columns.proposal import BEGINS
 from acquisition.display import counted, named_files
 from acquisition.warned import in_order
 from modalkit.cli.common import (
@@ -57,8 +60,9 @@ from modalkit.cli.showing import (
     show_rejected,
     show_second_opinion,
 )
-from modalkit.output.destinations import check_outputs, json_of, uff_of
+from modalkit.output.destinations import check_outputs, json_of, text_of, uff_of
 from modalkit.output.modes import modes_kind
+from modalkit.output.whole import write_text
 from modalkit.workflow.existing import Modes
 from modalkit.workflow.files import Progress, read_files
 from modalkit.workflow.identification import Processed, numbered, read, read_frfs, stated
@@ -85,9 +89,17 @@ def inspect(
     decay: Decay = 0.0,
     layout: Layout = None,
     every: Annotated[bool, typer.Option("--all", help="a row for every data set")] = False,
+    write_layout: Annotated[
+        Path | None,
+        typer.Option(
+            "--write-layout", help="write a layout with guesses, to be corrected, and read the files with it"
+        ),
+    ] = None,
 ) -> None:
     """List what is in a file, and what is wrong with it."""
     statement = ProcessingOptions(decay=decay)
+    if write_layout is not None:
+        layout = _written_layout(files, layout, write_layout)
     with reading() as progress:
         content = read_files(files, layout=layout, progress=progress)
     out.print(named_files(files) + (f": {content.title}" if content.title else ""), markup=False)
@@ -110,6 +122,28 @@ def inspect(
     show_warnings([w for w in (*content.warnings, *warnings) if not all_bad or w != bad[0].warning])
     if all_bad:
         raise InputError(bad[0].fault)
+
+
+def _written_layout(files: Sequence[Path], layout: Path | None, place: Path) -> Path:
+    """Write a layout with what the files let one guess, and return where it is.
+
+    Raises
+    ------
+    InputError
+        If a layout is given already, or the files are no columns of numbers.
+    """
+    if layout is not None:
+        raise InputError("--layout and --write-layout are both given; leave one out")
+    check_outputs((place, text_of("a layout", "layout", ".toml", BEGINS)), reads=files)
+    if uff := [path for path in files if written_as_uff(path)]:
+        raise InputError(
+            f"{uff[0]}: a universal file states units and points itself; leave out --write-layout"
+        )
+    write_text(place, propose_layout(files))
+    out.print(
+        f"written: {place}; each line says what was guessed and why: check it before you use it", markup=False
+    )
+    return place
 
 
 def _in_short(content: UffContent) -> pd.DataFrame:

@@ -13,6 +13,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from acquisition.errors import InputError
+from modalkit.cli.arguments import check_words, options_of, words_of
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,8 @@ class Entry:
         In ``modalkit.cli``; its ``add_commands`` adds the command.
     summary : str
         First line of the command's docstring; a test holds it so.
+    options : str
+        Its options and how many values each takes, ``--band 2, --check``; a test holds them, too.
     hidden : bool
         Whether the list of commands leaves it out.
     """
@@ -34,60 +37,102 @@ class Entry:
     name: str
     module: str
     summary: str
+    options: str = ""
     hidden: bool = False
 
 
 ENTRIES = (
-    Entry("inspect", "measuring", "List what is in a file, and what is wrong with it."),
-    Entry("frf", "measuring", "Turn hits into FRFs with coherence, and write them as UFF."),
+    Entry(
+        "inspect",
+        "measuring",
+        "List what is in a file, and what is wrong with it.",
+        "--decay 1, --layout 1, --all, --write-layout 1",
+    ),
+    Entry(
+        "frf",
+        "measuring",
+        "Turn hits into FRFs with coherence, and write them as UFF.",
+        "--output -o 1, --decay 1, --window-on 1, --window 1, --estimator 1, --use 1, --leave 1, "
+        "--layout 1, --sensor-mass 1, --figures 1",
+    ),
     Entry(
         "identify",
         "measuring",
         "Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already.",
+        "--band 2, --order 1, --add 1, --drop 1, --decay 1, --window-on 1, --window 1, "
+        "--estimator 1, --use 1, --leave 1, --layout 1, --sensor-mass 1, --json 1, "
+        "--output -o 1, --check, --report 1, --figures 1",
     ),
     Entry(
         "correlate",
         "compare",
         "Pair the modes of test and model, or of two tests, and say how far they agree, FRFs included.",
+        "--json 1, --figures 1",
     ),
     Entry(
         "tables",
         "compare",
         "Make the papers' tables through the whole chain, our value beside the published one.",
+        "--paper 1, --format 1, --output -o 1, --fluid, --figures 1",
     ),
     Entry(
         "update",
         "updating",
         "Update the parameters named in the study's update table, by eigenvalues or by FRFs.",
+        "--shared 1, --bootstrap 1, --seed 1, --json 1, --report 1, --figures 1",
     ),
     Entry(
         "diagnose",
         "diagnosing",
         "Say where the gap between test and model lies, what causes it, and how far it closes.",
+        "--shared 1, --without 1, --json 1, --report 1, --figures 1",
     ),
     Entry(
         "effects",
         "diagnosing",
         "List the effects that can be named, with priors, footprints and what separates them.",
+        "--json 1, --table",
     ),
-    Entry("simulate", "simulating", "Make a synthetic hammer test of a study's model, with effects in it."),
+    Entry(
+        "simulate",
+        "simulating",
+        "Make a synthetic hammer test of a study's model, with effects in it.",
+        "--output -o 1, --effect 1, --seed 1, --frfs, --hits 1, --samples 1, --rate 1, "
+        "--noise 1, --points 1, --remount, --figures 1",
+    ),
     Entry(
         "blind",
         "blinding",
         "Hide effects in simulated rigs, diagnose them without telling, and score the answers.",
+        "--trials 1, --seed 1, --workers 1, --scheduler 1, --store 1, --resume, --kinds 1, "
+        "--effects 1, --leave-out, --real, --data 1, --check 1, --json 1, --markdown 1, "
+        "--report 1, --figures 1",
     ),
     Entry(
         "batch",
         "batching",
         "Identify, update and diagnose a folder of studies, and write modes, factors and causes as tables.",
+        "--output -o 1, --workers 1, --scheduler 1, --resume, --json-dir 1",
     ),
-    Entry("part", "batching", "Work out one study of a batch.", hidden=True),
+    Entry(
+        "part",
+        "batching",
+        "Work out one study of a batch.",
+        "--json 1",
+        hidden=True,
+    ),
     Entry(
         "app",
         "serving",
         "Open the app on this machine: pick poles, watch shapes, compare with the model, diagnose.",
+        "--no-browser, --port 1, --layout 1",
     ),
-    Entry("demo", "demonstrate", "Run the main job on shipped data: hits to modes to the cause of the gap."),
+    Entry(
+        "demo",
+        "demonstrate",
+        "Run the main job on shipped data: hits to modes to the cause of the gap.",
+        "--figures 1",
+    ),
 )
 
 
@@ -101,9 +146,12 @@ class CommandsOnDemand(TyperGroup):
             self.add_command(TyperCommand(entry.name, help=entry.summary, hidden=entry.hidden))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Load the command that is typed."""
+        """Load the command that is typed, unless a word behind it is wrong already."""
         for entry in ENTRIES:
             if entry.name == args[0]:
+                words = None if ctx.resilient_parsing else words_of(args[1:], options_of(entry.options))
+                if words is not None:
+                    check_words(words)
                 self.commands.update(loaded(entry.module))
         return super().resolve_command(ctx, args)
 

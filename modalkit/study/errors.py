@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel, ValidationError
 
-from modalkit.study.hypotheses import HypothesisTable
+from modalkit.study.hypothesis_table import HypothesisTable
 from modalkit.study.tables import (
     AxesTable,
     DampingTable,

@@ -1,22 +1,22 @@
-"""The study file: a test, a model, doubts. Read strictly, so that a misspelt key is an error and not a default."""
+"""The study file: a test, a model, doubts. Read strictly, so that a misspelt key is an error and not a default.
+
+Models are loaded where a study is asked for one: a file with a mistake is refused without them.
+"""
 
 from __future__ import annotations
 
 import tomllib
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
 from acquisition.encoding import not_utf8
 from acquisition.errors import StudyError
-from modalkit.study.decks import deck_of, deck_spec, known_values
 from modalkit.study.errors import explain, known_keys
-from modalkit.study.hypotheses import HypothesisTable, check_ranges, with_hypotheses
-from modalkit.study.matrices import matrices_of, matrices_spec
+from modalkit.study.hypothesis_table import HypothesisTable
 from modalkit.study.probable_units import check_units
-from modalkit.study.stated_effects import accepted_values, check_repeated
 from modalkit.study.tables import (
     MATRICES_ONLY,
     EnvironmentTable,
@@ -26,12 +26,13 @@ from modalkit.study.tables import (
     TolerancesTable,
     UpdateTable,
 )
-from updating.environment import Environment
-from updating.models import Damping, Material, PointMass, Region, Spec
-from updating.models.spec import Kind
-from updating.models.spec_checks import check_places
-from updating.test_data.axes import Axes
-from updating.tolerances import Tolerances
+
+if TYPE_CHECKING:
+    from updating.environment import Environment
+    from updating.models import Damping, Spec
+    from updating.models.spec import Kind
+    from updating.test_data.axes import Axes
+    from updating.tolerances import Tolerances
 
 __all__ = [
     "MATRICES_ONLY",
@@ -108,6 +109,9 @@ class Study(Strict):
             raise StudyError(f"{self.path}: {error}") from error
 
     def _spec(self) -> Spec:
+        from updating.models import Material, PointMass, Region, Spec
+        from updating.models.spec_checks import check_places
+
         model = self.model
         if model is None:
             raise StudyError("this command needs a [model]")
@@ -157,6 +161,9 @@ class Study(Strict):
     @cached_property
     def _of_matrices(self) -> Spec:
         """The model given by matrices, read once."""
+        from modalkit.study.hypotheses import with_hypotheses
+        from modalkit.study.matrices import matrices_of, matrices_spec
+
         assert self.model is not None
         spec = matrices_spec(self.model, matrices_of(self.model, self.file), _damping(self.model))
         return with_hypotheses(spec, self.hypothesis, self.file, self.model.units)
@@ -164,6 +171,9 @@ class Study(Strict):
     @cached_property
     def _of_deck(self) -> Spec:
         """The model that a deck is, run once."""
+        from modalkit.study.decks import deck_of, deck_spec, known_values
+        from modalkit.study.hypotheses import check_ranges, with_hypotheses
+
         assert self.model is not None
         deck = deck_of(self.model, self.file)
         check_ranges(self.hypothesis, known_values(deck))
@@ -177,6 +187,8 @@ class Study(Strict):
 
     def axes(self, table: MeasurementTable) -> Axes:
         """Return the model's axes in the coordinates of a test."""
+        from updating.test_data.axes import Axes
+
         try:
             return Axes(table.axes.origin, table.axes.x, table.axes.y)
         except StudyError as error:
@@ -184,6 +196,8 @@ class Study(Strict):
 
     def doubts(self) -> Tolerances:
         """Return the tolerances."""
+        from updating.tolerances import Tolerances
+
         stated = self.tolerances.model_dump()
         parts, bounds = stated.pop("parts"), stated.pop("bounds")
         values = {name: value if value > NOTHING else 0.0 for name, value in stated.items()}
@@ -202,6 +216,8 @@ class Study(Strict):
         """
         if self.model is None:
             return ()
+        from modalkit.study.stated_effects import accepted_values, check_repeated
+
         try:
             found = tuple(accepted_values(entry, kind_of(self.model)) for entry in self.model.effect)
             check_repeated([name for name, _ in found])
@@ -211,6 +227,8 @@ class Study(Strict):
 
     def surroundings(self) -> Environment:
         """Return the environment."""
+        from updating.environment import Environment
+
         return Environment(**self.environment.model_dump())
 
 
@@ -221,6 +239,8 @@ def kind_of(model: ModelTable) -> Kind:
 
 def _damping(model: ModelTable) -> Damping:
     """Return the damping that a model states."""
+    from updating.models import Damping
+
     stated = model.damping
     ratios = None if stated.ratios is None else tuple(stated.ratios)
     return Damping(stated.alpha, stated.beta, stated.loss_factor, ratios)

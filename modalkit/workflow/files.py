@@ -81,7 +81,11 @@ def read_files(
     )
 
 
-_SEVERAL = "several files of modes are no one test; give one, or compare them"
+WRITE_LAYOUT = "`modalkit inspect FILES --write-layout layout.toml` writes one to correct"
+_SEVERAL = (
+    "these files were read as tables of modes, of which a test has one; for hits or FRFs add --layout "
+    f"({WRITE_LAYOUT}), and to compare two tables use `modalkit correlate`"
+)
 
 
 def _of_modes(path: Path, layout: Layout | None) -> bool:
@@ -131,8 +135,8 @@ def _modes(path: Path, layout: Layout | None) -> ModalData:
         if path.suffix.lower() not in TABLES or not path.is_file():
             raise
         raise InputError(
-            f"{error}; if it is column text of hits or FRFs, give its layout file with rate, units and points "
-            "(docs/howto/column_text.md)"
+            f"{error}; if it is column text of hits or FRFs, give its layout file with rate, units and points: "
+            f"{WRITE_LAYOUT} (docs/howto/column_text.md)"
         ) from error
 
 

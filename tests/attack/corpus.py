@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from corpus_exchanged import exchanged_families
 from corpus_matrices import matrix_families
+from corpus_recorders import recorder_families
 from corpus_stores import store_families
 from corpus_text import table_families
 from corpus_uff import uff_families
@@ -15,6 +16,7 @@ def families() -> list[Family]:
     return [
         *uff_families(),
         *table_families(),
+        *recorder_families(),
         *exchanged_families(),
         *matrix_families(),
         *store_families(),

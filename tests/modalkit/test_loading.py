@@ -5,12 +5,15 @@ from __future__ import annotations
 import ast
 import importlib
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from modalkit import __version__
+from modalkit.cli.arguments import options_of
 from modalkit.cli.on_demand import ENTRIES, loaded
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -57,6 +60,68 @@ def test_the_list_says_of_a_command_what_its_own_help_begins_with(entry) -> None
     own = loaded(entry.module)[entry.name]
     assert " ".join((own.help or "").split("\n\n")[0].split()) == entry.summary
     assert own.hidden == entry.hidden
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
+def test_the_list_holds_the_options_of_a_command(entry) -> None:
+    own = loaded(entry.module)[entry.name]
+    found = {
+        name: 0 if getattr(option, "is_flag", False) else option.nargs
+        for option in own.params
+        if option.param_type_name == "option"
+        for name in option.opts
+    }
+    assert options_of(entry.options) == found
+
+
+BAD = [
+    (["identify", "nowhere.uff"], "nowhere.uff: cannot be opened"),
+    (["identify", "UFF", "--bnad", "5", "500"], "No such option: --bnad; is --band meant?"),
+    (["identify", "UFF", "--band", "500", "5Hz"], "Invalid band 500 to 5 Hz: the lower limit comes first"),
+    (["identify", "UFF", "--layout", "nowhere.toml"], "nowhere.toml: cannot be opened"),
+    (["diagnose", "STUDY"], "unknown key model.lenght; known here: "),
+]
+
+
+@pytest.mark.parametrize(("words", "message"), BAD)
+def test_bad_input_is_refused_before_the_libraries_are_loaded(
+    tmp_path: Path, words: list[str], message: str
+) -> None:
+    study = tmp_path / "study.toml"
+    study.write_text('[test]\nfiles = ["a.uff"]\n[model]\ntype = "beam"\nlenght = 1.0\n')
+    given = {"UFF": str(ROOT / "sample_data/beam_wet/beam_wet.uff"), "STUDY": str(study)}
+    body = command(*[given.get(word, word) for word in words]).replace("not ended.code", "ended.code == 2")
+    done = subprocess.run(
+        [sys.executable, "-c", f"{body}\n{STATUS}"], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    there = set(json.loads(done.stdout.splitlines()[-1]))
+    assert message in done.stderr and len(done.stderr.splitlines()) == 1
+    assert not {"scipy", "pandas", "matplotlib", "skfem", "sdypy", "pyuff"} & there
+    assert not {name for name in there if name.startswith(("identification.", "updating."))}
+
+
+@pytest.mark.parametrize("words", [["-h"], ["identify", "-h"]])
+def test_help_has_a_short_name(words: list[str], run) -> None:
+    code, text, _ = run(*words)
+    assert code == 0 and "Usage: modalkit" in text
+
+
+def test_the_version_is_that_of_the_package(run) -> None:
+    assert run("--version") == (0, f"modalkit {__version__}\n", "")
+
+
+def test_a_shell_completes_commands_and_options() -> None:
+    for typed, expected in (("modalkit id", "identify"), ("modalkit identify --ba", "--band")):
+        words = {
+            "_MODALKIT_COMPLETE": "complete_bash",
+            "COMP_WORDS": typed,
+            "COMP_CWORD": str(typed.count(" ")),
+        }
+        done = subprocess.run(
+            [sys.executable, "-c", "from modalkit.cli import main; main()"],
+            capture_output=True, text=True, check=False, cwd=ROOT, env=os.environ | words,
+        )  # fmt: skip
+        assert done.stdout.split() == [expected], done.stderr
 
 
 def test_the_list_holds_every_command() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -210,3 +211,60 @@ def test_a_layout_takes_units_as_a_study_does():
 def test_a_unit_of_another_kind_in_a_layout_is_refused_by_its_place(more, message):
     with pytest.raises(InputError, match=message):
         layout_from({"column": [{"index": 0, "quantity": "force"}], **more})
+
+
+ROVING = """rate = 1000.0
+[[column]]
+index = 0
+quantity = "force"
+node = 9
+[[column]]
+index = 1
+quantity = "acceleration"
+"""
+
+
+def roving(folder: Path, *names: str) -> list[Path]:
+    for name in names:
+        (folder / name).write_text("".join(f"{k}.5,{-k}.25\n" for k in range(5)))
+    return [folder / name for name in names]
+
+
+def test_a_pattern_takes_nodes_and_directions_from_names(tmp_path):
+    """All digits that stand together are the node: P12 is no point 2, whatever stands before it."""
+    files = roving(tmp_path, "P12_+x_1.csv", "P012_+x_2.csv", "P3_-y_1.csv")
+    for match in ("P{node}_{direction}_*.csv", "*{node}_{direction}_?.csv"):
+        plan = layout_from(tomllib.loads(ROVING + f'[[file]]\nmatch = "{match}"\n'))
+        (test,) = read_test(files, layout=plan)
+        assert [(p.reference, p.count) for p in test.points] == [(Dof(12, 1), 2), (Dof(3, -2), 1)]
+    with pytest.raises(InputError, match=r"odd\.csv: no \[\[file\]\] rule .* takes the nodes from the names"):
+        read_test([*files, *roving(tmp_path, "odd.csv")], layout=plan)
+
+
+def test_units_and_scale_of_single_files(tmp_path):
+    """Two days, two amplifiers: force in newtons and in kilonewtons, of which the second also halves the response."""
+    rules = (
+        '[[file]]\nmatch = "P{node}_*"\n[[file]]\nmatch = "*_b.csv"\nunit = "kN"\n'
+        '[[file]]\nmatch = "*_b.csv"\ncolumn = 1\nscale = 2.0\nunit = "g"\n'
+    )
+    (test,) = read_test(
+        roving(tmp_path, "P1_a.csv", "P2_b.csv"), layout=layout_from(tomllib.loads(ROVING + rules))
+    )
+    one, two = test.points
+    assert (one.reference, two.reference) == (Dof(1, 3), Dof(2, 3))
+    np.testing.assert_allclose(two.force, 1000 * one.force)
+    np.testing.assert_allclose(two.motion, 2 * 9.80665 * one.motion)
+
+
+@pytest.mark.parametrize(
+    ("rule", "says"),
+    [
+        ('match = "P{node}_{node}.csv"', r"\{node\} stands once in match"),
+        ('match = "P{node}.csv"\nnode = 3', r"\{node\} stands once in match, and not beside a key"),
+        ('match = "P*.csv"', "says nothing of these files"),
+        ('match = "P*.csv"\nscale = "two"', "scale = 'two' is not of the kind float"),
+    ],
+)
+def test_a_pattern_that_means_nothing_is_refused(rule, says):
+    with pytest.raises(InputError, match=says):
+        layout_from(tomllib.loads(ROVING + f"[[file]]\n{rule}\n"))

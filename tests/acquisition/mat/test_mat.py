@@ -54,6 +54,22 @@ def test_frfs_of_a_structure(tmp_path: Path, compressed: bool) -> None:
     np.testing.assert_array_equal(frfs.values, 9.80665 * H.reshape(51, 6).T)
 
 
+@pytest.mark.parametrize("samples", [100, 101, 51])
+def test_a_sampling_rate_makes_the_lines_where_there_is_no_axis(tmp_path: Path, samples: int) -> None:
+    """Lines are the rate over the number of samples apart; of a spectrum up to the rate, the second half is no FRF."""
+    table = {**FRFS, "frfs": "H", "rate": "fs"}
+    del table["frequency"]
+    path = saved(tmp_path, fs=1000.0, H=H)
+    frfs = read_mat(path, layout(table, samples=samples))
+    half = samples // 2 + 1
+    np.testing.assert_allclose(frfs.frequency, np.arange(half) * 1000.0 / samples, rtol=1e-12)
+    np.testing.assert_array_equal(frfs.values, 9.80665 * H[:half].reshape(half, 6).T)
+    with pytest.raises(InputError, match=r"51 lines and no frequency, .*: 100 or 101 if .*, 51 if"):
+        read_mat(path, layout(table))
+    with pytest.raises(InputError, match="samples = 90 has 46 lines"):
+        read_mat(path, layout(table, samples=90))
+
+
 def test_axes_in_any_order_and_left_out(tmp_path: Path) -> None:
     turned = saved(tmp_path, f=LINES, H=H.transpose(2, 0, 1))
     table = {**FRFS, "frfs": "H", "unit": "", "axes": ["reference", "line", "response"]}

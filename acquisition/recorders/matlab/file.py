@@ -8,7 +8,17 @@ from pathlib import Path
 
 from acquisition.arrays import AnyArray
 from acquisition.errors import InputError
-from acquisition.mat.elements import COMPRESSED, DEEP, MATRIX, STRUCTURE, Array, Bytes, header
+from acquisition.recorders.matlab.elements import (
+    COMPRESSED,
+    DEEP,
+    FIRST_NUMBER,
+    LAST_NUMBER,
+    MATRIX,
+    STRUCTURE,
+    Array,
+    Bytes,
+    header,
+)
 
 HEADER = 128
 HDF = b"\x89HDF\r\n\x1a\n"
@@ -55,6 +65,23 @@ def variables(path: Path, names: list[str]) -> dict[str, AnyArray]:
             raise _too_large(raw)
         answer[name] = array.numbers()
     return answer
+
+
+def listed(path: Path) -> list[str]:
+    """Return the names of all variables of numbers, fields of structures among them.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+    """
+    raw = _bytes(path)
+    found = []
+    for array in _arrays(raw, {array.name for array in _arrays(raw, set())}):
+        fields = list(array.fields()) if array.kind == STRUCTURE and array.count == 1 else []
+        named = [(f"{array.name}.{field.name}", field) for field in fields] or [(array.name, array)]
+        found += [name for name, one in named if FIRST_NUMBER <= one.kind <= LAST_NUMBER]
+    return found
 
 
 def _bytes(path: Path) -> Bytes:

@@ -1,0 +1,95 @@
+"""Named data sets of HDF5 files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from acquisition.arrays import AnyArray
+from acquisition.errors import InputError
+from acquisition.recorders.arrays import Named
+from acquisition.recorders.channels import LISTED
+from acquisition.recorders.library import library
+
+_UNITS = ("unit", "units", "Unit", "Units")
+"""Attributes of a data set that state its unit."""
+
+_LARGEST_RATIO, _FREE = 100, 10_000_000
+"""A data set may take this many times the file's size, and 10 MB in any case: packed measurements take 1 to 10 times.
+Doubled, a damaged file takes twice the memory [-, bytes]."""
+
+
+def named_arrays(path: Path, names: Sequence[str]) -> Named:
+    """Return data sets by their path in the file, ``hits/force``.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged, a data set is not in it, or h5py is not installed.
+    """
+    h5py = library("h5py", path)
+    values: dict[str, AnyArray] = {}
+    units: dict[str, str] = {}
+    try:
+        with h5py.File(path, "r") as file:
+            for name in names:
+                found = file.get(name)
+                if not isinstance(found, h5py.Dataset):
+                    raise InputError(
+                        f"{path}: no data set {name!r} in it; there are {_listed(_names(file, h5py))}"
+                    )
+                _check_size(found, name, path)
+                values[name] = np.asarray(found[()])
+                units[name] = next((unit for key in _UNITS if (unit := _text(found.attrs.get(key)))), "")
+    except InputError:
+        raise
+    except Exception as error:  # the library raises what a damaged file happens to lead to
+        raise _damaged(path, error) from error
+    return Named(values, units)
+
+
+def names_of(path: Path) -> list[str]:
+    """Return the paths of all data sets of numbers in a file.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged, or h5py is not installed.
+    """
+    h5py = library("h5py", path)
+    try:
+        with h5py.File(path, "r") as file:
+            return [name for name in _names(file, h5py) if file[name].dtype.kind in "fiuc"]
+    except Exception as error:  # the library raises what a damaged file happens to lead to
+        raise _damaged(path, error) from error
+
+
+def _names(file: Any, h5py: Any) -> list[str]:
+    found: list[str] = []
+    file.visititems(lambda name, one: found.append(name) if isinstance(one, h5py.Dataset) else None)
+    return found
+
+
+def _check_size(found: Any, name: str, path: Path) -> None:
+    size = found.size * found.dtype.itemsize if found.size else 0
+    if size > _LARGEST_RATIO * path.stat().st_size + _FREE:
+        raise InputError(
+            f"{path}: {name!r} takes {size} bytes, over {_LARGEST_RATIO} times the file's size; measured numbers do "
+            "not: the file is damaged, or holds none"
+        )
+
+
+def _text(value: Any) -> str:
+    return value.decode("utf-8", errors="replace") if isinstance(value, bytes) else str(value or "")
+
+
+def _listed(names: Sequence[str]) -> str:
+    return (", ".join(map(repr, names[:LISTED])) or "none") + (", ..." if len(names) > LISTED else "")
+
+
+def _damaged(path: Path, error: Exception) -> InputError:
+    statement = " ".join(str(error).split())[:200]
+    return InputError(f"{path}: not a whole HDF5 file ({statement}); export it again")
