@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from acquisition.frfs.bootstrap import bootstrap_frfs
     from acquisition.frfs.estimators import estimate_frfs, random_error
     from acquisition.frfs.frf import FrfSet
+    from acquisition.frfs.line_shape import FRF_WINDOWS, FrfWindow, LineShape
     from acquisition.frfs.reciprocity import reciprocity
     from acquisition.frfs.scatter import HitGroup, HitScatter, variance_of_groups
     from acquisition.frfs.sensor_mass import remove_sensor_mass
@@ -55,12 +56,14 @@ if TYPE_CHECKING:
 __all__ = [
     "ESTIMATORS",
     "FORMS",
+    "FRF_WINDOWS",
     "DatasetInfo",
     "Dof",
     "EstimationError",
     "Estimator",
     "ForceRange",
     "FrfSet",
+    "FrfWindow",
     "Geometry",
     "HammerPlan",
     "HammerTest",
@@ -70,6 +73,7 @@ __all__ = [
     "Hits",
     "InputError",
     "Layout",
+    "LineShape",
     "ModalData",
     "ModalSystem",
     "ModalkitError",
@@ -136,6 +140,7 @@ load_on_demand(
         ".frfs.reciprocity": "reciprocity",
         ".frfs.scatter": "HitGroup HitScatter variance_of_groups",
         ".frfs.sensor_mass": "remove_sensor_mass",
+        ".frfs.line_shape": "FRF_WINDOWS FrfWindow LineShape",
         ".frfs.spectra": "ESTIMATORS Estimator",
         ".hits.splitting": "holds_several_hits propose_trigger split_hits",
         ".synthetic": "HammerPlan ModalSystem hammer_test modal_system",

@@ -21,11 +21,12 @@ from identification.fit.course import course_of, resampled
 from identification.fit.equations import basis
 from identification.fit.equations.pruning import inside, located
 from identification.fit.equations.residues import Residues, synthesise
-from identification.fit.fit import Fitted, fit_candidates, provisional, with_named
+from identification.fit.fit import Fitted, provisional, with_named
 from identification.fit.foreign import Foreign, foreign_frfs
 from identification.fit.noise.disagreement import Disagreement
 from identification.fit.poly_reference import sorted_frfs
 from identification.fit.search.manual_selection import nearest_modes
+from identification.line_shapes import fit_shaped
 from identification.model import ModalModel
 from identification.poles import ESTIMATORS
 from identification.poles.selection import candidates
@@ -234,7 +235,9 @@ def _prepared(frfs: FrfSet, band: tuple[float, float] | None, order: int | None,
             f"{frfs.source}: no pole stays where it is between {limits[0]:g} and {limits[1]:g} Hz as the "
             "order rises; widen the band, raise the order or check the FRFs"
         )
-    fitted = fit_candidates(data, start, band=limits, course=course)
+    fitted = fit_shaped(data, start, band=limits, course=course)
+    if fitted.frfs.line_shape is not None:
+        data = replace(data, line_shape=fitted.frfs.line_shape)
     return Prepared(frfs, data, limits, chart, fitted, (*points_rejected, *foreign.reasons), foreign.warnings)
 
 
@@ -303,7 +306,7 @@ def order_list(frfs: FrfSet, order: int | None, *, poly_reference: bool) -> list
         raise InputError(f"order {wanted} leaves no room for a mode; use 2 or more")
     if wanted > _HIGHEST:
         raise InputError(f"order {wanted} is beyond {_HIGHEST}; rather cut the band into pieces")
-    carried = max(2, len(frfs.frequency) // 3)
+    carried = max(2, len(frfs.frequency) // 2)
     top = min(max(wanted // columns, min(wanted, 16)), carried)
     bottom = max(1, min(top - 1, max(top // 6, 2)))
     return sorted({int(n) for n in np.linspace(bottom, top, _LEVELS).round()})
@@ -375,7 +378,7 @@ def _assemble(
         chart=chart,
         warnings=shapes.warnings + _warnings(fitted, poles, trend) + statement,
         points_rejected=points_rejected,
-        carried=None if fitted.frfs is data else fitted.frfs,
+        carried=None if np.shares_memory(fitted.frfs.values, data.values) else fitted.frfs,
         trend=trend,
     )
 
@@ -436,6 +439,8 @@ def _warnings(fitted: Fitted, poles: ComplexArray, trend: Trend | None) -> tuple
                 f"file, by {100 * trend.rate:+.2g} % (sigma {percent(100 * trend.rate_sigma)}); what is identified "
                 "is the structure in the middle of the test"
             )
+    if fitted.frfs.line_shape is not None:
+        notes.append(fitted.frfs.line_shape.statement(stated=fitted.frfs.window is not None))
     if not fitted.fit.converged:
         notes.append("the refinement of the poles did not converge; standard deviations may be too small")
     left = fitted.excess()

@@ -134,9 +134,7 @@ class ModalModel(Shown, Animated):
         residues = self.constants * signs(self.frfs)[:, None] / (2j * self.poles.imag)
         linear = replace(self.background, residues=np.hstack([residues, self.background.residues]))
         poles = np.concatenate([self.poles, self.background_poles])
-        values = synthesise(
-            basis.Axis(laplace, self.frfs.form, self.frfs.decay, self.frfs.record), poles, linear
-        )
+        values = synthesise(replace(basis.Axis.of(self.frfs), laplace=laplace), poles, linear)
         return replace(
             self.frfs, frequency=lines, values=values, coherence=None, variance=None, averages=None
         )

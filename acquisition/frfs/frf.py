@@ -13,6 +13,7 @@ from acquisition.display import Displayed, counted
 from acquisition.dof import Dof
 from acquisition.errors import InputError
 from acquisition.form import FORMS, UNITS, Form
+from acquisition.frfs.line_shape import FRF_WINDOWS, FrfWindow, LineShape
 from acquisition.frfs.scatter import HitScatter, complex_type
 from acquisition.geometry import Geometry
 
@@ -66,6 +67,10 @@ class FrfSet(Displayed):
     record : Record, optional
         The records the FRFs come from, where these are known to be cut at their ends; lines must then be
         multiples of 1 / duration.
+    window : {"none", "hann"}, optional
+        Window on the blocks that were averaged to FRFs, beside an exponential one; None where it is not known.
+    line_shape : LineShape, optional
+        How a pole shows in FRFs of such blocks, where an identification has found it.
     geometry : Geometry
         Nodes of the test.
     source : str
@@ -90,6 +95,8 @@ class FrfSet(Displayed):
     averages: IntArray | None = None
     decay: float = 0.0
     record: Record | None = None
+    window: FrfWindow | None = None
+    line_shape: LineShape | None = None
     geometry: Geometry = field(default_factory=Geometry.empty)
     source: str = "arrays"
     scatter: HitScatter | None = None
@@ -111,6 +118,10 @@ class FrfSet(Displayed):
     def _check(self, n_frf: int, n_lines: int) -> None:
         if self.form not in FORMS:
             raise InputError(f"{self.source}: unknown FRF form {self.form!r}; use one of {', '.join(FORMS)}")
+        if self.window is not None and self.window not in FRF_WINDOWS:
+            raise InputError(
+                f"{self.source}: unknown window {self.window!r}; use one of {', '.join(FRF_WINDOWS)}"
+            )
         if n_frf == 0 or n_lines < 2:
             raise InputError(f"{self.source}: {n_frf} FRFs of {n_lines} lines; nothing to work on")
         if len(self.references) != n_frf or self.values.shape != (n_frf, n_lines):

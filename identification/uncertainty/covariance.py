@@ -14,6 +14,7 @@ from identification.fit.noise.common_spread import common_factors
 from identification.fit.noise.disagreement import Disagreement, between_frfs
 from identification.uncertainty.hit_scatter import NoiseFactors
 from identification.uncertainty.hit_scatter import factors as hit_factors
+from identification.uncertainty.line_scatter import line_factors
 from identification.uncertainty.misfit import misfit_factor
 
 
@@ -38,6 +39,8 @@ def noise_factors(frfs: FrfSet, fitted: Fitted, modes: BoolArray) -> NoiseFactor
     shape = fit.linear.residues.shape
     noise = NoiseFactors(pole, np.broadcast_to(free, shape), np.ones(len(pole)), np.broadcast_to(held, shape))
     stated = hit_factors(frfs, fit, fitted.weights, modes, noise)
+    if frfs.line_shape is not None:
+        misfit = np.maximum(misfit, line_factors(fitted))
     if stated is None:
         return NoiseFactors(misfit * noise.poles, misfit * noise.constants, noise.shapes, misfit * noise.held)
     poles, constants = np.maximum(stated.poles, misfit), np.maximum(stated.constants, misfit)

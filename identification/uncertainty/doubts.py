@@ -89,7 +89,7 @@ def _hum(frfs: FrfSet, tones: FloatArray) -> str:
 
 def _ringing(frfs: FrfSet, poles: ComplexArray) -> tuple[str, ...]:
     """Name modes that are not at rest when a record of 1/df ends, where the fit cannot know of the record."""
-    if frfs.record is not None:
+    if frfs.record is not None or frfs.line_shape is not None:
         return ()
     left = np.exp(-(frfs.decay - poles.real) / frfs.df)
     which = np.flatnonzero(left > _AT_REST)

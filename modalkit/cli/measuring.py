@@ -42,6 +42,7 @@ from modalkit.cli.options import (
     Estimate,
     Figures,
     Files,
+    FrfWindowOption,
     Layout,
     Leave,
     Report,
@@ -238,6 +239,7 @@ def identify(
     decay: Decay = 0.0,
     window_on: WindowOn = None,
     window: Window = 0.0,
+    frf_window: FrfWindowOption = None,
     estimator: Estimate = "H1",
     use: Use = None,
     leave: Leave = None,
@@ -268,6 +270,7 @@ def identify(
         leave=leave,
         layout=layout,
         sensors=sensor_mass,
+        frf_window=frf_window,
     )
     with reading("identifying") as progress:
         processed, model = _identified(files, statement, band, order, (add or (), drop or ()), progress)

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, cast
 
 import typer
 
-from acquisition import ESTIMATORS, Estimator, InputError
+from acquisition import ESTIMATORS, Estimator, FrfWindow, InputError
 from modalkit.workflow.processing_options import ProcessingOptions, hit_name, sensor_mass
 
 
@@ -48,6 +48,13 @@ Window = Annotated[
     float,
     typer.Option(help="decay of a further exponential window, applied here [1/s]", parser=quantity("1/s")),
 ]
+FrfWindowOption = Annotated[
+    str | None,
+    typer.Option(
+        "--frf-window",
+        help="'none' or 'hann': window on the blocks that FRFs were averaged over; default: detected",
+    ),
+]
 Band = Annotated[
     tuple[float, float] | None,
     typer.Option(help="frequency band [Hz], as 5 500 or 5Hz 1.2kHz", parser=quantity("Hz")),
@@ -80,6 +87,7 @@ def processing(
     leave: list[str] | None,
     layout: Path | None,
     sensors: list[str] | None,
+    frf_window: str | None = None,
 ) -> ProcessingOptions:
     """Return what the options say.
 
@@ -99,4 +107,5 @@ def processing(
         leave=tuple(hit_name(h) for h in leave or ()),
         layout=layout,
         sensor_masses=tuple(sensor_mass(s) for s in sensors or ()),
+        frf_window=cast("FrfWindow | None", frf_window),
     )

@@ -119,6 +119,10 @@ class MeasurementTable(Strict):
     """What that window was applied to. Default: detected from the noise of the force."""
     window: Rate = 0.0
     """Decay rate of a further window, applied here [1/s]."""
+    frf_window: Literal["none", "hann"] | None = None
+    """Window on the blocks that FRFs in the files were averaged over: its line shape is fitted, a random force assumed.
+    Default: detected from the FRFs.
+    """
     estimator: Literal["H1", "H2", "Hv"] = "H1"
     """How FRFs are averaged from hits."""
     use: list[tuple[str, int]] = []
@@ -220,6 +224,7 @@ OF_RECORDS = (
     "exponential_window",
     "window_on",
     "window",
+    "frf_window",
     "estimator",
     "use",
     "leave",

@@ -187,6 +187,7 @@ def processing_of(study: Study, table: MeasurementTable) -> ProcessingOptions:
         layout=None if table.layout is None else study.file(table.layout),
         sensor_masses=tuple(table.sensor_masses.items()),
         references=tuple(table.references),
+        frf_window=table.frf_window,
     )
 
 

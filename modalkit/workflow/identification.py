@@ -364,6 +364,11 @@ def from_content(content: UffContent, paths: Sequence[Path], processing: Process
         content = with_references(content, processing.references)
         processing = among_references(processing)
     judged = _judged(content.tests, processing, warnings)
+    if judged and processing.frf_window is not None:
+        raise InputError(
+            f"{named_files(paths)}: --frf-window (frf_window in a study) is for files of FRFs, but these hold raw "
+            "hits; leave it out"
+        )
     if judged:
         warnings += on_hits([(j.test, j.verdicts) for j in judged])
         frfs = _frfs_of(judged, content, processing, warnings)
@@ -405,6 +410,8 @@ def _as_read(frfs: FrfSet, processing: ProcessingOptions, warnings: list[str]) -
         )
     if processing.decay and frfs.decay:
         _check_decay(frfs.source, frfs.decay, processing.decay)
+    if processing.frf_window is not None:
+        frfs = replace(frfs, window=processing.frf_window)
     return replace(frfs, decay=processing.decay) if processing.decay and not frfs.decay else frfs
 
 

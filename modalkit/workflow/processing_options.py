@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from acquisition import ESTIMATORS, Estimator, InputError
+from acquisition import ESTIMATORS, FRF_WINDOWS, Estimator, FrfWindow, InputError
 
 FASTEST = 1e6
 """Fastest decay of a window [1/s]: it is over within one sample of any hammer test."""
@@ -36,13 +36,15 @@ class ProcessingOptions:
         Rate, units and points of column text.
     sensor_masses : tuple of (str, float)
         Accelerometers whose mass is taken out of the FRFs: where, as printed, and its mass [kg].
+    frf_window : {"none", "hann"}, optional
+        Window on the blocks that FRFs in the files were averaged over; left out: as the FRFs show it.
     references : tuple of str
         Degrees of freedom, as printed, whose forces are used; left out, all.
 
     Raises
     ------
     InputError
-        If a decay is negative or the estimator unknown.
+        If a decay is negative, or the estimator or the window unknown.
     """
 
     decay: float = 0.0
@@ -54,6 +56,7 @@ class ProcessingOptions:
     layout: Path | str | None = None
     sensor_masses: tuple[tuple[str, float], ...] = ()
     references: tuple[str, ...] = ()
+    frf_window: FrfWindow | None = None
 
     def __post_init__(self) -> None:
         """Check the entries."""
@@ -65,6 +68,8 @@ class ProcessingOptions:
             )
         if self.estimator not in ESTIMATORS:
             raise InputError(f"unknown estimator {self.estimator!r}; use {', '.join(ESTIMATORS)}")
+        if self.frf_window not in (None, *FRF_WINDOWS):
+            raise InputError(f"unknown window of FRFs {self.frf_window!r}; use {', '.join(FRF_WINDOWS)}")
 
 
 def hit_name(text: str) -> HitName:

@@ -9,6 +9,7 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.form import FORMS, Form
 from acquisition.frfs.frf import FrfSet, Record
+from acquisition.frfs.line_shape import LineShape
 
 BASIC_TERMS: tuple[int, ...] = (-2, 0)
 _NOTHING = 1e-9  # what is cut off is worth its cost from here on [-]
@@ -28,17 +29,20 @@ class Axis:
         Decay of the exponential window still in the FRFs [1/s].
     record : Record, optional
         Records whose ends cut off what still rings.
+    shape : LineShape, optional
+        What a Hann window leaves of a pole.
     """
 
     laplace: ComplexArray
     form: Form
     decay: float = 0.0
     record: Record | None = None
+    shape: LineShape | None = None
 
     @classmethod
     def of(cls, frfs: FrfSet) -> Axis:
         """Return the axis of a set."""
-        return cls(frfs.laplace, frfs.form, frfs.decay, frfs.record)
+        return cls(frfs.laplace, frfs.form, frfs.decay, frfs.record, frfs.line_shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +133,8 @@ def _column(axis: Axis, front: ComplexArray, poles: ComplexArray) -> tuple[Compl
     """Return what each pole adds to FRFs, and its derivative by the pole, both (n_lines, n_modes)."""
     inverse = 1.0 / (axis.laplace[:, None] - poles[None, :])
     column = front * inverse
+    if axis.shape is not None:
+        return _smeared(axis, axis.shape, poles, column, inverse)
     if axis.record is None:
         return column, column * inverse
     q, rest = FORMS.index(axis.record.form), axis.record.duration - axis.record.trigger
@@ -140,6 +146,22 @@ def _column(axis: Axis, front: ComplexArray, poles: ComplexArray) -> tuple[Compl
     lost = turned[:, None] * (left * poles**q)[None, :]
     tail, tail_slope = _tail(axis, poles, inverse)
     return column - lost * tail, column * inverse - lost * (tail_slope + (rest + q / poles) * tail)
+
+
+def _smeared(
+    axis: Axis, shape: LineShape, poles: ComplexArray, column: ComplexArray, inverse: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the same as a Hann window over each block leaves it.
+
+    With q the power of s of the form, s^q / (s - p) is a polynomial in s, which no lag window changes, and
+    p^q / (s - p), of which the line shape takes the place.
+    """
+    q = FORMS.index(axis.form)
+    value, slope = shape.pole(axis.laplace[:, None] - poles[None, :])
+    changed = value - inverse
+    return column + poles**q * changed, column * inverse + poles**q * (
+        slope - inverse**2 + q / poles * changed
+    )
 
 
 def _tail(axis: Axis, poles: ComplexArray, inverse: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

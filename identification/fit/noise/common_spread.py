@@ -46,7 +46,7 @@ def common_factors(
         capped = np.minimum(
             b, 1.0 / np.maximum((np.abs(model[rows]) ** 2 / variance[rows]).max(axis=0), 1e-300)
         )
-        together, alone = _pulls(fit, weights, columns, rows, model[rows])
+        together, alone = pulls(fit, weights, columns, rows, model[rows])
         half = np.sqrt(capped)[:, None] * together
         extra += (half.conj().T @ half).real - np.diag(capped @ alone)
     normal = evaluate(frfs, fit.poles, weights, fit.linear.powers).normal
@@ -55,7 +55,7 @@ def common_factors(
     return np.asarray(np.maximum(1.0 + added, 1.0).reshape(n, 2).mean(axis=1))
 
 
-def _pulls(
+def pulls(
     fit: Fit, weights: normal_equations.Weights, columns: basis.Basis, rows: IntArray, model: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
     """Return what a unit of common noise at each line pulls the poles by, (n_lines, 2 n_modes).

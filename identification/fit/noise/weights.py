@@ -14,6 +14,8 @@ from identification.fit.equations.refine import Fit
 from identification.fit.equations.residues import synthesise
 from identification.fit.noise import levels, window_shaped
 
+_LEAST_FREE = 0.02  # part of the values that a fit leaves free at the least
+
 
 def left_over(frfs: FrfSet, fit: Fit) -> ComplexArray:
     """Return data minus model, shape (n_frf, n_lines) [unit of the FRFs]."""
@@ -34,9 +36,16 @@ def search_weights(frfs: FrfSet, fit: Fit) -> Weights:
         shape = np.exp(np.mean(power - power.mean(axis=1, keepdims=True), axis=0, keepdims=True))
     even = residual / np.sqrt(shape)
     fade = window_shaped.decay_over_record(even)
-    level = levels.scatter(even) / window_shaped.roughness(fade, 4)
+    free = 1.0 - _unknowns(fit) / (2 * len(frfs.frequency))
+    level = levels.scatter(even) / window_shaped.roughness(fade, 4) / max(free, _LEAST_FREE)
     level = np.maximum(level, levels.quiet_floor(frfs.values)[:, 0])
     return Weights(1.0 / level, 1.0 / shape, fade)
+
+
+def _unknowns(fit: Fit) -> float:
+    """Return how many real numbers a fit takes from each FRF, its share of the poles included."""
+    n_frf, n_modes = fit.linear.residues.shape
+    return float(2.0 * n_modes * (1.0 + 1.0 / n_frf) + len(fit.linear.powers))
 
 
 def decay_over_record(frfs: FrfSet, poles: ComplexArray) -> FloatArray:
@@ -55,7 +64,8 @@ def noise_weights(
     known = levels.from_statistics(frfs, frfs.values - residual)
     floor = levels.quiet_floor(frfs.values)
     if known is None:
-        weights, variance = levels.from_residual(residual, absorbed, floor, frfs.values - residual)
+        of_residual = levels.from_residual if frfs.line_shape is None else levels.grown_locally
+        weights, variance = of_residual(residual, absorbed, floor, frfs.values - residual)
         return replace(weights, fade=fade), variance, False
     if frfs.variance is None:
         excess = np.mean(np.abs(residual) ** 2 / known / np.maximum(1.0 - absorbed, 0.02), axis=1)

@@ -70,7 +70,8 @@ class _Search:
 
 
 def _room(frfs: FrfSet, fit: Fit) -> bool:
-    return len(frfs.frequency) > 4 * len(fit.poles) + 20
+    """Tell whether the lines carry one more pole: each FRF has two values a line, twice as many as unknowns."""
+    return len(frfs.frequency) > 2 * (len(fit.poles) + 1) + len(fit.linear.powers)
 
 
 def _best_pole(

@@ -1,0 +1,1 @@
+"""Kinds of test for `bench_hammer.py`, one a module."""

@@ -1,0 +1,106 @@
+"""Whether FRFs carry the line shape of a Hann window, as the FRFs themselves show it or as it is stated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from acquisition.arrays import ComplexArray, FloatArray
+from acquisition.errors import EstimationError
+from acquisition.frfs.frf import FrfSet
+from acquisition.frfs.line_shape import KINDS, Kind, LineShape
+from identification.fit.equations.refine import refine
+from identification.fit.equations.residues import uniform_weights
+from identification.fit.fit import Fitted, fit_candidates
+from identification.fit.search.completion import COARSE, SHORT
+
+RESOLVED = 1.5
+"""Distance of poles that a Hann window shows as one [lines]: the half-power width of |W|^2 is 1.44. Doubled, close
+modes count as one until the completion of the fit adds the second again; halved, the two poles that imitate the line
+shape stay."""
+
+LOWER = 0.9
+"""Misfit with a line shape over that of the same poles without, under which both are fitted in full [-]. Modes that are
+still missing are in both. Nearer to 1: fits without effect where noise decides; at half, windows pass unnoticed."""
+
+BROAD = 100.0
+"""Decay of a pole over a block beyond which its line shape is left as it is, to 0.1 % [-]. Doubled: work without
+effect."""
+
+
+FEWEST = 16
+"""Lines of which two are left out at the most [-]. Doubled: the ends of short sets, smoothed otherwise, move modes."""
+
+
+def fit_shaped(
+    frfs: FrfSet, start: ComplexArray, *, band: tuple[float, float], course: FloatArray | None = None
+) -> Fitted:
+    """Fit candidates with the line shape that explains the FRFs best, no window included unless one is stated.
+
+    A shape that nobody states counts if the fit with it explains more than the one without, each pole and term at its
+    price (Schwarz, Ann. Stat. 6 (1978) 461-464): two poles under a half-power width apart imitate the line shape.
+
+    Parameters
+    ----------
+    frfs, start, band, course
+        As of :func:`identification.fit.fit.fit_candidates`.
+
+    Raises
+    ------
+    EstimationError
+        If no candidate is a mode of the band.
+    """
+    kinds = _worth_a_fit(frfs, start) if course is None else []
+    fits: list[Fitted] = []
+    failure: EstimationError | None = None
+    for shaped, poles in [(_with(frfs, kind), _merged(start, frfs.df)) for kind in kinds] or [(frfs, start)]:
+        try:
+            fits.append(fit_candidates(shaped, poles, band=band, course=course))
+        except EstimationError as error:
+            failure = error
+    if kinds and frfs.window is None:
+        try:
+            fits.append(fit_candidates(frfs, start, band=band))
+        except EstimationError as error:
+            failure = error
+    if not fits:
+        raise failure or EstimationError(f"{frfs.source}: no candidate is a mode of the band")
+    return min(fits, key=_price)
+
+
+def _worth_a_fit(frfs: FrfSet, start: ComplexArray) -> list[Kind]:
+    """Return the line shapes to fit: both where a window is stated, else the best if it lowers the misfit."""
+    known = frfs.window == "none" or frfs.record is not None or frfs.line_shape is not None
+    if known or not np.any(-start.real < BROAD * frfs.df):
+        return []
+    if frfs.window == "hann":
+        return list(KINDS)
+    few = _merged(start, frfs.df)
+    misfits = [_misfit(_with(frfs, kind), few) for kind in KINDS]
+    best = int(np.argmin(misfits))
+    return [KINDS[best]] if misfits[best] < LOWER * _misfit(frfs, few) else []
+
+
+def _with(frfs: FrfSet, kind: Kind) -> FrfSet:
+    return replace(frfs, line_shape=LineShape(kind, 1.0 / frfs.df))
+
+
+def _merged(poles: ComplexArray, df: float) -> ComplexArray:
+    """Return poles with those that a window shows as one replaced by their mean, rising."""
+    poles = poles[np.argsort(poles.imag)]
+    cuts = np.flatnonzero(np.diff(poles.imag) > RESOLVED * 2 * np.pi * df) + 1
+    return np.array([part.mean() for part in np.split(poles, cuts)], dtype=np.complex128)
+
+
+def _misfit(frfs: FrfSet, poles: ComplexArray) -> float:
+    """Return the misfit of poles once they are refined, over the power of each FRF [-]."""
+    return refine(frfs, poles, uniform_weights(frfs), iterations=SHORT, tolerance=COARSE).cost
+
+
+def _price(fitted: Fitted) -> float:
+    """Return Schwarz's criterion with the noise that the fit leaves: less is better [-]."""
+    residual, n_frf = fitted.residual, len(fitted.residual)
+    lack = float(np.sum(np.log(fitted.variance) + np.abs(residual) ** 2 / fitted.variance))
+    unknowns = len(fitted.fit.poles) * (2 * n_frf + 2) + n_frf * len(fitted.fit.linear.powers)
+    return float(2.0 * lack + unknowns * np.log(2 * residual.size))

@@ -1,0 +1,114 @@
+"""FRFs averaged with a Hann window, FRFs on lines far apart, and FRFs without any window."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from acquisition import Dof, FrfSet
+from acquisition.form import FORMS
+from identification import identify
+
+HERTZ = np.array([63.6, 81.5, 97.0, 115.0, 129.0, 142.0])
+
+
+def structure(damping, seed=0):
+    """Return poles [rad/s] and residues of six FRFs [m/(N s)]."""
+    poles = 2 * np.pi * HERTZ * (-damping + 1j * np.sqrt(1 - damping**2))
+    shapes = np.random.default_rng(seed).standard_normal((6, 6))
+    shapes[0] = np.sign(shapes[0]) * np.maximum(np.abs(shapes[0]), 0.5)
+    return poles, shapes * shapes[0] / (2j * poles.imag)
+
+
+def response(poles, residues, s, form="accelerance"):
+    """Return FRFs at points of the Laplace plane."""
+    both = residues @ (1 / (s - poles[:, None])) + residues.conj() @ (1 / (s - poles.conj()[:, None]))
+    return s ** FORMS.index(form) * both
+
+
+def frf_set(frequency, values, form="accelerance"):
+    dofs = tuple(Dof(i + 1, 3) for i in range(len(values)))
+    return FrfSet(frequency, values, dofs, (dofs[0],) * len(values), form=form)
+
+
+def noisy(values, relative, rng):
+    size = relative * np.sqrt(np.mean(np.abs(values) ** 2, axis=1, keepdims=True) / 2)
+    return values + size * (rng.standard_normal(values.shape) + 1j * rng.standard_normal(values.shape))
+
+
+def welch(poles, residues, *, df, rate, blocks, seed, form="accelerance"):
+    """Average FRFs of a random force over half-overlapping Hann blocks of 1/df, with numpy alone."""
+    rng, samples = np.random.default_rng(seed), round(rate / df)
+    length = samples * (blocks + 4)
+    force = np.fft.rfft(rng.standard_normal(length))
+    s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)[1:]
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(samples) / samples)
+    starts = np.arange(4 * samples, length - samples + 1, samples // 2)
+    kept = slice(round(40 / df), round(160 / df))
+
+    def spectra(line):
+        wave = np.fft.irfft(line, length)
+        return np.array([np.fft.rfft(window * wave[a : a + samples])[kept] for a in starts])
+
+    push = spectra(force)
+    motion = [spectra(np.append(0.0, h) * force) for h in response(poles, residues, s, form)]
+    values = [np.sum(m * push.conj(), axis=0) / np.sum(np.abs(push) ** 2, axis=0) for m in motion]
+    return frf_set(np.arange(kept.start, kept.stop) * df, np.array(values), form)
+
+
+def check(model, damping, *, off, sigmas=4.5):
+    """See that all six modes are found and no other, near the truth and within their intervals."""
+    assert len(model) == 6, model.table()
+    modal = model.modal
+    assert modal.frequency == pytest.approx(HERTZ, rel=off * damping)
+    assert modal.damping == pytest.approx(damping, rel=off)
+    assert np.max(np.abs(modal.frequency - HERTZ) / modal.frequency_sigma) < sigmas
+    assert np.max(np.abs(modal.damping - damping) / modal.damping_sigma) < sigmas
+
+
+@pytest.mark.parametrize("form", ["accelerance", "mobility"])
+def test_hann_averages_whose_peaks_are_a_line_wide(form):
+    frfs = welch(*structure(0.005), df=0.5, rate=400.0, blocks=200, seed=3, form=form)
+    model = identify(frfs)
+    check(model, 0.005, off=0.05)
+    assert any("Hann window" in w and "state frf_window" in w for w in model.warnings)
+
+
+def test_a_window_that_is_stated_or_denied():
+    frfs = welch(*structure(0.005), df=0.5, rate=400.0, blocks=200, seed=4)
+    stated = identify(replace(frfs, window="hann"))
+    check(stated, 0.005, off=0.05)
+    assert any("Hann window" in w and "state" not in w for w in stated.warnings)
+    assert identify(replace(frfs, window="none")).frfs.line_shape is None
+
+
+def test_lines_far_apart_smoothed_over_three():
+    poles, residues = structure(0.03)
+    frequency = np.arange(5.0, 156.0, 5.0)
+    s = 2j * np.pi * np.concatenate([[1e-3], frequency, [160.0]])
+    exact = response(poles, residues, s)
+    smooth = 0.25 * exact[:, :-2] + 0.5 * exact[:, 1:-1] + 0.25 * exact[:, 2:]
+    model = identify(frf_set(frequency, noisy(smooth, 0.002, np.random.default_rng(0))))
+    check(model, 0.03, off=0.1)
+
+
+def test_lines_far_apart_without_a_window():
+    poles, residues = structure(0.03)
+    frequency = np.arange(5.0, 156.0, 5.0)
+    exact = response(poles, residues, 2j * np.pi * frequency)
+    model = identify(frf_set(frequency, noisy(exact, 0.01, np.random.default_rng(1))))
+    check(model, 0.03, off=0.1)
+    assert model.frfs.line_shape is None
+    assert not any("drift" in w or "differ" in w for w in model.warnings)
+
+
+def test_two_close_modes_are_no_window():
+    poles, residues = structure(0.005)
+    poles[1] = poles[0] * (1 + 0.55 / 63.6)  # as far apart as the poles that imitate a window
+    frequency = np.arange(40.0, 160.0, 0.5)
+    exact = response(poles, residues, 2j * np.pi * frequency)
+    model = identify(frf_set(frequency, noisy(exact, 0.005, np.random.default_rng(2))))
+    assert model.frfs.line_shape is None
+    assert np.sort(np.abs(poles)) / (2 * np.pi) == pytest.approx(model.modal.frequency, rel=1e-4)
