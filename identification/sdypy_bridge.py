@@ -241,7 +241,7 @@ def _most_pairs(frfs: FrfSet) -> int:
     It takes impulse responses of 2 (lines - 1) samples, of lines from 0 Hz to the last but one, at twice as many delays
     to either side as there are pairs.
     """
-    lines = round(frfs.frequency[-1] / frfs.df)
+    lines = round(float(frfs.frequency[-1] / frfs.df))
     return (2 * (lines - 1) - 1) // 4
 
 

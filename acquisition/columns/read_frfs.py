@@ -108,9 +108,13 @@ def _in_file(pair: tuple[Column, Column], path: Path, layout: Layout) -> tuple[C
 
 def _placed(column: Column, rule: FileRule) -> Column:
     """Return a column with the point that a rule gives the response, or the force where it names no column."""
-    of = "reference_" if rule.column == "" else ""
-    stated = {f"{of}node": rule.node, f"{of}direction": rule.direction}
-    return replace(column, **{key: value for key, value in stated.items() if value not in (None, "")})
+    if rule.column == "":
+        node = column.reference_node if rule.node is None else rule.node
+        return replace(
+            column, reference_node=node, reference_direction=rule.direction or column.reference_direction
+        )
+    node = column.node if rule.node is None else rule.node
+    return replace(column, node=node, direction=rule.direction or column.direction)
 
 
 def _note(

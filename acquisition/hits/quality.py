@@ -115,7 +115,7 @@ def _without_window(hits: Hits, decay: float, rate: float) -> Hits:
 def _regrowth(force: FloatArray, growth: FloatArray) -> FloatArray:
     """Return by how much forces are taken back, whatever offset they have."""
     top = np.abs(without_drift(force)).argmax(axis=-1)
-    return np.minimum(growth, REGROWTH * growth[top][:, None])
+    return np.asarray(np.minimum(growth, REGROWTH * growth[top][:, None]))
 
 
 def _usual_peaks(test: HammerTest) -> dict[Dof, float]:

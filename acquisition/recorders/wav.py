@@ -74,7 +74,8 @@ def _check_whole(path: Path) -> None:
         size = int(struct.unpack_from(f"{order}I", content, at + 4)[0])
         data += content[at : at + 4] == b"data"
         if content[at : at + 4] == b"fmt " and at + 24 <= len(content):
-            _check_sizes(*struct.unpack_from(f"{order}2xHIIHH", content, at + 8), path)
+            channels, together, bits = struct.unpack_from(f"{order}2xH8xHH", content, at + 8)
+            _check_sizes(path, channels, together, bits)
         at += 8 + size + size % 2
     stated = 8 + int(struct.unpack_from(f"{order}I", content, 4)[0])
     if at not in (len(content), len(content) + 1) or stated not in (at, at - 1) or data != 1:
@@ -84,7 +85,7 @@ def _check_whole(path: Path) -> None:
         )
 
 
-def _check_sizes(channels: int, rate: int, per_second: int, together: int, bits: int, path: Path) -> None:
+def _check_sizes(path: Path, channels: int, together: int, bits: int) -> None:
     """Refuse a header whose bytes a sample, channels and bits do not belong together: samples would be cut."""
     if not channels or together % channels or not 0 < bits <= 8 * together // channels:
         raise InputError(

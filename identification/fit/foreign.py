@@ -130,8 +130,8 @@ def foreign_frfs(frfs: FrfSet) -> Foreign:
     for one in np.unique(kind):
         sets = np.unique(order[kind == one])
         peaks = [_peaks(frfs, np.flatnonzero((order == s) & (kind == one))) for s in sets]
-        known = np.flatnonzero([len(p.clear.place) for p in peaks])
-        main = known[_largest([peaks[k] for k in known])]
+        known = np.flatnonzero([len(p.clear.place) for p in peaks]).tolist()
+        main = np.array(known, dtype=np.int64)[_largest([peaks[k] for k in known])]
         if len(known) < FEWEST or 2 * len(main) <= len(known):
             continue
         odd = [k for k in known if k not in main and _contradicts(k, peaks, main)]

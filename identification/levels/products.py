@@ -137,7 +137,7 @@ class _Point:
     @property
     def pull(self) -> FloatArray:
         """What all hits pull the power by, from 0, (n_modes,)."""
-        return self.scores(np.zeros(self.mean.shape[1])).sum(axis=0)
+        return np.asarray(self.scores(np.zeros(self.mean.shape[1])).sum(axis=0))
 
     @property
     def information(self) -> FloatArray:

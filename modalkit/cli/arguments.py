@@ -35,7 +35,7 @@ class Words:
 
 def options_of(spelt: str) -> dict[str, int]:
     """Return how many values each option of a command takes, from ``"--band 2, --check, --output -o 1"``."""
-    table = {}
+    table: dict[str, int] = {}
     for entry in filter(None, spelt.split(", ")):
         names = [word for word in entry.split() if word.startswith("-")]
         count = entry.split()[-1]

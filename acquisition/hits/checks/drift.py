@@ -86,4 +86,4 @@ def _sure(wave: FloatArray, drift: FloatArray, weight: FloatArray, count: int) -
     """Tell whether a drift leaves so much less of the samples without force that noise cannot be the reason."""
     constant = float(weight @ (wave - weight @ wave / weight.sum()) ** 2)
     left = float(weight @ (wave - drift) ** 2)
-    return (constant - left) / (count - 1) > SURE * left / (np.count_nonzero(weight) - count)
+    return bool((constant - left) / (count - 1) > SURE * left / (np.count_nonzero(weight) - count))

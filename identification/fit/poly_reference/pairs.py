@@ -59,13 +59,13 @@ class PairEquations:
         pulls = blocks_times(own, cross[:, rest, None])[:, :, 0]
         held, aim = inverses(summed(places, inner)), summed(places, pulls)
         n_rows, n_columns = places.shape
-        across = np.zeros((n_rows, len(rest), n_columns, 4))
-        across[places.row, :, places.column] = blocks_times(own, gram[:, rest[:, None], both])
+        shared = np.zeros((n_rows, len(rest), n_columns, 4))
+        shared[places.row, :, places.column] = blocks_times(own, gram[:, rest[:, None], both])
         normal, target = np.zeros((n_rows, n_columns, 4, n_columns, 4)), np.zeros((n_rows, n_columns, 4))
         normal[places.row, places.column, :, places.column] = gram[:, both[:, None], both]
         target[places.row, places.column] = cross[:, both]
         size = 4 * n_columns
-        across = across.reshape(n_rows, len(rest), size)
+        across = shared.reshape(n_rows, len(rest), size)
         follow = np.matmul(held, across)
         return cls(
             normal.reshape(n_rows, size, size) - np.matmul(across.transpose(0, 2, 1), follow),

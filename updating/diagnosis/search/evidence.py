@@ -300,7 +300,8 @@ def _factor(peak: Peak) -> FloatArray:
     k = len(peak.gradient)
     precision = peak.normal + np.diag(_outward(peak) ** 2) + 4.0 * np.eye(k)
     values, vectors = np.linalg.eigh((precision + precision.T) / 2)
-    upper = np.linalg.qr((vectors * np.sqrt(1.4 / np.maximum(values, 1.0))).T, mode="r")
+    root = (vectors * np.sqrt(1.4 / np.maximum(values, 1.0))).T
+    upper = np.linalg.qr(root).R
     return np.asarray(upper.T * np.where(np.diag(upper) < 0, -1.0, 1.0))
 
 

@@ -68,7 +68,7 @@ def hold_hollow_rows(stiffness: Sparse, massless: IntArray, relative: float) -> 
     factor = factored(held)
     bound = relative * (1 + int(np.diff(block.indptr).max())) * len(massless)
     added = np.zeros(stiffness.shape[0])
-    for row in np.flatnonzero(factor.U.diagonal()[factor.perm_c] <= bound):
+    for row in np.flatnonzero(factor.U.diagonal()[factor.perm_c] <= bound).tolist():
         motion = factor.solve(np.eye(1, len(massless), row).ravel())[:, None]
         if without_stiffness(block, motion, relative)[0]:
             added[massless[row]] = stiffness.diagonal()[massless[row]]

@@ -112,8 +112,8 @@ class Imported:
         object.__setattr__(self, "massless", bool((self.mass.diagonal() == 0).any()))
         if self.decimal < 0:
             object.__setattr__(self, "decimal", decimal_rounding(self.stiffness))
-        settled, left = self._settled_stiffness()
-        object.__setattr__(self, "left", left)
+        settled, unbalanced = self._settled_stiffness()
+        object.__setattr__(self, "left", unbalanced)
         object.__setattr__(self, "stiffness", settled)
         bare = self.mass
         object.__setattr__(self, "mass", with_mass_everywhere(self.stiffness, bare, self.source))

@@ -53,7 +53,7 @@ def free_motions(stiffness: Sparse, motions: FloatArray, relative: float) -> Flo
 
 def rank(motions: FloatArray, stiffness: Sparse) -> int:
     """Return how many of some motions (n, k) are different [-]."""
-    return _basis(motions * _scale(stiffness)[:, None]).shape[1]
+    return int(_basis(motions * _scale(stiffness)[:, None]).shape[1])
 
 
 def without_forces(stiffness: Sparse, motions: FloatArray) -> tuple[Sparse, float]:
@@ -110,7 +110,7 @@ class _Correction:
 
     def _alone(self, flat: FloatArray) -> FloatArray:
         """Solve row by row, as if no other row changed."""
-        return np.einsum("nij,nj->ni", self._inverse, flat.reshape(self.basis.shape)).ravel()
+        return np.asarray(np.einsum("nij,nj->ni", self._inverse, flat.reshape(self.basis.shape)).ravel())
 
     @cached_property
     def _inverse(self) -> FloatArray:
