@@ -97,8 +97,8 @@ def blocks_of(path: Path, layout: Layout) -> Sequence[Channels]:
         If there are none.
     """
     axes = [c for c in (layout.time_column, layout.frequency_column) if c is not None]
-    keys: list[int | str] = [c.index if c.name is None else c.name for c in layout.columns]
-    keys += axes
+    named = (c.index if c.name is None else c.name for c in layout.columns)
+    keys = [key for key in (*named, *axes) if key is not None]
     if is_recorded(path):
         return recorded(path, keys, rate_variable=layout.rate_variable)
     if layout.rate_variable is not None:
