@@ -1,1 +1,1 @@
-"""Kinds of test for `bench_hammer.py`, one a module."""
+"""Kinds of test for `bench_hammer.py`, and how one is simulated and counted."""

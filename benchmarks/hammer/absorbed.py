@@ -7,9 +7,17 @@ from dataclasses import replace
 import numpy as np
 
 from acquisition.synthetic import ModalSystem
+from hammer.plain import beam_test
+from hammer.setups import Setup
 
 MASS, DAMPING, TUNED = (0.005, 0.05), (0.01, 0.05), (0.85, 1.15)
 """Mass over the modal mass, damping ratio, and frequency over that of the mode it is tuned to [-]."""
+
+
+def absorber_test(rng: np.random.Generator) -> Setup:
+    """Draw a beam with an absorber on it."""
+    setup = beam_test(rng)
+    return replace(setup, system=absorbed(setup.system, setup.band, rng))
 
 
 def absorbed(system: ModalSystem, band: tuple[float, float], rng: np.random.Generator) -> ModalSystem:

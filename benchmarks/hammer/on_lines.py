@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from acquisition import FrfSet
 from acquisition.synthetic import ModalSystem
+from hammer.plain import beam_test
+from hammer.setups import Setup
 
 BLOCKS = 60
 Made = tuple[FrfSet, NDArray[np.bool_]]
@@ -71,4 +73,11 @@ def _above(system: ModalSystem, margin: float, band: tuple[float, float]) -> NDA
     return np.asarray((hertz > band[0] + margin) & (hertz < band[1] - margin))
 
 
-ON_LINES: dict[str, Callable[..., Made]] = {"averaged": averaged, "coarse": coarse}
+def averaged_test(rng: np.random.Generator) -> Setup:
+    """Draw a beam whose FRFs are averaged over windowed blocks."""
+    return replace(beam_test(rng), without_hits=averaged)
+
+
+def coarse_test(rng: np.random.Generator) -> Setup:
+    """Draw a beam whose FRFs have few lines."""
+    return replace(beam_test(rng), without_hits=coarse)
