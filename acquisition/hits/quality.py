@@ -109,12 +109,13 @@ def _without_window(hits: Hits, decay: float, rate: float) -> Hits:
     if not decay:
         return hits
     growth = np.exp(decay * np.arange(hits.force.shape[-1]) / rate)
-    return replace(hits, force=hits.force * _regrowth(hits.force, growth), motion=hits.motion * growth)
+    level = without_drift(hits.force, fade=decay / rate)
+    return replace(hits, force=hits.force * _regrowth(level, growth), motion=hits.motion * growth)
 
 
-def _regrowth(force: FloatArray, growth: FloatArray) -> FloatArray:
-    """Return by how much forces are taken back, whatever offset they have."""
-    top = np.abs(without_drift(force)).argmax(axis=-1)
+def _regrowth(level: FloatArray, growth: FloatArray) -> FloatArray:
+    """Return by how much forces are taken back; ``level`` are the forces without drift."""
+    top = np.abs(level).argmax(axis=-1)
     return np.asarray(np.minimum(growth, REGROWTH * growth[top][:, None]))
 
 
@@ -125,7 +126,7 @@ def _usual_peaks(test: HammerTest) -> dict[Dof, float]:
     """
     waves: dict[Dof, list[FloatArray]] = {}
     for p in test.points:
-        waves.setdefault(p.reference, []).extend(upright(p.force))
+        waves.setdefault(p.reference, []).extend(_waves(p, test))
     peaks = {point: np.array([wave.max() for wave in here]) for point, here in waves.items()}
     noise = {point: np.array([noise_level(wave) for wave in here]) for point, here in waves.items()}
     clear = {point: peaks[point] >= BURIED * noise[point] for point in waves}

@@ -28,6 +28,7 @@ from hammer.counts import Outcome, counted
 from hammer.kinds import DRAWN
 from hammer.setups import Setup
 from identification import ModalModel, identify
+from identification.levels.hits import used_hits
 from modalkit.workflow.identification import from_content
 from modalkit.workflow.processing_options import ProcessingOptions
 
@@ -48,13 +49,14 @@ def judged(kind: str, seed: int) -> Outcome:
         return Outcome(kind, seed, int(out.sum()), 0, hertz.tolist(), [], 0, 0, [], np.nan, 0.0)
     cpu = time.process_time() - began
     if model.levels is not None and setup.at_hit is not None:
-        setup = replace(setup, system=setup.at_hit(0, 0, model.levels.level))
+        setup = replace(setup, system=setup.at_hit(0, 0, model.levels.level / _recorded(setup, seed)))
     return counted(kind, seed, setup, out, model, cpu)
 
 
 def _by_hits(setup: Setup, seed: int) -> Trial:
     test, frfs = measured(setup, np.random.default_rng([seed, 1]))
-    out = standing_out(setup, frfs, _without_noise(setup, seed))
+    clean = estimate_frfs(apply_windows(_still(setup, seed), Windows(decay=setup.stated)))
+    out = standing_out(setup, frfs, clean)
     if setup.by_levels:
         return out, lambda: _modes(test, setup)
     return out, lambda: identify(frfs, band=setup.band)
@@ -69,12 +71,18 @@ def _on_lines(setup: Setup, seed: int) -> Trial:
     return inside & (np.abs(setup.system.poles) < 0.97 * top), lambda: identify(frfs)
 
 
-def _without_noise(setup: Setup, seed: int) -> FrfSet:
+def _still(setup: Setup, seed: int, **changed: float) -> HammerTest:
+    """Hit it once a point, without noise."""
     quiet = replace(
         setup.plan, force_noise=0.0, response_noise=0.0, adc_bits=None, position_sigma=0.0, drift=0.0, hits=1
     )
-    still = hammer_test(setup.system, quiet, rng=np.random.default_rng([seed, 1]))
-    return estimate_frfs(apply_windows(still, Windows(decay=setup.stated)))
+    return hammer_test(setup.system, replace(quiet, **changed), rng=np.random.default_rng([seed, 1]))
+
+
+def _recorded(setup: Setup, seed: int) -> float:
+    """Return the peak that is recorded over that of the force: a filter lowers short pulses [-]."""
+    hits = used_hits([(_still(setup, seed, level_scatter=0.0), ())])
+    return float(np.mean([h.levels.mean() for h in hits]) / setup.plan.peak)
 
 
 def _modes(test: HammerTest, setup: Setup) -> ModalModel:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from acquisition import (
@@ -64,6 +64,7 @@ def frfs(test: HammerTest):
     windowed=st.floats(-50.0, 50.0),
     constant=st.floats(-20.0, 20.0),
 )
+@example(offset=0.0, trend=50.0, windowed=-45.0, constant=0.0)
 def test_offset_and_trend_of_any_record_change_no_frf(decay, offset, trend, windowed, constant):
     """In the force also offsets and trends that were there before the window was applied."""
     test = hammer_test(BEAM, replace(PLAN, decay=decay), rng=np.random.default_rng(5))
@@ -83,6 +84,25 @@ def test_an_offset_beside_a_stated_window_is_no_pulse(rng):
             one.width, rel=1e-2
         )
         assert "force has an offset of 20 N" in other.reasons
+
+
+@pytest.mark.parametrize("decay", [8.0, 16.0, 24.0])
+def test_hits_late_in_a_stated_window_have_their_usual_level(rng, decay):
+    """The level of a hit and the usual one at its point are both those from before the window."""
+    plain = judge_hits(hammer_test(BEAM, replace(PLAN, level_scatter=0.0), rng=rng))
+    windowed = judge_hits(hammer_test(BEAM, replace(PLAN, level_scatter=0.0, decay=decay), rng=rng))
+    assert all(v.used for v in plain)
+    assert all(v.used for v in windowed), [v.reasons for v in windowed if not v.used]
+
+
+def test_a_weak_hit_is_found_beside_a_stated_window(rng):
+    test = hammer_test(BEAM, replace(PLAN, level_scatter=0.0, decay=16.0), rng=rng)
+    first, *others = test.points
+    soft = replace(
+        first, force=first.force * [[1], [0.1], [1]], motion=first.motion * [[[1]], [[0.1]], [[1]]]
+    )
+    refused = [v for v in judge_hits(replace(test, points=(soft, *others))) if not v.used]
+    assert [(str(v.point), v.hit, v.kind) for v in refused] == [("1+Z", 2, "too weak")]
 
 
 @pytest.mark.parametrize("top", [0, 1, 2, 1021, 1022, 1023])
