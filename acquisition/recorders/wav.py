@@ -87,7 +87,7 @@ def _check_whole(path: Path) -> None:
 
 def _check_sizes(path: Path, channels: int, together: int, bits: int) -> None:
     """Refuse a header whose bytes a sample, channels and bits do not belong together: samples would be cut."""
-    if not channels or together % channels or not 0 < bits <= 8 * together // channels:
+    if not channels or not bits or together != channels * ((bits + 7) // 8):
         raise InputError(
             f"{path}: its header states {channels} channels of {bits} bits in {together} bytes; the file is damaged, "
             "record or export it again"

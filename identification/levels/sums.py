@@ -15,8 +15,11 @@ ORDERS = (2, 3)
 """Numbers of natural frequencies in a sum [-]: what a joint makes at higher orders is fainter."""
 
 CHANCE = 1e-3
-"""Chance by which so many modes lie at sums of stronger ones, under which a word is said [-]. Ten times as much says
-it of one structure in a hundred."""
+"""Chance by which modes lie so near to sums of stronger ones, under which a warning names them [-]. Ten times as much
+warns of one structure in a hundred."""
+
+NEAR = 0.1
+"""Chance of its distance alone, under which a mode is among those named [-]."""
 
 SOURCES = 6
 """Strongest modes among which sums are sought where only frequencies are known [-]. Twice as many have sums
@@ -66,31 +69,40 @@ def _named(counts: FloatArray, sources: FloatArray) -> str:
 
 
 def coincidences(model: ModalModel) -> dict[int, str]:
-    """Return modes at sums or differences of stronger ones, where more are there than chance puts there.
+    """Return modes nearer to sums or differences of stronger ones than chance puts them.
+
+    Under chance the distance from the nearest sum is that of a random place of the band. The chances of all modes are
+    combined after Fisher (Statistical Methods for Research Workers, 1932, section 21.1).
 
     Returns
     -------
     dict of int to str
-        The sum for each of these modes, from 0; empty where chance explains their number.
+        The sum for each of these modes, from 0; empty where chance explains all distances.
     """
-    poles, low, high = model.poles, *model.band
-    own, width = model.modal.frequency, -poles.real / (2 * np.pi) + model.modal.frequency_sigma
-    height = np.sum(np.abs(model.constants / poles.real) ** 2, axis=0)
-    found, expected = {}, 0.0
+    own, off = model.modal.frequency, model.modal.frequency_sigma
+    height = np.sum(np.abs(model.constants / model.poles.real) ** 2, axis=0)
     strong = np.argsort(-height)
-    for place, r in enumerate(strong[1:], start=1):
+    chances, named = {}, {}
+    for place, r in enumerate(strong[1:].tolist(), start=1):
         above = strong[: min(place, SOURCES)]
-        named = combination(float(own[r]), own[above], width[above])
-        if named is not None:
-            found[int(r)] = named
-        expected += _expected(own[above], width[above], (low, high))
-    sure = stats.poisson.sf(len(found) - 1, expected) < CHANCE
-    return dict(sorted(found.items())) if sure else {}
+        chances[r], named[r] = _nearest(own[r], off[r], own[above], model.band)
+    total = -2 * np.sum(np.log(list(chances.values())))
+    if not chances or stats.chi2.sf(total, 2 * len(chances)) > CHANCE:
+        return {}
+    return {r: named[r] for r in sorted(chances) if chances[r] < NEAR}
 
 
-def _expected(sources: FloatArray, tolerance: FloatArray, band: tuple[float, float]) -> float:
-    """Return the chance that a frequency anywhere in a band lies at a sum of sources [-]."""
-    counts = np.concatenate([_counts(len(sources), order) for order in ORDERS])
-    place = counts @ sources
-    inside = (place > band[0]) & (place < band[1])
-    return float(min(1.0, np.sum(2.0 * np.abs(counts[inside]) @ tolerance) / (band[1] - band[0])))
+def _nearest(
+    frequency: float, sigma: float, sources: FloatArray, band: tuple[float, float]
+) -> tuple[float, str]:
+    """Return the chance that a random frequency lies as near to a sum of sources, and that sum as text."""
+    found = []
+    for order in ORDERS:
+        counts = _counts(len(sources), order)
+        place = counts @ sources
+        inside = (place > band[0]) & (place < band[1])
+        if inside.any():
+            apart = np.abs(place[inside] - frequency)
+            within = 2 * max(float(apart.min()), sigma) * np.count_nonzero(inside) / (band[1] - band[0])
+            found.append((-np.expm1(-len(ORDERS) * within), _named(counts[inside][apart.argmin()], sources)))
+    return min(found, default=(1.0, ""))

@@ -84,6 +84,10 @@ def _wav_cases() -> list[Case]:
     ]
 
 
+INTERLEAVED = (4, 5)
+"""Bytes of a TDMS segment whose bits say in which order the samples stand: no other datum repeats them."""
+
+
 TRAILED = (
     "Header Size:\t 2\nX-Axis size:\t24\n"
     + "".join(
@@ -116,7 +120,11 @@ def recorder_families() -> list[Family]:
         return read_frf_columns(path, path.with_name(f"{path.name}.toml")), ()
 
     return [
-        Family("TDMS", [_binary("a.tdms", tdms, plain, 28, _spans(tdms, FORCE, MOTION, step))], _read),
+        Family(
+            "TDMS",
+            [_binary("a.tdms", tdms, plain, 28, [INTERLEAVED, *_spans(tdms, FORCE, MOTION, step)])],
+            _read,
+        ),
         Family("WAV", _wav_cases(), _read),
         Family("numpy records", [_case("a.npz", npz, rated, 60, undetectable.archive)], _read),
         Family(

@@ -50,7 +50,7 @@ def test_constants_of_modes_that_follow_the_force_do_not_grow(slope: float) -> N
 
 def test_sums_of_two_come_before_sums_of_three() -> None:
     sources, off = np.array([34.4, 216.2, 606.3]), np.array([0.2, 0.5, 1.0])
-    assert combination(285.0, sources, off) == "216.2 Hz + 2 x 34.40 Hz"
+    assert combination(285.0, sources, off) == "2 x 34.40 Hz + 216.2 Hz"
     assert combination(390.0, sources, off) == "606.3 Hz - 216.2 Hz"
     assert combination(424.4, sources, off) == "34.40 Hz + 606.3 Hz - 216.2 Hz"
     assert combination(500.0, sources, off) is None
