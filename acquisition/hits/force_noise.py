@@ -12,8 +12,10 @@ from acquisition.hits.hammer import HammerTest, Hits
 from acquisition.warned import Consequential
 
 COUNTS = 0.01
-"""Noise of the force at a spectral line, relative to the pulse, from which it is taken out: an FRF of a single hit errs
-by as much. Ten times as much, damping from records ten times as long as the ringing is a third too low [-]."""
+"""Error of FRFs by the noise of the forces, relative to the pulse, from which that noise is taken out: what all hits
+together leave of its scatter, or its square, by which H1 is too low [-]. Below, the ringing that is cut off with the
+noise, alike in all hits, errs by as much. Ten times as much, damping from records ten times as long as the ringing is a
+third too low."""
 
 STANDS_OUT = 6.0
 """Standard deviations of noise, over the width of a pulse, from which there is force, as no long record has [-]."""
@@ -40,7 +42,8 @@ def pulses_alone(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:
         for waves, spans in zip(level, pulses, strict=True)
         for wave, near in zip(waves, spans, strict=True)
     )
-    if share <= COUNTS:
+    count = sum(len(spans) for spans in pulses)
+    if max(share / np.sqrt(count), share**2) <= COUNTS:
         points = tuple(_drifting(p, waves) for p, waves in zip(test.points, level, strict=True))
         return replace(test, points=points), ()
     alone = [replace(p, force=w * near) for p, w, near in zip(test.points, level, pulses, strict=True)]
