@@ -146,10 +146,9 @@ def find_split_mode(frfs: FrfSet, fit: Fit) -> tuple[int, int] | None:
     if not suspected and not groups:
         return None
     residual, weights = left_over(frfs, fit), search_weights(frfs, fit)
-    comparable = split_modes.alike_wide(fit.poles)
     for pair in suspected:
         found = split_modes.misfits(frfs, fit.poles, residues, residual, weights, pair)
-        if found is None or not comparable[*pair] or not found.two_modes:
+        if found is None or not found.two_modes:
             return _weaker_first(pair, energy)
     for group in groups:
         found = split_modes.misfits(frfs, fit.poles, residues, residual, weights, group)
