@@ -1,7 +1,7 @@
 """Cost of an identification as points grow: 39 modes of a plate, 3 references, 2048 lines, 1 % noise.
 
 A process for each size measures processor time and largest memory of `identify`, then those of one more pick (to its
-picture, and to its last digits). Beside them stands the floor: the FFTs of the data, and one linear least-squares fit
+picture). Beside them stands the floor: the FFTs of the data, and one linear least-squares fit
 of all residues at the poles found. Exponents are slopes of logarithms from the smallest size to the largest.
 """
 
