@@ -173,13 +173,18 @@ def test_any_state_within_the_prior_has_modes(name: str, place: str) -> None:
 @admitted([n for n in LIBRARY if n in CHANGES], ["beam", "timoshenko", "plate", "free"], formed=True)
 @pytest.mark.parametrize("quantile", [0.25, 0.6])
 def test_the_small_model_agrees_with_the_full_one(name: str, place: str, quantile: float) -> None:
-    """Sparse matrices of the whole model, the effect but its dampers put in by hand: to 0.05 % of every frequency."""
+    """Sparse matrices of the whole model, the effect but its dampers put in by hand: to 0.05 % of every frequency.
+
+    Of orthotropy to a fifth of the doubt in it, by the logarithm of its ratio (0.2 and 1.9 here): its modes are put
+    together from those of an isotropic plate, which errs by 0.6 and 0.13 %.
+    """
     effect, predictor = LIBRARY[name], LOOK[place]
     values = form(effect, predictor, quantile)
     values |= {damper: 0.0 for damper in ("damping", "alpha", "beta") if damper in values}
     found = predictor.predict(effect.state(predictor, values), count=5).frequency
     full = full_modes(name, predictor, values, 5)
-    assert found == pytest.approx(full, rel=bound(effect, predictor, full))
+    near = 0.2 * effect.fidelity * abs(np.log(values["ratio"])) if name == "orthotropy" else 0.0
+    assert found == pytest.approx(full, rel=max(near, bound(effect, predictor, full)))
 
 
 @admitted([n for n in VANISHING if n in LIBRARY])
