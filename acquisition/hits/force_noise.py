@@ -37,20 +37,23 @@ def pulses_alone(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:
     fade = test.decay / test.rate
     level = [without_drift(p.force, fade=fade) for p in test.points]
     pulses = [np.array([_around_pulse(wave) for wave in waves]) for waves in level]
-    share = max(
-        _share(wave, near)
-        for waves, spans in zip(level, pulses, strict=True)
-        for wave, near in zip(waves, spans, strict=True)
+    powers = np.array(
+        [
+            _powers(wave, near)
+            for waves, spans in zip(level, pulses, strict=True)
+            for wave, near in zip(waves, spans, strict=True)
+        ]
     )
-    count = sum(len(spans) for spans in pulses)
-    if max(share / np.sqrt(count), share**2) <= COUNTS:
+    impulse, noise = powers.sum(axis=0)
+    bias = noise / max(impulse, np.finfo(float).tiny)
+    if max(np.sqrt(bias / len(powers)), bias) <= COUNTS:
         points = tuple(_drifting(p, waves) for p, waves in zip(test.points, level, strict=True))
         return replace(test, points=points), ()
     alone = [replace(p, force=w * near) for p, w, near in zip(test.points, level, pulses, strict=True)]
     length = float(np.median(np.concatenate([near.sum(axis=-1) for near in pulses]))) / test.rate
     text = (
         f"{test.source}: noise of the force, summed over records of {test.duration:.3g} s, reaches "
-        f"{100 * share:.2g} % of a pulse; the force is set to zero but for {length:.2g} s about each pulse"
+        f"{100 * np.sqrt(bias):.2g} % of a pulse; the force is set to zero but for {length:.2g} s about each pulse"
     )
     return replace(test, points=tuple(alone)), (Consequential(text),)
 
@@ -58,7 +61,7 @@ def pulses_alone(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:
 def _drifting(hits: Hits, level: FloatArray) -> Hits:
     """Return the hits without the drift of their forces; as they are where there is none."""
     offset = np.median(hits.force, axis=-1, keepdims=True)
-    return hits if np.allclose(level, hits.force - offset, rtol=0.0, atol=0.0) else replace(hits, force=level)
+    return hits if np.array_equal(level, hits.force - offset) else replace(hits, force=level)
 
 
 def _around_pulse(wave: FloatArray) -> BoolArray:
@@ -70,12 +73,13 @@ def _around_pulse(wave: FloatArray) -> BoolArray:
     width = last - first + 1
     mean = np.convolve(wave, np.ones(width) / np.sqrt(width), mode="same")
     force = np.flatnonzero(np.abs(mean) > STANDS_OUT * noise_level(mean))
-    start, stop = min(first, *force) - width, max(last, *force) + width
+    start, stop = min([first, *force]) - width, max([last, *force]) + width
     place = np.arange(len(wave))
     return np.asarray((place >= start) & (place <= stop))
 
 
-def _share(wave: FloatArray, near: BoolArray) -> float:
-    """Return the noise beside the pulse at a spectral line, relative to the pulse [-]."""
-    impulse = abs(float(wave[near].sum()))
-    return float(np.sqrt(np.sum(wave[~near] ** 2))) / impulse if impulse > 0 and not near.all() else 0.0
+def _powers(wave: FloatArray, near: BoolArray) -> tuple[float, float]:
+    """Return the powers of the pulse and of the noise beside it at a spectral line [N^2]: H1 adds those of all hits."""
+    if not np.isfinite(wave).all():
+        return 0.0, 0.0
+    return float(wave[near].sum()) ** 2, float(np.sum(wave[~near] ** 2))

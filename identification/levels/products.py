@@ -71,7 +71,8 @@ def growth(
     Notes
     -----
     The constants of the hits at one point are fitted by A (1 + b (F / F0 - 1)) with one b for all points and responses,
-    each hit weighted by its power and each FRF by its noise. The standard deviation comes from the scatter of the hits.
+    each hit weighted by its power and each FRF by its noise. The standard deviation comes from the scatter of the hits,
+    corrected for the mean of each point and for b (MacKinnon and White, J. Econometrics 29 (1985) 305-325, HC1).
     """
     rows = rows_of(model)
     entries = [e for e in used_hits(tests) if is_known(e, rows)]
@@ -83,7 +84,7 @@ def growth(
         if found is None
         else hit_shifts(found)[0]
     )
-    pull, information, scores = np.zeros(len(model)), np.zeros(len(model)), []
+    points = []
     for entry in entries:
         constants, noise = [], np.ones((1, 1))
         for frfs in entry.single_frfs(windows=windows, band=band_of(model)):
@@ -92,13 +93,20 @@ def growth(
             constants.append(hit_residues(model, data, poles, own) * 2j * poles.imag)
             stated = [rows[pair] for pair in zip(data.responses, data.references, strict=True)]
             noise, first = model.constant_noise[stated], first + 1
-        scores.append(_Point.of(np.array(constants), entry.levels, noise))
-        pull, information = pull + scores[-1].pull, information + scores[-1].information
-    power = pull / np.maximum(information, np.finfo(float).tiny)
-    spread = np.sum([np.sum(point.scores(power) ** 2, axis=0) for point in scores], axis=0)
-    freedom = max(len(shifts) - len(entries) - 1, 1)
+        points.append(_Point.of(np.array(constants), entry.levels, noise))
+    return _fitted(points)
+
+
+def _fitted(points: Sequence[_Point]) -> Growth:
+    """Return the power that all points have in common, and its standard deviation by the scatter of the hits."""
+    tiny = np.finfo(float).tiny
+    information = np.maximum(np.sum([point.information for point in points], axis=0), tiny)
+    power = np.sum([point.pull for point in points], axis=0) / information
+    squares = np.sum([np.sum(point.scores(power) ** 2, axis=0) for point in points], axis=0)
+    hits = sum(len(point.weight) for point in points)
+    freedom = max(hits - len(points) - 1, 1)
     wider = stats.t.ppf(0.975, freedom) / stats.norm.ppf(0.975)
-    return Growth(power, wider * np.sqrt(spread) / np.maximum(information, np.finfo(float).tiny))
+    return Growth(power, wider * np.sqrt(squares * hits / freedom) / information)
 
 
 @dataclass(frozen=True, eq=False)

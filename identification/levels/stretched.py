@@ -105,7 +105,14 @@ def stretched_averages(
     values, known = data.values.copy(), np.unique(singles.row)
     values[known] = singles.averages(data.frequency, slope, len(values))[known]
     bare = replace(
-        data, values=values, coherence=None, variance=None, averages=None, scatter=None, record=None
+        data,
+        values=values,
+        coherence=None,
+        variance=None,
+        averages=None,
+        scatter=None,
+        record=None,
+        window="none",
     )
     return Stretched(bare, slope / level)
 

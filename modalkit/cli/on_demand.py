@@ -60,7 +60,7 @@ ENTRIES = (
         "measuring",
         "Identify frequencies, damping and mode shapes, with their uncertainties; show modes that exist already.",
         "--band 2, --order 1, --add 1, --drop 1, --decay 1, --window-on 1, --window 1, "
-        "--estimator 1, --use 1, --leave 1, --layout 1, --sensor-mass 1, --json 1, "
+        "--frf-window 1, --estimator 1, --use 1, --leave 1, --layout 1, --sensor-mass 1, --json 1, "
         "--output -o 1, --check, --report 1, --figures 1",
     ),
     Entry(

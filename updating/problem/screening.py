@@ -12,7 +12,7 @@ all frequencies have in common is left out as far as tolerances explain it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -99,7 +99,7 @@ def _basins(candidate: Candidate, free: Sequence[Parameter], stage: Predictor, g
         for at in product(*lines)
         for other in others
     ]
-    states = [replace(candidate.state(stage, u), theory=None) for u in tried]
+    states = (replace(candidate.state(stage, u), theory=None) for u in tried)  # each holds whole matrices
     misfit = _misfits(stage, states, grid).reshape(*map(len, lines), len(others))
     lowest, best = misfit.min(axis=-1), misfit.argmin(axis=-1)
     minima = np.argwhere((lowest == minimum_filter(lowest, size=3, mode="nearest")) & np.isfinite(lowest))
@@ -129,7 +129,7 @@ def _others(effect: Effect, free: Sequence[Parameter], grid: Grid) -> list[dict[
     return [{**one, **{name: one[leader] for name, leader in followers.items()}} for one in every]
 
 
-def _misfits(stage: Predictor, states: Sequence[State], grid: Grid) -> FloatArray:
+def _misfits(stage: Predictor, states: Iterable[State], grid: Grid) -> FloatArray:
     """Return minus the log-likelihood of frequencies and shapes, noise of unknown scale, under each state (n,) [-].
 
     Each measured mode is compared with the mode of the state that is nearest in both.
@@ -137,8 +137,11 @@ def _misfits(stage: Predictor, states: Sequence[State], grid: Grid) -> FloatArra
     test, first = stage.measured, stage.reduced.structure.rigid_modes
     count = len(test.frequency)
     basis = stage.reduced.eigen(stage.base)[1][:, : first + test.below + count + grid.beyond]
-    matrices = [stage.reduced.matrices(stage.base.plus(state)) for state in states]
-    stiffness, mass = (basis.T @ np.array(parts) @ basis for parts in zip(*matrices, strict=True))
+    projected = [
+        [basis.T @ part @ basis for part in stage.reduced.matrices(stage.base.plus(state))]
+        for state in states
+    ]
+    stiffness, mass = np.array(projected).transpose(1, 0, 2, 3)
     lower = np.linalg.inv(np.linalg.cholesky(mass))
     values, vectors = np.linalg.eigh(lower @ stiffness @ lower.transpose(0, 2, 1))
     frequency = np.sqrt(np.maximum(values[:, first + test.below :], 1e-12)) / (2 * np.pi)

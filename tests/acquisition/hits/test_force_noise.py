@@ -186,3 +186,15 @@ def test_a_soft_hit_that_is_the_only_one_at_its_point_is_sound(rng):
     among = replace(hard, force=hard.force * [[1], [0.1], [1]], motion=hard.motion * [[[1]], [[0.1]], [[1]]])
     refused = [v for v in judge_hits(replace(test, points=(among, alone))) if not v.used]
     assert [(str(v.point), v.hit, v.kind) for v in refused] == [("1+Z", 2, "too weak")]
+
+
+def test_a_record_without_a_pulse_changes_no_other(rng):
+    """A trigger by chance stores noise alone; it is refused, and what is done to the other forces stays the same."""
+    test = hammer_test(BEAM, replace(PLAN, force_noise=0.02), rng=rng)
+    first, *others = test.points
+    force = np.concatenate([first.force, 0.02 * rng.standard_normal((1, test.samples))])
+    chance = replace(first, force=force, motion=np.concatenate([first.motion, first.motion[:1]]))
+    alone, notes = pulses_alone(replace(test, points=(chance, *others)))
+    kept, expected = pulses_alone(test)
+    assert notes == expected
+    np.testing.assert_array_equal(alone.points[0].force[:-1], kept.points[0].force)

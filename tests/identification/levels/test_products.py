@@ -11,6 +11,7 @@ from level_cases import structure as softening
 
 from acquisition import estimate_frfs
 from identification import coincidences, combination, growth, identify, level_dependence
+from identification.levels.products import SURE, _fitted, _Point
 
 SLIP = -2e10
 """Frequencies fall by 0.7 % between the softest and the hardest hit."""
@@ -70,3 +71,17 @@ def test_without_hits_sums_are_named_as_what_may_be() -> None:
         other.frfs(lines(low=15.0, high=750.0), column(8), noise=0.0005, rng=np.random.default_rng(0))
     )
     assert not coincidences(model)
+
+
+@pytest.mark.parametrize("hits", [2, 3, 5])
+def test_the_standard_deviation_of_a_growth_is_that_which_occurs(hits: int) -> None:
+    """Noise of single FRFs falls with the force; the mean constant of each of twenty points costs a hit."""
+    rng, modes, points = np.random.default_rng(hits), 2000, []
+    for _ in range(20):
+        levels = 12.0 * np.exp(0.3 * rng.standard_normal(hits))
+        own, noise = (rng.standard_normal((2, n, 1, modes)) for n in (1, hits))
+        scatter = 0.3 * 12.0 / levels[:, None, None] * (noise[0] + 1j * noise[1])
+        points.append(_Point.of(own[0] + 1j * own[1] + scatter, levels, np.ones((1, modes))))
+    grown = _fitted(points)
+    assert np.std(grown.power / grown.sigma) < 1.15
+    assert np.mean(grown.power > SURE * grown.sigma) < 0.006

@@ -35,7 +35,9 @@ def predictor(frame: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Pr
     slopes = {"slope": np.zeros(COUNT), "slope_sigma": np.full(COUNT, 1e-6), "level": LEVEL}
     bare = Predictor(spec, replace(test, **slopes))
     constants = bare.predict(count=COUNT).constants  # by which the measured modes are known
-    return bare.for_test(replace(bare.measured, constants=constants, constants_sigma=0.01 * np.abs(constants)))
+    return bare.for_test(
+        replace(bare.measured, constants=constants, constants_sigma=0.01 * np.abs(constants))
+    )
 
 
 def hertz(frame: ModuleType, turning: dict[str, float]) -> np.ndarray:
