@@ -88,7 +88,7 @@ def test_a_warm_process_runs_nothing_of_the_current_folder(
 
 
 def test_the_diagnosis_of_a_real_structure_runs_nothing_beside_its_study(folder: Path) -> None:
-    with warm_pool(1) as ask, pytest.raises(EstimationError, match=r"no\.toml: cannot be read"):
+    with warm_pool(1) as ask, pytest.raises(EstimationError, match=r"no\.toml: cannot be opened"):
         diagnose_together_by(ask)([folder / "no.toml"], (), ())
     assert not (folder / MARK).exists()
 
