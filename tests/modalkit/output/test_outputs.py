@@ -29,6 +29,7 @@ SAMPLES = Path(__file__).resolve().parents[3] / "sample_data"
 Refused = Callable[..., str]
 
 COMMANDS: dict[str, tuple[str, ...]] = {
+    "inspect --write-layout": ("inspect", "test.uff"),
     "frf --output": ("frf", "test.uff"),
     "identify --output": ("identify", "test.uff"),
     "identify --json": ("identify", "study.toml"),
