@@ -150,9 +150,13 @@ def test_no_mode_is_near_what_is_no_number() -> None:
             ProcessingOptions(decay=value)
 
 
-def test_too_little_memory_is_said_in_plain_words(refused, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_little_memory_is_said_in_plain_words(
+    refused, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     def full(*_: object, **__: object) -> None:
         raise MemoryError("Unable to allocate 7.28 TiB")
 
+    there = tmp_path_factory.mktemp("whole") / "a.uff"
+    there.touch()
     monkeypatch.setattr("modalkit.cli.measuring.read_files", full)
-    assert "there is not enough memory (Unable to allocate 7.28 TiB)" in refused("inspect", "a.uff")
+    assert "there is not enough memory (Unable to allocate 7.28 TiB)" in refused("inspect", str(there))
