@@ -21,7 +21,7 @@ STANDS_OUT = 6.0
 """Standard deviations of noise, over the width of a pulse, from which there is force, as no long record has [-]."""
 
 
-def pulses_alone(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:
+def pulses_alone(test: HammerTest, *, averaged: bool = True) -> tuple[HammerTest, tuple[str, ...]]:
     """Return a test whose forces have no drift, and no noise beside their pulses where it counts; what was done.
 
     At every spectral line the force holds the noise of its whole record, while the pulse is over at once. In a record
@@ -33,6 +33,8 @@ def pulses_alone(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:
     ----------
     test : HammerTest
         Records, one a hit, with their window stated.
+    averaged : bool
+        Whether all hits are averaged; else each is used by itself, and none averages the noise of another.
     """
     fade = test.decay / test.rate
     level = [without_drift(p.force, fade=fade) for p in test.points]
@@ -46,7 +48,7 @@ def pulses_alone(test: HammerTest) -> tuple[HammerTest, tuple[str, ...]]:
     )
     impulse, noise = powers.sum(axis=0)
     bias = noise / max(impulse, np.finfo(float).tiny)
-    if max(np.sqrt(bias / len(powers)), bias) <= COUNTS:
+    if max(np.sqrt(bias / (len(powers) if averaged else 1)), bias) <= COUNTS:
         points = tuple(_drifting(p, waves) for p, waves in zip(test.points, level, strict=True))
         return replace(test, points=points), ()
     alone = [replace(p, force=w * near) for p, w, near in zip(test.points, level, pulses, strict=True)]

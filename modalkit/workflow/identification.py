@@ -141,7 +141,8 @@ class Processed(Shown):
             return of(self)(())
         windows = Windows(decay=self.processing.window) if self.processing.window else None
         tests = [(j.test, j.verdicts) for j in self.judged]
-        return with_levels(of(self), tests, lambda data: of(self._of(data)), windows=windows)
+        single = [(pulses_alone(test, averaged=False)[0], verdicts) for test, verdicts in tests]
+        return with_levels(of(self), single, lambda data: of(self._of(data)), windows=windows)
 
     def _of(self, data: FrfSet | Sequence[HammerTest]) -> Processed:
         """Return the same test with other FRFs, or those of other hits, all of which are used."""
