@@ -50,12 +50,12 @@ class _Source:
     named: bool
 
 
-def propose_layout(paths: Sequence[Path]) -> str:
+def propose_layout(paths: Sequence[str | Path]) -> str:
     """Return a layout for files as TOML, with comments that say what was guessed and why.
 
     Parameters
     ----------
-    paths : sequence of Path
+    paths : sequence of str or Path
         Files of one test: column text, LabVIEW text, or files of recorders.
 
     Raises
@@ -63,15 +63,16 @@ def propose_layout(paths: Sequence[Path]) -> str:
     InputError
         If the first cannot be read, or holds fewer than two channels.
     """
-    source = _source(paths[0])
+    files = [Path(path) for path in paths]
+    source = _source(files[0])
     if len(source.channels) < 2:
         raise InputError(
-            f"{paths[0]}: holds {len(source.channels)} channels; a hit has a force and a response"
+            f"{files[0]}: holds {len(source.channels)} channels; a hit has a force and a response"
         )
     lines = lines_among(source.channels)
-    body = _of_hits(source, paths) if lines is None else _of_frfs(source, lines, paths)
+    body = _of_hits(source, files) if lines is None else _of_frfs(source, lines, files)
     head = [
-        f"{BEGINS} from {paths[0].name}: guesses, to be corrected. Not in the files: where the nodes are,",
+        f"{BEGINS} from {files[0].name}: guesses, to be corrected. Not in the files: where the nodes are,",
         "# and which way hammer and transducers point. A table [nodes] gives places, 1 = [0.0, 0.0, 0.0] in m.",
     ]
     return "\n".join([*head, *body]) + "\n"

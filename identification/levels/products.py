@@ -47,6 +47,11 @@ class Growth:
         """Which modes are products of others: their constants grow with the force, (n_modes,)."""
         return np.asarray((self.power > HALF) & (self.power > SURE * self.sigma))
 
+    def surer(self, other: Growth) -> Growth:
+        """Return of each mode the power that is determined better: of one fit or another of the same hits."""
+        better = self.sigma <= other.sigma
+        return Growth(np.where(better, self.power, other.power), np.where(better, self.sigma, other.sigma))
+
 
 def growth(
     model: ModalModel,

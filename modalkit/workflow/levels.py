@@ -126,12 +126,16 @@ def _further(
 ) -> tuple[Examined, tuple[str, ...]]:
     """Return modes of one level without products that only show there, and the names of these.
 
-    Modes that are known, as their constants do not grow at the poles of each hit, stay.
+    Modes that are known, as their constants do not grow at the poles of each hit, stay. How the poles of a faint
+    product follow the level may not be determined: constants are taken at poles that follow it and at poles that do
+    not, and the growth with the smaller standard deviation stands.
     """
     from identification import growth
 
-    grown = growth(even.model, tests, windows=windows)
-    assert grown is not None
+    still, followed = (growth(even.model, tests, found, windows=windows) for found in (None, even.found))
+    assert still is not None
+    assert followed is not None
+    grown = followed.surer(still)
     reach = _reach(known, np.ones(len(known.model), np.bool_))
     apart = np.abs(even.model.modal.frequency[:, None] - known.model.modal.frequency)
     which = grown.products & (apart > reach).all(axis=1)

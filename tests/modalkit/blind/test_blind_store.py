@@ -22,6 +22,7 @@ from modalkit import cli
 from modalkit.blind import DrawRanges, check_store, run_blind
 from modalkit.blind import store as store_module
 from modalkit.cli import blinding
+from modalkit.samples import sample_file
 from modalkit.workers.journal import Journal, read_journal
 
 pytestmark = pytest.mark.long
@@ -319,6 +320,7 @@ def test_options_that_do_not_go_together_are_refused(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(store.parent)
+    (store.parent / "study.toml").write_text(sample_file("beam_dry/study.toml").read_text())
     monkeypatch.setattr(sys, "argv", ["modalkit", "blind", *words])
     with pytest.raises(SystemExit) as ended:
         cli.main()
