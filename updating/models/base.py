@@ -133,6 +133,11 @@ class Structure(ABC):
     def unit_mass(self, points: FloatArray) -> Sparse:
         """Return the mass matrix of 1 kg at each of some points [-]."""
 
+    @property
+    def stretched(self) -> tuple[State, ...]:
+        """States far from the nominal one whose lowest modes join the reduced basis."""
+        return ()
+
     @abstractmethod
     def softenings(self, elastic: FloatArray) -> FloatArray:
         """Return the loads (n_dofs, n) that a softened place feels when the structure moves in its lowest modes."""

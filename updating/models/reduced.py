@@ -38,6 +38,9 @@ more than 1e-6. Twice as much: modes of beams with fine meshes are left out, whi
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
 
+FAR_MODES = 12
+"""Elastic modes of a structure that is far from the nominal one, released or stretched, which join the basis."""
+
 
 def _all(_: Term) -> float:
     """All of a term."""
@@ -337,6 +340,10 @@ def reduce_structure(
     if len(values) < unknowns:
         loads = structure.rows(points, directions)["w"].toarray().T
         basis = extend_basis(basis, _static_answers(structure, mass, values, basis, loads), mass)
+        for state in structure.stretched:
+            matrices = dict(zip(("stiffness", "mass"), structure.matrices(state), strict=True))
+            shapes = structure.eigen(structure.rigid_modes + min(FAR_MODES, modes), **matrices)[1]
+            basis = extend_basis(basis, shapes, mass)
     ranks = {frozenset[str](): basis.shape[1]}
     if structure.fixed:
         for released in (ROTATION, TRANSLATION, ROTATION | TRANSLATION):
@@ -386,7 +393,7 @@ def _released_shapes(
 ) -> FloatArray:
     """Return modes of the structure on springs of middling and low stiffness where its clamps were."""
     freed = np.concatenate([structure.fixed[kind] for kind in sorted(released)])
-    count = min(12, modes)
+    count = min(FAR_MODES, modes)
     shapes = []
     for ratio in (1e-1, 1e-4):
         spring = np.zeros(structure.n_dofs)

@@ -31,6 +31,10 @@ from updating.models.spec import Region, Spec
 from updating.models.state import State
 from updating.models.terms import FieldTerm, beam_terms, plate_terms, product
 
+STIFFER_ACROSS = (0.1, 10.0)
+"""Stiffness of plates across over that along, of which the basis has the shapes [-]: in between, frequencies of
+thin plates are right to 3e-4. Without them, 2 % are missing at 10."""
+
 
 @dataclass(frozen=True, eq=False)
 class FieldStructure(Structure):
@@ -137,6 +141,16 @@ class FieldStructure(Structure):
         low = elastic[:, : min(4, elastic.shape[1])]
         masks = [(self.region_of == index).astype(float) for index in range(len(self.spec.regions))]
         return np.hstack([self.matrix("stiffness", mask) @ low for mask in masks])
+
+    @property
+    def stretched(self) -> tuple[State, ...]:
+        """A plate a tenth and ten times as stiff across as along, which bends like one that is wider or narrower.
+
+        The energy of bending across goes with width^-3, that along with width, that of twist and the mass between.
+        """
+        if self.fields.dim == 1:
+            return ()
+        return tuple(State(factors={"width": ratio**-0.25}) for ratio in STIFFER_ACROSS)
 
     @cached_property
     def rigid_modes(self) -> int:
