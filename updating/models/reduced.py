@@ -38,6 +38,9 @@ more than 1e-6. Twice as much: modes of beams with fine meshes are left out, whi
 SMALL = 90
 """Up to so many unknowns a model is its own reduced basis."""
 
+PLACES = 8
+"""Rows of so many sets of points are kept."""
+
 FAR_MODES = 12
 """Elastic modes of a structure that is far from the nominal one, released or stretched, which join the basis."""
 
@@ -292,8 +295,18 @@ class Reduced:
         directions : (n_points, 3) array, optional
             Unit vectors along which the displacement is meant; left out, the model's z.
         """
-        rows = self.structure.rows(points, directions)
-        return {n: np.asarray(m @ self.basis) for n, m in rows.items()}
+        key = points.tobytes(), None if directions is None else directions.tobytes()
+        if key not in self._rows:
+            while len(self._rows) >= PLACES:
+                self._rows.pop(next(iter(self._rows)))
+            rows = self.structure.rows(points, directions)
+            self._rows[key] = {n: np.asarray(m @ self.basis) for n, m in rows.items()}
+        return dict(self._rows[key])
+
+    @cached_property
+    def _rows(self) -> dict[tuple[bytes, bytes | None], dict[str, FloatArray]]:
+        """Rows of the points asked for last: a search asks for a place again with another size."""
+        return {}
 
     def unit_mass(self, points: FloatArray) -> FloatArray:
         """Return the mass matrix of 1 kg at each of some points (n_points, dim) [m], shape (r, r) [-]."""
@@ -341,8 +354,9 @@ def reduce_structure(
         loads = structure.rows(points, directions)["w"].toarray().T
         basis = extend_basis(basis, _static_answers(structure, mass, values, basis, loads), mass)
         for state in structure.stretched:
-            matrices = dict(zip(("stiffness", "mass"), structure.matrices(state), strict=True))
-            shapes = structure.eigen(structure.rigid_modes + min(FAR_MODES, modes), **matrices)[1]
+            stiff, heavy = structure.matrices(state)
+            count = structure.rigid_modes + min(FAR_MODES, modes)
+            shapes = structure.eigen(count, stiffness=stiff, mass=heavy)[1]
             basis = extend_basis(basis, shapes, mass)
     ranks = {frozenset[str](): basis.shape[1]}
     if structure.fixed:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy import linalg
@@ -38,6 +38,8 @@ from updating.prediction.stretch import Stretch
 from updating.test_data.chain import MeasurementChain, measurement_chain
 from updating.test_data.chain_phase import chain_phases
 from updating.test_data.measured import Measured
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,14 +111,15 @@ class Predictor(Displayed):
         """The same specimen on all degrees of freedom, for states of its full matrices."""
         return self.on(Whole.of(self.reduced))
 
-    def once(self, name: str, build: Callable[[], FloatArray]) -> FloatArray:
+    def once(self, name: str, build: Callable[[], T]) -> T:
         """Return what ``build`` gives, computed the first time this predictor is asked for ``name``."""
         if name not in self._kept:
             self._kept[name] = build()
-        return self._kept[name]
+        found: T = self._kept[name]
+        return found
 
     @cached_property
-    def _kept(self) -> dict[str, FloatArray]:
+    def _kept(self) -> dict[str, Any]:
         return {}
 
     @property

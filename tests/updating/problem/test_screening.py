@@ -13,12 +13,21 @@ from updating.diagnosis.diagnose import pose
 from updating.diagnosis.search.evidence import explain
 from updating.diagnosis.search.fit import maximise
 from updating.problem.candidate import Candidate
-from updating.problem.screening import basins
+from updating.problem.screening import basins, beside
 
 FREE = replace(BEAM, clamped=(), theory="euler-bernoulli")
 ALONG = np.linspace(0.0, BEAM.length, 9)
 HALF_A_STEP = 0.5 / 28
 """Of the grid of five modes, relative to the length."""
+
+WHOLE = 7850.0 * BEAM.length * BEAM.width * BEAM.thickness
+
+
+def with_bodies(*bodies: tuple[float, float]) -> ExactBeam:
+    """An exact free beam with bodies: where over the length, and how heavy over the beam."""
+    masses = tuple((place * BEAM.length, share * WHOLE) for place, share in bodies)
+    size = BEAM.length, BEAM.width, BEAM.thickness
+    return ExactBeam(*size, shear=False, rotary=False, clamped=False, masses=masses)
 
 
 def hit(beam: ExactBeam, seed: int = 0) -> Measured:
@@ -38,36 +47,16 @@ def single(name: str, form: int = -1) -> Candidate:
 @pytest.mark.parametrize("share", [0.02, 0.1])
 def test_a_body_on_an_exact_free_beam_is_in_the_first_two_basins(place: float, share: float) -> None:
     """The mirror image, which frequencies alone do not tell from it, may be the other."""
-    whole = 7850.0 * BEAM.length * BEAM.width * BEAM.thickness
-    beam = ExactBeam(
-        BEAM.length,
-        BEAM.width,
-        BEAM.thickness,
-        shear=False,
-        rotary=False,
-        clamped=False,
-        masses=((place * BEAM.length, share * whole),),
-    )
-    problem = pose(case_of(hit(beam), FREE))[0]
+    problem = pose(case_of(hit(with_bodies((place, share))), FREE))[0]
     found = basins(single("lumped_mass"), problem.predictor)
     assert min(abs(u[1] - place) for u in found[:2]) < 1.5 * HALF_A_STEP
 
 
 @pytest.mark.parametrize("place", [0.13, 0.5, 0.66])
 def test_the_search_reaches_what_the_truth_reaches(place: float) -> None:
-    whole = 7850.0 * BEAM.length * BEAM.width * BEAM.thickness
-    beam = ExactBeam(
-        BEAM.length,
-        BEAM.width,
-        BEAM.thickness,
-        shear=False,
-        rotary=False,
-        clamped=False,
-        masses=((place * BEAM.length, 0.08 * whole),),
-    )
-    problem = pose(case_of(hit(beam), FREE))[0]
+    problem = pose(case_of(hit(with_bodies((place, 0.08))), FREE))[0]
     candidate = single("lumped_mass")
-    values = {"lumped_mass.mass": 0.08 * whole, "lumped_mass.x": place * BEAM.length, "lumped_mass.bulk": 0.0}
+    values = {"lumped_mass.mass": 0.08 * WHOLE, "lumped_mass.x": place * BEAM.length, "lumped_mass.bulk": 0.0}
     top = maximise(problem, candidate, candidate.coordinates(problem.predictor, values)).point
     found = explain(problem, candidate, laplace_only=True).best
     assert found.marginal.log_likelihood > top.marginal.log_likelihood - 0.3
@@ -101,6 +90,33 @@ def test_a_body_on_a_plate_is_in_the_first_four_basins() -> None:
     problem = pose(case_of(test, spec))[0]
     found = basins(single("lumped_mass"), problem.predictor)
     assert min(np.hypot((u[1] - 0.24 / 0.376), (u[2] - 0.07 / 0.2)) for u in found[:4]) < 0.1
+
+
+@pytest.mark.parametrize("bodies", [((0.32, 0.05), (0.8, 0.08)), ((0.1, 0.06), (0.45, 0.03))])
+def test_two_bodies_are_placed_from_where_one_alone_is(bodies: tuple[tuple[float, float], ...]) -> None:
+    """One alone lies between them, or at their mirror image."""
+    problem = pose(case_of(hit(with_bodies(*bodies)), FREE))[0]
+    one = single("lumped_mass")
+    alone = basins(one, problem.predictor)[0]
+    found = beside([(one, alone), (one, alone)], problem.predictor)
+    assert found is not None
+    both = sorted(found[[1, 4]])
+    assert min(np.abs(np.subtract(both, x)).max() for x in _mirrored(bodies)) < 2 * HALF_A_STEP
+
+
+def _mirrored(bodies: tuple[tuple[float, float], ...]) -> list[list[float]]:
+    places = [place for place, _ in bodies]
+    return [sorted(places), sorted(1 - place for place in places)]
+
+
+def test_what_has_no_place_stays_where_it_is_and_a_body_is_placed_beside_it() -> None:
+    problem = pose(case_of(hit(with_bodies((0.3, 0.05))), FREE))[0]
+    spread = Candidate((LIBRARY["E"],)), np.array([0.5])
+    found = beside([spread, (single("lumped_mass"), np.full(3, 0.5))], problem.predictor)
+    assert found is not None
+    assert found[0] == 0.5
+    assert min(abs(found[2] - 0.3), abs(found[2] - 0.7)) < 2 * HALF_A_STEP
+    assert beside([spread, spread], problem.predictor) is None
 
 
 def test_a_place_that_a_form_fixes_and_pairs_are_not_screened() -> None:

@@ -24,6 +24,7 @@ from updating.diagnosis.search.together import (
 from updating.effects import Effect
 from updating.likelihood.gaussian import normal_equations
 from updating.problem.candidate import Candidate
+from updating.problem.screening import beside
 from updating.thresholds import (
     FORMS_TRIED,
     PAIRS_ANEW,
@@ -79,8 +80,9 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) 
         chosen = _best_forms(problem, chosen, drafts)
     for draft in chosen:
         parts = [(e.candidate, e.best.coordinates) for e in (draft.first, draft.second)]
-        pair = join(problem, parts[0], parts[1], bar, places=draft.places)
-        pairs.append((pair, draft.places))
+        places = draft.places + (_placed(problem, parts) if far else [])
+        pair = join(problem, parts[0], parts[1], bar, places=places)
+        pairs.append((pair, places))
         bar = max(bar, pair.best.marginal.log_likelihood)
     pairs.sort(key=lambda own: -own[0].log_evidence)
     best_of = [pair for pair, _ in pairs]
@@ -90,6 +92,12 @@ def pairs_of(problem: DiagnosisProblem, found: list[Explanation], *, far: bool) 
         best_of[i] = max(pair, again, *other, key=lambda e: e.log_evidence)
         bar = max(bar, best_of[i].best.marginal.log_likelihood)
     return best_of + _alike(problem, possible, best_of, bar)
+
+
+def _placed(problem: DiagnosisProblem, parts: list[Part]) -> list[FloatArray]:
+    """Return the place from which to search where each of two effects fits best beside the other, if either has one."""
+    found = beside(parts, problem.predictor) if len(problem.specimens) == 1 else None
+    return [] if found is None else [found]
 
 
 @dataclass(frozen=True, eq=False)
