@@ -166,7 +166,8 @@ class Study(Strict):
 
         assert self.model is not None
         spec = matrices_spec(self.model, matrices_of(self.model, self.file), _damping(self.model))
-        return with_hypotheses(spec, self.hypothesis, self.file, self.model.units)
+        names = self.model.stiffness_name, self.model.mass_name
+        return with_hypotheses(spec, self.hypothesis, self.file, self.model.units, names)
 
     @cached_property
     def _of_deck(self) -> Spec:
