@@ -244,6 +244,11 @@ class Study(Strict):
         except StudyError as error:
             raise StudyError(f"{self.path}: {error}") from error
 
+    def baseline_stated(self) -> tuple[int, ...]:
+        """Return of which effects put into the model, by rank, the study states whether the baseline had them."""
+        entries = [] if self.model is None else self.model.effect
+        return tuple(i for i, entry in enumerate(entries) if entry.get("before") is not None)
+
     def surroundings(self) -> Environment:
         """Return the environment."""
         from updating.environment import Environment
