@@ -18,7 +18,7 @@ UFF = frozenset({".uff", ".unv", ".uf", ".bunv"})
 """Endings of universal files."""
 COLUMNS = frozenset({".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm"})
 """Endings of column text."""
-LAYOUT = "`modalkit inspect FILES --write-layout layout.toml` writes one to correct"
+WRITE_LAYOUT = "`modalkit inspect FILES --write-layout layout.toml` writes one to correct"
 
 
 def read_test(
@@ -117,10 +117,9 @@ def _advice(path: Path, own: Mapping[str, Reader]) -> str:
             "docs/howto/matlab.md"
         )
     if path.suffix.lower() in COLUMNS:
-        return f"column text needs a layout file with rate, units and points; {LAYOUT} (docs/howto/column_text.md)"
+        needed = "column text needs a layout file with rate, units and points"
+        return f"{needed}; {WRITE_LAYOUT} (docs/howto/column_text.md)"
     if is_recorded(path):
-        return (
-            f"needs a layout file with units and points of its channels; {LAYOUT} (docs/howto/recorders.md)"
-        )
+        return f"needs a layout file with units and points of its channels; {WRITE_LAYOUT} (docs/howto/recorders.md)"
     known = ", ".join(sorted({*UFF, *COLUMNS, *ENDINGS, *own}))
     return f"no reader for {path.suffix or 'files without ending'}; known are {known}; see docs/howto/own_reader.md"

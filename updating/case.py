@@ -34,6 +34,8 @@ class Case(Displayed):
         Effects put into the model beforehand.
     since_baseline : tuple of int
         Which of them, by rank, came after the baseline; the others were there in it, too.
+    baseline_stated : tuple of int
+        Of which of them, by rank, the study states this; of the others it is taken by their kind.
     """
 
     title: str
@@ -44,6 +46,7 @@ class Case(Displayed):
     environment: Environment = field(default_factory=Environment)
     accepted: tuple[tuple[str, Mapping[str, float]], ...] = ()
     since_baseline: tuple[int, ...] = ()
+    baseline_stated: tuple[int, ...] = ()
 
     @property
     def accepted_before(self) -> tuple[tuple[str, Mapping[str, float]], ...]:

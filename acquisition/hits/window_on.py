@@ -16,6 +16,9 @@ SIDES: tuple[Side, ...] = ("before", "after")
 CLEAR = 9.0
 """Difference of the squared misfits of both possibilities, three standard deviations, from which one holds [-]."""
 
+NEGLIGIBLE = 0.005
+"""Change of FRFs that is not worth a question, half a unit of the three digits it is printed with [-]."""
+
 On = Literal["both", "responses"]
 
 
@@ -50,7 +53,7 @@ def windowed_records(test: HammerTest, decay: float) -> tuple[On, tuple[str, ...
             "--window-on both"
         )
         return "responses", (Consequential(text),)
-    if f"{gain:.3g}" == "1":
+    if gain - 1 < NEGLIGIBLE:
         return "both", ()
     text = (
         f"{test.source}: the noise of the force does not show whether {window} was on the force too; it is taken to "

@@ -10,9 +10,9 @@ import numpy as np
 
 from acquisition.arrays import AnyArray
 from acquisition.errors import InputError
+from acquisition.libraries import library
 from acquisition.recorders.arrays import Named
 from acquisition.recorders.channels import LISTED
-from acquisition.recorders.library import library
 
 _UNITS = ("unit", "units", "Unit", "Units")
 """Attributes of a data set that state its unit."""
@@ -30,7 +30,7 @@ def named_arrays(path: Path, names: Sequence[str]) -> Named:
     InputError
         If the file is damaged, a data set is not in it, or h5py is not installed.
     """
-    h5py = library("h5py", path)
+    h5py = library("h5py", path, extra="recorders")
     values: dict[str, AnyArray] = {}
     units: dict[str, str] = {}
     try:
@@ -59,7 +59,7 @@ def names_of(path: Path) -> list[str]:
     InputError
         If the file is damaged, or h5py is not installed.
     """
-    h5py = library("h5py", path)
+    h5py = library("h5py", path, extra="recorders")
     try:
         with h5py.File(path, "r") as file:
             return [name for name in _names(file, h5py) if file[name].dtype.kind in "fiuc"]

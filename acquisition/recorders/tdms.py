@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from acquisition.errors import InputError
-from acquisition.recorders.library import library
+from acquisition.libraries import library
 from acquisition.recorders.recorded import Recorded
 
 _LEAD, _BIG_ENDIAN, _VERSIONS = 28, 1 << 6, (4712, 4713)
@@ -33,7 +33,7 @@ def records(path: Path) -> list[Recorded]:
     InputError
         If the file is damaged, or nptdms is not installed.
     """
-    nptdms = library("nptdms", path)
+    nptdms = library("nptdms", path, extra="recorders")
     _check_whole(path)
     try:
         with _strict():

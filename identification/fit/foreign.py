@@ -34,9 +34,9 @@ surroundings; halved: peaks of 0.6 % damping go unnoticed."""
 CLEAR = 5.0
 """Magnitude of a peak over the geometric mean about it [-]: noise alone exceeds it at one line in a million."""
 
-ALIKE = 0.5
-"""Part of the peaks that an FRF shares with the others where it belongs to them, and of a peak's height on a
-logarithmic scale at which another FRF shows it too [-]: fewer, and it rather shows another structure."""
+SHOWN = 0.5
+"""Part of a clear peak's height on a logarithmic scale from which another FRF shows it too; peaks are searched down to
+it [-]."""
 
 CHANCE = 1e-4
 """Chance by which the scatter of an even test sets an FRF aside [-]. Ten times as much finds contradictions a quarter
@@ -108,7 +108,7 @@ class _Peaks:
     def shared(self, other: _Peaks) -> BoolArray:
         """Return which of these peaks the other set has too, half as high on the logarithmic scale or more, (n,)."""
         near = np.abs(self.place[:, None] - other.place) <= np.minimum(self.reach[:, None], other.reach)
-        return np.asarray((near & (other.above >= ALIKE * self.above[:, None])).any(axis=1))
+        return np.asarray((near & (other.above >= SHOWN * self.above[:, None])).any(axis=1))
 
 
 def foreign_frfs(frfs: FrfSet) -> Foreign:
@@ -163,7 +163,7 @@ def _peaks(frfs: FrfSet, rows: IntArray) -> _Peaks:
         return _Peaks(*np.zeros((3, 0)))
     step = grid[1] - grid[0]
     above = level - uniform_filter1d(level, 2 * round(ABOUT / step) + 1, mode="nearest")
-    at, _ = signal.find_peaks(above, height=0.0, prominence=ALIKE * np.log(CLEAR))
+    at, _ = signal.find_peaks(above, height=0.0, prominence=SHOWN * np.log(CLEAR))
     width = signal.peak_widths(np.exp(above), at, rel_height=1.0 - np.sqrt(0.5))[0] * step
     return _Peaks(grid[at], width + frfs.df / np.exp(grid[at]), above[at])
 
@@ -183,14 +183,15 @@ def _largest(peaks: list[_Peaks]) -> IntArray:
 def _alike(one: _Peaks, other: _Peaks) -> bool:
     """Tell whether the set with fewer clear peaks shares half of them with the other."""
     fewer, more = (one, other) if len(one.clear.place) <= len(other.clear.place) else (other, one)
-    return bool(fewer.clear.shared(more).mean() >= ALIKE)
+    shared = fewer.clear.shared(more)
+    return 2 * int(shared.sum()) >= len(shared) > 0
 
 
 def _contradicts(own: int, peaks: list[_Peaks], main: IntArray) -> bool:
     """Tell whether most peaks of a set lie beyond what the course and the scatter of the main group allow."""
     here = peaks[own].clear
     beside = [_beside(p, r, own, peaks, main) for p, r in zip(here.place, here.reach, strict=True)]
-    return bool(np.mean(beside) > ALIKE)
+    return 2 * sum(beside) > len(beside)
 
 
 def _beside(place: float, reach: float, own: int, peaks: list[_Peaks], main: IntArray) -> bool:

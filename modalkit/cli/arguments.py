@@ -65,11 +65,11 @@ def words_of(arguments: Sequence[str], options: Mapping[str, int]) -> Words | No
             count = options[name] - bool(given)
             values[name] = (*([value] if given else []), *rest[: max(count, 0)])
             del rest[: max(count, 0)]
-        elif name.startswith("--"):
+        elif not _OPTION.match(word):
+            positional.append(word)
+        elif word[:2] not in options:  # else one of a letter with its value, -oFILE
             close = difflib.get_close_matches(name, options, n=1)
             raise InputError(f"No such option: {name}" + (f"; is {close[0]} meant?" if close else ""))
-        elif not (len(word) > 1 and word[0] == "-" and word[:2] in options):  # as -oFILE
-            positional.append(word)
     return Words(tuple(positional), values)
 
 
@@ -111,6 +111,9 @@ def _check_band(band: Sequence[str]) -> None:
     if not low < high:
         raise InputError(f"Invalid band {low:g} to {high:g} Hz: the lower limit comes first")
 
+
+_OPTION = re.compile(r"-(?!$|\.?\d)")
+"""What an option begins with; a lone ``-`` and a negative number are none."""
 
 _LIMIT = re.compile(r"(\d+\.?\d*(?:[eE][+-]?\d+)?)\s*(|Hz|kHz)")
 """A limit of a band without the table of units, which takes a second to load."""

@@ -191,7 +191,7 @@ def _where(diagnosis: Diagnosis) -> str:
         return "nowhere: every channel agrees"
     if diagnosis.verdict == "unknown":
         band = f"{where.band} " if where.band else ""
-        return f"{band}The {where.channel} is where the least bad explanations act; do not trust it."
+        return f"{band}The {where.channel} is where the best-fitting (rejected) explanations act; do not trust it."
     acting = acting_together({**dict.fromkeys(CHANNELS, 0.0), **where.channels})
     each = " each" if len(acting) > 1 else ""
     text = f"{' and '.join(acting)} ({probability(where.channels[where.channel])}{each})"
@@ -235,7 +235,7 @@ def _closes(diagnosis: Diagnosis) -> str:
     )
     if diagnosis.verdict == "none":
         return f"nothing to close; r.m.s. {what} {say(shrink.before)}, noise floor {say(shrink.floor)}"
-    who = "with the least bad explanation, " if diagnosis.verdict == "unknown" else ""
+    who = "with the best-fitting (rejected) explanation, " if diagnosis.verdict == "unknown" else ""
     text = f"{who}r.m.s. {what} {say(shrink.before)} -> {say(shrink.after)} fitted"
     if not math.isfinite(shrink.held_after):
         return f"{text} (noise floor {say(shrink.floor)}); with one mode none can be held out, so that proves nothing"
@@ -338,7 +338,7 @@ def _next(diagnosis: Diagnosis) -> str:
 
 
 def _confirming(diagnosis: Diagnosis, test: NextTest) -> str:
-    """Say how a named cause is confirmed: told from the most probable other set, or why it is not told from that."""
+    """Return how a named cause is confirmed: separated from the most probable other set, or why it cannot be."""
     if test.expected_sigma < SEPARATED_SIGMA:
         return (
             f"no test that was weighed would confirm it, by {SEPARATED_SIGMA:g} sigma; nearest to it comes this: "
@@ -349,8 +349,8 @@ def _confirming(diagnosis: Diagnosis, test: NextTest) -> str:
     behind = next((row.effects for row in diagnosis.ranking if row.effects not in diagnosis.sets), named)
     if behind == named or not test.pairs or any(behind in pair for pair in test.pairs):
         return sentence
-    why = ", which has all of it and more," if not Counter(named) - Counter(behind) else ""
-    return f"{sentence}; from {' + '.join(behind)}{why} it does not tell it"
+    why = ", which contains it" if not Counter(named) - Counter(behind) else ""
+    return f"{sentence}; it cannot separate {' + '.join(named)} from {' + '.join(behind)}{why}"
 
 
 SIZES = {1: "single causes", 2: "pairs", 3: "sets of three", 4: "sets of four"}

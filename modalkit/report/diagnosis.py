@@ -129,7 +129,7 @@ def _by_session(
     alone = len(sessions) == 1
     gaps: list[Part] = []
     frfs: list[Part] = []
-    after = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
+    after = "with the best-fitting (rejected) explanation" if diagnosis.verdict == "unknown" else "after"
     for i, (session, best) in enumerate(zip(sessions, bests, strict=True), start=1):
         mark = "" if i == 1 else f"-{i}"
         if not alone:

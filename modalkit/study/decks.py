@@ -15,7 +15,9 @@ from updating.models.imported import SI, UNITS
 if TYPE_CHECKING:
     from modalkit.study.tables import ModelTable
 
-OF_MATRICES = ("stiffness", "mass_matrix", "stiffness_parts", "mass_parts", "nodes", "material")
+OF_MATRICES = (
+    "stiffness", "mass_matrix", "stiffness_name", "mass_name", "stiffness_parts", "mass_parts", "nodes", "material",
+)  # fmt: skip
 """Keys that matrices have and a deck says itself."""
 
 OWN = ("E", "density", "thickness", "area", "inertia", "x", "y")

@@ -14,8 +14,9 @@ from modalkit.study.tables import rising
 from updating.models import Spec
 from updating.models.decks import KNOWN, DeckModel, deck_matrices
 from updating.models.fields import Sparse
-from updating.models.imported import Imported, read_matrix
+from updating.models.imported import Imported, Names, read_matrix
 from updating.models.imported.hypothesis import Hypothesis, change_of, check_ends, same_as
+from updating.models.imported.read import KINDS
 from updating.models.imported.units import SI, matrix_in_si
 
 UNITS = {"E": "Pa", "density": "kg/m^3"}
@@ -39,7 +40,11 @@ def check_names(tables: Sequence[HypothesisTable]) -> None:
 
 
 def with_hypotheses(
-    spec: Spec, tables: Sequence[HypothesisTable], file: Callable[[str], Path], units: str | None
+    spec: Spec,
+    tables: Sequence[HypothesisTable],
+    file: Callable[[str], Path],
+    units: str | None,
+    names: Names = (None, None),
 ) -> Spec:
     """Return a model with the hypotheses of its study.
 
@@ -53,6 +58,8 @@ def with_hypotheses(
         Takes a name of the study file to its path.
     units : str, optional
         What the matrices are in; left out, SI.
+    names : (str or None, str or None)
+        Names of stiffness and mass in files that have several matrices.
 
     Raises
     ------
@@ -63,19 +70,21 @@ def with_hypotheses(
     imported = spec.imported
     assert imported is not None
     found = tuple(
-        _of_parameter(spec, table) if table.parameter else _of_matrices(imported, table, file, units or SI)
+        _of_parameter(spec, table)
+        if table.parameter
+        else _of_matrices(imported, table, file, (units or SI, names))
         for table in tables
     )
     return replace(spec, hypotheses=(*spec.hypotheses, *found)) if found else spec
 
 
 def _of_matrices(
-    imported: Imported, table: HypothesisTable, file: Callable[[str], Path], units: str
+    imported: Imported, table: HypothesisTable, file: Callable[[str], Path], how: tuple[str, Names]
 ) -> Hypothesis:
     stiffness, mass = (
         None if matrix is None else change_of(own, matrix, f"[[hypothesis]] {table.name!r}: {what}")
         for own, (matrix, what) in zip(
-            (imported.stiffness, imported.bare_mass), _supposed(imported, table, file, units), strict=True
+            (imported.stiffness, imported.bare_mass), _supposed(imported, table, file, how), strict=True
         )
     )
     low, high = _range(table, "")
@@ -85,16 +94,19 @@ def _of_matrices(
 
 
 def _supposed(
-    imported: Imported, table: HypothesisTable, file: Callable[[str], Path], units: str
+    imported: Imported, table: HypothesisTable, file: Callable[[str], Path], how: tuple[str, Names]
 ) -> list[tuple[Sparse | None, str]]:
     """Return stiffness and mass if it were so, None for one that is as modelled, and where they are from."""
     if table.deck is None:
+        units, names = how
         return [
             (
-                None if name is None else matrix_in_si(read_matrix(file(name)), imported.nodes, units),
-                f"{kind} = {name!r}",
+                None
+                if of is None
+                else matrix_in_si(read_matrix(file(of), kind, name), imported.nodes, units),
+                f"{kind} = {of!r}",
             )
-            for kind, name in (("stiffness", table.stiffness), ("mass", table.mass))
+            for kind, of, name in zip(KINDS, (table.stiffness, table.mass), names, strict=True)
         ]
     if imported.deck is None:
         raise StudyError(

@@ -63,6 +63,7 @@ def matrices_of(model: ModelTable, file: Callable[[str], Path]) -> Imported:
         stiffness_parts=[file(name) for name in model.stiffness_parts],
         mass_parts=[file(name) for name in model.mass_parts],
         units=model.units or SI,
+        names=(model.stiffness_name, model.mass_name),
     )
 
 

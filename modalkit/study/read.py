@@ -166,7 +166,8 @@ class Study(Strict):
 
         assert self.model is not None
         spec = matrices_spec(self.model, matrices_of(self.model, self.file), _damping(self.model))
-        return with_hypotheses(spec, self.hypothesis, self.file, self.model.units)
+        names = self.model.stiffness_name, self.model.mass_name
+        return with_hypotheses(spec, self.hypothesis, self.file, self.model.units, names)
 
     @cached_property
     def _of_deck(self) -> Spec:
@@ -242,6 +243,11 @@ class Study(Strict):
             return tuple(i for i, entry in enumerate(entries) if not was_before(entry))
         except StudyError as error:
             raise StudyError(f"{self.path}: {error}") from error
+
+    def baseline_stated(self) -> tuple[int, ...]:
+        """Return of which effects put into the model, by rank, the study states whether the baseline had them."""
+        entries = [] if self.model is None else self.model.effect
+        return tuple(i for i, entry in enumerate(entries) if entry.get("before") is not None)
 
     def surroundings(self) -> Environment:
         """Return the environment."""

@@ -43,7 +43,9 @@ Inertia = Annotated[float, in_unit("kg m^2"), Field(ge=0)]
 Weight = Annotated[float, Field(ge=0, lt=1e50)]
 Doubt = Annotated[float, in_unit(""), Field(ge=0)]
 
-MATRICES_ONLY = ("units", "stiffness", "mass_matrix", "stiffness_parts", "mass_parts", "nodes")
+MATRICES_ONLY = (
+    "units", "stiffness", "mass_matrix", "stiffness_name", "mass_name", "stiffness_parts", "mass_parts", "nodes",
+)  # fmt: skip
 """Keys of ``[model]`` that are of imported matrices alone; ``mass = "file"`` is read as ``mass_matrix``."""
 
 
@@ -343,6 +345,12 @@ class ModelTable(Strict):
     """``matrices``: file of the stiffness matrix."""
     mass_matrix: str | None = None
     """``matrices``: file of the mass matrix; may be written ``mass`` if there is no ``[[model.mass]]``."""
+    stiffness_name: str | None = None
+    """``matrices``: name of the stiffness in files that have several matrices (``.op4``, ``.op2``, ``.pch``), those of
+    parts and hypotheses too. Default: the square one whose name begins with K.
+    """
+    mass_name: str | None = None
+    """``matrices``: name of the mass. Default: the square one whose name begins with M."""
     stiffness_parts: list[str] = []
     """``matrices``: the stiffness of each region, one file each, in their order."""
     mass_parts: list[str] = []

@@ -97,6 +97,7 @@ def open_study(
         study.surroundings(),
         study.accepted(),
         study.since_baseline(),
+        study.baseline_stated(),
     )
     own = [w for part in (processed, identified) if part is not None for w in part.warnings]
     own += _health(processed, identified)

@@ -25,6 +25,7 @@ from acquisition import (
     written_as_uff,
 )
 from acquisition.modes.read import TABLES
+from acquisition.readers import WRITE_LAYOUT
 from modalkit.workflow.joining import together
 
 MODES = {False: (*TABLES, ".json"), True: (".json",)}
@@ -81,7 +82,6 @@ def read_files(
     )
 
 
-WRITE_LAYOUT = "`modalkit inspect FILES --write-layout layout.toml` writes one to correct"
 _SEVERAL = (
     "these files were read as tables of modes, of which a test has one; for hits or FRFs add --layout "
     f"({WRITE_LAYOUT}), and to compare two tables use `modalkit correlate`"

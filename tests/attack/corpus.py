@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from corpus_exchanged import exchanged_families
 from corpus_matrices import matrix_families
+from corpus_nastran import nastran_families
 from corpus_recorders import recorder_families
 from corpus_stores import store_families
 from corpus_text import table_families
@@ -19,5 +20,6 @@ def families() -> list[Family]:
         *recorder_families(),
         *exchanged_families(),
         *matrix_families(),
+        *nastran_families(),
         *store_families(),
     ]

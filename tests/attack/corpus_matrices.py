@@ -20,7 +20,7 @@ from scipy.io import mmwrite
 from updating.models.imported import read_imported, read_matrix
 
 
-def _beam(elements: int = 4) -> tuple[Any, Any]:
+def chain(elements: int = 4) -> tuple[Any, Any]:
     """Return a chain of springs and masses, clamped at its root, that is no multiple of itself anywhere."""
     stiff = 1e6 * (1 + 0.125 * np.arange(elements + 1))
     k = sparse.diags_array(
@@ -32,7 +32,7 @@ def _beam(elements: int = 4) -> tuple[Any, Any]:
 def market(symmetry: str, *, dense: bool = False) -> bytes:
     """Return the stiffness as MatrixMarket."""
     plain = io.BytesIO()
-    stiffness = _beam(6)[0]
+    stiffness = chain(6)[0]
     mmwrite(
         plain,
         stiffness.toarray() if dense else sparse.coo_array(stiffness),
@@ -44,7 +44,7 @@ def market(symmetry: str, *, dense: bool = False) -> bytes:
 
 def boeing(kind: str = "RSA") -> bytes:
     """Return the stiffness as Harwell-Boeing, with fields that touch and exponents with D."""
-    whole = sparse.csc_array(_beam(6)[0])
+    whole = sparse.csc_array(chain(6)[0])
     matrix = sparse.csc_array(sparse.tril(whole)) if kind == "RSA" else whole
     matrix.sort_indices()
 
@@ -111,7 +111,7 @@ def _market_judge(original: bytes, mutant: bytes) -> bool:
 
 
 def _archives() -> dict[str, bytes]:
-    stiffness = _beam(6)[0]
+    stiffness = chain(6)[0]
     found = {
         f"{kind}.npz": repacked(
             written("a.npz", functools.partial(sparse.save_npz, matrix=stiffness.asformat(kind)))
@@ -130,7 +130,7 @@ def matrix_families() -> list[Family]:
         "dense.mtx": market("general", dense=True),
         "k.mtx.gz": gzip.compress(market("symmetric"), mtime=0),
     }
-    k, m = _beam()
+    k, m = chain()
     job = {"job.sti": triplets(k), "job.mas": triplets(m), "job.dof": DOFS, "job.inp": DECK}
 
     def read_job(path: Path) -> tuple[Any, Sequence[str]]:

@@ -77,6 +77,10 @@ def test_the_list_holds_the_options_of_a_command(entry) -> None:
 BAD = [
     (["identify", "nowhere.uff"], "nowhere.uff: cannot be opened"),
     (["identify", "UFF", "--bnad", "5", "500"], "No such option: --bnad; is --band meant?"),
+    (["identify", "UFF", "-x"], "No such option: -x"),
+    (["identify", "-band", "5", "500", "UFF"], "No such option: -band; is --band meant?"),
+    (["identify", "-5"], "-5: cannot be opened"),
+    (["identify", "-"], "-: cannot be opened"),
     (["identify", "UFF", "--band", "500", "5Hz"], "Invalid band 500 to 5 Hz: the lower limit comes first"),
     (["identify", "UFF", "--layout", "nowhere.toml"], "nowhere.toml: cannot be opened"),
     (["diagnose", "STUDY"], "unknown key model.lenght; known here: "),

@@ -221,15 +221,18 @@ def pose(case: Case) -> tuple[SpecimenProblem, list[str]]:
 
 
 def _on_accepted(case: Case) -> list[str]:
-    """Say which of the effects put into the model were there in the baseline, too, and which came afterwards."""
-    before = ", ".join(name for name, _ in case.accepted_before)
-    since = ", ".join(case.accepted[i][0] for i in case.since_baseline)
-    notes = [
-        f"{before} of [[model.effect]] was there in the baseline, too; if not, write before = false"
-    ] * bool(before)
-    return notes + [
-        f"{since} of [[model.effect]] came after the baseline; if not, write before = true"
-    ] * bool(since)
+    """Return which of the effects put into the model were there in the baseline, too, and which came afterwards."""
+    notes = []
+    before, after = (
+        (False, "was there in the baseline, too", "false"),
+        (True, "came after the baseline", "true"),
+    )
+    for since, when, other in (before, after):
+        ranks = [i for i in range(len(case.accepted)) if (i in case.since_baseline) == since]
+        for stated, why in ((False, f"; if not, write before = {other}"), (True, ", as the study states")):
+            names = [case.accepted[i][0] for i in ranks if (i in case.baseline_stated) == stated]
+            notes += [f"{', '.join(names)} of [[model.effect]] {when}{why}"] * bool(names)
+    return notes
 
 
 def _corrected(

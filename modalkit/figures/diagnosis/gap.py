@@ -62,7 +62,7 @@ def _title(diagnosis: Diagnosis, errors: ModeErrors, *, of_several: bool) -> str
     shrink = diagnosis.shrink
     if errors.channel != shrink.metric or of_several:
         return f"{_capital(name)} of {modes}, before and after"
-    left = "with the least bad explanation" if diagnosis.verdict == "unknown" else "after"
+    left = "with the best-fitting (rejected) explanation" if diagnosis.verdict == "unknown" else "after"
     before, after = shrink.size(shrink.before), shrink.size(shrink.after)
     return f"{_capital(name)} of {modes}: {before} r.m.s. before, {after} {left}"
 

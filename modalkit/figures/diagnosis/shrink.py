@@ -39,7 +39,7 @@ def _title(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         return "Nothing to close"
     if diagnosis.verdict == "unknown":
-        return "What the least bad explanation would close; it does not fit"
+        return "What the best-fitting explanation would close; it is rejected"
     if shrink.closed is None or not shrink.closed.determined:
         before, after = map(shrink.size, (shrink.held_before, shrink.held_after))
         return f"{before} becomes {after} on modes held out"

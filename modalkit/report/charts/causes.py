@@ -112,5 +112,5 @@ def _closes(diagnosis: Diagnosis) -> str:
     before, after = shrink.size(shrink.held_before), shrink.size(shrink.held_after)
     if shrink.held_after != shrink.held_after or not diagnosis.ranking:
         return f"The gap is {shrink.size(shrink.before)}; no mode can be held out to see whether it closes"
-    least = " with the least bad explanation" if diagnosis.verdict in ("unknown", "none") else ""
-    return f"{before} to {after} on modes held out{least}, noise {shrink.size(shrink.floor)}"
+    how = " with the best-fitting explanation" if diagnosis.verdict in ("unknown", "none") else ""
+    return f"{before} to {after} on modes held out{how}, noise {shrink.size(shrink.floor)}"

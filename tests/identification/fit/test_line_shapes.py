@@ -84,7 +84,7 @@ def test_a_window_that_is_stated_or_denied():
     assert identify(replace(frfs, window="none")).frfs.line_shape is None
 
 
-def test_lines_far_apart_smoothed_over_three():
+def test_coarse_lines_smoothed_over_three():
     poles, residues = structure(0.03)
     frequency = np.arange(5.0, 156.0, 5.0)
     s = 2j * np.pi * np.concatenate([[1e-3], frequency, [160.0]])
@@ -94,7 +94,7 @@ def test_lines_far_apart_smoothed_over_three():
     check(model, 0.03, off=0.1)
 
 
-def test_lines_far_apart_without_a_window():
+def test_coarse_lines_without_a_window():
     poles, residues = structure(0.03)
     frequency = np.arange(5.0, 156.0, 5.0)
     exact = response(poles, residues, 2j * np.pi * frequency)

@@ -56,7 +56,7 @@ def test_a_wild_outlier_is_pointed_at_and_nothing_is_named(
     wild = tuple(396.64 if f == 296.64 else f for f in PLATE)
     found, text = answer("plate_dry", table_of(wild))
     assert found["cause"]["verdict"] == "unknown"
-    assert found["shrink"]["closed_percent"] is None or "least bad" in text
+    assert found["shrink"]["closed_percent"] is None or "best-fitting (rejected)" in text
     assert any("396.6 Hz stands alone" in warning for warning in found["warnings"])
 
 

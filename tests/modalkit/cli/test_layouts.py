@@ -52,7 +52,7 @@ def test_a_layout_replaces_no_other_file_and_no_other_layout(run: Run, tmp_path:
     assert code == 2 and "leave one out" in err
 
 
-def test_several_tables_without_a_layout_are_told_what_to_add(run: Run, tmp_path: Path) -> None:
+def test_several_tables_without_a_layout_are_refused_with_the_option_to_add(run: Run, tmp_path: Path) -> None:
     code, _, err = run("inspect", *hits(tmp_path))
     assert code == 2
     assert "these files were read as tables of modes" in err
@@ -62,7 +62,7 @@ def test_several_tables_without_a_layout_are_told_what_to_add(run: Run, tmp_path
 @pytest.mark.parametrize(
     ("name", "page"), [("a.tdms", "recorders"), ("a.wav", "recorders"), ("a.h5", "recorders")]
 )
-def test_a_recorder_s_file_without_a_layout_is_told_so(
+def test_a_file_of_a_recorder_without_a_layout_is_refused(
     run: Run, tmp_path: Path, name: str, page: str
 ) -> None:
     (tmp_path / name).write_bytes(b"x")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from nastran_cases import write_op4
 from scipy import sparse
 from scipy.io import mmread, mmwrite
 
@@ -113,6 +114,20 @@ def test_the_key_mass_is_a_file_or_a_list(tmp_path: Path) -> None:
     assert spec.masses[0].mass == 0.01
     heavier, bare = build_structure(spec), build_structure(read_study(exported(tmp_path)).spec())
     assert heavier.eigen(1)[0][0] < 0.95 * bare.eigen(1)[0][0]
+
+
+def test_one_file_of_nastran_with_two_pairs_and_names_is_the_beam(tmp_path: Path) -> None:
+    """KGG, with half the stiffness, is not taken."""
+    study = exported(tmp_path)
+    k, m = sparse.load_npz(tmp_path / "k.npz"), sparse.csr_array(mmread(tmp_path / "m.mtx"))
+    write_op4(tmp_path / "model.op4", "sparse binary", KGG=0.5 * k, KAA=k, MGG=m, MAA=m)
+    expected = build_structure(read_study(study).spec()).eigen(3)[0]
+    one_file = STUDY.replace("k.npz", "model.op4").replace("m.mtx", "model.op4")
+    study.write_text(one_file)
+    with pytest.raises(StudyError, match="KGG, KAA, MGG, MAA: write stiffness_name"):
+        read_study(study).spec()
+    study.write_text(one_file.replace("nodes =", 'stiffness_name = "KAA"\nmass_name = "MAA"\nnodes ='))
+    assert build_structure(read_study(study).spec()).eigen(3)[0] == pytest.approx(expected, rel=1e-9)
 
 
 def test_matrices_are_read_once(tmp_path: Path) -> None:

@@ -150,7 +150,7 @@ def test_no_mode_is_near_what_is_no_number() -> None:
             ProcessingOptions(decay=value)
 
 
-def test_too_little_memory_is_said_in_plain_words(
+def test_too_little_memory_is_an_error_in_one_line(
     refused, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     def full(*_: object, **__: object) -> None:

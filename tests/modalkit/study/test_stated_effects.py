@@ -95,10 +95,10 @@ def test_an_accepted_effect_says_whether_the_baseline_had_it() -> None:
 
 def test_a_study_knows_which_effects_came_after_its_baseline(tmp_path: Path) -> None:
     text = (SAMPLES / "beam_dry" / "study.toml").read_text(encoding="utf-8")
-    entries = ("true", "false")
-    for before in entries:
-        text += f'\n[[model.effect]]\nname = "lumped_mass"\nmass = 0.02\nx = 0.2\nbefore = {before}\n'
+    for stated in ("before = true", "before = false", ""):
+        text += f'\n[[model.effect]]\nname = "lumped_mass"\nmass = 0.02\nx = 0.2\n{stated}\n'
     (tmp_path / "study.toml").write_text(text, encoding="utf-8")
     study = read_study(tmp_path / "study.toml")
     assert study.since_baseline() == (1,)
-    assert [values for _, values in study.accepted()] == [{"mass": 0.02, "x": 0.2}] * 2
+    assert study.baseline_stated() == (0, 1)
+    assert [values for _, values in study.accepted()] == [{"mass": 0.02, "x": 0.2}] * 3

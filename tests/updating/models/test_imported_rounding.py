@@ -13,6 +13,7 @@ from imported_cases import spec_of
 
 from acquisition.errors import StudyError
 from updating.models import build_structure
+from updating.models.fields import Sparse
 from updating.models.imported import read_imported
 from updating.models.imported.rounding import decimal_rounding
 from updating.models.imported.structure import ImportedStructure
@@ -41,6 +42,12 @@ def elastic(given: Frame, count: int = 5) -> np.ndarray:
     reduced = reduce_structure(structure, np.zeros((0, 3)), np.zeros((0, 3)))
     first = structure.rigid_modes
     return np.asarray(np.sqrt(reduced.eigen(NOMINAL)[0][first : first + count]) / (2 * np.pi))
+
+
+def test_entries_next_to_zero_leave_the_digits_of_all_others() -> None:
+    """1e-310 times the power of ten that makes it a whole number is no number."""
+    numbers = np.array([1.2345, 6.7891, 2.3457, 9.8763, 1e-310])
+    assert decimal_rounding(Sparse(np.diag(numbers))) == 0.5e-4
 
 
 @pytest.mark.parametrize("aside", [0.0, 1e-4])

@@ -101,6 +101,14 @@ def test_what_was_there_before_is_in_the_model_of_the_baseline(stiffer: float) -
     assert residual == pytest.approx(np.full(4, 0.5 * np.log(stiffer)), abs=1e-4)
 
 
+@pytest.mark.parametrize("since", [(), (0,)], ids=["before", "after"])
+def test_no_key_is_proposed_where_the_study_has_it(since: tuple[int, ...]) -> None:
+    case = case_of(with_body({"E": 1.06}), baseline=with_body({}))
+    _, warnings = pose(replace(case, accepted=(BODY,), since_baseline=since, baseline_stated=(0,)))
+    (note,) = [warning for warning in warnings if "[[model.effect]]" in warning]
+    assert note.endswith(", as the study states") and "write" not in note
+
+
 def test_what_came_after_the_baseline_acts_on_the_corrected_model() -> None:
     after, before = with_body(SPECIMEN), measured(SPECIMEN)
     case = replace(case_of(after, baseline=before), accepted=(BODY,), since_baseline=(0,))

@@ -30,8 +30,8 @@ def advise(site: Site, found: Search) -> tuple[NextTest, ...]:
     points = _points_that_miss(site, problem, least_bad)
     if points:
         stated.append(
-            f"hit again, with care, point {', '.join(points)}, where even the least bad explanation misses most, and a "
-            "point or two beside it"
+            f"hit again, with care, point {', '.join(points)}, where even the best-fitting explanation misses most, "
+            "and a point or two beside it"
         )
     if problem.baseline is None:
         stated.append(_another_state(problem))

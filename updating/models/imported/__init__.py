@@ -2,7 +2,7 @@
 
 from updating.models.imported.matrices import Imported
 from updating.models.imported.nodes import NodeTable, read_deck_table, read_table
-from updating.models.imported.read import READERS, read_imported, read_matrix
+from updating.models.imported.read import READERS, Names, read_imported, read_matrix
 from updating.models.imported.units import SI, UNITS
 
 __all__ = [
@@ -10,6 +10,7 @@ __all__ = [
     "SI",
     "UNITS",
     "Imported",
+    "Names",
     "NodeTable",
     "read_deck_table",
     "read_imported",

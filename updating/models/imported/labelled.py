@@ -18,6 +18,7 @@ from scipy import sparse
 from acquisition.arrays import FloatArray, IntArray
 from acquisition.errors import StudyError
 from updating.models.fields import Sparse
+from updating.models.imported.naming import chosen
 from updating.models.imported.numerals import NUMBER, columns_of
 
 HELD_BY = 1e30
@@ -79,8 +80,8 @@ def is_labelled(path: Path) -> bool:
         return file.readline(200).count(b",") == 4
 
 
-def read_labelled(path: Path, kind: str) -> Labelled:
-    """Read a matrix; of a punched file that of the kind, ``stiffness`` or ``mass``: its name begins with K or M.
+def read_labelled(path: Path, kind: str, name: str | None = None) -> Labelled:
+    """Read a matrix; of a punched file that of a name, or of the kind, ``stiffness`` or ``mass``, by K or M.
 
     Raises
     ------
@@ -89,7 +90,7 @@ def read_labelled(path: Path, kind: str) -> Labelled:
     """
     if not path.is_file():
         raise StudyError(f"{path}: no such file; paths of the study are relative to the study file")
-    return _punched(path, kind) if path.suffix.lower() in PUNCHED else _of_abaqus(path)
+    return _punched(path, kind, name) if path.suffix.lower() in PUNCHED else _of_abaqus(path)
 
 
 def rows_of(matrices: Sequence[Labelled]) -> tuple[dict[tuple[int, int], int], list[tuple[int, int]]]:
@@ -116,9 +117,9 @@ def _of_abaqus(path: Path) -> Labelled:
     return Labelled(np.stack([row, of_row], 1), np.stack([column, of_column], 1), value, str(path))
 
 
-def _punched(path: Path, kind: str) -> Labelled:
+def _punched(path: Path, kind: str, name: str | None) -> Labelled:
     lines = path.read_bytes().decode("latin-1").splitlines()
-    wanted = [_named(lines, kind, path)]
+    wanted = [_named(lines, kind, name, path)]
     entries: list[tuple[int, int, int, int, float]] = []
     at: tuple[int, int] | None = None
     for number, line in enumerate(lines, start=1):
@@ -134,22 +135,13 @@ def _punched(path: Path, kind: str) -> Labelled:
     return Labelled(table[:, 2:], table[:, :2], np.array([entry[4] for entry in entries]), str(path))
 
 
-def _named(lines: Sequence[str], kind: str, path: Path) -> str:
-    """Return the name of the only stiffness or mass: by its letter, and of several the square one.
+def _named(lines: Sequence[str], kind: str, name: str | None, path: Path) -> str:
+    """Return the name of the stiffness or mass among the headers of a punched file.
 
     A rectangular matrix beside it (MUG1T, of displacements to element forces) is neither.
     """
     forms = {line[8:16].strip(): line[24:32].strip() for line in lines if line.startswith("DMIG ")}
-    letter = "K" if kind == "stiffness" else "M"
-    begun = [name for name in forms if name[:1].upper() == letter]
-    square = [name for name in begun if forms[name] in (SYMMETRIC, SQUARE)]
-    found = square or begun
-    if len(found) != 1:
-        raise StudyError(
-            f"{path}: one matrix whose name begins with {letter} is needed as {kind}; the file has "
-            f"{', '.join(forms) or 'none'} (as PARAM, EXTOUT, DMIGPCH or EXTSEOUT with DMIGPCH punch them)"
-        )
-    return found[0]
+    return chosen({of: form in (SYMMETRIC, SQUARE) for of, form in forms.items()}, kind, name, str(path))
 
 
 def _column(line: str, where: str) -> tuple[int, int] | None:

@@ -11,10 +11,11 @@ from updating.models.imported.archive import read_archive
 from updating.models.imported.boeing import read_boeing
 from updating.models.imported.calculix import read_triplets
 from updating.models.imported.deck import read_deck
-from updating.models.imported.labelled import is_labelled, read_labelled, rows_of
+from updating.models.imported.labelled import PUNCHED, is_labelled, read_labelled, rows_of
 from updating.models.imported.market import read_market
 from updating.models.imported.matlab import read_matlab
 from updating.models.imported.matrices import Imported
+from updating.models.imported.nastran.read import OUTPUTS, read_output
 from updating.models.imported.nodes import (
     NodeTable,
     labelled_table,
@@ -43,8 +44,17 @@ READERS: dict[str, Callable[[Path], Sparse]] = {
 """Reader by the ending of the file name."""
 
 
-def read_matrix(path: Path | str) -> Sparse:
-    """Read a matrix by its rows: MatrixMarket, Harwell-Boeing, .npz, .mat or CalculiX.
+def read_matrix(path: Path | str, kind: str = "stiffness", name: str | None = None) -> Sparse:
+    """Read a matrix by its rows: MatrixMarket, Harwell-Boeing, .npz, .mat, CalculiX, or OUTPUT4 and OUTPUT2 of Nastran.
+
+    Parameters
+    ----------
+    path : Path or str
+        The file.
+    kind : {"stiffness", "mass"}
+        Which one is needed of a file that has several matrices.
+    name : str, optional
+        Its name in such a file.
 
     Raises
     ------
@@ -52,14 +62,14 @@ def read_matrix(path: Path | str) -> Sparse:
         If the file is missing, of an unknown kind, or not what its name says.
     """
     path = Path(path)
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
-        raise StudyError(
-            f"{path}: no reader for {path.suffix or 'a name without ending'}; known: {', '.join(READERS)}"
-        )
+    ending = path.suffix.lower()
+    if ending not in READERS and ending not in OUTPUTS:
+        known = ", ".join([*READERS, *sorted(OUTPUTS)])
+        raise StudyError(f"{path}: no reader for {path.suffix or 'a name without ending'}; known: {known}")
+    _check_named(path, kind, name)
     if not path.is_file():
         raise StudyError(f"{path}: no such file; paths of the study are relative to the study file")
-    matrix = reader(path)
+    matrix = read_output(path, kind, name) if ending in OUTPUTS else READERS[ending](path)
     if matrix.shape[0] != matrix.shape[1]:
         raise StudyError(
             f"{path}: the matrix is {matrix.shape[0]} x {matrix.shape[1]}; stiffness and mass are square"
@@ -82,6 +92,12 @@ def read_nodes(path: Path, stiffness: Path, order: int) -> NodeTable:
     return read_table(path, order)
 
 
+Names = tuple[str | None, str | None]
+"""Names of stiffness and mass in files that have several matrices."""
+
+KINDS = ("stiffness", "mass")
+
+
 def read_imported(
     stiffness: Path,
     mass: Path,
@@ -90,6 +106,7 @@ def read_imported(
     stiffness_parts: Sequence[Path] = (),
     mass_parts: Sequence[Path] = (),
     units: str = SI,
+    names: Names = (None, None),
 ) -> Imported:
     """Read a structure given by its matrices.
 
@@ -103,6 +120,9 @@ def read_imported(
         One of each region, in the order of the regions.
     units : {"m-kg-s", "mm-t-s", "in-lbf-s"}
         What the matrices and the nodes are in; the result is in SI units.
+    names : (str or None, str or None)
+        Names of stiffness and mass in files that have several matrices; that of the stiffness begins with K, that of
+        the mass with M, unless given.
 
     Raises
     ------
@@ -110,7 +130,7 @@ def read_imported(
         If a file cannot be read, or the matrices cannot be those of a structure.
     """
     read = _labelled if is_labelled(stiffness) else _by_rows
-    (whole, weight), parts, table = read(stiffness, mass, nodes, stiffness_parts, mass_parts)
+    (whole, weight), parts, table = read(((stiffness, stiffness_parts), (mass, mass_parts)), nodes, names)
     in_si = [tuple(matrix_in_si(matrix, table, units) for matrix in own) for own in parts]
     return Imported(
         matrix_in_si(whole, table, units),
@@ -128,27 +148,44 @@ Read = tuple[tuple[Sparse, Sparse], Parts, NodeTable]
 """Stiffness and mass, their parts, and where their rows are."""
 
 
-def _by_rows(
-    stiffness: Path, mass: Path, nodes: Path, stiffness_parts: Sequence[Path], mass_parts: Sequence[Path]
-) -> Read:
+Files = tuple[tuple[Path, Sequence[Path]], tuple[Path, Sequence[Path]]]
+"""Of the stiffness and of the mass: the file of the whole and those of the regions."""
+
+
+def _check_named(path: Path, kind: str, name: str | None) -> None:
+    """Refuse the name of a matrix where the file has no names."""
+    if name is not None and path.suffix.lower() not in {*OUTPUTS, *PUNCHED}:
+        endings = ", ".join(sorted({*OUTPUTS, *PUNCHED}))
+        raise StudyError(
+            f"{path}: {kind}_name = {name!r}, and its matrix has no name; the key is for {endings}: leave it out"
+        )
+
+
+def _by_rows(files: Files, nodes: Path, names: Names) -> Read:
     """Read matrices by their rows."""
-    whole = read_matrix(stiffness)
+    (stiffness, _), (mass, _) = files
+    whole = read_matrix(stiffness, KINDS[0], names[0])
     table = read_nodes(nodes, stiffness, max(whole.shape))
-    weight = read_matrix(mass)
-    parts = [read_matrix(path) for path in stiffness_parts], [read_matrix(path) for path in mass_parts]
-    return (whole, weight), parts, table
+    weight = read_matrix(mass, KINDS[1], names[1])
+    parts = [
+        [read_matrix(path, kind, name) for path in paths]
+        for kind, name, (_, paths) in zip(KINDS, names, files, strict=True)
+    ]
+    return (whole, weight), (parts[0], parts[1]), table
 
 
-def _labelled(
-    stiffness: Path, mass: Path, nodes: Path, stiffness_parts: Sequence[Path], mass_parts: Sequence[Path]
-) -> Read:
+def _labelled(files: Files, nodes: Path, names: Names) -> Read:
     """Read matrices whose entries name nodes and directions; supports that are among them lose their rows."""
-    whole, weight = read_labelled(stiffness, "stiffness"), read_labelled(mass, "mass")
+    for kind, name, (path, _) in zip(KINDS, names, files, strict=True):
+        _check_named(path, kind, name)
+    whole, weight = (
+        read_labelled(path, kind, name) for kind, name, (path, _) in zip(KINDS, names, files, strict=True)
+    )
     rows, held = rows_of([whole, weight])
     places = read_deck(nodes) if nodes.suffix.lower() == ".inp" else read_places(nodes)
     table = labelled_table(places, rows, held, str(nodes))
-    parts = (
-        [read_labelled(path, "stiffness").on(rows) for path in stiffness_parts],
-        [read_labelled(path, "mass").on(rows) for path in mass_parts],
-    )
-    return (whole.on(rows), weight.on(rows)), parts, table
+    parts = [
+        [read_labelled(path, kind, name).on(rows) for path in paths]
+        for kind, name, (_, paths) in zip(KINDS, names, files, strict=True)
+    ]
+    return (whole.on(rows), weight.on(rows)), (parts[0], parts[1]), table

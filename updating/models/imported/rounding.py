@@ -31,7 +31,8 @@ def decimal_rounding(matrix: Sparse) -> float:
     Relative to the entry. Of numbers rounded to d digits nine times as many need the last one as end a digit before it;
     numbers that are exact, such as 2000 or 78750, end anywhere.
     """
-    size = np.abs(matrix.data[matrix.data != 0])
+    size = np.abs(matrix.data)
+    size = size[size > np.finfo(float).tiny * 10.0**MOST]  # of smaller ones no power of ten makes whole units
     for digits in range(FEWEST, MOST + 1):
         if _written(size[:1000], digits).all() and _written(size, digits).all():
             kinds = np.unique(size)
