@@ -10,9 +10,11 @@ from acquisition.arrays import ComplexArray, FloatArray
 from acquisition.errors import EstimationError
 from acquisition.frfs.frf import FrfSet
 from acquisition.frfs.line_shape import KINDS, Kind, LineShape
-from identification.fit.equations.refine import refine
+from identification.fit.equations.refine import Fit, refine
 from identification.fit.equations.residues import uniform_weights
 from identification.fit.fit import Fitted, fit_candidates
+from identification.fit.noise.leakage import leaked
+from identification.fit.noise.weights import absorbed_by, left_over, noise_weights, search_weights
 from identification.fit.search.completion import COARSE, SHORT
 
 RESOLVED = 1.5
@@ -20,17 +22,9 @@ RESOLVED = 1.5
 modes count as one until the completion of the fit adds the second again; halved, the two poles that imitate the line
 shape stay."""
 
-LOWER = 0.9
-"""Misfit with a line shape over that of the same poles without, under which both are fitted in full [-]. Modes that are
-still missing are in both. Nearer to 1: fits without effect where noise decides; at half, windows pass unnoticed."""
-
 BROAD = 100.0
 """Decay of a pole over a block beyond which its line shape is left as it is, to 0.1 % [-]. Doubled: work without
 effect."""
-
-
-FEWEST = 16
-"""Lines of which two are left out at the most [-]. Doubled: the ends of short sets, smoothed otherwise, move modes."""
 
 
 def fit_shaped(
@@ -40,6 +34,7 @@ def fit_shaped(
 
     A shape that nobody states counts if the fit with it explains more than the one without, each pole and term at its
     price (Schwarz, Ann. Stat. 6 (1978) 461-464): two poles under a half-power width apart imitate the line shape.
+    Beside a course only a stated window counts: what a course leaves on peaks passes for errors of averages.
 
     Parameters
     ----------
@@ -51,7 +46,7 @@ def fit_shaped(
     EstimationError
         If no candidate is a mode of the band.
     """
-    kinds = _worth_a_fit(frfs, start) if course is None else []
+    kinds = _worth_a_fit(frfs, start) if course is None or frfs.window == "hann" else []
     fits: list[Fitted] = []
     failure: EstimationError | None = None
     for shaped, poles in [(_with(frfs, kind), _merged(start, frfs.df)) for kind in kinds] or [(frfs, start)]:
@@ -70,16 +65,18 @@ def fit_shaped(
 
 
 def _worth_a_fit(frfs: FrfSet, start: ComplexArray) -> list[Kind]:
-    """Return the line shapes to fit: both where a window is stated, else the best if it lowers the misfit."""
+    """Return the line shapes to fit: both where a window is stated, else those with which few poles fit better."""
     known = frfs.window == "none" or frfs.record is not None or frfs.line_shape is not None
     if known or not np.any(-start.real < BROAD * frfs.df):
         return []
     if frfs.window == "hann":
         return list(KINDS)
     few = _merged(start, frfs.df)
-    misfits = [_misfit(_with(frfs, kind), few) for kind in KINDS]
-    best = int(np.argmin(misfits))
-    return [KINDS[best]] if misfits[best] < LOWER * _misfit(frfs, few) else []
+    plain, shaped = _of_few(frfs, few), np.array([_of_few(_with(frfs, kind), few) for kind in KINDS])
+    best = {
+        int(k) for k, better in zip(shaped.argmin(axis=0), shaped.min(axis=0) < plain, strict=True) if better
+    }
+    return [KINDS[k] for k in sorted(best)]
 
 
 def _with(frfs: FrfSet, kind: Kind) -> FrfSet:
@@ -93,14 +90,27 @@ def _merged(poles: ComplexArray, df: float) -> ComplexArray:
     return np.array([part.mean() for part in np.split(poles, cuts)], dtype=np.complex128)
 
 
-def _misfit(frfs: FrfSet, poles: ComplexArray) -> float:
-    """Return the misfit of poles once they are refined, over the power of each FRF [-]."""
-    return refine(frfs, poles, uniform_weights(frfs), iterations=SHORT, tolerance=COARSE).cost
+def _of_few(frfs: FrfSet, poles: ComplexArray) -> tuple[float, float]:
+    """Return two measures of how badly poles fit that are refined, but neither struck off nor completed [-].
+
+    The misfit over the power of each FRF, in which a mode that the candidates lack weighs little; and the price, in
+    which the error of averages on a narrow peak, of the size of the peak, weighs little.
+    """
+    fit = refine(frfs, poles, uniform_weights(frfs), iterations=SHORT, tolerance=COARSE)
+    weights, misfit = search_weights(frfs, fit), fit.cost
+    fit = refine(frfs, fit.poles, weights, iterations=SHORT, tolerance=COARSE)
+    residual, absorbed = left_over(frfs, fit), absorbed_by(frfs, fit, weights)
+    variance = noise_weights(frfs, residual, absorbed, leaked(frfs, fit.poles, fit.linear.residues))[1]
+    return misfit, _criterion(fit, residual, variance)
 
 
 def _price(fitted: Fitted) -> float:
     """Return Schwarz's criterion with the noise that the fit leaves: less is better [-]."""
-    residual, n_frf = fitted.residual, len(fitted.residual)
-    lack = float(np.sum(np.log(fitted.variance) + np.abs(residual) ** 2 / fitted.variance))
-    unknowns = len(fitted.fit.poles) * (2 * n_frf + 2) + n_frf * len(fitted.fit.linear.powers)
+    return _criterion(fitted.fit, fitted.residual, fitted.variance)
+
+
+def _criterion(fit: Fit, residual: ComplexArray, variance: FloatArray) -> float:
+    n_frf = len(residual)
+    lack = float(np.sum(np.log(variance) + np.abs(residual) ** 2 / variance))
+    unknowns = len(fit.poles) * (2 * n_frf + 2) + n_frf * len(fit.linear.powers)
     return float(2.0 * lack + unknowns * np.log(2 * residual.size))

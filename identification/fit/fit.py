@@ -18,7 +18,7 @@ from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.pruning import inside
 from identification.fit.equations.refine import Fit, State, refine
 from identification.fit.equations.residues import uniform_weights
-from identification.fit.noise import window_shaped
+from identification.fit.noise import leakage, window_shaped
 from identification.fit.noise.weights import absorbed_by, left_over, noise_weights, search_weights
 from identification.fit.poly_reference import RankOne, hold_to_rank_one, sorted_frfs
 from identification.fit.search import manual_selection
@@ -237,14 +237,14 @@ def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -
     """Weigh by the noise itself, carry over to common poles and refine until all agree."""
     data = carried_over(frfs, fit, drift.at(fit.poles))
     residual, absorbed = left_over(data, fit), absorbed_by(data, fit, search_weights(data, fit))
-    weights, variance, measured = noise_weights(data, residual, absorbed)
+    weights, variance, measured = _noise(data, fit, residual, absorbed)
     for _ in range(_COARSE_WEIGHINGS):
         fit = _refined(data, fit, weights, band, COARSE)
         used, fitted = (weights, variance, measured), data
         drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
         data = carried_over(frfs, fit, drift)
         residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
-        weights, variance, measured = noise_weights(data, residual, absorbed)
+        weights, variance, measured = _noise(data, fit, residual, absorbed)
     known = None
     if data is fitted and np.abs(np.log(variance / used[1])).max() < _SAME_NOISE:
         (weights, variance, measured), known = used, fit.equations
@@ -252,6 +252,13 @@ def _weighted(frfs: FrfSet, fit: Fit, drift: Drift, band: tuple[float, float]) -
     drift = estimate_drift(data, fit, weights, own=distinct(fit.poles), previous=drift)
     residual, absorbed = left_over(data, fit), absorbed_by(data, fit, weights)
     return Fitted(fit, weights, variance, residual, absorbed, measured, data, drift)
+
+
+def _noise(
+    frfs: FrfSet, fit: Fit, residual: ComplexArray, absorbed: FloatArray
+) -> tuple[Weights, FloatArray, bool]:
+    """Return weights and variances by the noise, as of :func:`identification.fit.noise.weights.noise_weights`."""
+    return noise_weights(frfs, residual, absorbed, leakage.leaked(frfs, fit.poles, fit.linear.residues))
 
 
 def _refined(

@@ -22,7 +22,8 @@ from identification.fit.equations.basis import Axis
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.pruning import strength, threshold
 from identification.fit.equations.refine import Fit
-from identification.fit.equations.residues import synthesise
+from identification.fit.equations.residues import Residues, synthesise
+from identification.fit.noise import leakage
 from identification.fit.noise.levels import local_mean, window_length
 from identification.fit.noise.weights import decay_over_record, left_over
 from identification.fit.noise.window_shaped import inflation
@@ -62,13 +63,13 @@ class CommonNoise:
     variance: tuple[FloatArray, ...]
     own: FloatArray
 
-    def removed(self, model: ComplexArray, residual: ComplexArray) -> ComplexArray:
+    def removed(self, way: ComplexArray, residual: ComplexArray) -> ComplexArray:
         """Return a residual without what the common noise explains of it, shape (n_frf, n_lines).
 
         Parameters
         ----------
-        model : (n_frf, n_lines) complex array
-            The FRFs the noise multiplies [unit of the FRFs].
+        way : (n_frf, n_lines) complex array
+            What the common factor multiplies, of :func:`direction` [unit of the FRFs].
         residual : (n_frf, n_lines) complex array
             Data minus model [unit of the FRFs].
         """
@@ -76,7 +77,7 @@ class CommonNoise:
         for rows, variance in zip(self.groups, self.variance, strict=True):
             if not variance.any():
                 continue
-            h, own = model[rows], self.own[rows]
+            h, own = way[rows], self.own[rows]
             along = np.sum(h.conj() * residual[rows] / own, axis=0)
             power = np.sum(np.abs(h) ** 2 / own, axis=0)
             rest[rows] -= h * (variance * along / (1.0 + variance * power))
@@ -84,8 +85,13 @@ class CommonNoise:
 
 
 def hit_groups(frfs: FrfSet) -> tuple[IntArray, ...]:
-    """Return the rows of FRFs that share their hits: as the scatter of the hits has it, else by reference."""
-    if frfs.scatter is not None:
+    """Return the rows of FRFs that share their hits: as the scatter of the hits has it, else by reference.
+
+    Averages over windowed blocks may all be of one force, whatever their references: their errors show it.
+    """
+    if leakage.follows(frfs.line_shape):
+        rows: tuple[IntArray, ...] = (np.arange(len(frfs.values)),)
+    elif frfs.scatter is not None:
         rows = frfs.scatter.hit_groups
     else:
         names = [unsigned(dof) for dof in frfs.references]
@@ -93,29 +99,41 @@ def hit_groups(frfs: FrfSet) -> tuple[IntArray, ...]:
     return tuple(np.asarray(r) for r in rows if len(r) > 1)
 
 
+def direction(frfs: FrfSet, poles: ComplexArray, linear: Residues) -> ComplexArray:
+    """Return what the common factor of each line multiplies, (n_frf, n_lines) [unit of the FRFs].
+
+    The FRFs, as noise of the force does; in averages over windowed blocks what a block cuts off.
+    """
+    leaked = leakage.leaked(frfs, poles, linear.residues)
+    return synthesise(Axis.of(frfs), poles, linear) if leaked is None else leaked
+
+
 def common_noise(
-    frfs: FrfSet, model: ComplexArray, residual: ComplexArray, variance: FloatArray
+    frfs: FrfSet, way: ComplexArray, residual: ComplexArray, variance: FloatArray
 ) -> CommonNoise:
     """Estimate the common noise from what a fit leaves.
 
     Differences from line to line are used, which do not mind what the model still lacks; b may vary with
-    frequency as slowly as a force spectrum does.
+    frequency as slowly as a force spectrum does. Averages over windowed blocks have one b for all lines.
 
     Parameters
     ----------
     frfs : FrfSet
         The FRFs.
-    model, residual : (n_frf, n_lines) complex arrays
-        A fit, and data minus fit [unit of the FRFs].
+    way, residual : (n_frf, n_lines) complex arrays
+        What the noise multiplies, and data minus a fit [unit of the FRFs].
     variance : (n_frf, n_lines) array
         Noise variance of every value, common part included [unit of the FRFs squared].
     """
     groups = hit_groups(frfs)
     own, each = np.array(variance), []
     for rows in groups:
-        b = _factor_variance(model[rows], residual[rows], variance[rows])
+        if leakage.follows(frfs.line_shape):
+            b = np.full(way.shape[1], leakage.shared(way, residual, variance))
+        else:
+            b = _factor_variance(way[rows], residual[rows], variance[rows])
         each.append(b)
-        own[rows] = np.maximum(variance[rows] - b * np.abs(model[rows]) ** 2, _OWN * variance[rows])
+        own[rows] = np.maximum(variance[rows] - b * np.abs(way[rows]) ** 2, _OWN * variance[rows])
     return CommonNoise(groups, tuple(each), own)
 
 
@@ -166,12 +184,16 @@ def beyond_common_noise(frfs: FrfSet, fit: Fit, weights: Weights) -> BoolArray:
     held = inflation(weights.fade, decay_over_record(frfs, fit.poles))[0]
     doubtful = strength(fit) < limit * held * max(len(g) for g in groups)
     residual = left_over(frfs, fit)
-    noise = common_noise(frfs, frfs.values - residual, residual, 1.0 / weights.full)
+    way = direction(frfs, fit.poles, fit.linear)
+    noise = common_noise(frfs, way, residual, 1.0 / weights.full)
     for mode in np.flatnonzero(doubtful):
         rest = np.delete(np.arange(len(fit.poles)), mode)
         linear = replace(fit.linear, residues=fit.linear.residues[:, rest])
-        model = synthesise(Axis.of(frfs), fit.poles[rest], linear)
-        bare = replace(frfs, values=model + noise.removed(model, frfs.values - model))
+        model, way = (
+            synthesise(Axis.of(frfs), fit.poles[rest], linear),
+            direction(frfs, fit.poles[rest], linear),
+        )
+        bare = replace(frfs, values=model + noise.removed(way, frfs.values - model))
         gain = 2.0 * gains(bare, fit.poles[rest], fit.linear.powers, weights, fit.poles[[mode]])[0]
         stands[mode] = gain > limit * held[mode]
     return stands
@@ -182,6 +204,5 @@ def without_common_noise(frfs: FrfSet, fit: Fit, weights: Weights) -> ComplexArr
 
     Parameters as for :func:`beyond_common_noise`.
     """
-    residual = left_over(frfs, fit)
-    model = frfs.values - residual
-    return common_noise(frfs, model, residual, 1.0 / weights.full).removed(model, residual)
+    residual, way = left_over(frfs, fit), direction(frfs, fit.poles, fit.linear)
+    return common_noise(frfs, way, residual, 1.0 / weights.full).removed(way, residual)

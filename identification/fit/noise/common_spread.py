@@ -14,7 +14,7 @@ from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
 from identification.fit.equations.pruning import inverse_information
 from identification.fit.equations.refine import Fit, evaluate, pole_turns
-from identification.fit.noise.common import common_noise
+from identification.fit.noise.common import common_noise, direction
 
 
 def common_factors(
@@ -36,17 +36,17 @@ def common_factors(
         Data minus model [unit of the FRFs].
     """
     n = len(fit.poles)
-    model = frfs.values - residual
-    noise = common_noise(frfs, model, residual, variance)
+    way = direction(frfs, fit.poles, fit.linear)
+    noise = common_noise(frfs, way, residual, variance)
     if not any(b.any() for b in noise.variance):
         return np.ones(n)
     columns = basis.build(basis.Axis.of(frfs), fit.poles, fit.linear.powers)
     extra = np.zeros((2 * n, 2 * n))
     for rows, b in zip(noise.groups, noise.variance, strict=True):
         capped = np.minimum(
-            b, 1.0 / np.maximum((np.abs(model[rows]) ** 2 / variance[rows]).max(axis=0), 1e-300)
+            b, 1.0 / np.maximum((np.abs(way[rows]) ** 2 / variance[rows]).max(axis=0), 1e-300)
         )
-        together, alone = pulls(fit, weights, columns, rows, model[rows])
+        together, alone = pulls(fit, weights, columns, rows, way[rows])
         half = np.sqrt(capped)[:, None] * together
         extra += (half.conj().T @ half).real - np.diag(capped @ alone)
     normal = evaluate(frfs, fit.poles, weights, fit.linear.powers).normal

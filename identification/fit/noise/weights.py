@@ -12,7 +12,7 @@ from identification.fit.equations import basis
 from identification.fit.equations.normal_equations import Weights
 from identification.fit.equations.refine import Fit
 from identification.fit.equations.residues import synthesise
-from identification.fit.noise import levels, window_shaped
+from identification.fit.noise import leakage, levels, window_shaped
 
 _LEAST_FREE = 0.02  # part of the values that a fit leaves free at the least
 
@@ -29,6 +29,10 @@ def search_weights(frfs: FrfSet, fit: Fit) -> Weights:
     is larger on a peak.
     """
     residual = left_over(frfs, fit)
+    leaked = leakage.leaked(frfs, fit.poles, fit.linear.residues)
+    if leaked is not None:
+        free = max(1.0 - _unknowns(fit) / (2 * len(frfs.frequency)), _LEAST_FREE)
+        return _of_leakage(frfs, np.abs(residual) ** 2 / free, leaked)
     known = levels.from_statistics(frfs, frfs.values - residual)
     shape = np.ones((1, len(frfs.frequency)))
     if known is not None:
@@ -40,6 +44,15 @@ def search_weights(frfs: FrfSet, fit: Fit) -> Weights:
     level = levels.scatter(even) / window_shaped.roughness(fade, 4) / max(free, _LEAST_FREE)
     level = np.maximum(level, levels.quiet_floor(frfs.values)[:, 0])
     return Weights(1.0 / level, 1.0 / shape, fade)
+
+
+def _of_leakage(frfs: FrfSet, power: FloatArray, leaked: ComplexArray) -> Weights:
+    """Return weights of FRFs whose noise is leakage, and noise of their own that is the same at all lines."""
+    floor = levels.quiet_floor(frfs.values)
+    start = np.maximum(np.median(power, axis=1), floor[:, 0])
+    variance = np.maximum(leakage.levelled(power, np.abs(leaked) ** 2, start)[0], floor)
+    level = 1.0 / np.exp(np.mean(np.log(variance), axis=1))
+    return Weights(level, 1.0 / (variance * level[:, None]))
 
 
 def _unknowns(fit: Fit) -> float:
@@ -54,12 +67,15 @@ def decay_over_record(frfs: FrfSet, poles: ComplexArray) -> FloatArray:
 
 
 def noise_weights(
-    frfs: FrfSet, residual: ComplexArray, absorbed: FloatArray
+    frfs: FrfSet, residual: ComplexArray, absorbed: FloatArray, leaked: ComplexArray | None = None
 ) -> tuple[Weights, FloatArray, bool]:
     """Return weights and variances by the noise itself, and whether these came with the data.
 
     What the data say of their noise is scaled to the residual where it is coherence without hits to count.
     """
+    if leaked is not None:
+        weights = _of_leakage(frfs, np.abs(residual) ** 2 / np.maximum(1.0 - absorbed, _LEAST_FREE), leaked)
+        return weights, 1.0 / weights.full, False
     fade = window_shaped.decay_over_record(residual)
     known = levels.from_statistics(frfs, frfs.values - residual)
     floor = levels.quiet_floor(frfs.values)

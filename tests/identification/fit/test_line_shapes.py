@@ -9,7 +9,13 @@ import pytest
 
 from acquisition import Dof, FrfSet
 from acquisition.form import FORMS
+from acquisition.frfs.line_shape import LineShape
 from identification import identify
+from identification.fit.course import course_of
+from identification.fit.equations.basis import Axis
+from identification.fit.equations.residues import Residues, synthesise
+from identification.fit.noise.leakage import leaked, shared
+from identification.fit.noise.levels import local_mean
 
 HERTZ = np.array([63.6, 81.5, 97.0, 115.0, 129.0, 142.0])
 
@@ -82,6 +88,56 @@ def test_a_window_that_is_stated_or_denied():
     check(stated, 0.005, off=0.05)
     assert any("Hann window" in w and "state" not in w for w in stated.warnings)
     assert identify(replace(frfs, window="none")).frfs.line_shape is None
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_peaks_far_narrower_than_lines_beside_broad_ones(seed):
+    """What rings for many blocks errs by the size of its peak, and would carry the choice of the line shape."""
+    damping = np.array([0.0006, 0.004, 0.0008, 0.006, 0.005, 0.004])
+    poles, residues = structure(damping, seed)
+    model = identify(welch(poles, residues, df=0.8, rate=400.0, blocks=60, seed=seed))
+    modal = model.modal
+    assert len(model) == 6, model.table()
+    assert np.max(np.abs(modal.frequency - HERTZ) / modal.frequency_sigma) < 3.0
+    assert np.max(np.abs(modal.damping - damping) / modal.damping_sigma) < 3.0
+    assert np.max(model.modal.frequency_sigma / HERTZ) < 1e-3
+
+
+def test_errors_by_leakage_follow_the_law():
+    """The power that true poles leave is one number times what the law gives, in all FRFs together."""
+    poles, residues = structure(np.array([0.001, 0.004, 0.002, 0.006, 0.005, 0.004]))
+    frfs = welch(poles, residues, df=0.8, rate=400.0, blocks=200, seed=0)
+    shaped = replace(frfs, line_shape=LineShape("averaged", 1 / 0.8))
+    linear = Residues(residues, np.zeros((6, 2)), (-2, 0))
+    left = frfs.values - synthesise(Axis.of(shaped), poles, linear)
+    law = leaked(shaped, poles, residues)
+    near = np.abs(frfs.frequency[:, None] - HERTZ).min(axis=1) < 3.0
+    ratio = (np.abs(left) ** 2 / np.abs(law) ** 2)[:, near]
+    assert 1 / np.mean(ratio) == pytest.approx(400, rel=0.3)  # blocks overlap by half
+    assert np.std(np.log(local_mean(ratio, 9))) < 0.6
+    variance = np.abs(law) ** 2 / 400
+    assert shared(law, left, variance) * 400 > 0.7
+    alone = np.abs(left) * np.exp(2j * np.pi * np.random.default_rng(0).random(left.shape))
+    assert shared(law, alone, variance) * 400 < 0.1
+
+
+def test_a_stated_window_counts_beside_a_drift():
+    poles, residues = structure(0.004)
+    shape, frequency = LineShape("averaged", 4.0), np.arange(40.0, 160.0, 0.25)
+    residues = np.tile(residues, (2, 1))
+    rows = [
+        synthesise(
+            Axis(2j * np.pi * frequency, "accelerance", shape=shape),
+            poles * (1 + shift),
+            Residues(row[None, :], np.zeros((1, 2)), (-2, 0)),
+        )[0]
+        for row, shift in zip(residues, np.linspace(-0.01, 0.01, 12), strict=True)
+    ]
+    frfs = frf_set(frequency, noisy(np.array(rows), 1e-3, np.random.default_rng(0)))
+    assert course_of(frfs) is not None
+    model = identify(replace(frfs, window="hann"))
+    check(model, 0.004, off=0.02)
+    assert model.frfs.line_shape is not None
 
 
 def test_coarse_lines_smoothed_over_three():
