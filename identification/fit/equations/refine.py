@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -32,16 +33,12 @@ class Fit:
     information : (2 n_modes, 2 n_modes) array
         Gauss-Newton information of (Re, Im) of the poles, interleaved, twice J^T J [s^2/rad^2].
     equations : State
-        Normal equations on all lines at the poles, residues free.
-    pole_gain : (n_frf, 2 n_modes + n_terms, 2 n_modes) array
-        Change of each FRF's linear unknowns per change of the poles.
-    linear_inverse : (n_frf, 2 n_modes + n_terms) array
-        Variance of each linear unknown with the poles held, for weights that are reciprocal variances.
+        Normal equations on all lines at the poles, residues free: what the properties below follow from.
     converged : bool
         Whether the iteration came to rest.
     residue_variance : (n_frf, n_modes) array, optional
         Variance of the imaginary part of each residue, everything fitted, where it does not follow from
-        ``pole_gain`` and ``linear_inverse``: residues held to rank one [m^2/(N s)^2].
+        ``pole_gain`` and ``residue_inverse``: residues held to rank one [m^2/(N s)^2].
     """
 
     poles: ComplexArray
@@ -49,10 +46,28 @@ class Fit:
     cost: float
     information: FloatArray
     equations: State
-    pole_gain: FloatArray
-    linear_inverse: FloatArray
     converged: bool
     residue_variance: FloatArray | None = None
+
+    @cached_property
+    def pole_gain(self) -> FloatArray:
+        """Change of the imaginary part of each residue per change of the poles, (n_frf, n_modes, 2 n_modes)."""
+        n, solution = len(self.poles), self.equations.step.solution
+        follow = self.equations.follow[:, 1 : 2 * n : 2].reshape(-1, n, n, 2)
+        turns = -pole_turns(solution, n)[:, None]
+        gain = follow[..., 0, None] * turns[..., 0, :]
+        gain += follow[..., 1, None] * turns[..., 1, :]
+        return np.asarray(gain.reshape(len(solution), n, 2 * n))
+
+    @cached_property
+    def residue_inverse(self) -> FloatArray:
+        """Variance of both parts of each residue with the poles held, for weights that are reciprocal variances.
+
+        Parts interleaved, (n_frf, 2 n_modes) [m^2/(N s)^2].
+        """
+        k = self.equations.step.solution.shape[1]
+        inverse = _inverse_diagonal(self.equations.products.gram[:, :k, :k])[:, : 2 * len(self.poles)]
+        return np.asarray(inverse / (2.0 * self.equations.level[:, None]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,7 +280,7 @@ def _of_each(state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
     n, k = len(state.poles), solution.shape[1]
     across = gram[:, :k, k:]
     projected = gram[:, k:, k:] - np.matmul(across.transpose(0, 2, 1), state.follow)
-    left = (state.products.cross[:, k:] - _carried(solution, across)).reshape(-1, n, 2)
+    left = (state.products.cross[:, k:] - carried(solution, across)).reshape(-1, n, 2)
     return left, projected.reshape(-1, n, 2, n, 2), pole_turns(solution, n)
 
 
@@ -292,11 +307,11 @@ def frequency_scores(fit: Fit) -> tuple[FloatArray, FloatArray]:
     return gradient, np.einsum("j,jni,jnim->jnm", level, turned, half, optimize=True)
 
 
-def _carried(solution: FloatArray, across: FloatArray) -> FloatArray:
-    """Return what the linear unknowns put on the slope columns, shape (n_frf, 2 n_modes)."""
+def carried(solution: FloatArray, across: FloatArray) -> FloatArray:
+    """Return what each FRF's factors make of products, (n_frf, k) by (n_frf or 1, k, m)."""
     if len(across) == 1:
         return np.asarray(solution @ across[0])
-    return np.asarray(np.einsum("jk,jkm->jm", solution, across))
+    return np.asarray(np.matmul(solution[:, None, :], across)[:, 0])
 
 
 def pole_turns(solution: FloatArray, n_modes: int) -> FloatArray:
@@ -329,7 +344,7 @@ def _step(
     between = products.gram[:, :k, k:]
     projected = products.gram[:, k:, k:] - np.einsum("jkm,jkl->jml", between, follow)
     turns = pole_turns(solution, n)
-    left = (products.cross[:, k:] - _carried(solution, between)).reshape(-1, n, 2)
+    left = (products.cross[:, k:] - carried(solution, between)).reshape(-1, n, 2)
     gradient = np.einsum("j,jni,jnia->na", level, left, turns)
     normal = _contract(projected.reshape(-1, n, 2, n, 2), turns, level)
     return Step(max(cost, 0.0), solution, normal, gradient.reshape(2 * n))
@@ -361,26 +376,36 @@ def fit_at(
 
 def _fit(problem: _Problem, state: State, converged: bool) -> Fit:
     """Return the fit at a state, poles rising in frequency."""
-    n, solution = len(state.poles), state.step.solution
-    k = solution.shape[1]
-    order = np.argsort(np.abs(state.poles))
-    both = (2 * order[:, None] + np.arange(2)).ravel()
-    linear = np.concatenate([both, np.arange(2 * n, k)])
-    blocks = state.follow.reshape(len(state.follow), k, n, 2)
-    turns = pole_turns(solution, n)
-    gain = -np.einsum("jkni,jnia->jkna", np.broadcast_to(blocks, (len(solution), k, n, 2)), turns)
-    inverse = _inverse_diagonal(state.products.gram[:, :k, :k])
-    held = np.broadcast_to(inverse, solution.shape) / (2.0 * state.level[:, None])
-    rising = (np.diff(order) > 0).all()
+    state = _sorted(state)
     return Fit(
-        state.poles[order],
-        unpack(solution[:, linear], n, state.term_scale, problem.powers),
+        state.poles,
+        unpack(state.step.solution, len(state.poles), state.term_scale, problem.powers),
         state.cost,
-        2.0 * state.step.normal[np.ix_(both, both)],
-        state if rising else _at(problem, state.poles[order]),
-        gain.reshape(len(solution), k, 2 * n)[:, linear[:, None], both],
-        held[:, linear],
+        2.0 * state.step.normal,
+        state,
         converged,
+    )
+
+
+def _sorted(state: State) -> State:
+    """Return the same state with poles rising in frequency."""
+    n, k = len(state.poles), state.step.solution.shape[1]
+    order = np.argsort(np.abs(state.poles))
+    if (np.diff(order) > 0).all():
+        return state
+    both = (2 * order[:, None] + np.arange(2)).ravel()
+    linear, step, products = np.concatenate([both, np.arange(2 * n, k)]), state.step, state.products
+    every = np.concatenate([linear, k + both])
+    return replace(
+        state,
+        poles=state.poles[order],
+        step=Step(
+            step.cost, step.solution[:, linear], step.normal[np.ix_(both, both)], step.gradient[both]
+        ),
+        products=normal_equations.NormalEquations(
+            products.gram[:, every[:, None], every], products.cross[:, every], products.power
+        ),
+        follow=state.follow[:, linear[:, None], both],
     )
 
 

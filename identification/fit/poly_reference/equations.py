@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
 from identification.fit.equations.line_selection import selected_lines
-from identification.fit.equations.refine import pole_turns
+from identification.fit.equations.refine import carried, pole_turns
 from identification.fit.poly_reference.blocks import blocks_times, inverses, paired, rotations, times_blocks
 from identification.fit.poly_reference.places import Sorted
 
@@ -78,6 +79,7 @@ class Projected:
 
     The columns left are the modes held to rank one, then the slopes by all poles. Eliminated are the free
     modes and the residual terms, whose factors are ``alone`` less ``each`` times those of the columns left.
+    Of ``gram`` and ``each`` there is one for all FRFs where their lines weigh alike.
     """
 
     gram: FloatArray
@@ -86,6 +88,15 @@ class Projected:
     alone: FloatArray
     each: FloatArray
     term_scale: FloatArray
+
+    def alike(self, places: Sorted) -> Iterator[tuple[FloatArray, IntArray, int]]:
+        """Yield sets of FRFs of one column that share their products: these, the FRFs and the column."""
+        if len(self.gram) == 1:
+            for column in range(places.shape[1]):
+                yield self.gram[0], np.flatnonzero(places.column == column), column
+        else:
+            for number, gram in enumerate(self.gram):
+                yield gram, np.array([number]), int(places.column[number])
 
 
 def project(problem: Problem, poles: ComplexArray, n_held: int) -> Projected:
@@ -98,12 +109,10 @@ def project(problem: Problem, poles: ComplexArray, n_held: int) -> Projected:
     p, k = normal_equations.form(both, data), 2 * n_held + columns.slopes.shape[1]
     follow = normal_equations.solve(p.gram[:, k:, k:], p.gram[:, k:, :k])
     alone = normal_equations.solve(p.gram[:, k:, k:], p.cross[:, k:, None])[:, :, 0]
-    each = np.broadcast_to(follow, (len(p.cross), *follow.shape[1:]))
     gram = p.gram[:, :k, :k] - np.matmul(p.gram[:, :k, k:], follow)
-    cross = p.cross[:, :k] - np.einsum("jt,jtk->jk", p.cross[:, k:], each)
+    cross = p.cross[:, :k] - carried(p.cross[:, k:], follow)
     power = weights.level @ (p.power - np.einsum("jt,jt->j", p.cross[:, k:], alone))
-    gram = np.broadcast_to(gram, (len(p.cross), k, k))
-    return Projected(gram, cross, float(power), alone, each, columns.term_scale)
+    return Projected(gram, cross, float(power), alone, follow, columns.term_scale)
 
 
 def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step:
@@ -118,28 +127,18 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
     share : (n_columns, n_held) complex array
         Participations [-].
     """
-    places, level = problem.places, problem.weights.level
     n_held = share.shape[1]
-    m, left = 2 * n_held, project(problem, poles, n_held)
-    own = rotations(share)[places.column]
-    right = times_blocks(left.gram[:, :, :m], own)
-    held, long = _shapes(problem, left, own, right[:, :m])
-    here = long[places.row]
+    m, left, own = 2 * n_held, project(problem, poles, n_held), rotations(share)
+    held, long = _shapes(problem, left, own)
+    here = long[problem.places.row]
     factors, cost = _factors(problem, left, own, here)
-    alone = left.alone - np.einsum("jtk,jk->jt", left.each[:, :, :m], factors)
+    alone = left.alone - carried(factors, left.each.transpose(0, 2, 1)[:, :m])
     n_own = 2 * (len(poles) - n_held)
     every = np.hstack([factors, alone[:, :n_own]])
-    steps = _local_slopes(every, here, len(poles), n_held)
-    across = steps.transpose(0, 2, 1)
-    lacking = left.cross - np.einsum("jkm,jm->jk", left.gram[:, :, :m], factors)
-    normal, gradient, coupling = _gathered(
-        problem,
-        np.matmul(across, np.matmul(left.gram, steps)) * level[:, None, None],
-        np.einsum("jpk,jk->jp", across, lacking) * level[:, None],
-        np.matmul(across, right) * level[:, None, None],
-    )
-    follow = np.matmul(held, coupling.transpose(0, 2, 1))
-    normal = normal - np.einsum("ipm,imq->pq", coupling, follow, optimize=True)
+    turns = np.concatenate([rotations(paired(here)), pole_turns(every, len(poles))], axis=1)
+    normal, gradient, coupling = _gathered(problem, left, own, factors, turns)
+    follow = np.matmul(held, coupling.transpose(1, 2, 0))
+    normal = normal - coupling.reshape(len(normal), -1) @ follow.reshape(-1, len(normal))
     return Step(
         cost=cost,
         long=long,
@@ -152,72 +151,74 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
     )
 
 
-def _shapes(
-    problem: Problem, left: Projected, own: FloatArray, right: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def _shapes(problem: Problem, left: Projected, own: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the inverse of each row's normal matrix and its best shape components."""
-    level, m = problem.weights.level, right.shape[-1]
-    normal = summed(problem.places, level[:, None, None] * blocks_times(own, right))
-    target = summed(problem.places, level[:, None] * blocks_times(own, left.cross[:, :m, None])[:, :, 0])
+    places, m = problem.places, 2 * own.shape[1]
+    normal, target = np.zeros((places.shape[0], m, m)), np.zeros((places.shape[0], m))
+    for gram, mine, column in left.alike(places):
+        rows, level = places.row[mine], problem.weights.level[mine]
+        normal[rows] += level[:, None, None] * blocks_times(
+            own[column], times_blocks(gram[:m, :m], own[column])
+        )
+        target[rows] += level[:, None] * times_blocks(left.cross[mine, :m], own[column])
     held = inverses(normal)
-    return held, np.einsum("imk,ik->im", held, target)
+    return held, np.matmul(held, target[:, :, None])[:, :, 0]
 
 
 def _factors(
     problem: Problem, left: Projected, own: FloatArray, here: FloatArray
 ) -> tuple[FloatArray, float]:
     """Return what each FRF's columns held to rank one are multiplied by, (n_frf, 2 n_held), and the misfit."""
-    n_held = own.shape[1]
-    factors = np.einsum("jnab,jnb->jna", own, here.reshape(-1, n_held, 2)).reshape(-1, 2 * n_held)
-    each = np.einsum("jk,jk->j", left.cross[:, : 2 * n_held], factors)
-    return factors, max(left.power - float(each @ problem.weights.level), 0.0)
-
-
-def summed(places: Sorted, values: FloatArray) -> FloatArray:
-    """Return sums over the FRFs of each row, (n_rows, ...): within a column no row occurs twice."""
-    total = np.zeros((places.shape[0], *values.shape[1:]))
-    for column in range(places.shape[1]):
-        mine = np.flatnonzero(places.column == column)
-        total[places.row[mine]] += values[mine]
-    return total
-
-
-def _local_slopes(factors: FloatArray, long: FloatArray, n_modes: int, n_held: int) -> FloatArray:
-    """Return what steps of the poles and of the FRF's own participations put on the columns left.
-
-    Shape (n_frf, 2 n_held + 2 n_modes, 2 n_modes + 2 n_held).
-    """
-    m, q = 2 * n_held, 2 * n_modes
-    steps = np.zeros((len(factors), m + q, q + m))
-    by_pole, by_share = pole_turns(factors, n_modes), rotations(paired(long))
-    poles, modes = 2 * np.arange(n_modes), 2 * np.arange(n_held)
-    for a in range(2):
-        for b in range(2):
-            steps[:, m + poles + a, poles + b] = by_pole[:, :, a, b]
-            steps[:, modes + a, q + modes + b] = by_share[:, :, a, b]
-    return steps
+    each = own[problem.places.column].transpose(0, 1, 3, 2)
+    factors = times_blocks(here[:, None, :], each)[:, 0]
+    gain = np.einsum("jk,jk->j", left.cross[:, : factors.shape[1]], factors)
+    return factors, max(left.power - float(gain @ problem.weights.level), 0.0)
 
 
 def _gathered(
-    problem: Problem, local: FloatArray, slope: FloatArray, lean: FloatArray
+    problem: Problem, left: Projected, own: FloatArray, factors: FloatArray, turns: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Sum what each FRF says of the poles and of its own reference into all parameters."""
-    places, m = problem.places, lean.shape[-1]
-    q = local.shape[-1] - m
-    n_rows, n_columns = places.shape
-    total = q + m * n_columns
+    """Sum what each FRF says of the poles and of its own reference into all parameters.
+
+    Parameters
+    ----------
+    problem, left : Problem and Projected
+        The data, and their normal equations at given poles.
+    own : (n_columns, n_held, 2, 2) array
+        Participations [-].
+    factors : (n_frf, 2 n_held) array
+        What the columns held to rank one are multiplied by.
+    turns : (n_frf, n_held + n_modes, 2, 2) array
+        What steps of the FRF's own participations and of the poles put on the columns left.
+
+    Returns
+    -------
+    normal, gradient, coupling : (n_parameters, n_parameters), (n_parameters,) and (n_parameters, n_rows, 2 n_held)
+    """
+    places, m = problem.places, factors.shape[1]
+    q = left.cross.shape[1] - m
+    total = q + m * places.shape[1]
     normal, gradient = np.zeros((total, total)), np.zeros(total)
-    coupling = np.zeros((n_rows, total, m))
-    normal[:q, :q], gradient[:q] = local[:, :q, :q].sum(axis=0), slope[:, :q].sum(axis=0)
-    coupling[:, :q] = summed(places, lean[:, :q])
-    for column in range(n_columns):
-        mine, part = places.column == column, slice(q + m * column, q + m * (column + 1))
-        block = local[mine].sum(axis=0)
-        normal[:q, part], normal[part, :q] = block[:q, q:], block[q:, :q]
-        normal[part, part], gradient[part] = block[q:, q:], slope[mine, q:].sum(axis=0)
-        coupling[places.row[mine], part] = lean[mine, q:]
+    coupling = np.zeros((total, places.shape[0], m))
+    for gram, mine, column in left.alike(places):
+        at = np.concatenate([q + m * column + np.arange(m), np.arange(q)])
+        level, here = problem.weights.level[mine], turns[mine]
+        weighted = level[:, None, None, None] * here
+        normal[np.ix_(at, at)] += _turned(gram, here, weighted)
+        lacking = left.cross[mine] - factors[mine] @ gram[:m]
+        gradient[at] += times_blocks(lacking[:, None], weighted)[:, 0].sum(axis=0)
+        lean = blocks_times(weighted, times_blocks(gram[:, :m], own[column])[None])
+        coupling[at[:, None], places.row[mine]] += lean.transpose(1, 0, 2)
     keep = np.concatenate([np.ones(q, bool), np.repeat(problem.free, 2, axis=1).ravel()])
-    return normal[np.ix_(keep, keep)], gradient[keep], coupling[:, keep]
+    return normal[np.ix_(keep, keep)], gradient[keep], coupling[keep]
+
+
+def _turned(gram: FloatArray, turns: FloatArray, weighted: FloatArray) -> FloatArray:
+    """Return sum_j T_j^T G W_j over FRFs that share G, T_j and W_j being block diagonal, shape as ``gram``."""
+    n = turns.shape[1]
+    pairs = turns.reshape(len(turns), -1).T @ weighted.reshape(len(turns), -1)
+    blocks = gram.reshape(n, 2, n, 2)
+    return np.einsum("pirk,piarkb->parb", blocks, pairs.reshape(n, 2, 2, n, 2, 2)).reshape(gram.shape)
 
 
 def residue_gain(problem: Problem, step: Step, share: ComplexArray) -> FloatArray:

@@ -143,7 +143,7 @@ def _result(
     residue_variance, long_variance = _variances(problem, share, step, covariance)
     sign, both = places.sign[:, None], (2 * order[:, None] + np.arange(2)).ravel()
     residue_variance = np.hstack([residue_variance, np.zeros((len(sign), n - h))])[:, order]
-    residue_variance = np.where(order < h, residue_variance, free.linear_inverse[:, 1 : 2 * n : 2])
+    residue_variance = np.where(order < h, residue_variance, free.residue_inverse[:, 1::2])
     held_fit = replace(
         free,
         linear=Residues((step.residues * sign)[:, order], step.terms * sign, problem.powers),
