@@ -16,9 +16,10 @@ from identification.poles.stabilisation import StabilisationChart, stabilise
 _ORDER = 60
 _LEVELS = 25
 _HIGHEST = 400
-_EACH = 2
+_EACH = 3
 """Poles tried for each direction of the FRFs beyond noise [-]. A candidate holds through a third of the orders, so 1.5
-would leave no pole for noise; doubled: eight times the work for the same modes."""
+would leave no pole for noise, and 2 finds close modes too far from where they are; doubled: eight times the work for
+the same modes."""
 _SKETCH = 200  # combinations of FRFs that show as many directions as the highest order has use for
 
 

@@ -206,7 +206,6 @@ def _of_constants(
     fit: Fit, groups: list[_Sums], spread: FloatArray, plain: FloatArray, prior: FloatArray
 ) -> FloatArray:
     """Return the factor of each constant, those of a mode being shrunk to one another."""
-    n = len(fit.poles)
     gain = fit.pole_gain
     found = np.einsum("jnp,pq,jnq->jn", gain, spread, gain, optimize=True)
     expected = fit.residue_inverse[:, 1::2] + np.einsum(
