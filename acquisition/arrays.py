@@ -16,6 +16,11 @@ AnyArray = NDArray[Any]
 _SINGLE = {np.dtype(np.float64): np.dtype(np.float32), np.dtype(np.complex128): np.dtype(np.complex64)}
 
 
+def squared(values: ComplexArray) -> FloatArray:
+    """Return |values|^2, without the square root that the magnitude takes."""
+    return np.asarray(values.real**2 + values.imag**2)
+
+
 def frozen_array(values: Any, dtype: Any = np.float64, *, keep_single: bool = False) -> NDArray[Any]:
     """Return ``values`` read-only, so that a frozen dataclass is frozen to the last number.
 

@@ -208,9 +208,7 @@ def _of_constants(
     """Return the factor of each constant, those of a mode being shrunk to one another."""
     gain = fit.pole_gain
     found = np.einsum("jnp,pq,jnq->jn", gain, spread, gain, optimize=True)
-    expected = fit.residue_inverse[:, 1::2] + np.einsum(
-        "jnp,pq,jnq->jn", gain, plain, gain, optimize=True
-    )
+    expected = fit.residue_inverse[:, 1::2] + np.einsum("jnp,pq,jnq->jn", gain, plain, gain, optimize=True)
     freedom = np.zeros(len(found))
     for group in groups:
         np.add.at(found, group.rows, group.constants)

@@ -399,9 +399,7 @@ def _sorted(state: State) -> State:
     return replace(
         state,
         poles=state.poles[order],
-        step=Step(
-            step.cost, step.solution[:, linear], step.normal[np.ix_(both, both)], step.gradient[both]
-        ),
+        step=Step(step.cost, step.solution[:, linear], step.normal[np.ix_(both, both)], step.gradient[both]),
         products=normal_equations.NormalEquations(
             products.gram[:, every[:, None], every], products.cross[:, every], products.power
         ),

@@ -85,4 +85,7 @@ def synthesise(axis: basis.Axis, poles: ComplexArray, linear: Residues) -> Compl
     columns = basis.build(axis, poles, linear.powers)
     parts = np.stack([linear.residues.real, linear.residues.imag], axis=2).reshape(len(linear.residues), -1)
     solution = np.hstack([parts, linear.terms / columns.term_scale])
-    return np.asarray(solution @ columns.linear.T)
+    values = np.empty((len(solution), len(axis.laplace)), np.complex128)
+    values.real = solution @ columns.linear.real.T
+    values.imag = solution @ columns.linear.imag.T
+    return values

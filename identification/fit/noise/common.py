@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import ndimage
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, squared
 from acquisition.frfs.frf import FrfSet
 from identification.arrangement import unsigned
 from identification.fit.equations.background import gains
@@ -115,17 +115,18 @@ def common_noise(
     for rows in groups:
         b = _factor_variance(model[rows], residual[rows], variance[rows])
         each.append(b)
-        own[rows] = np.maximum(variance[rows] - b * np.abs(model[rows]) ** 2, _OWN * variance[rows])
+        if b.any():
+            own[rows] = np.maximum(variance[rows] - b * squared(model[rows]), _OWN * variance[rows])
     return CommonNoise(groups, tuple(each), own)
 
 
 def _factor_variance(model: ComplexArray, residual: ComplexArray, variance: FloatArray) -> FloatArray:
     """Return b at every line: with unit vector u along h, E |u^H r|^2 = 1 + b m in units of the noise."""
     n_lines = model.shape[1]
-    white = model / np.sqrt(variance)
-    power = np.maximum(np.sum(np.abs(white) ** 2, axis=0), np.finfo(float).tiny)
-    along = np.sum(white.conj() * residual / np.sqrt(variance), axis=0) / np.sqrt(power)
-    slope = np.maximum(power - np.sum(np.abs(white) ** 4, axis=0) / power, 0.0)
+    each = squared(model) / variance
+    power = np.maximum(np.sum(each, axis=0), np.finfo(float).tiny)
+    along = np.sum(model.conj() * residual / variance, axis=0) / np.sqrt(power)
+    slope = np.maximum(power - np.sum(each**2, axis=0) / power, 0.0)
     if n_lines < 3 * len(_DIFFERENCE):
         return np.zeros(n_lines)
     rough = np.abs(ndimage.convolve1d(along, _DIFFERENCE, mode="reflect")) ** 2
@@ -147,7 +148,7 @@ def beyond_common_noise(frfs: FrfSet, fit: Fit, weights: Weights) -> BoolArray:
     """Tell which modes of a fit stand out of what noise common to all outputs can make, shape (n_modes,).
 
     Without the mode, what the common noise explains of the rest is taken out; the mode must still explain more
-    than noise can. Modes so strong that no common noise reaches them are not asked.
+    than noise can. Modes so strong that no common noise reaches them are not asked, and none where there is none.
 
     Parameters
     ----------
@@ -167,6 +168,8 @@ def beyond_common_noise(frfs: FrfSet, fit: Fit, weights: Weights) -> BoolArray:
     doubtful = strength(fit) < limit * held * max(len(g) for g in groups)
     residual = left_over(frfs, fit)
     noise = common_noise(frfs, frfs.values - residual, residual, 1.0 / weights.full)
+    if not any(variance.any() for variance in noise.variance):
+        return stands
     for mode in np.flatnonzero(doubtful):
         rest = np.delete(np.arange(len(fit.poles)), mode)
         linear = replace(fit.linear, residues=fit.linear.residues[:, rest])
