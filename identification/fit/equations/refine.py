@@ -15,6 +15,10 @@ from identification.fit.equations.residues import Residues, unpack
 
 _ITERATIONS = 40
 _CONVERGED = 1e-10
+_RIDGE = 1e-14
+NOTHING = 0.01
+"""Part of the gain at which an iteration rests that a step must promise [-]: at rest, rounding makes every step a loss,
+and each is tried again with more damping."""
 _POLISHED = 1e-8  # a tolerance under which all lines have the last word
 
 
@@ -199,10 +203,14 @@ def _iterate(
     """Return where the steps come to rest, and whether they do."""
     damping = 1e-3
     for _ in range(iterations):
-        trial_poles = state.poles + _solve_step(state.step, damping)
+        rest = max(tolerance[0] * state.cost, tolerance[1])
+        step = solved_step(state.step.normal, state.step.gradient, damping)
+        if expected_gain(state.step.normal, state.step.gradient, step) < NOTHING * rest:
+            return state, True
+        trial_poles = state.poles + step[0::2] + 1j * step[1::2]
         trial = _at(problem, decaying(trial_poles, state.poles, problem.axis.decay))
         if trial.cost <= state.cost:
-            gain, rest = state.cost - trial.cost, max(tolerance[0] * state.cost, tolerance[1])
+            gain = state.cost - trial.cost
             state, damping = trial, max(0.1 * damping, 1e-12)
             if gain < rest:
                 return state, True
@@ -213,12 +221,17 @@ def _iterate(
     return state, False
 
 
-def _solve_step(state: Step, damping: float) -> ComplexArray:
-    diagonal = np.diag(state.normal)
+def solved_step(normal: FloatArray, gradient: FloatArray, damping: float) -> FloatArray:
+    """Return the step of Levenberg and Marquardt in unit columns, shape as ``gradient``."""
+    diagonal = np.diag(normal)
     length = np.sqrt(np.maximum(diagonal, 1e-24 * diagonal.max() + 1e-200))
-    unit = state.normal / np.outer(length, length) + damping * np.eye(len(length))
-    step = np.linalg.solve(unit, state.gradient / length) / length
-    return np.asarray(step[0::2] + 1j * step[1::2])
+    unit = normal / np.outer(length, length) + (damping + _RIDGE) * np.eye(len(length))
+    return np.asarray(np.linalg.solve(unit, gradient / length) / length)
+
+
+def expected_gain(normal: FloatArray, gradient: FloatArray, step: FloatArray) -> float:
+    """Return by how much a step lowers the misfit where the model is linear [-]."""
+    return float(step @ (2.0 * gradient - normal @ step))
 
 
 def decaying(trial: ComplexArray, poles: ComplexArray, decay: float) -> ComplexArray:

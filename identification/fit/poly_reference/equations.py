@@ -221,17 +221,18 @@ def _turned(gram: FloatArray, turns: FloatArray, weighted: FloatArray) -> FloatA
     return np.einsum("pirk,piarkb->parb", blocks, pairs.reshape(n, 2, 2, n, 2, 2)).reshape(gram.shape)
 
 
-def residue_gain(problem: Problem, step: Step, share: ComplexArray) -> FloatArray:
-    """Return the change of Im R_ij per parameter, shapes following, shape (n_frf, n_held, n_parameters)."""
+def residue_gain(problem: Problem, step: Step, share: ComplexArray, column: int) -> FloatArray:
+    """Return the change of Im R_ij per parameter, shapes following, for the FRFs of a column, in their order.
+
+    Shape (n, n_held, n_parameters).
+    """
     places, n_held = problem.places, share.shape[1]
-    q, m = 2 * step.residues.shape[1], 2 * n_held
-    own = rotations(share)[places.column]
-    moved = -step.follow[places.row].reshape(len(own), n_held, 2, -1)
-    gain = np.einsum("jnb,jnbp->jnp", own[:, :, 1], moved)
-    by_share = rotations(paired(step.long))[places.row]
-    wide = np.zeros((len(own), n_held, m * places.shape[1]))
-    rows, modes = np.arange(len(own))[:, None], np.arange(n_held)[None, :]
+    rows, own = places.row[places.column == column], rotations(share[column])[:, 1]
+    moved = step.follow[rows].reshape(len(rows), n_held, 2, -1)
+    gain = -(own[:, 0, None] * moved[:, :, 0] + own[:, 1, None] * moved[:, :, 1])
+    modes = np.flatnonzero(problem.free[column])
+    at = 2 * (step.residues.shape[1] + np.count_nonzero(problem.free[:column]) + np.arange(len(modes)))
+    by_share = rotations(paired(step.long))[rows[:, None], modes, 1]
     for part in range(2):
-        wide[rows, modes, m * places.column[:, None] + 2 * modes + part] = by_share[:, :, 1, part]
-    gain[:, :, q:] += wide[:, :, np.repeat(problem.free, 2, axis=1).ravel()]
+        gain[:, modes, at + part] += by_share[:, :, part]
     return np.asarray(gain)
