@@ -18,8 +18,9 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from acquisition.frfs.scatter import variance_of_groups
 from identification.fit.equations import basis, normal_equations
+from identification.fit.equations.projection import pole_turns
 from identification.fit.equations.pruning import inverse_information
-from identification.fit.equations.refine import Fit, pole_turns
+from identification.fit.equations.refine import Fit
 from identification.fit.poly_reference import sorted_frfs
 
 _PRIOR_FREEDOM = 10.0

@@ -12,8 +12,9 @@ import numpy as np
 from acquisition.arrays import ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
+from identification.fit.equations.projection import pole_turns
 from identification.fit.equations.pruning import inverse_information
-from identification.fit.equations.refine import Fit, evaluate, pole_turns
+from identification.fit.equations.refine import Fit, evaluate
 from identification.fit.noise.common import common_noise
 
 

@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy import ndimage, stats
 
-from acquisition.arrays import ComplexArray, FloatArray, squared
+from acquisition.arrays import ComplexArray, FloatArray, row_blocks, squared
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import normal_equations
 from identification.fit.equations.normal_equations import Weights
+from identification.fit.noise.differences import power_of_differences
 
 _CHANCE = 1e-4
 _ROUNDS = 3
@@ -23,7 +24,6 @@ _PIECE = 16  # lines over which the scatter is averaged before the median
 _SPIKE = 10.0
 _MORE = 1.5  # by which a stretch must exceed the law: two standard deviations where each line has one degree of freedom
 _FEWEST = 15  # lines under which fourth differences are too few to tell the scatter
-_FOURTH = 70.0  # mean square of fourth differences of white noise over its own
 
 
 def window_length(n_lines: int) -> int:
@@ -56,10 +56,9 @@ def scatter(residual: ComplexArray) -> FloatArray:
     n_lines = residual.shape[1]
     if n_lines < _FEWEST:
         return np.asarray(np.mean(squared(residual), axis=1))
-    second = np.diff(residual, n=2, axis=1)
-    rough = np.diff(second, n=2, axis=1)
+    rough = power_of_differences(residual, 4)
     pieces = max(1, rough.shape[1] // _PIECE)
-    power = squared(rough[:, : pieces * (rough.shape[1] // pieces)]) / _FOURTH
+    power = rough[:, : pieces * (rough.shape[1] // pieces)]
     return np.asarray(np.median(power.reshape(len(power), pieces, -1).mean(axis=2), axis=1))
 
 
@@ -208,6 +207,16 @@ def _levelled(raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], F
     mean : function
         Mean over the lines that share a and b: those nearby, or all.
     """
+    levelled = np.empty_like(raw)
+    for rows in row_blocks(raw.shape):
+        levelled[rows] = _levelled_rows(raw[rows], power[rows], mean)
+    return levelled
+
+
+def _levelled_rows(
+    raw: FloatArray, power: FloatArray, mean: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
+    """Return the same of some FRFs."""
     tiny = np.finfo(float).tiny
     size = np.maximum(raw.mean(axis=1, keepdims=True), tiny)
     raw, power = raw / size, power / np.maximum(power.mean(axis=1, keepdims=True), tiny)

@@ -22,19 +22,19 @@ def left_over(frfs: FrfSet, fit: Fit) -> ComplexArray:
     return np.asarray(frfs.values - synthesise(basis.Axis.of(frfs), fit.poles, fit.linear))
 
 
-def search_weights(frfs: FrfSet, fit: Fit) -> Weights:
+def search_weights(frfs: FrfSet, fit: Fit, residual: ComplexArray | None = None) -> Weights:
     """Weigh by the scatter from line to line, which does not mind what the model still lacks.
 
     Where the data carry variance or coherence, the lines weigh in common as these say: noise of the force
-    is larger on a peak.
+    is larger on a peak. What the fit leaves, ``residual``, is computed where it is not given.
     """
-    residual = left_over(frfs, fit)
+    residual = left_over(frfs, fit) if residual is None else residual
     known = levels.from_statistics(frfs, frfs.values - residual)
     shape = np.ones((1, len(frfs.frequency)))
     if known is not None:
         power = np.log(known)
         shape = np.exp(np.mean(power - power.mean(axis=1, keepdims=True), axis=0, keepdims=True))
-    even = residual / np.sqrt(shape)
+    even = residual if known is None else residual / np.sqrt(shape)
     fade = window_shaped.decay_over_record(even)
     free = 1.0 - _unknowns(fit) / (2 * len(frfs.frequency))
     level = levels.scatter(even) / window_shaped.roughness(fade, 4) / max(free, _LEAST_FREE)

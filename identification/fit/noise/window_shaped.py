@@ -13,7 +13,8 @@ from math import comb
 import numpy as np
 from scipy import optimize
 
-from acquisition.arrays import ComplexArray, FloatArray, squared
+from acquisition.arrays import ComplexArray, FloatArray
+from identification.fit.noise.differences import power_of_differences
 
 _STRONGEST = 40.0
 _PIECE = 16
@@ -61,9 +62,8 @@ def decay_over_record(residual: ComplexArray) -> float:
 def _pieces(residual: ComplexArray, order: int) -> FloatArray:
     """Return mean squares of differences over stretches of lines, shape (n_frf, n_pieces)."""
     edge = (4 - order) // 2  # the same lines for both orders
-    rough = np.diff(residual[:, edge : residual.shape[1] - edge], n=order, axis=1)
-    whole = rough.shape[1] // _PIECE * _PIECE
-    power = squared(rough[:, :whole]) / comb(2 * order, order)
+    rough = power_of_differences(residual[:, edge : residual.shape[1] - edge], order)
+    power = rough[:, : rough.shape[1] // _PIECE * _PIECE]
     return np.asarray(np.maximum(power.reshape(len(power), -1, _PIECE).mean(axis=2), np.finfo(float).tiny))
 
 

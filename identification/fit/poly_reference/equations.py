@@ -11,7 +11,7 @@ from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
 from identification.fit.equations.line_selection import selected_lines
-from identification.fit.equations.refine import carried, pole_turns
+from identification.fit.equations.projection import carried, pole_turns
 from identification.fit.poly_reference.blocks import blocks_times, inverses, paired, rotations, times_blocks
 from identification.fit.poly_reference.places import Sorted
 

@@ -16,7 +16,8 @@ from scipy import stats
 from acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import normal_equations
-from identification.fit.equations.refine import NOTHING, Fit, decaying, expected_gain, fit_at, solved_step
+from identification.fit.equations.iteration import NOTHING, decaying, expected_gain, solved_step
+from identification.fit.equations.refine import Fit, fit_at
 from identification.fit.equations.residues import Residues
 from identification.fit.poly_reference.blocks import inverses, paired
 from identification.fit.poly_reference.equations import Problem, Step, evaluate, residue_gain
