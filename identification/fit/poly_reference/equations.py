@@ -137,8 +137,8 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
     every = np.hstack([factors, alone[:, :n_own]])
     turns = np.concatenate([rotations(paired(here)), pole_turns(every, len(poles))], axis=1)
     normal, gradient, coupling = _gathered(problem, left, own, factors, turns)
-    follow = np.matmul(held, coupling.transpose(1, 2, 0))
-    normal = normal - coupling.reshape(len(normal), -1) @ follow.reshape(-1, len(normal))
+    follow = np.matmul(held, coupling.transpose(0, 2, 1))
+    normal = normal - np.tensordot(coupling, follow, axes=((0, 2), (0, 1)))
     return Step(
         cost=cost,
         long=long,
@@ -193,13 +193,13 @@ def _gathered(
 
     Returns
     -------
-    normal, gradient, coupling : (n_parameters, n_parameters), (n_parameters,) and (n_parameters, n_rows, 2 n_held)
+    normal, gradient, coupling : (n_parameters, n_parameters), (n_parameters,) and (n_rows, n_parameters, 2 n_held)
     """
     places, m = problem.places, factors.shape[1]
     q = left.cross.shape[1] - m
     total = q + m * places.shape[1]
     normal, gradient = np.zeros((total, total)), np.zeros(total)
-    coupling = np.zeros((total, places.shape[0], m))
+    coupling = np.zeros((places.shape[0], total, m))
     for gram, mine, column in left.alike(places):
         at = np.concatenate([q + m * column + np.arange(m), np.arange(q)])
         level, here = problem.weights.level[mine], turns[mine]
@@ -208,17 +208,23 @@ def _gathered(
         lacking = left.cross[mine] - factors[mine] @ gram[:m]
         gradient[at] += times_blocks(lacking[:, None], weighted)[:, 0].sum(axis=0)
         lean = blocks_times(weighted, times_blocks(gram[:, :m], own[column])[None])
-        coupling[at[:, None], places.row[mine]] += lean.transpose(1, 0, 2)
+        coupling[places.row[mine], :q] += lean[:, m:]
+        coupling[places.row[mine], at[0] : at[0] + m] = lean[:, :m]
     keep = np.concatenate([np.ones(q, bool), np.repeat(problem.free, 2, axis=1).ravel()])
-    return normal[np.ix_(keep, keep)], gradient[keep], coupling[keep]
+    return normal[np.ix_(keep, keep)], gradient[keep], coupling[:, keep]
 
 
 def _turned(gram: FloatArray, turns: FloatArray, weighted: FloatArray) -> FloatArray:
     """Return sum_j T_j^T G W_j over FRFs that share G, T_j and W_j being block diagonal, shape as ``gram``."""
-    n = turns.shape[1]
+    if len(turns) == 1:
+        return blocks_times(turns[0], times_blocks(gram, weighted[0]))
+    n, total = turns.shape[1], np.zeros(gram.shape)
     pairs = turns.reshape(len(turns), -1).T @ weighted.reshape(len(turns), -1)
-    blocks = gram.reshape(n, 2, n, 2)
-    return np.einsum("pirk,piarkb->parb", blocks, pairs.reshape(n, 2, 2, n, 2, 2)).reshape(gram.shape)
+    pairs, blocks = pairs.reshape(n, 2, 2, n, 2, 2), total.reshape(n, 2, n, 2)
+    for i in range(2):
+        for k in range(2):
+            blocks += gram[i::2, None, k::2, None] * pairs[:, i, :, :, k, :]
+    return total
 
 
 def residue_gain(problem: Problem, step: Step, share: ComplexArray, column: int) -> FloatArray:
