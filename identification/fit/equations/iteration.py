@@ -43,7 +43,8 @@ def _iterate(
     for _ in range(iterations):
         rest = max(tolerance[0] * state.cost, tolerance[1])
         step = solved_step(state.step.normal, state.step.gradient, damping)
-        if expected_gain(state.step.normal, state.step.gradient, step) < NOTHING * rest:
+        promised = expected_gain(state.step.normal, state.step.gradient, step)
+        if promised < NOTHING * rest:
             return state, True
         trial_poles = state.poles + step[0::2] + 1j * step[1::2]
         trial = state_at(problem, decaying(trial_poles, state.poles, problem.axis.decay))
@@ -54,7 +55,7 @@ def _iterate(
                 return state, True
         else:
             damping *= 10.0
-            if damping > 1e8:
+            if damping > 1e8 or promised < rest:
                 return state, True
     return state, False
 

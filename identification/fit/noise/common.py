@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import ndimage
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, squared
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, row_blocks, squared
 from acquisition.frfs.frf import FrfSet
 from identification.arrangement import unsigned
 from identification.fit.equations.background import gains
@@ -111,22 +111,31 @@ def common_noise(
         Noise variance of every value, common part included [unit of the FRFs squared].
     """
     groups = hit_groups(frfs)
-    own, each = np.array(variance), []
+    own, each = variance, []
     for rows in groups:
-        b = _factor_variance(model[rows], residual[rows], variance[rows])
+        b = _factor_variance(model, residual, variance, rows)
         each.append(b)
         if b.any():
+            own = np.array(own) if own is variance else own
             own[rows] = np.maximum(variance[rows] - b * squared(model[rows]), _OWN * variance[rows])
     return CommonNoise(groups, tuple(each), own)
 
 
-def _factor_variance(model: ComplexArray, residual: ComplexArray, variance: FloatArray) -> FloatArray:
+def _factor_variance(
+    model: ComplexArray, residual: ComplexArray, variance: FloatArray, rows: IntArray
+) -> FloatArray:
     """Return b at every line: with unit vector u along h, E |u^H r|^2 = 1 + b m in units of the noise."""
     n_lines = model.shape[1]
-    each = squared(model) / variance
-    power = np.maximum(np.sum(each, axis=0), np.finfo(float).tiny)
-    along = np.sum(model.conj() * residual / variance, axis=0) / np.sqrt(power)
-    slope = np.maximum(power - np.sum(each**2, axis=0) / power, 0.0)
+    power, fourth, along = np.zeros(n_lines), np.zeros(n_lines), np.zeros(n_lines, np.complex128)
+    for block in row_blocks((len(rows), n_lines)):
+        h, v = model[rows[block]], variance[rows[block]]
+        each = squared(h) / v
+        power += each.sum(axis=0)
+        fourth += np.sum(each**2, axis=0)
+        along += np.sum(h.conj() * residual[rows[block]] / v, axis=0)
+    power = np.maximum(power, np.finfo(float).tiny)
+    along /= np.sqrt(power)
+    slope = np.maximum(power - fourth / power, 0.0)
     if n_lines < 3 * len(_DIFFERENCE):
         return np.zeros(n_lines)
     rough = np.abs(ndimage.convolve1d(along, _DIFFERENCE, mode="reflect")) ** 2

@@ -19,7 +19,8 @@ _LEAST_FREE = 0.02  # part of the values that a fit leaves free at the least
 
 def left_over(frfs: FrfSet, fit: Fit) -> ComplexArray:
     """Return data minus model, shape (n_frf, n_lines) [unit of the FRFs]."""
-    return np.asarray(frfs.values - synthesise(basis.Axis.of(frfs), fit.poles, fit.linear))
+    model = synthesise(basis.Axis.of(frfs), fit.poles, fit.linear)
+    return np.subtract(frfs.values, model, out=model)
 
 
 def search_weights(frfs: FrfSet, fit: Fit, residual: ComplexArray | None = None) -> Weights:
@@ -29,7 +30,7 @@ def search_weights(frfs: FrfSet, fit: Fit, residual: ComplexArray | None = None)
     is larger on a peak. What the fit leaves, ``residual``, is computed where it is not given.
     """
     residual = left_over(frfs, fit) if residual is None else residual
-    known = levels.from_statistics(frfs, frfs.values - residual)
+    known = _stated(frfs, residual)
     shape = np.ones((1, len(frfs.frequency)))
     if known is not None:
         power = np.log(known)
@@ -40,6 +41,13 @@ def search_weights(frfs: FrfSet, fit: Fit, residual: ComplexArray | None = None)
     level = levels.scatter(even) / window_shaped.roughness(fade, 4) / max(free, _LEAST_FREE)
     level = np.maximum(level, levels.quiet_floor(frfs.values)[:, 0])
     return Weights(1.0 / level, 1.0 / shape, fade)
+
+
+def _stated(frfs: FrfSet, residual: ComplexArray) -> FloatArray | None:
+    """Return the variances that came with the data, or None where none did."""
+    if frfs.variance is None and frfs.coherence is None:
+        return None
+    return levels.from_statistics(frfs, frfs.values - residual)
 
 
 def _unknowns(fit: Fit) -> float:
@@ -61,7 +69,7 @@ def noise_weights(
     What the data say of their noise is scaled to the residual where it is coherence without hits to count.
     """
     fade = window_shaped.decay_over_record(residual)
-    known = levels.from_statistics(frfs, frfs.values - residual)
+    known = _stated(frfs, residual)
     floor = levels.quiet_floor(frfs.values)
     if known is None:
         of_residual = levels.from_residual if frfs.line_shape is None else levels.grown_locally

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray, row_blocks
 from acquisition.frfs.frf import FrfSet
 from identification.fit.equations import basis, normal_equations
 from identification.fit.equations.line_selection import selected_lines
@@ -89,14 +89,19 @@ class Projected:
     each: FloatArray
     term_scale: FloatArray
 
-    def alike(self, places: Sorted) -> Iterator[tuple[FloatArray, IntArray, int]]:
-        """Yield sets of FRFs of one column that share their products: these, the FRFs and the column."""
+    def alike(self, places: Sorted, block: slice = slice(None)) -> Iterator[tuple[FloatArray, IntArray, int]]:
+        """Yield sets of FRFs of one column that share their products: these, the FRFs and the column.
+
+        Only FRFs of a block of rows count.
+        """
+        first, last, _ = block.indices(places.shape[0])
+        inside = (places.row >= first) & (places.row < last)
         if len(self.gram) == 1:
             for column in range(places.shape[1]):
-                yield self.gram[0], np.flatnonzero(places.column == column), column
+                yield self.gram[0], np.flatnonzero(inside & (places.column == column)), column
         else:
-            for number, gram in enumerate(self.gram):
-                yield gram, np.array([number]), int(places.column[number])
+            for number in np.flatnonzero(inside):
+                yield self.gram[number], np.array([number]), int(places.column[number])
 
 
 def project(problem: Problem, poles: ComplexArray, n_held: int) -> Projected:
@@ -136,9 +141,7 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
     n_own = 2 * (len(poles) - n_held)
     every = np.hstack([factors, alone[:, :n_own]])
     turns = np.concatenate([rotations(paired(here)), pole_turns(every, len(poles))], axis=1)
-    normal, gradient, coupling = _gathered(problem, left, own, factors, turns)
-    follow = np.matmul(held, coupling.transpose(0, 2, 1))
-    normal = normal - np.tensordot(coupling, follow, axes=((0, 2), (0, 1)))
+    normal, gradient, follow = _gathered(problem, left, own, factors, turns, held)
     return Step(
         cost=cost,
         long=long,
@@ -154,15 +157,17 @@ def evaluate(problem: Problem, poles: ComplexArray, share: ComplexArray) -> Step
 def _shapes(problem: Problem, left: Projected, own: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the inverse of each row's normal matrix and its best shape components."""
     places, m = problem.places, 2 * own.shape[1]
-    normal, target = np.zeros((places.shape[0], m, m)), np.zeros((places.shape[0], m))
-    for gram, mine, column in left.alike(places):
-        rows, level = places.row[mine], problem.weights.level[mine]
-        normal[rows] += level[:, None, None] * blocks_times(
-            own[column], times_blocks(gram[:m, :m], own[column])
-        )
-        target[rows] += level[:, None] * times_blocks(left.cross[mine, :m], own[column])
-    held = inverses(normal)
-    return held, np.matmul(held, target[:, :, None])[:, :, 0]
+    held, long = np.empty((places.shape[0], m, m)), np.empty((places.shape[0], m))
+    for block in row_blocks((places.shape[0], m**2)):
+        normal, target = np.zeros(held[block].shape), np.zeros(long[block].shape)
+        for gram, mine, column in left.alike(places, block):
+            rows, level = places.row[mine] - block.start, problem.weights.level[mine]
+            inner = blocks_times(own[column], times_blocks(gram[:m, :m], own[column]))
+            normal[rows] += level[:, None, None] * inner
+            target[rows] += level[:, None] * times_blocks(left.cross[mine, :m], own[column])
+        held[block] = inverses(normal)
+        long[block] = np.matmul(held[block], target[:, :, None])[:, :, 0]
+    return held, long
 
 
 def _factors(
@@ -176,9 +181,14 @@ def _factors(
 
 
 def _gathered(
-    problem: Problem, left: Projected, own: FloatArray, factors: FloatArray, turns: FloatArray
+    problem: Problem,
+    left: Projected,
+    own: FloatArray,
+    factors: FloatArray,
+    turns: FloatArray,
+    held: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Sum what each FRF says of the poles and of its own reference into all parameters.
+    """Sum what each FRF says of the poles and of its own reference into all parameters, shapes eliminated.
 
     Parameters
     ----------
@@ -190,28 +200,36 @@ def _gathered(
         What the columns held to rank one are multiplied by.
     turns : (n_frf, n_held + n_modes, 2, 2) array
         What steps of the FRF's own participations and of the poles put on the columns left.
+    held : (n_rows, 2 n_held, 2 n_held) array
+        Inverse of each row's own normal matrix.
 
     Returns
     -------
-    normal, gradient, coupling : (n_parameters, n_parameters), (n_parameters,) and (n_rows, n_parameters, 2 n_held)
+    normal, gradient, follow : (n_parameters, n_parameters), (n_parameters,) and (n_rows, 2 n_held, n_parameters)
     """
     places, m = problem.places, factors.shape[1]
     q = left.cross.shape[1] - m
-    total = q + m * places.shape[1]
-    normal, gradient = np.zeros((total, total)), np.zeros(total)
-    coupling = np.zeros((places.shape[0], total, m))
-    for gram, mine, column in left.alike(places):
-        at = np.concatenate([q + m * column + np.arange(m), np.arange(q)])
-        level, here = problem.weights.level[mine], turns[mine]
-        weighted = level[:, None, None, None] * here
-        normal[np.ix_(at, at)] += _turned(gram, here, weighted)
-        lacking = left.cross[mine] - factors[mine] @ gram[:m]
-        gradient[at] += times_blocks(lacking[:, None], weighted)[:, 0].sum(axis=0)
-        lean = blocks_times(weighted, times_blocks(gram[:, :m], own[column])[None])
-        coupling[places.row[mine], :q] += lean[:, m:]
-        coupling[places.row[mine], at[0] : at[0] + m] = lean[:, :m]
     keep = np.concatenate([np.ones(q, bool), np.repeat(problem.free, 2, axis=1).ravel()])
-    return normal[np.ix_(keep, keep)], gradient[keep], coupling[:, keep]
+    kept, total = np.cumsum(keep) - 1, len(keep)
+    normal, gradient = np.zeros((total, total)), np.zeros(total)
+    eliminated = np.zeros((int(keep.sum()), int(keep.sum())))
+    follow = np.empty((places.shape[0], m, len(eliminated)))
+    for block in row_blocks((places.shape[0], m * len(eliminated))):
+        coupling = np.zeros((len(held[block]), len(eliminated), m))
+        for gram, mine, column in left.alike(places, block):
+            share = q + m * column + np.arange(m)
+            at, free = np.concatenate([share, np.arange(q)]), np.flatnonzero(keep[share])
+            weighted = problem.weights.level[mine, None, None, None] * turns[mine]
+            normal[np.ix_(at, at)] += _turned(gram, turns[mine], weighted)
+            lacking = left.cross[mine] - factors[mine] @ gram[:m]
+            gradient[at] += times_blocks(lacking[:, None], weighted)[:, 0].sum(axis=0)
+            lean = blocks_times(weighted, times_blocks(gram[:, :m], own[column])[None])
+            rows = places.row[mine] - block.start
+            coupling[rows, :q] += lean[:, m:]
+            coupling[rows[:, None], kept[share[free]]] = lean[:, free]
+        follow[block] = np.matmul(held[block], coupling.transpose(0, 2, 1))
+        eliminated += np.tensordot(coupling, follow[block], axes=((0, 2), (0, 1)))
+    return normal[np.ix_(keep, keep)] - eliminated, gradient[keep], follow
 
 
 def _turned(gram: FloatArray, turns: FloatArray, weighted: FloatArray) -> FloatArray:

@@ -107,7 +107,8 @@ def _iterate(
     state, damping, n = evaluate(problem, poles, share), 1e-3, len(poles)
     for _ in range(_ITERATIONS):
         move = solved_step(state.normal, state.gradient, damping)
-        if expected_gain(state.normal, state.gradient, move) < NOTHING * _CONVERGED:
+        promised = expected_gain(state.normal, state.gradient, move)
+        if promised < NOTHING * _CONVERGED:
             return poles, share, state, True
         trial_poles = decaying(poles + paired(move[: 2 * n]), poles, decay)
         trial_share = share.copy()
@@ -115,7 +116,7 @@ def _iterate(
         trial = evaluate(problem, trial_poles, trial_share)
         if trial.cost > state.cost:
             damping *= 10.0
-            if damping > _STUCK:
+            if damping > _STUCK or promised < _CONVERGED:
                 return poles, share, state, True
             continue
         gain = state.cost - trial.cost
