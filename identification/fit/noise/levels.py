@@ -174,9 +174,9 @@ def from_statistics(frfs: FrfSet, model: ComplexArray) -> FloatArray | None:
         if frfs.averages is None:
             return np.maximum(raw, quiet_floor(frfs.values))
     elif frfs.coherence is not None:
-        squared = np.clip(frfs.coherence, 1e-6, 1.0)
+        coherent = np.clip(frfs.coherence, 1e-6, 1.0)
         count = np.ones(len(frfs.values)) if frfs.averages is None else np.maximum(1.0, frfs.averages)
-        raw = squared(frfs.values) * (1.0 - squared) / squared / count[:, None]
+        raw = squared(frfs.values) * (1.0 - coherent) / coherent / count[:, None]
     else:
         return None
     window = window_length(raw.shape[1])
